@@ -1,0 +1,40 @@
+# One object library per folder, so that a folder can be built and tested alone; all are gathered into `slipmode`.
+
+add_library(slipmode_flags INTERFACE)
+target_compile_options(slipmode_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion)
+if(SLIPMODE_WERROR)
+  target_compile_options(slipmode_flags INTERFACE -Werror)
+endif()
+if(SLIPMODE_ARCH AND NOT SLIPMODE_SANITIZE)
+  target_compile_options(slipmode_flags INTERFACE -march=${SLIPMODE_ARCH})
+endif()
+if(SLIPMODE_SANITIZE)
+  target_compile_options(slipmode_flags INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(slipmode_flags INTERFACE -fsanitize=address,undefined)
+endif()
+
+# Eigen's alignment must be the same in the library and in whoever links it, whatever -march each uses.
+set(SLIPMODE_PUBLIC_DEFINITIONS EIGEN_MAX_ALIGN_BYTES=64)
+
+function(slipmode_module name)
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${name}/*.cpp)
+  if(NOT sources)
+    return()
+  endif()
+  add_library(slipmode_${name} OBJECT ${sources})
+  target_include_directories(slipmode_${name} PUBLIC ${PROJECT_SOURCE_DIR})
+  target_include_directories(slipmode_${name} SYSTEM PRIVATE ${HDF5_INCLUDE_DIRS})
+  target_compile_definitions(slipmode_${name} PUBLIC ${SLIPMODE_PUBLIC_DEFINITIONS})
+  target_link_libraries(slipmode_${name} PUBLIC Eigen3::Eigen PRIVATE slipmode_flags Spectra::Spectra fmt::fmt
+    tomlplusplus::tomlplusplus nlohmann_json::nlohmann_json Threads::Threads)
+  target_sources(slipmode PRIVATE $<TARGET_OBJECTS:slipmode_${name}>)
+endfunction()
+
+function(slipmode_configure_library)
+  target_include_directories(slipmode PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/slipmode>)
+  target_compile_definitions(slipmode PUBLIC ${SLIPMODE_PUBLIC_DEFINITIONS})
+  target_link_libraries(slipmode PUBLIC Eigen3::Eigen PRIVATE fmt::fmt LAPACK::LAPACK ${ARPACK_LIBRARY}
+    ${FFTW3_LIBRARY} ${HDF5_LIBRARIES} Threads::Threads)
+  set_target_properties(slipmode PROPERTIES LINKER_LANGUAGE CXX)
+endfunction()

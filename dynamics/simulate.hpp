@@ -1,0 +1,114 @@
+#pragma once
+
+#include "dynamics/system.hpp"
+
+#include <Eigen/Core>
+#include <functional>
+#include <optional>
+#include <vector>
+
+namespace slipmode::dynamics {
+
+enum class EventKind : std::uint8_t {
+  kStick,        ///< slip ends, the contact sticks
+  kRelease,      ///< stick ends at |λ| = μ_s N
+  kReversal,     ///< v_rel passes through zero without sticking
+  kGrazing,      ///< v_rel (or the stick force) touched its limit within tolerance; the mode did not change
+  kDriveCorner,  ///< the drive's acceleration jumped; contact is -1
+};
+
+/// An event belongs to the half-open window (t0, t1]; after it the state lies on the guard to rounding.
+struct Event {
+  double time = 0.0;
+  int contact = -1;
+  EventKind kind = EventKind::kStick;
+  ContactMode before = ContactMode::kStick;
+  ContactMode after = ContactMode::kStick;
+  double displacement = 0.0;  ///< contact displacement wᵀq + offset [m]
+  double velocity = 0.0;      ///< wᵀq̇ [m/s]
+  double force = 0.0;         ///< λ just after the event [N]
+};
+
+/// Which flow advances the state.
+enum class FlowMethod {
+  kAutomatic,    ///< closed form when every law is piecewise linear and n is small, collocation otherwise
+  kClosedForm,   ///< exact modal solution in each regime, guaranteed event isolation; piecewise-linear laws only
+  kCollocation,  ///< scalar Volterra collocation of the contact forces, error-controlled; any law
+};
+
+/// Energy bookkeeping of a run: E_end − E_start = contact_work − viscous_loss, with
+/// contact_work = drive_work − friction_loss.
+struct EnergyAudit {
+  double energy_start = 0.0;
+  double energy_end = 0.0;
+  double contact_work = 0.0;   ///< ∫ Σ λ wᵀq̇ dt, done on the structure [J]
+  double drive_work = 0.0;     ///< ∫ Σ λ v_drive dt [J]
+  double friction_loss = 0.0;  ///< ∫ Σ λ v_rel dt ≥ 0 [J]
+  double viscous_loss = 0.0;   ///< ∫ q̇ᵀC q̇ dt ≥ 0 [J]
+  double exchanged = 0.0;      ///< scale: |contact work| summed over steps + viscous loss + largest energy seen [J]
+  /// (E_end − E_start − contact_work + viscous_loss) / exchanged
+  [[nodiscard]] double residual() const;
+};
+
+struct FlowOptions {
+  FlowMethod method = FlowMethod::kAutomatic;
+  double tolerance = 1e-9;          ///< local error of the contact force relative to its static limit (collocation)
+  bool audit = true;                ///< integrate the energy balance along
+  int max_events_per_window = 200;  ///< more events than this within `zeno_window` is reported as Zeno
+  double zeno_window = 0.0;         ///< [s]; 0: one hundredth of the shortest natural period
+};
+
+/// What a run counted; costs and reports are made of these.
+struct FlowStatistics {
+  std::int64_t steps = 0;
+  std::int64_t rejected = 0;
+  std::int64_t events = 0;
+  int regimes_built = 0;
+  std::vector<double> stick_time;  ///< per contact [s]
+};
+
+/// Called at every event while simulating; return false to stop the run there.
+using EventCallback = std::function<bool(const Event&, const State&)>;
+
+struct SimulateOptions {
+  double duration = 0.0;   ///< simulated time after `state.time` [s]
+  double transient = 0.0;  ///< events and samples before start + transient are not kept [s]
+  double sample = 0.0;     ///< sampling interval; 0: no samples [s]
+  bool keep_events = true;
+  bool event_states = false;  ///< also keep the full state at each kept event (columns of event_q, event_v)
+  /// What samples hold. With kContacts on a long chain no mode shapes are ever formed.
+  enum class Output { kAllDofs, kContacts } output = Output::kAllDofs;
+  FlowOptions flow = {};
+  EventCallback on_event = {};
+};
+
+/// The result of a run. Column k of q, v, lambda belongs to times[k] = start + transient + k·sample.
+struct Trajectory {
+  std::vector<Event> events;
+  Eigen::VectorXd times;                         ///< [T]
+  Eigen::MatrixXd q, v;                          ///< n x T (kAllDofs)
+  Eigen::MatrixXd contact_q, contact_v, lambda;  ///< nc x T: wᵀq + offset, wᵀq̇, contact forces
+  Eigen::MatrixXd event_q, event_v;              ///< n x events, if asked
+  State final_state;  ///< in the structure's dofs (empty q, v with Output::kContacts on a long chain)
+  EnergyAudit audit;
+  FlowStatistics statistics;
+};
+
+/// Advances `start` by options.duration.
+/// @throws InvalidInput      for sizes, negative durations, a start that violates its own modes, kClosedForm with a law
+///                           that is not piecewise linear
+/// @throws NumericalFailure  with time and state: Zeno, no convergence of the collocation, values not finite
+[[nodiscard]] Trajectory simulate(const HybridSystem& system, const State& start, const SimulateOptions& options);
+
+/// Fundamental matrix of the flow over [start, start + duration] with saltation at every event.
+struct TangentResult {
+  State end;
+  Eigen::MatrixXd monodromy;  ///< 2n x 2n, d(q,v)_end / d(q,v)_start
+  std::vector<Event> events;
+};
+
+/// Carries the tangent flow along. Entering stick projects out one direction (rank drops by one).
+[[nodiscard]] TangentResult tangent_flow(const HybridSystem& system, const State& start, double duration,
+                                         const FlowOptions& options = {});
+
+}  // namespace slipmode::dynamics

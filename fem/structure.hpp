@@ -1,0 +1,70 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <Eigen/SparseCore>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace slipmode::fem {
+
+using SparseMatrix = Eigen::SparseMatrix<double>;
+
+/// A square matrix, stored as it came: sparse for assembled structures, dense for projected ones.
+using Matrix = std::variant<SparseMatrix, Eigen::MatrixXd>;
+
+/// C = mass·M + stiffness·K (Rayleigh damping). `mass` in 1/s, `stiffness` in s.
+struct Rayleigh {
+  double mass = 0.0;
+  double stiffness = 0.0;
+};
+
+/// A linear structure M q̈ + C q̇ + K q = f, the part that full and reduced models share.
+///
+/// M is symmetric positive definite, C and K symmetric positive semi-definite [n x n]. Immutable after construction.
+/// Source: DESIGN of the pipeline; S4 (3.1).
+class Structure {
+ public:
+  /// @param M, C, K    n x n, symmetric to rounding
+  /// @param dof_names  n names, or empty: then "q1".."qn"
+  /// @param units      "dimensionless" or "SI"
+  /// @throws InvalidInput  if n = 0, sizes differ, a value is not finite, a matrix is not symmetric, or M is not
+  ///                       positive definite
+  Structure(Matrix M, Matrix C, Matrix K, std::vector<std::string> dof_names = {}, std::string units = "dimensionless");
+
+  /// Same, with C = r.mass·M + r.stiffness·K; the structure then knows its damping to be proportional.
+  Structure(Matrix M, Rayleigh r, Matrix K, std::vector<std::string> dof_names = {},
+            std::string units = "dimensionless");
+
+  [[nodiscard]] Eigen::Index size() const;
+  [[nodiscard]] const Matrix& M() const;
+  [[nodiscard]] const Matrix& C() const;
+  [[nodiscard]] const Matrix& K() const;
+  [[nodiscard]] const std::vector<std::string>& dof_names() const;
+  [[nodiscard]] const std::string& units() const;
+
+  /// The Rayleigh coefficients, when the structure was built from them or C was found to fit them to rounding.
+  [[nodiscard]] std::optional<Rayleigh> rayleigh() const;
+
+  /// True when M is diagonal and K tridiagonal (a chain): modes then cost O(n²) or less.
+  [[nodiscard]] bool is_chain_like() const;
+
+  /// ½ vᵀMv + ½ qᵀKq [J]. Source: S4 (3.35) written for any structure.
+  [[nodiscard]] double energy(const Eigen::VectorXd& q, const Eigen::VectorXd& v) const;
+
+ private:
+  Matrix M_, C_, K_;
+  std::vector<std::string> dof_names_;
+  std::string units_;
+  std::optional<Rayleigh> rayleigh_;
+};
+
+/// y = A x for either storage.
+[[nodiscard]] Eigen::MatrixXd multiply(const Matrix& A, const Eigen::MatrixXd& x);
+/// A as a dense matrix (a copy).
+[[nodiscard]] Eigen::MatrixXd to_dense(const Matrix& A);
+/// A as a sparse matrix (a copy).
+[[nodiscard]] SparseMatrix to_sparse(const Matrix& A);
+
+}  // namespace slipmode::fem
