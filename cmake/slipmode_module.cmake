@@ -2,6 +2,10 @@
 
 add_library(slipmode_flags INTERFACE)
 target_compile_options(slipmode_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  # GCC 12 warns about the undefined operands in its own AVX-512 intrinsics (GCC bug 105593).
+  target_compile_options(slipmode_flags INTERFACE -Wno-maybe-uninitialized -Wno-uninitialized)
+endif()
 if(SLIPMODE_WERROR)
   target_compile_options(slipmode_flags INTERFACE -Werror)
 endif()

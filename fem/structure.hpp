@@ -23,14 +23,14 @@ struct Rayleigh {
 /// A linear structure M q̈ + C q̇ + K q = f, the part that full and reduced models share.
 ///
 /// M is symmetric positive definite, C and K symmetric positive semi-definite [n x n]. Immutable after construction.
-/// Source: DESIGN of the pipeline; S4 (3.1).
+/// Source: S4 (3.1).
 class Structure {
  public:
   /// @param M, C, K    n x n, symmetric to rounding
   /// @param dof_names  n names, or empty: then "q1".."qn"
   /// @param units      "dimensionless" or "SI"
-  /// @throws InvalidInput  if n = 0, sizes differ, a value is not finite, a matrix is not symmetric, or M is not
-  ///                       positive definite
+  /// @throws InvalidInput  if n = 0, sizes differ, a value is not finite, a matrix is not symmetric, M is not
+  ///                       positive definite, or the units are unknown
   Structure(Matrix M, Matrix C, Matrix K, std::vector<std::string> dof_names = {}, std::string units = "dimensionless");
 
   /// Same, with C = r.mass·M + r.stiffness·K; the structure then knows its damping to be proportional.
@@ -47,7 +47,7 @@ class Structure {
   /// The Rayleigh coefficients, when the structure was built from them or C was found to fit them to rounding.
   [[nodiscard]] std::optional<Rayleigh> rayleigh() const;
 
-  /// True when M is diagonal and K tridiagonal (a chain): modes then cost O(n²) or less.
+  /// True when M is diagonal and K is tridiagonal (a chain): modes then cost O(n²) or less.
   [[nodiscard]] bool is_chain_like() const;
 
   /// ½ vᵀMv + ½ qᵀKq [J]. Source: S4 (3.35) written for any structure.
@@ -58,6 +58,7 @@ class Structure {
   std::vector<std::string> dof_names_;
   std::string units_;
   std::optional<Rayleigh> rayleigh_;
+  bool chain_like_ = false;
 };
 
 /// y = A x for either storage.
