@@ -1,0 +1,78 @@
+#include "cli/figures/bifurcation.hpp"
+
+#include "cli/figures/style.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
+
+namespace slipmode::figures {
+namespace {
+
+struct Range {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+
+  void include(const Eigen::VectorXd& values) {
+    for (const double value : values) {
+      if (!std::isfinite(value)) continue;
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+  }
+};
+
+/// Points on a raster finer than the dots: one per cell.
+BifurcationPanel thinned(const BifurcationPanel& panel, const Range& x, const Range& y, double cells_x,
+                         double cells_y) {
+  std::set<std::pair<int, int>> seen;
+  std::vector<Eigen::Index> kept;
+  const auto cell = [](double value, const Range& range, double cells) {
+    return static_cast<int>(cells * (value - range.low) / std::max(range.high - range.low, 1e-300));
+  };
+  for (Eigen::Index i = 0; i < panel.parameter.size(); ++i) {
+    if (!std::isfinite(panel.value[i]) || !std::isfinite(panel.parameter[i])) continue;
+    if (seen.emplace(cell(panel.parameter[i], x, cells_x), cell(panel.value[i], y, cells_y)).second) kept.push_back(i);
+  }
+  return {panel.title, panel.parameter(kept), panel.value(kept), panel.colour};
+}
+
+}  // namespace
+
+Figure bifurcation_diagram(const std::vector<BifurcationPanel>& panels, const BifurcationLabels& labels) {
+  const int count = static_cast<int>(panels.size());
+  const int panel_height = count == 1 ? 620 : 460;
+  Figure figure(1200, panel_height * count + 70);
+  common_style(figure);
+
+  Range x, y;
+  for (const auto& panel : panels) {
+    x.include(panel.parameter);
+    y.include(panel.value);
+  }
+  const double bottom = 75.0 / figure.height(), top = 1.0 - 40.0 / figure.height();
+  figure.command(fmt::format("set multiplot layout {},1 margins 0.08,0.975,{:.4f},{:.4f} spacing 0,{:.4f}", count,
+                             bottom, top, 45.0 / figure.height()));
+  figure.command("unset key");
+  figure.command("set xrange " + padded_range(x.low, x.high, 0.012));
+  figure.command("set yrange " + padded_range(y.low, y.high));
+  for (int i = 0; i < count; ++i) {
+    const bool last = i + 1 == count;
+    const BifurcationPanel points = thinned(panels[i], x, y, 1100.0, 0.75 * panel_height);
+    const std::string block = figure.data({points.parameter, points.value});
+    figure.command(fmt::format("set title \"{}\" offset 0,-0.6", literal(panels[i].title)));
+    figure.command(fmt::format("set ylabel \"{}\"", axis_label(labels.value, labels.value_unit)));
+    figure.command(last ? fmt::format("set xlabel \"{}\"", axis_label(labels.parameter, labels.parameter_unit))
+                        : std::string("unset xlabel"));
+    figure.command(last ? "set format x '%g'" : "set format x ''");
+    figure.command(fmt::format("plot {} using 1:2 with points pointtype 7 pointsize 0.12 linecolor rgb '{}'", block,
+                               points.colour));
+  }
+  figure.command("unset multiplot");
+  return figure;
+}
+
+}  // namespace slipmode::figures

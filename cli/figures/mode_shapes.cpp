@@ -1,0 +1,64 @@
+#include "cli/figures/mode_shapes.hpp"
+
+#include "cli/figures/style.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+namespace slipmode::figures {
+namespace {
+
+/// Scaled to a largest component of one in magnitude.
+Eigen::VectorXd normalised(const Eigen::VectorXd& shape) {
+  const double largest = shape.cwiseAbs().maxCoeff();
+  return largest > 0.0 ? Eigen::VectorXd(shape / largest) : shape;
+}
+
+Eigen::VectorXd turned_to(const Eigen::VectorXd& shape, const Eigen::VectorXd& reference) {
+  return shape.dot(reference) < 0.0 ? Eigen::VectorXd(-shape) : shape;
+}
+
+}  // namespace
+
+Figure mode_shapes(const ModeShapes& shapes) {
+  constexpr int kLargestCount = 12;
+  const int count = std::min<int>(kLargestCount, static_cast<int>(shapes.poms.cols()));
+  const int columns = std::min(count, count <= 4 ? 2 : 3);
+  const int rows = (count + columns - 1) / columns;
+  Figure figure(1200, rows * 260 + 90);
+  common_style(figure);
+
+  const Eigen::Index n = shapes.poms.rows();
+  const Eigen::VectorXd number = Eigen::VectorXd::LinSpaced(n, 1.0, static_cast<double>(n));
+  const double height = figure.height();
+  figure.command(fmt::format("set multiplot layout {},{} margins 0.065,0.985,{:.4f},{:.4f} spacing 0.035,{:.4f}", rows,
+                             columns, 75.0 / height, 1.0 - 45.0 / height, 50.0 / height));
+  figure.command(fmt::format("set xrange [0.5:{}]", static_cast<double>(n) + 0.5));
+  figure.command("set yrange [-1.15:1.15]; set ytics 0.5");
+  if (n <= 20) figure.command("set xtics 1");
+  figure.command("set xzeroaxis linecolor rgb '#999999' linewidth 0.8 linetype 1");
+  const std::string marker = n <= 60 ? "linespoints pointtype 7 pointsize 0.7" : "lines";
+  for (int i = 0; i < count; ++i) {
+    const Eigen::VectorXd pom = normalised(shapes.poms.col(i));
+    const bool with_lnm = i < shapes.lnms.cols();
+    const std::string share =
+        i < shapes.shares.size() ? fmt::format(", energy {:.3g} %", 100.0 * shapes.shares[i]) : std::string();
+    figure.command(fmt::format("set title \"mode {}{}\" offset 0,-0.7", i + 1, share));
+    figure.command(i % columns == 0 ? "set ylabel \"shape [–]\"; set format y '%g'" : "unset ylabel; set format y ''");
+    figure.command(i + columns >= count ? "set xlabel \"mass number\"; set format x '%g'"
+                                        : "unset xlabel; set format x ''");
+    figure.command(i == 0 && with_lnm ? "set key top left" : "unset key");
+    std::string plot = fmt::format("plot {} using 1:2 with {} linewidth 1.6 linecolor rgb '{}' title 'POM'",
+                                   figure.data({number, pom}), marker, kPomColour);
+    if (with_lnm) {
+      const Eigen::VectorXd lnm = turned_to(normalised(shapes.lnms.col(i)), pom);
+      plot += fmt::format(", {} using 1:2 with lines dashtype 2 linewidth 1.6 linecolor rgb '{}' title 'LNM'",
+                          figure.data({number, lnm}), kLnmColour);
+    }
+    figure.command(plot);
+  }
+  figure.command("unset multiplot");
+  return figure;
+}
+
+}  // namespace slipmode::figures

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "cli/figures/gnuplot.hpp"
+
+#include <string>
+#include <string_view>
+
+namespace slipmode::figures {
+
+/// One colour per model in every figure (Okabe-Ito, distinct for colour-blind readers and in grey).
+inline constexpr std::string_view kFullColour = "#222222";
+inline constexpr std::string_view kPomColour = "#0072B2";
+inline constexpr std::string_view kLnmColour = "#D55E00";
+inline constexpr std::string_view kSecondColour = "#009E73";
+inline constexpr std::string_view kStickShade = "#C9DDEE";
+
+/// "displacement x_{10} [m]"; a dimensionless quantity (unit "", "1", "-") gets "[–]".
+[[nodiscard]] std::string axis_label(std::string_view quantity, std::string_view unit);
+
+/// Borders left and below, light grid, ticks outside: the frame that all figures share.
+void common_style(Figure& figure);
+
+/// A range a little wider than the data, never empty: "[low:high]".
+[[nodiscard]] std::string padded_range(double low, double high, double margin = 0.04);
+
+}  // namespace slipmode::figures
