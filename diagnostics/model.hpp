@@ -1,0 +1,43 @@
+#pragma once
+
+#include "dynamics/simulate.hpp"
+#include "dynamics/system.hpp"
+#include "pod/basis.hpp"
+
+#include <functional>
+#include <optional>
+
+namespace slipmode::diagnostics {
+
+/// A system for a value of the swept parameter. Called from several threads at once: must not change anything.
+using SystemFactory = std::function<dynamics::HybridSystem(double parameter)>;
+
+/// A model under study: full, or reduced by a basis.
+struct Model {
+  SystemFactory system;
+  std::optional<pod::Basis> basis = {};  ///< set for a reduced model: how its states lift to the full ones
+  /// Added to HybridSystem::energy so that a reduced model's energy is that of its lifted state [J].
+  double energy_offset = 0.0;
+};
+
+/// The full model with belt speed as the parameter; modal data are shared by all speeds.
+[[nodiscard]] Model belt_model(const dynamics::HybridSystem& full);
+
+/// The model reduced to `basis`, belt speed as the parameter.
+/// energy_offset = ½ q̄ᵀK q̄ − pᵀq̄, what projection on an affine basis leaves out.
+/// @throws InvalidInput  as rom::reduce
+[[nodiscard]] Model reduced_belt_model(const dynamics::HybridSystem& full, const pod::Basis& basis);
+
+/// A state in full coordinates: lifted for a reduced model, unchanged for a full one.
+[[nodiscard]] dynamics::State lifted(const Model& model, const dynamics::State& state);
+
+/// A state to start another run from: same q and v, time 0, contact modes to be derived anew. What a sweep carries
+/// from one belt speed to the next, where the old modes need not hold.
+[[nodiscard]] dynamics::State restarted(const dynamics::State& state);
+
+/// Steady sliding at the drive's speed at time 0: K q = p + Σ w λ with λ at its kinetic value for that speed (zero for
+/// a belt at rest), v = 0. A static equilibrium that need not be stable.
+/// @throws InvalidInput  if K is singular to rounding (a structure free to move as a rigid body)
+[[nodiscard]] dynamics::State sliding_equilibrium(const dynamics::HybridSystem& system);
+
+}  // namespace slipmode::diagnostics

@@ -1,0 +1,61 @@
+#pragma once
+
+#include "dynamics/simulate.hpp"
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+namespace slipmode::diagnostics {
+
+/// The slip state of S4 section 3.5.3: where a contact was when it began to slip.
+struct SlipState {
+  double time = 0.0;
+  int contact = 0;
+  double displacement = 0.0;  ///< wᵀq + offset [m]
+};
+
+/// The releases among events, in time order.
+[[nodiscard]] std::vector<SlipState> slip_states(std::span<const dynamics::Event> events);
+
+enum class Motion {
+  kPeriodic,
+  kAperiodic,  ///< enough slips seen, no period up to max_period
+  kUndecided,  ///< too few slips to say
+  kSticking,   ///< no slip: every contact stuck all the time
+  kSliding,    ///< no stick: steady sliding, or oscillation without stick, which slip states cannot tell apart
+};
+
+[[nodiscard]] const char* to_string(Motion motion);
+
+struct PeriodOptions {
+  /// Largest difference of slip states one period apart, relative to the contact's `scale`; of times, relative to T.
+  double tolerance = 1e-5;
+  int max_period = 64;   ///< in slips of the section contact
+  int repeats = 3;       ///< periods that must be seen to repeat
+  int min_matches = 20;  ///< slips that must match at least, so that a short visit near an unstable orbit is no period
+  /// Reach of each contact's motion [m]; empty: the range of its slip states (or their size, if they are all equal).
+  std::vector<double> scale = {};
+};
+
+struct PeriodResult {
+  Motion motion = Motion::kUndecided;
+  int period = 0;         ///< slips of the section contact per period; 0 unless periodic
+  double T = 0.0;         ///< period in time, mean over the matched repeats [s]; 0 unless periodic
+  int contact = -1;       ///< section contact: the lowest one that slips
+  double mismatch = 0.0;  ///< largest relative difference found in the matched stretch
+};
+
+/// Smallest period p of the last slips: slip states p apart agree within tolerance over the last
+/// max(repeats·p, min_matches) slips, at a constant time apart; with several contacts, every slip of every contact in
+/// that stretch must have its partner one T before. Simultaneous slips of several contacts may come in any order.
+///
+/// Smallest means: a doubling whose split is below tolerance counts as not doubled.
+/// @param slips   in time order
+/// @param states  optional, one column (q; v) per slip: then the whole state must repeat too, relative to the largest
+///                column norm about the mean
+/// @throws InvalidInput  for options out of range, slips out of order, a state matrix of the wrong width
+[[nodiscard]] PeriodResult detect_period(std::span<const SlipState> slips, const PeriodOptions& options = {},
+                                         const Eigen::MatrixXd* states = nullptr);
+
+}  // namespace slipmode::diagnostics
