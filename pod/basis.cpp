@@ -1,0 +1,20 @@
+#include "pod/basis.hpp"
+
+#include "core/errors.hpp"
+
+#include <fmt/format.h>
+
+namespace slipmode::pod {
+
+Basis Basis::truncated(Eigen::Index L) const {
+  if (L < 1 || L > modes()) {
+    throw InvalidInput(
+        fmt::format("basis: cannot keep {} modes of a basis of {}; expected 1 to {}", L, modes(), modes()));
+  }
+  Basis cut = *this;
+  cut.vectors = vectors.leftCols(L);
+  if (energy.size() > L) cut.energy = energy.head(L).eval();
+  return cut;
+}
+
+}  // namespace slipmode::pod
