@@ -35,39 +35,46 @@ struct Deviation {
 
 /// Full against reduced on a periodic orbit of each.
 struct OrbitComparison {
-  Orbit full, reduced;
+  Orbit full = {};
+  Orbit reduced = {};
   bool same_period = false;   ///< same number of slips; without it, `deviation` is not filled
-  Deviation deviation;        ///< in phase, each orbit sampled over its own period
+  Deviation deviation = {};   ///< in phase, each orbit sampled over its own period
   int alignment = 0;          ///< the reduced orbit's slip laid on the full orbit's first one: the one of least dX
   double T_difference = 0.0;  ///< 100 (T_r − T_f)/T_f [%]
 };
 
 /// @param structure  of the full model
-[[nodiscard]] OrbitComparison compare_orbits(const Model& full, const Model& reduced, double parameter,
-                                             const Orbit& full_orbit, const Orbit& reduced_orbit,
+[[nodiscard]] OrbitComparison compare_orbits(const fem::Structure& structure, const Model& full, const Model& reduced,
+                                             double parameter, const Orbit& full_orbit, const Orbit& reduced_orbit,
                                              Eigen::Index samples = 2048, const dynamics::FlowOptions& flow = {});
 
-/// Full against reduced from one initial state up to a horizon. For a chaotic motion nothing beyond a few 1/λ₁ means
-/// anything; say the horizon with the number.
+/// Full and reduced from one initial state, at the same instants.
+struct SharedRun {
+  Record full;
+  Record reduced;
+};
+
+/// Full against reduced from one initial state up to a horizon; deviation(…) of the two records is S4's measure. For a
+/// chaotic motion nothing beyond a few 1/λ₁ means anything: say the horizon with the number.
 /// @param start  in the reduced model's coordinates; the full model starts from it lifted
 /// @throws InvalidInput  for horizon ≤ 0, sample ≤ 0
-[[nodiscard]] Deviation compare_to_horizon(const Model& full, const Model& reduced, double parameter,
-                                           const dynamics::State& start, double horizon, double sample,
-                                           const dynamics::FlowOptions& flow = {});
+[[nodiscard]] SharedRun run_shared(const Model& full, const Model& reduced, double parameter,
+                                   const dynamics::State& start, double horizon, double sample,
+                                   const dynamics::FlowOptions& flow = {});
 
 /// Full against reduced as attractors, whatever their motion.
 struct AttractorDistance {
-  double wasserstein = 0.0;  ///< of the slip states of the lowest slipping contact [m]
-  double hausdorff = 0.0;    ///< [m]
-  double mean_energy = 0.0;  ///< difference reduced − full [J]
-  double mean_energy_percent = 0.0;
-  double stick_fraction = 0.0;  ///< difference reduced − full
-  double slip_rate = 0.0;       ///< difference reduced − full [1/s]
+  double wasserstein = 0.0;          ///< of the slip states of the full model's section contact [m]
+  double hausdorff = 0.0;            ///< [m]
+  double mean_energy = 0.0;          ///< difference reduced − full [J]
+  double mean_energy_percent = 0.0;  ///< of the full model's [%]
+  double stick_fraction = 0.0;       ///< difference reduced − full
+  double slip_rate = 0.0;            ///< difference reduced − full [1/s]
 };
 
-/// NaN where one of them has no slip states. Energies get their model's offset.
-[[nodiscard]] AttractorDistance attractor_distance(const Settled& full, const Settled& reduced,
-                                                   double full_energy_offset = 0.0, double reduced_energy_offset = 0.0);
+/// NaN where one of them has no slip states. Energies are taken as they stand in `mean_energy`: add each model's
+/// energy_offset first (a sweep has done so).
+[[nodiscard]] AttractorDistance attractor_distance(const Settled& full, const Settled& reduced);
 
 /// Two bifurcation diagrams, value by value.
 struct BifurcationComparison {

@@ -35,9 +35,9 @@ struct EnsembleMember {
   double parameter = 0.0;
   Eigen::Index start = 0;    ///< which of the initial states
   Eigen::Index columns = 0;  ///< snapshots it gave; 0 if it failed
-  dynamics::EnergyAudit audit;
-  dynamics::FlowStatistics statistics;
-  dynamics::State final_state;
+  dynamics::EnergyAudit audit = {};
+  dynamics::FlowStatistics statistics = {};
+  dynamics::State final_state = {};
   std::string failure = {};  ///< empty, or why it failed
 };
 

@@ -31,9 +31,12 @@ enum class Motion {
 struct PeriodOptions {
   /// Largest difference of slip states one period apart, relative to the contact's `scale`; of times, relative to T.
   double tolerance = 1e-5;
-  int max_period = 64;   ///< in slips of the section contact
-  int repeats = 3;       ///< periods that must be seen to repeat
-  int min_matches = 20;  ///< slips that must match at least, so that a short visit near an unstable orbit is no period
+  int max_period = 64;  ///< in slips of the section contact
+  int repeats = 3;      ///< periods that must be seen to repeat
+  /// Slips that must match at least, so that a short visit near an unstable orbit is no period …
+  int min_matches = 20;
+  /// … unless fewer of them cover so much time [s]; 0: no exception. For slow belts, where one slip takes ages.
+  double long_stretch = 0.0;
   /// Reach of each contact's motion [m]; empty: the range of its slip states (or their size, if they are all equal).
   std::vector<double> scale = {};
 };
@@ -42,13 +45,14 @@ struct PeriodResult {
   Motion motion = Motion::kUndecided;
   int period = 0;         ///< slips of the section contact per period; 0 unless periodic
   double T = 0.0;         ///< period in time, mean over the matched repeats [s]; 0 unless periodic
-  int contact = -1;       ///< section contact: the lowest one that slips
+  int contact = -1;       ///< section contact: the one that slips most often, the lowest if several do
   double mismatch = 0.0;  ///< largest relative difference found in the matched stretch
 };
 
 /// Smallest period p of the last slips: slip states p apart agree within tolerance over the last
-/// max(repeats·p, min_matches) slips, at a constant time apart; with several contacts, every slip of every contact in
-/// that stretch must have its partner one T before. Simultaneous slips of several contacts may come in any order.
+/// max(repeats·p, min_matches) slips (see long_stretch), at a constant time apart; with several contacts, every slip of
+/// every contact in that stretch must have its partner one T before. Simultaneous slips of several contacts may come in
+/// any order.
 ///
 /// Smallest means: a doubling whose split is below tolerance counts as not doubled.
 /// @param slips   in time order

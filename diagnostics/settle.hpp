@@ -43,11 +43,11 @@ struct Settled {
 
 /// A periodic orbit met by waiting, from one of its slip states.
 struct Orbit {
-  int period = 0;                       ///< slips per period
-  double T = 0.0;                       ///< [s]
-  std::vector<dynamics::State> states;  ///< full state at each of its `period` slips of the section contact
-  std::vector<double> displacements;    ///< contact displacement at each of them [m]
-  double mismatch = 0.0;                ///< largest |state after T − state| over the period's slips, relative
+  int period = 0;                            ///< slips per period
+  double T = 0.0;                            ///< [s]
+  std::vector<dynamics::State> states = {};  ///< full state at each of its `period` slips of the section contact
+  std::vector<double> displacements = {};    ///< contact displacement at each of them [m]
+  double mismatch = 0.0;                     ///< largest |state after T − state| over the period's slips, relative
 };
 
 /// Runs until periodic with options.period.tolerance (choose a tight one, 1e-9) and takes one period's slip states.

@@ -28,7 +28,7 @@ struct SweepPoint {
   std::size_t index = 0;  ///< into the values
   int model = 0;          ///< 0: the only or the full model, 1: the reduced model of a paired sweep
   double parameter = 0.0;
-  Settled settled;           ///< empty where it failed; settled.end is in the model's own coordinates
+  Settled settled = {};      ///< empty where it failed; settled.end is in the model's own coordinates
   std::string failure = {};  ///< empty, or why the value failed; the sweep went on
 
   [[nodiscard]] bool ok() const { return failure.empty(); }

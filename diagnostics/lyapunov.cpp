@@ -1,0 +1,154 @@
+#include "diagnostics/lyapunov.hpp"
+
+#include "core/errors.hpp"
+#include "core/random.hpp"
+#include "diagnostics/model.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+namespace slipmode::diagnostics {
+
+namespace {
+
+constexpr std::size_t kStretches = 8;
+
+/// Exponent and its scatter from the log growth of every interval.
+LyapunovExponent summarise(const std::vector<double>& logs, double interval) {
+  const std::size_t count = logs.size();
+  LyapunovExponent result{.renormalisations = static_cast<int>(count)};
+  double sum = 0.0;
+  for (const double log : logs) sum += log;
+  result.nats = sum / (static_cast<double>(count) * interval);
+  result.bits = result.nats / std::numbers::ln2;
+  const std::size_t stretch = count / kStretches;
+  if (stretch == 0) {
+    result.error = std::numeric_limits<double>::quiet_NaN();
+    return result;
+  }
+  double mean = 0.0;
+  double square = 0.0;
+  for (std::size_t s = 0; s < kStretches; ++s) {
+    double part = 0.0;
+    for (std::size_t k = s * stretch; k < (s + 1) * stretch; ++k) part += logs[k];
+    part /= static_cast<double>(stretch) * interval;
+    mean += part / kStretches;
+    square += part * part / kStretches;
+  }
+  result.error = std::sqrt(std::max(0.0, square - mean * mean) / (kStretches - 1));
+  return result;
+}
+
+/// Distances below rounding of the state say nothing: they count as rounding.
+double floored(double distance, double size) {
+  return std::max(distance, std::numeric_limits<double>::epsilon() * std::max(size, 1e-300));
+}
+
+struct Separation {
+  Eigen::VectorXd q, v;
+
+  [[nodiscard]] double norm(const fem::Structure& structure) const { return std::sqrt(structure.energy(q, v)); }
+
+  void scale(double factor) {
+    q *= factor;
+    v *= factor;
+  }
+};
+
+/// Takes out of δv the directions in which the reference is stuck.
+void hold_stuck(const dynamics::HybridSystem& system, const dynamics::State& reference, Separation& separation) {
+  std::vector<Eigen::Index> stuck;
+  for (std::size_t c = 0; c < reference.modes.size(); ++c) {
+    if (reference.modes[c] == dynamics::ContactMode::kStick) stuck.push_back(static_cast<Eigen::Index>(c));
+  }
+  if (stuck.empty()) return;
+  Eigen::MatrixXd W(system.size(), static_cast<Eigen::Index>(stuck.size()));
+  for (std::size_t k = 0; k < stuck.size(); ++k) {
+    W.col(static_cast<Eigen::Index>(k)) = system.contacts()[static_cast<std::size_t>(stuck[k])].direction;
+  }
+  const Eigen::MatrixXd gram = W.transpose() * W;
+  separation.v -= W * gram.ldlt().solve(W.transpose() * separation.v);
+}
+
+void check(const LyapunovOptions& options) {
+  if (!(options.transient >= 0.0) || !(options.interval > 0.0) || !(options.duration >= options.interval) ||
+      !(options.separation > 0.0)) {
+    throw InvalidInput(
+        fmt::format("Lyapunov exponent: expected transient >= 0, interval > 0, duration >= interval and "
+                    "separation > 0, found {}, {}, {}, {}",
+                    options.transient, options.interval, options.duration, options.separation));
+  }
+}
+
+/// The end of a run; nothing else is kept.
+dynamics::State advance(const dynamics::HybridSystem& system, const dynamics::State& from, double duration,
+                        const dynamics::FlowOptions& flow) {
+  return dynamics::simulate(system, from, {.duration = duration, .keep_events = false, .flow = flow}).final_state;
+}
+
+}  // namespace
+
+LyapunovExponent benettin(const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& step, Eigen::VectorXd state,
+                          Eigen::VectorXd direction, int steps, double time_step, double separation) {
+  if (steps < 1 || !(time_step > 0.0) || !(separation > 0.0) || !(direction.norm() > 0.0) ||
+      direction.size() != state.size()) {
+    throw InvalidInput(
+        fmt::format("Lyapunov exponent: expected steps >= 1, time step > 0, separation > 0 and a "
+                    "direction of size {} that is not zero, found {}, {}, {}, size {}, norm {}",
+                    state.size(), steps, time_step, separation, direction.size(), direction.norm()));
+  }
+  std::vector<double> logs;
+  logs.reserve(static_cast<std::size_t>(steps));
+  direction *= separation / direction.norm();
+  for (int k = 0; k < steps; ++k) {
+    const Eigen::VectorXd neighbour = step(state + direction);
+    state = step(state);
+    direction = neighbour - state;
+    const double distance = floored(direction.norm(), state.norm());
+    logs.push_back(std::log(distance / separation));
+    if (direction.norm() == 0.0) direction.setConstant(distance);
+    direction *= separation / direction.norm();
+  }
+  return summarise(logs, time_step);
+}
+
+LyapunovExponent largest_exponent(const dynamics::HybridSystem& system, const dynamics::State& start,
+                                  const LyapunovOptions& options) {
+  check(options);
+  dynamics::FlowOptions flow = options.flow;
+  flow.audit = false;
+  dynamics::State reference = restarted(start);
+  if (options.transient > 0.0) reference = advance(system, reference, options.transient, flow);
+
+  Random random(options.seed);
+  Separation separation{.q = Eigen::VectorXd(system.size()), .v = Eigen::VectorXd(system.size())};
+  for (double& x : separation.q) x = random.normal();
+  for (double& x : separation.v) x = random.normal();
+
+  const auto intervals = static_cast<std::size_t>(std::floor(options.duration / options.interval + 1e-9));
+  std::vector<double> logs;
+  logs.reserve(intervals);
+  for (std::size_t k = 0; k < intervals; ++k) {
+    if (options.stop != nullptr && options.stop->load(std::memory_order_relaxed)) throw Interrupted();
+    hold_stuck(system, reference, separation);
+    separation.scale(options.separation / separation.norm(system.structure()));
+    const dynamics::State neighbour = {
+        .time = reference.time, .q = reference.q + separation.q, .v = reference.v + separation.v};
+    const dynamics::State end = advance(system, neighbour, options.interval, flow);
+    reference = advance(system, reference, options.interval, flow);
+    separation = {.q = end.q - reference.q, .v = end.v - reference.v};
+    const double size = std::sqrt(system.structure().energy(reference.q, reference.v));
+    const double distance = floored(separation.norm(system.structure()), size);
+    logs.push_back(std::log(distance / options.separation));
+    if (separation.q.isZero(0.0) && separation.v.isZero(0.0)) separation.q.setConstant(options.separation);
+  }
+  return summarise(logs, options.interval);
+}
+
+}  // namespace slipmode::diagnostics
