@@ -38,7 +38,7 @@ function(slipmode_configure_library)
   target_include_directories(slipmode PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/slipmode>)
   target_compile_definitions(slipmode PUBLIC ${SLIPMODE_PUBLIC_DEFINITIONS})
-  target_link_libraries(slipmode PUBLIC Eigen3::Eigen PRIVATE fmt::fmt LAPACK::LAPACK ${ARPACK_LIBRARY}
+  target_link_libraries(slipmode PUBLIC Eigen3::Eigen PRIVATE fmt::fmt tomlplusplus::tomlplusplus LAPACK::LAPACK ${ARPACK_LIBRARY}
     ${FFTW3_LIBRARY} ${HDF5_LIBRARIES} Threads::Threads)
   set_target_properties(slipmode PROPERTIES LINKER_LANGUAGE CXX)
 endfunction()
