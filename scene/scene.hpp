@@ -34,7 +34,7 @@ struct TimeSpec {
 struct InitialSpec {
   enum class At {
     kRest,    ///< q = 0, v = 0
-    kStatic,  ///< K q = Σ w μ_k N sign(belt speed), v = 0
+    kStatic,  ///< K q = Σ w μ_k N sign(belt speed at time 0), v = 0
     kGiven,   ///< the arrays below
   } at = At::kRest;
   std::vector<double> displacement;  ///< N values (kGiven) [m]
@@ -43,9 +43,9 @@ struct InitialSpec {
 
 /// Runs that feed the basis ([ensemble]); without it one run, unperturbed.
 struct EnsembleSpec {
-  int members = 1;         ///< runs per speed, ≥ 1
-  std::uint64_t seed = 1;  ///< of the perturbations
-  double spread = 0.0;     ///< each start's displacements and velocities are moved by up to ± this, ≥ 0 [m], [m/s]
+  int members = 1;             ///< runs per speed, ≥ 1
+  std::uint64_t seed = 1;      ///< of the perturbations
+  double spread = 0.0;         ///< standard deviation of each start's displacements and velocities, ≥ 0 [m], [m/s]
   std::vector<double> speeds;  ///< belt speeds to run at; empty: the drive's own [m/s]
 };
 
@@ -55,26 +55,31 @@ struct ReductionSpec {
   pod::ModeChoice choice = {.modes = 0, .energy = 0.99};  ///< energy, or modes
 };
 
-/// A grid of values FROM, FROM ± STEP, ... up to and including TO (to half a step).
+/// A grid of values from, from ± step, ... up to `to`.
 struct Range {
   double from = 0.0, to = 0.0, step = 1.0;  ///< step > 0; the direction follows from `from` and `to`
 
-  /// Value i is from ± i·step, computed by that product, so that every program gets the same bits.
+  /// The values, as diagnostics::sweep_values gives them.
   [[nodiscard]] std::vector<double> values() const;
 };
 
 /// How full and reduced models are compared ([validation]).
 struct ValidationSpec {
   Range speeds = {0.5, 0.001, 0.001};  ///< belt speeds of the bifurcation diagram [m/s]
-  double transient = 1000.0;           ///< not looked at, at each of these speeds [s]
-  double duration = 5000.0;            ///< simulated at each of these speeds, > transient [s]
-  double horizon = 100.0;              ///< full against reduced from one start, on the scene's own drive [s]
-  std::vector<double> orbits;          ///< belt speeds at which a periodic orbit is looked for and compared [m/s]
-  double orbit_transient = 20000.0;    ///< run before looking for a periodic orbit [s]
-  double period_tolerance = 1e-6;      ///< slip states closer than this, relative to their range, count as the same
-  int max_period = 32;                 ///< longest period looked for, in slips
+  int segments = 1;                    ///< chains the sweep is cut into; each starts anew
+  double transient = 1000.0;           ///< run first at each speed, nothing kept [s]
+  double block = 5000.0;               ///< then blocks of this length, each judged [s]
+  double limit = 100000.0;             ///< until periodic or so long, ≥ block [s]
+  double period_tolerance = 1e-5;      ///< slip states closer than this, relative to their range, count as the same
+  int max_period = 64;                 ///< longest period looked for, in slips
+  double horizon = 100.0;              ///< full against reduced from shared starts, on the scene's own drive [s]
+  int horizon_starts = 16;             ///< how many shared starts are averaged
+  std::vector<double> orbits;          ///< belt speeds at which periodic orbits are compared [m/s]
+  double orbit_tolerance = 1e-8;       ///< to which such an orbit must repeat
   std::vector<int> modes;              ///< sizes of the reduced models compared; empty: 1..N
-  int repeats = 5;                     ///< cost is the median of this many runs
+  double lyapunov_duration = 20000.0;  ///< over which the largest exponent is measured [s]
+  double cost_duration = 10000.0;      ///< simulated by the timed runs; 0: no timing [s]
+  int cost_repeats = 5;                ///< cost is the median of this many runs
 };
 
 /// Where a scene came from; kept for provenance.
