@@ -32,6 +32,7 @@ void save(StoreWriter& store, const std::string& group, const pod::Ensemble& ens
 
 /// Basis vectors as dof x mode, mean, energy shares, kind, provenance.
 void save(StoreWriter& store, const std::string& group, const pod::Basis& basis);
+/// Only "vectors" must be there: a basis made by hand or from measurements may leave out the rest.
 /// @param dofs  the number of rows the basis must have (the structure's size), or kAny
 [[nodiscard]] pod::Basis load_basis(const StoreReader& store, const std::string& group = kBasisGroup,
                                     Eigen::Index dofs = StoreReader::kAny);
