@@ -27,10 +27,10 @@ function(slipmode_module name)
   endif()
   add_library(slipmode_${name} OBJECT ${sources})
   target_include_directories(slipmode_${name} PUBLIC ${PROJECT_SOURCE_DIR})
-  target_include_directories(slipmode_${name} SYSTEM PRIVATE ${HDF5_INCLUDE_DIRS})
   target_compile_definitions(slipmode_${name} PUBLIC ${SLIPMODE_PUBLIC_DEFINITIONS})
   target_link_libraries(slipmode_${name} PUBLIC Eigen3::Eigen PRIVATE slipmode_flags Spectra::Spectra fmt::fmt
-    tomlplusplus::tomlplusplus nlohmann_json::nlohmann_json Threads::Threads)
+    tomlplusplus::tomlplusplus nlohmann_json::nlohmann_json slipmode::arpack slipmode::fftw3 slipmode::hdf5
+    Threads::Threads)
   target_sources(slipmode PRIVATE $<TARGET_OBJECTS:slipmode_${name}>)
 endfunction()
 
@@ -38,7 +38,8 @@ function(slipmode_configure_library)
   target_include_directories(slipmode PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/slipmode>)
   target_compile_definitions(slipmode PUBLIC ${SLIPMODE_PUBLIC_DEFINITIONS})
-  target_link_libraries(slipmode PUBLIC Eigen3::Eigen PRIVATE fmt::fmt tomlplusplus::tomlplusplus LAPACK::LAPACK ${ARPACK_LIBRARY}
-    ${FFTW3_LIBRARY} ${HDF5_LIBRARIES} Threads::Threads)
+  target_link_libraries(slipmode PUBLIC Eigen3::Eigen PRIVATE fmt::fmt tomlplusplus::tomlplusplus LAPACK::LAPACK
+    slipmode::arpack slipmode::fftw3 slipmode::hdf5 Threads::Threads)
+  target_compile_features(slipmode PUBLIC cxx_std_20)
   set_target_properties(slipmode PROPERTIES LINKER_LANGUAGE CXX)
 endfunction()

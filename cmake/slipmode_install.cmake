@@ -1,0 +1,20 @@
+# `cmake --install`: the library, its headers under include/slipmode/<folder>/, the executable (from cli/), and the
+# package files behind find_package(slipmode).
+
+include(CMakePackageConfigHelpers)
+include(GNUInstallDirs)
+
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/slipmode)
+
+install(TARGETS slipmode EXPORT slipmodeTargets ARCHIVE)
+foreach(module ${SLIPMODE_MODULES})
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/${module} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/slipmode
+    FILES_MATCHING PATTERN "*.hpp")
+endforeach()
+install(EXPORT slipmodeTargets NAMESPACE slipmode:: DESTINATION ${package_dir})
+
+configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/slipmodeConfig.cmake.in
+  ${PROJECT_BINARY_DIR}/slipmodeConfig.cmake INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/slipmodeConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/slipmodeConfig.cmake ${PROJECT_BINARY_DIR}/slipmodeConfigVersion.cmake
+  ${CMAKE_CURRENT_LIST_DIR}/slipmode_libraries.cmake DESTINATION ${package_dir})
