@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# Installs the Debian packages slipmode builds with. Says nothing when none is missing.
+set -euo pipefail
+
+packages=(
+  # toolchain
+  g++ cmake ninja-build git ca-certificates
+  # libraries
+  libeigen3-dev libspectra-dev libarpack2-dev liblapack-dev libfftw3-dev libhdf5-dev
+  libfmt-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev
+  # tests, benchmarks and the peers they measure against
+  libgtest-dev libgmock-dev libbenchmark-dev libsundials-dev libboost-dev
+  # figures
+  gnuplot-nox
+)
+
+installed=$(dpkg-query --show --showformat='${db:Status-Status} ${Package}\n' "${packages[@]}" 2>/dev/null || true)
+missing=()
+for package in "${packages[@]}"; do
+  grep --quiet --line-regexp --fixed-strings "installed $package" <<<"$installed" || missing+=("$package")
+done
+[[ ${#missing[@]} -eq 0 ]] && exit 0
+
+as_root=()
+if [[ $EUID -ne 0 ]]; then
+  if ! command -v sudo >/dev/null; then
+    echo "install_packages.sh: missing ${missing[*]}; run this as root, or install sudo" >&2
+    exit 1
+  fi
+  as_root=(sudo)
+fi
+
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+apt() {
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get "$@" </dev/null >"$log" 2>&1 || {
+    cat "$log" >&2
+    echo "install_packages.sh: apt-get $1 failed" >&2
+    exit 1
+  }
+}
+
+echo "Installing ${#missing[@]} Debian packages: ${missing[*]}"
+apt update
+apt install --yes --no-install-recommends "${missing[@]}"
