@@ -1,0 +1,137 @@
+// Closed forms: every expected value is an elementary formula of tests/fixtures/, derived by hand.
+#include "fixtures/belt_oscillator.hpp"
+#include "fixtures/scenes.hpp"
+#include "fixtures/uniform_chain.hpp"
+
+#include <gtest/gtest.h>
+
+namespace slipmode::dynamics {
+namespace {
+
+using namespace slipmode::fixtures;
+
+/// Both flows must meet every closed form of a piecewise-linear law.
+class ClosedForms : public ::testing::TestWithParam<FlowMethod> {
+ protected:
+  [[nodiscard]] FlowOptions flow() const { return {.method = GetParam(), .tolerance = 1e-12}; }
+};
+
+INSTANTIATE_TEST_SUITE_P(BothFlows, ClosedForms, ::testing::Values(FlowMethod::kClosedForm, FlowMethod::kCollocation),
+                         [](const auto& test) {
+                           return test.param == FlowMethod::kClosedForm ? "ClosedForm" : "Collocation";
+                         });
+
+HybridSystem system_of(const BeltOscillator& b) {
+  return oscillator(b.mass, b.stiffness, 0.0, friction::Coulomb{b.mu_s, b.mu_k}, b.load,
+                    friction::Belt::constant(b.belt));
+}
+
+TEST_P(ClosedForms, BeltOscillatorFollowsItsLimitCycle) {
+  for (const BeltOscillator b :
+       {BeltOscillator{}, BeltOscillator{2.0, 3.0, 1.5, 0.7, 0.1, 0.5}, BeltOscillator{1.0, 1.0, 1.0, 0.4, 0.399, 0.3},
+        BeltOscillator{1.0, 1.0, 1.0, 2.0, 0.1, 0.01}}) {
+    State start = state(Eigen::VectorXd::Constant(1, b.release_position()), Eigen::VectorXd::Constant(1, b.belt));
+    start.modes = {ContactMode::kSlipPositive};
+    const int cycles = 20;
+    const double duration = (cycles + 0.3) * b.period();
+    const Trajectory run =
+        simulate(system_of(b), start, {.duration = duration, .sample = duration / 997.0, .flow = flow()});
+    const double scale = b.amplitude();
+    for (Eigen::Index k = 0; k < run.times.size(); ++k) {
+      ASSERT_NEAR(run.q(0, k), b.position(run.times[k]), 1e-10 * scale) << "t = " << run.times[k];
+      ASSERT_NEAR(run.v(0, k), b.velocity(run.times[k]), 1e-10 * scale * b.omega()) << "t = " << run.times[k];
+    }
+    ASSERT_EQ(run.events.size(), 2u * cycles + (b.slip_time() < 0.3 * b.period() ? 1u : 0u));
+    for (std::size_t i = 0; i < run.events.size(); ++i) {
+      const Event& event = run.events[i];
+      const bool sticks = i % 2 == 0;
+      const double expected =
+          static_cast<double>(i / 2 + (sticks ? 0 : 1)) * b.period() + (sticks ? b.slip_time() : 0.0);
+      EXPECT_NEAR(event.time, expected, 1e-10 * expected);
+      EXPECT_EQ(event.kind, sticks ? EventKind::kStick : EventKind::kRelease);
+      EXPECT_EQ(event.before, sticks ? ContactMode::kSlipPositive : ContactMode::kStick);
+      EXPECT_EQ(event.after, sticks ? ContactMode::kStick : ContactMode::kSlipPositive);
+      EXPECT_NEAR(event.displacement, sticks ? b.stick_position() : b.release_position(), 1e-10 * scale);
+      EXPECT_NEAR(event.velocity, b.belt, 1e-12);
+      EXPECT_NEAR(event.force, sticks ? b.stiffness * b.stick_position() : b.mu_k * b.load, 1e-10 * b.load);
+    }
+  }
+}
+
+TEST_P(ClosedForms, BeltOscillatorSpendsItsStickTimeSticking) {
+  const BeltOscillator b;
+  State start = state(Eigen::VectorXd::Constant(1, b.release_position()), Eigen::VectorXd::Constant(1, b.belt));
+  start.modes = {ContactMode::kSlipPositive};
+  const Trajectory run = simulate(system_of(b), start, {.duration = 7.0 * b.period() - 1e-6, .flow = flow()});
+  ASSERT_EQ(run.statistics.stick_time.size(), 1u);
+  EXPECT_NEAR(run.statistics.stick_time[0], 7.0 * b.stick_time() - 1e-6, 1e-9);
+}
+
+TEST_P(ClosedForms, DampedOscillatorLetsGoWhereSpringAndDashpotTogetherReachTheStaticLimit) {
+  // Trap of the design: with a dashpot c stick ends at x = (μ_s N − c V)/k, not at μ_s N/k.
+  const double c = 0.3, V = 0.2, F = 0.4;
+  const HybridSystem system = oscillator(1.0, 2.0, c, friction::Coulomb{0.4, 0.2}, 1.0, friction::Belt::constant(V));
+  const State start = state(Eigen::VectorXd::Zero(1), Eigen::VectorXd::Constant(1, V));
+  const Trajectory run = simulate(system, start, {.duration = 1.0, .flow = flow()});
+  ASSERT_FALSE(run.events.empty());
+  EXPECT_EQ(run.events[0].kind, EventKind::kRelease);
+  EXPECT_NEAR(run.events[0].displacement, (F - c * V) / 2.0, 1e-12);
+  EXPECT_NEAR(run.events[0].time, (F - c * V) / 2.0 / V, 1e-11);
+}
+
+void expect_decay(const CoulombDecay& d, const FlowOptions& flow) {
+  const HybridSystem system = oscillator(d.mass, d.stiffness, d.dashpot, friction::Coulomb{d.mu_s, d.mu_k}, d.load,
+                                         friction::Belt::constant(0.0));
+  const State start = state(Eigen::VectorXd::Constant(1, d.start), Eigen::VectorXd::Zero(1));
+  const int turns = d.last_turn();
+  const Trajectory run = simulate(system, start, {.duration = (turns + 3) * d.half_period(), .flow = flow});
+  ASSERT_EQ(run.events.size(), static_cast<std::size_t>(turns));
+  for (int k = 1; k <= turns; ++k) {
+    const Event& event = run.events[k - 1];
+    const double side = k % 2 == 0 ? 1.0 : -1.0;
+    EXPECT_NEAR(event.time, k * d.half_period(), 1e-10 * k);
+    EXPECT_NEAR(event.displacement, side * d.amplitude(k), 1e-10 * d.start);
+    EXPECT_EQ(event.kind, k == turns ? EventKind::kStick : EventKind::kReversal);
+  }
+  EXPECT_NEAR(run.final_state.q[0], (turns % 2 == 0 ? 1.0 : -1.0) * d.amplitude(turns), 1e-10 * d.start);
+  EXPECT_NEAR(run.final_state.v[0], 0.0, 1e-13);
+}
+
+TEST_P(ClosedForms, FreeCoulombDecayLosesTwiceTheDeadZonePerHalfCycleAndStops) {
+  expect_decay({}, flow());
+  expect_decay({.mass = 3.0, .stiffness = 0.7, .load = 0.5, .mu_s = 0.3, .mu_k = 0.3, .start = 7.7}, flow());
+}
+
+TEST_P(ClosedForms, FreeCoulombDecayWithDashpotShrinksGeometricallyAsWell) {
+  expect_decay({.dashpot = 0.1}, flow());
+  expect_decay({.dashpot = 1.2, .mu_s = 0.02, .mu_k = 0.01}, flow());
+}
+
+TEST_P(ClosedForms, ChainWithoutFrictionFollowsItsTextbookModes) {
+  Random random(11);
+  for (const double damping : {0.0, 0.006, 0.9, 30.0}) {
+    const UniformChain chain{10, damping};
+    const Eigen::VectorXd q0 = random.vector(10, 1.0), v0 = random.vector(10, 1.0);
+    for (const bool weightless : {false, true}) {
+      const friction::Law law = friction::Coulomb{weightless ? 0.4 : 0.0, weightless ? 0.2 : 0.0};
+      const HybridSystem system = belt_chain(law, friction::Belt::constant(0.2), 10, damping, weightless ? 0.0 : 3.0);
+      const Trajectory run = simulate(system, state(q0, v0), {.duration = 100.0, .sample = 0.37, .flow = flow()});
+      for (Eigen::Index k = 0; k < run.times.size(); ++k) {
+        const auto expected = chain.motion(q0, v0, run.times[k]);
+        ASSERT_LT((run.q.col(k) - expected.q).cwiseAbs().maxCoeff(), 1e-10) << damping << " at " << run.times[k];
+        ASSERT_LT((run.v.col(k) - expected.v).cwiseAbs().maxCoeff(), 1e-10) << damping << " at " << run.times[k];
+      }
+    }
+  }
+}
+
+TEST_P(ClosedForms, UndampedChainWithoutFrictionKeepsItsEnergy) {
+  Random random(5);
+  const HybridSystem system = belt_chain(friction::Coulomb{0.0, 0.0}, friction::Belt::constant(0.2), 25, 0.0);
+  const State start = state(random.vector(25, 1.0), random.vector(25, 1.0));
+  const Trajectory run = simulate(system, start, {.duration = 1e4, .flow = flow()});
+  EXPECT_NEAR(system.energy(run.final_state) / system.energy(start), 1.0, 1e-10);
+}
+
+}  // namespace
+}  // namespace slipmode::dynamics

@@ -1,0 +1,115 @@
+// Event times and states against the Taylor reference of tests/fixtures/ (long double, no shared code), over horizons
+// in which chaos does not amplify a difference of 1e-12 to the tolerance.
+#include "fixtures/against_reference.hpp"
+
+#include <gtest/gtest.h>
+
+namespace slipmode::dynamics {
+namespace {
+
+using namespace slipmode::fixtures;
+using friction::Belt;
+using friction::Coulomb;
+using friction::Stribeck;
+using friction::TanhRegularised;
+
+constexpr FlowOptions kTight{.method = FlowMethod::kCollocation, .tolerance = 1e-13};
+constexpr FlowOptions kExact{.method = FlowMethod::kClosedForm};
+
+void expect_close(const HybridSystem& system, const State& start, double duration, const FlowOptions& flow,
+                  std::size_t least_events, double tolerance = 1e-9) {
+  const ReferenceGap gap = gap_to_reference(system, start, duration, flow);
+  EXPECT_EQ(gap.mismatch, "");
+  EXPECT_LT(gap.event_time, tolerance);
+  EXPECT_LT(gap.state, tolerance);
+  EXPECT_GE(gap.events, least_events);
+}
+
+State swinging(int n, std::uint64_t seed, double size) {
+  Random random(seed);
+  return state(random.vector(n, size), random.vector(n, size));
+}
+
+TEST(EventTimes, StribeckChainAgreesWithTheReference) {
+  const HybridSystem chain = belt_chain(Stribeck{0.4, 0.2, 8.0}, Belt::constant(0.2));
+  expect_close(chain, chain.rest(), 150.0, kTight, 4);
+  for (const std::uint64_t seed : {1u, 2u, 3u}) expect_close(chain, swinging(10, seed, 1.5), 100.0, kTight, 8);
+}
+
+TEST(EventTimes, CoulombChainAgreesWithTheReferenceByBothFlows) {
+  const HybridSystem chain = belt_chain(Coulomb{0.4, 0.2}, Belt::constant(0.2));
+  for (const FlowOptions& flow : {kExact, kTight}) {
+    expect_close(chain, chain.rest(), 150.0, flow, 4);
+    for (const std::uint64_t seed : {1u, 2u, 3u}) expect_close(chain, swinging(10, seed, 1.5), 100.0, flow, 8);
+  }
+}
+
+TEST(EventTimes, HundredMassesOnGroundSpringsAgreeWithTheReference) {
+  const HybridSystem chain =
+      belt_chain(Stribeck{0.4, 0.2, 8.0}, Belt::constant(0.2), 100, 0.006, 3.0, std::vector<double>{0.25});
+  expect_close(chain, chain.rest(), 100.0, kTight, 10);
+}
+
+HybridSystem three_contacts(const friction::Law& a, const friction::Law& b, const friction::Law& c, Belt belt) {
+  return {fem::chain({.masses = 8, .mass = {1, 2, 1, 0.5, 1, 1.5, 1, 1}, .damping = 0.01}),
+          {{unit(8, 7), a, 1.0}, {unit(8, 3), b, 0.6}, {unit(8, 0), c, 0.4}},
+          belt};
+}
+
+TEST(EventTimes, SeveralContactsAgreeWithTheReference) {
+  for (const std::uint64_t seed : {1u, 2u, 3u, 4u}) {
+    const State start = swinging(8, seed, 1.0);
+    const HybridSystem coulomb =
+        three_contacts(Coulomb{0.5, 0.3}, Coulomb{0.3, 0.3}, Coulomb{0.6, 0.1}, Belt::constant(0.3));
+    expect_close(coulomb, start, 60.0, kExact, 20);
+    expect_close(coulomb, start, 60.0, kTight, 20);
+    expect_close(
+        three_contacts(Stribeck{0.5, 0.3, 5.0}, Coulomb{0.3, 0.3}, Stribeck{0.6, 0.1, 2.0}, Belt::constant(0.3)), start,
+        60.0, kTight, 20);
+  }
+}
+
+TEST(EventTimes, RampedBeltAgreesWithTheReference) {
+  const Belt ramp = Belt::ramp(0.5, -0.3, 7.0, 61.0);
+  expect_close(belt_chain(Stribeck{0.4, 0.2, 8.0}, ramp), swinging(10, 1, 1.0), 100.0, kTight, 8);
+  for (const FlowOptions& flow : {kExact, kTight}) {
+    expect_close(belt_chain(Coulomb{0.4, 0.2}, ramp), swinging(10, 2, 1.0), 100.0, flow, 8);
+    expect_close(three_contacts(Coulomb{0.5, 0.3}, Coulomb{0.3, 0.3}, Coulomb{0.6, 0.1}, ramp), swinging(8, 3, 1.0),
+                 60.0, flow, 15);
+  }
+}
+
+TEST(EventTimes, ContactDirectionOverSeveralMassesAgreesWithTheReference) {
+  // A direction that touches several masses, scaled: nothing in the theory asks for a unit vector.
+  Eigen::VectorXd w = Eigen::VectorXd::Zero(6);
+  w << 0.0, 0.3, 0.0, -0.7, 0.0, 2.0;
+  const HybridSystem system(fem::chain({.masses = 6, .damping = 0.02}), {{w, Stribeck{0.4, 0.25, 4.0}, 1.2}},
+                            Belt::constant(0.25));
+  for (const std::uint64_t seed : {1u, 2u}) expect_close(system, swinging(6, seed, 0.8), 80.0, kTight, 8);
+}
+
+TEST(EventTimes, TanhLawAgreesWithTheReference) {
+  for (const double epsilon : {0.3, 0.03}) {
+    const HybridSystem chain = belt_chain(TanhRegularised{0.4, 0.2, 8.0, epsilon}, Belt::constant(0.2));
+    expect_close(chain, swinging(10, 1, 1.0), 40.0, kTight, 0);
+  }
+}
+
+TEST(EventTimes, PeriodOneOrbitHasThePeriodOfTheReference) {
+  // Belt speed 0.45: period 45.10211 by an independent fixed-step program, 45.102108972 from the Taylor
+  // reference after 60,000 units from rest.
+  const HybridSystem chain = belt_chain(Stribeck{0.4, 0.2, 8.0}, Belt::constant(0.45));
+  const Trajectory run =
+      simulate(chain, chain.rest(), {.duration = 60000.0, .transient = 59000.0, .flow = {.tolerance = 1e-11}});
+  std::vector<const Event*> releases;
+  for (const Event& event : run.events) {
+    if (event.kind == EventKind::kRelease) releases.push_back(&event);
+  }
+  ASSERT_GE(releases.size(), 20u);
+  EXPECT_NEAR((releases.back()->time - releases.front()->time) / static_cast<double>(releases.size() - 1), 45.102108972,
+              1e-7);
+  EXPECT_NEAR(releases.back()->displacement, 10.757284, 1e-5);
+}
+
+}  // namespace
+}  // namespace slipmode::dynamics
