@@ -1,0 +1,32 @@
+#pragma once
+
+#include <array>
+#include <optional>
+
+namespace slipmode::dynamics {
+
+/// A polynomial on [0, 1] by its Bernstein coefficients: it lies within their convex hull, and has at most as many
+/// roots as they have sign changes, so that the absence of a root is proved, not sampled. Source: Farouki, The
+/// Bernstein polynomial basis: a centennial retrospective, 2012.
+struct BernsteinPolynomial {
+  static constexpr int kMaxDegree = 8;
+  int degree = 0;
+  std::array<double, kMaxDegree + 1> coefficient{};
+
+  /// Value at t by de Casteljau's rule.
+  [[nodiscard]] double operator()(double t) const;
+  /// The part on [0, t] and the part on [t, 1], each on [0, 1] again.
+  void split(double t, BernsteinPolynomial& left, BernsteinPolynomial& right) const;
+};
+
+/// Where a polynomial that starts positive first stops being so.
+struct FirstRoot {
+  double at = 0.0;        ///< in (0, 1]
+  bool touching = false;  ///< a double root within resolution: no change of sign could be separated
+};
+
+/// The first root in (0, 1] of a polynomial that is positive just after 0. A root at 0 itself is
+/// dropped by setting the leading coefficients that vanish there to exactly zero.
+[[nodiscard]] std::optional<FirstRoot> first_root(const BernsteinPolynomial& p);
+
+}  // namespace slipmode::dynamics

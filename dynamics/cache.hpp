@@ -1,0 +1,31 @@
+#pragma once
+
+#include "dynamics/modal_model.hpp"
+#include "dynamics/step_tables.hpp"
+#include "dynamics/system.hpp"
+
+#include <memory>
+#include <mutex>
+
+namespace slipmode::dynamics {
+
+/// A modal model with the tables that grow on it.
+struct ModelTables {
+  explicit ModelTables(ModalModel m) : model(std::move(m)), steps(model) {}
+  const ModalModel model;
+  const StepTables steps;
+};
+
+/// What a HybridSystem and its copies share: modal models with and without mode shapes, each built when first asked
+/// for.
+class SystemCache {
+ public:
+  /// @param rows_only  contact rows without mode shapes, where the structure allows it
+  [[nodiscard]] const ModelTables& tables(const HybridSystem& system, bool rows_only);
+
+ private:
+  std::mutex building_;
+  std::unique_ptr<ModelTables> full_, rows_;
+};
+
+}  // namespace slipmode::dynamics

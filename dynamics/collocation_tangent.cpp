@@ -1,0 +1,100 @@
+#include "dynamics/collocation_flow.hpp"
+#include "dynamics/pair_kernels.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+
+namespace slipmode::dynamics {
+
+double CollocationFlow::force_slope(int c, ContactMode mode, double velocity, double belt) const {
+  const ContactForces& law = laws_[static_cast<std::size_t>(c)];
+  if (mode == ContactMode::kStick || law.is_constant()) return 0.0;
+  if (!law.sticks()) {
+    double slope;
+    static_cast<void>(law.smooth(belt - velocity, slope));
+    return -slope;
+  }
+  const double speed = static_cast<double>(static_cast<int>(mode)) * (belt - velocity);
+  return law.alpha * law.drop * std::exp(-law.alpha * speed);
+}
+
+void CollocationFlow::set_tangents(Eigen::MatrixXd tangents) {
+  tangents_ = std::move(tangents);
+  std::vector<Eigen::Index> stuck;
+  for (int c = 0; c < nc_; ++c)
+    if (modes_[static_cast<std::size_t>(c)] == ContactMode::kStick) stuck.push_back(c);
+  if (stuck.empty()) return;
+  const Eigen::MatrixXd rows = model_.velocity_row(Eigen::all, stuck).transpose();
+  const Eigen::MatrixXd mobility = model_.mobility(stuck, stuck);
+  tangents_ -= Eigen::MatrixXd(model_.input(Eigen::all, stuck)) * mobility.ldlt().solve(rows * tangents_);
+}
+
+void CollocationFlow::push_tangents(int level, double tau) {
+  // Linearised force equations of the step: δλ_i = slope_i δw_i in slip, δw_i = 0 in stick, δw = free δx + kernel δλ.
+  const Collocation& table = tables_.collocation(level);
+  const Eigen::Index size = kNodes * nc_, np = model_.np;
+  Eigen::MatrixXd jacobian(size, size), free(size, 2 * np), right(size, tangents_.cols());
+  for (int c = 0; c < nc_; ++c) free.middleRows(kNodes * c, kNodes) = table.free.middleCols(2 * np * c, 2 * np);
+  right.noalias() = free * tangents_;
+  for (int c = 0; c < nc_; ++c)
+    for (int j = 0; j < kNodes; ++j) {
+      const Eigen::Index row = kNodes * c + j;
+      if (step_modes_[static_cast<std::size_t>(c)] == ContactMode::kStick) {
+        jacobian.row(row) = -table.kernel.row(row);
+        continue;
+      }
+      const double slope = force_slope(c, step_modes_[static_cast<std::size_t>(c)], velocity_(row), belt_nodes_(row));
+      jacobian.row(row) = -slope * table.kernel.row(row);
+      jacobian(row, row) += 1.0;
+      right.row(row) *= slope;
+    }
+  const Eigen::MatrixXd forces = jacobian.partialPivLu().solve(right);
+  Eigen::VectorXd from(2 * np), to(2 * np), column(size);
+  for (Eigen::Index k = 0; k < tangents_.cols(); ++k) {
+    from = tangents_.col(k);
+    column = forces.col(k);
+    advance_within<Load::kLeftOut>(tables_, from.data(), column.data(), level, tau, to.data());
+    tangents_.col(k) = to;
+  }
+}
+
+void CollocationFlow::salt_tangents(const Eigen::VectorXd& force_before, const Eigen::VectorXd& force_after,
+                                    const std::vector<ContactMode>& modes_before, int contact) {
+  // δx⁺ = δx + (f⁺ − f⁻) (∇g δx) / ġ⁻ for the guard g that was reached; f⁺ − f⁻ = Σ b_c Δλ_c.
+  if (contact < 0) return;
+  const Eigen::VectorXd jump = model_.input * (force_after - force_before);
+  const double a = belt_.acceleration(begin_), V = belt_.velocity(time_);
+  Eigen::RowVectorXd gradient;
+  double rate;
+  if (modes_before[static_cast<std::size_t>(contact)] != ContactMode::kStick) {
+    gradient = -model_.velocity_row.col(contact).transpose();
+    rate = a - (model_.acceleration_row.col(contact).dot(x_) + model_.load_acceleration(contact) +
+                model_.mobility.row(contact).dot(force_before));
+  } else {
+    // g = ±μ_s N − λ_stick(x): λ of the sticking contacts from a = Gᵀrow x + mobility λ, the sliding ones following
+    // their own laws.
+    std::vector<Eigen::Index> stuck;
+    Eigen::Index position = 0;
+    for (int c = 0; c < nc_; ++c)
+      if (modes_before[static_cast<std::size_t>(c)] == ContactMode::kStick) {
+        if (c == contact) position = static_cast<Eigen::Index>(stuck.size());
+        stuck.push_back(c);
+      }
+    Eigen::MatrixXd rows = model_.acceleration_row(Eigen::all, stuck).transpose();
+    for (int d = 0; d < nc_; ++d) {
+      const double slope =
+          force_slope(d, modes_before[static_cast<std::size_t>(d)], model_.velocity_row.col(d).dot(x_), V);
+      if (slope != 0.0)
+        rows += Eigen::VectorXd(model_.mobility(stuck, d)) * slope * model_.velocity_row.col(d).transpose();
+    }
+    const Eigen::MatrixXd mobility = model_.mobility(stuck, stuck);
+    gradient = mobility.ldlt().solve(rows).row(position);  // −dλ/dx
+    const double h = tables_.step(step_level_), theta = (time_ - begin_) / h, step = 1e-4;
+    const RadauTables::Vector8 slope =
+        (radau().lagrange(theta + step) - radau().lagrange(theta - step)) / (2 * step * h);
+    rate = -forces_.segment<kNodes>(kNodes * contact).dot(slope);
+  }
+  tangents_ += jump * (gradient * tangents_) / rate;
+}
+
+}  // namespace slipmode::dynamics

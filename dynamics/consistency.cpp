@@ -1,0 +1,214 @@
+#include "dynamics/consistency.hpp"
+
+#include "core/errors.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <limits>
+
+namespace slipmode::dynamics {
+namespace {
+
+/// Forces are compared with their limits, and accelerations with zero, to this relative accuracy.
+constexpr double kForceTolerance = 1e-10;
+constexpr double kReleaseTolerance = 1e-6;
+/// Up to this many undecided contacts every combination can be tried.
+constexpr int kMaxEnumerated = 6;
+
+double sign_of(ContactMode mode) { return static_cast<double>(static_cast<int>(mode)); }
+ContactMode slip_mode(double sign) { return sign > 0 ? ContactMode::kSlipPositive : ContactMode::kSlipNegative; }
+
+/// wᵀq̈ of every contact with all forces zero.
+Eigen::VectorXd free_acceleration(const Instant& now) {
+  const Eigen::Map<const Eigen::VectorXd> x(now.x, 2 * now.model.np);
+  return now.model.acceleration_row.transpose() * x + now.model.load_acceleration;
+}
+
+double smooth_force(const Instant& now, int c) {
+  const Eigen::Map<const Eigen::VectorXd> x(now.x, 2 * now.model.np);
+  double slope;
+  return now.laws[static_cast<std::size_t>(c)].smooth(now.belt_velocity - now.model.velocity_row.col(c).dot(x), slope);
+}
+
+struct Trial {
+  std::vector<ContactMode> modes;
+  Eigen::VectorXd force;
+};
+
+/// Forces for given modes of the undecided contacts; true when every one of them obeys its law.
+bool evaluate(const Instant& now, const std::vector<bool>& at_rest, int release, Trial& trial) {
+  const auto nc = trial.modes.size();
+  std::vector<bool> stuck(nc);
+  for (std::size_t c = 0; c < nc; ++c) {
+    stuck[c] = trial.modes[c] == ContactMode::kStick;
+    if (at_rest[c] && !stuck[c])
+      trial.force(static_cast<Eigen::Index>(c)) = sign_of(trial.modes[c]) * now.laws[c].onset();
+  }
+  stick_forces(now, stuck, trial.force);
+  const Eigen::VectorXd acceleration = free_acceleration(now) + now.model.mobility * trial.force;
+  for (std::size_t c = 0; c < nc; ++c) {
+    if (!at_rest[c]) continue;
+    const auto i = static_cast<Eigen::Index>(c);
+    const double limit = now.laws[c].static_limit;
+    if (stuck[c]) {
+      if (std::abs(trial.force(i)) > limit * (1 + kForceTolerance)) return false;
+    } else {
+      const double scale = std::max(now.model.mobility(i, i) * limit, std::abs(now.belt_acceleration));
+      // A release is located to the accuracy of the stick force; a continuous law then starts with zero acceleration.
+      const double tolerance = static_cast<int>(c) == release ? kReleaseTolerance : kForceTolerance;
+      if (sign_of(trial.modes[c]) * (now.belt_acceleration - acceleration(i)) < -tolerance * scale) return false;
+    }
+  }
+  return true;
+}
+
+/// All combinations of the undecided contacts, most sticking first; the first consistent one.
+bool enumerate(const Instant& now, const std::vector<bool>& at_rest, int release, Trial& trial) {
+  std::vector<std::size_t> open;
+  for (std::size_t c = 0; c < at_rest.size(); ++c)
+    if (at_rest[c]) open.push_back(c);
+  if (static_cast<int>(open.size()) > kMaxEnumerated) return false;
+  int combinations = 1;
+  for (std::size_t k = 0; k < open.size(); ++k) combinations *= 3;
+  for (std::size_t sliding = 0; sliding <= open.size(); ++sliding)
+    for (int code = 0; code < combinations; ++code) {
+      std::size_t slips = 0;
+      int rest = code;
+      bool allowed = true;
+      for (const std::size_t c : open) {
+        const int digit = rest % 3;
+        rest /= 3;
+        trial.modes[c] = digit == 0   ? ContactMode::kStick
+                         : digit == 1 ? ContactMode::kSlipPositive
+                                      : ContactMode::kSlipNegative;
+        slips += digit != 0;
+        allowed = allowed && !(digit == 0 && static_cast<int>(c) == release);
+      }
+      if (allowed && slips == sliding && evaluate(now, at_rest, release, trial)) return true;
+    }
+  return false;
+}
+
+}  // namespace
+
+double ContactForces::smooth(double v, double& slope) const {
+  if (kind == Kind::kFree) return slope = 0.0;
+  const double th = std::tanh(v / epsilon), dth = (1 - th * th) / epsilon;
+  const double magnitude = v * th, d_magnitude = th + v * dth;
+  const double e = drop * std::exp(-alpha * magnitude);
+  slope = (kinetic + e) * dth - alpha * d_magnitude * e * th;
+  return (kinetic + e) * th;
+}
+
+ContactForces contact_forces(const friction::Contact& contact) {
+  ContactForces f;
+  const double N = contact.normal_load;
+  f.static_limit = friction::static_coefficient(contact.law) * N;
+  if (const auto* coulomb = std::get_if<friction::Coulomb>(&contact.law)) {
+    f.kinetic = coulomb->mu_k * N;
+  } else if (const auto* stribeck = std::get_if<friction::Stribeck>(&contact.law)) {
+    f.kinetic = stribeck->mu_k * N;
+    f.drop = (stribeck->mu_s - stribeck->mu_k) * N;
+    f.alpha = stribeck->alpha;
+    if (friction::is_piecewise_linear(contact.law)) {
+      f.kinetic = friction::kinetic_coefficient(contact.law, 0.0) * N;
+      f.drop = 0.0;
+    } else {
+      f.kind = ContactForces::Kind::kStribeck;
+    }
+  } else {
+    const auto& tanh = std::get<friction::TanhRegularised>(contact.law);
+    f.kind = ContactForces::Kind::kSmooth;
+    f.kinetic = tanh.mu_k * N;
+    f.drop = (tanh.mu_s - tanh.mu_k) * N;
+    f.alpha = tanh.alpha;
+    f.epsilon = tanh.epsilon;
+  }
+  if (f.static_limit == 0.0) f.kind = ContactForces::Kind::kFree;
+  return f;
+}
+
+void stick_forces(const Instant& now, const std::vector<bool>& stuck, Eigen::VectorXd& force) {
+  std::vector<Eigen::Index> open;
+  for (std::size_t c = 0; c < stuck.size(); ++c)
+    if (stuck[c]) {
+      open.push_back(static_cast<Eigen::Index>(c));
+      force(static_cast<Eigen::Index>(c)) = 0.0;
+    }
+  if (open.empty()) return;
+  const Eigen::VectorXd missing = Eigen::VectorXd::Constant(force.size(), now.belt_acceleration) -
+                                  free_acceleration(now) - now.model.mobility * force;
+  const Eigen::VectorXd solved =
+      Eigen::MatrixXd(now.model.mobility(open, open)).ldlt().solve(Eigen::VectorXd(missing(open)));
+  for (std::size_t k = 0; k < open.size(); ++k) force(open[k]) = solved(static_cast<Eigen::Index>(k));
+}
+
+Resolution resolve(const Instant& now, const std::vector<ContactMode>& modes, const std::vector<bool>& at_rest,
+                   int release) {
+  const auto nc = modes.size();
+  Trial trial{modes, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(nc))};
+  const Eigen::Map<const Eigen::VectorXd> x(now.x, 2 * now.model.np);
+  for (std::size_t c = 0; c < nc; ++c) {
+    const auto i = static_cast<Eigen::Index>(c);
+    const ContactForces& law = now.laws[c];
+    if (!law.sticks()) {
+      trial.force(i) = smooth_force(now, static_cast<int>(c));
+    } else if (!at_rest[c]) {
+      const double speed = std::abs(now.belt_velocity - now.model.velocity_row.col(i).dot(x));
+      trial.force(i) = sign_of(modes[c]) * (law.kinetic + law.drop * std::exp(-law.alpha * speed));
+    } else {
+      trial.modes[c] = ContactMode::kStick;
+    }
+  }
+
+  std::vector<bool> stuck(nc);
+  const auto refresh = [&] {
+    for (std::size_t c = 0; c < nc; ++c) stuck[c] = trial.modes[c] == ContactMode::kStick;
+    stick_forces(now, stuck, trial.force);
+  };
+  const auto slide = [&](std::size_t c) {
+    const auto i = static_cast<Eigen::Index>(c);
+    trial.modes[c] = slip_mode(trial.force(i));
+    trial.force(i) = sign_of(trial.modes[c]) * now.laws[c].onset();
+  };
+  refresh();
+  if (release >= 0) {
+    slide(static_cast<std::size_t>(release));
+    refresh();
+  }
+  for (std::size_t round = 0; round < nc; ++round) {
+    std::size_t worst = nc;
+    double excess = 0.0;
+    for (std::size_t c = 0; c < nc; ++c) {
+      if (!stuck[c]) continue;
+      const double limit = now.laws[c].static_limit;
+      const double over = std::abs(trial.force(static_cast<Eigen::Index>(c))) - limit * (1 + kForceTolerance);
+      if (over > excess) {
+        excess = over;
+        worst = c;
+      }
+    }
+    if (worst == nc) break;
+    slide(worst);
+    refresh();
+  }
+  Trial checked = trial;
+  if (!evaluate(now, at_rest, release, checked) && !enumerate(now, at_rest, release, checked))
+    throw NumericalFailure(
+        "no combination of stick and slip satisfies the friction laws at t = " + std::to_string(now.time), now.time, x,
+        std::numeric_limits<double>::quiet_NaN());
+  trial = checked;
+
+  Resolution out{trial.modes, trial.force, std::vector<int>(nc, 0)};
+  const Eigen::VectorXd acceleration = free_acceleration(now) + now.model.mobility * out.force;
+  for (std::size_t c = 0; c < nc; ++c) {
+    if (!at_rest[c] || out.modes[c] == ContactMode::kStick) continue;
+    const auto i = static_cast<Eigen::Index>(c);
+    const double scale = now.model.mobility(i, i) * now.laws[c].static_limit;
+    const double start = sign_of(out.modes[c]) * (now.belt_acceleration - acceleration(i));
+    out.multiplicity[c] = start > 1e-7 * scale ? 1 : 2;
+  }
+  return out;
+}
+
+}  // namespace slipmode::dynamics

@@ -1,0 +1,62 @@
+#pragma once
+
+#include "dynamics/modal_model.hpp"
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace slipmode::dynamics {
+
+/// A contact's law in the numbers the flow needs, times the normal load.
+struct ContactForces {
+  /// kFree: no force ever (μ_s N = 0); kConstant: the force in slip is constant; kStribeck: it depends on the sliding
+  /// speed; kSmooth: no stick at all. Free and smooth contacts have no events (ContactMode::kSmooth).
+  enum class Kind : std::uint8_t { kFree, kConstant, kStribeck, kSmooth };
+  Kind kind = Kind::kConstant;
+  double static_limit = 0.0;  ///< μ_s N
+  double kinetic = 0.0;       ///< μ_k N
+  double drop = 0.0;          ///< (μ_s − μ_k) N of a speed-dependent law, else 0
+  double alpha = 0.0;         ///< [s/m]
+  double epsilon = 0.0;       ///< of the smooth law [m/s]
+
+  /// |λ| just after sliding begins: μ_k N for a constant law, μ_s N for a Stribeck law.
+  [[nodiscard]] double onset() const { return kind == Kind::kStribeck ? kinetic + drop : kinetic; }
+  [[nodiscard]] bool sticks() const { return kind == Kind::kConstant || kind == Kind::kStribeck; }
+  [[nodiscard]] bool is_constant() const { return kind == Kind::kFree || kind == Kind::kConstant; }
+  /// λ of the smooth law (0 for a free contact) at relative velocity v, and dλ/dv.
+  [[nodiscard]] double smooth(double v, double& slope) const;
+};
+[[nodiscard]] ContactForces contact_forces(const friction::Contact& contact);
+
+/// What every contact does from now on, with its force and how its sliding starts.
+struct Resolution {
+  std::vector<ContactMode> modes;
+  Eigen::VectorXd force;          ///< λ [nc]
+  std::vector<int> multiplicity;  ///< order of the zero of the sliding speed at this instant: 0, 1 or 2
+};
+
+/// Everything `resolve` has to know of an instant.
+struct Instant {
+  const ModalModel& model;
+  const std::vector<ContactForces>& laws;
+  const double* x;  ///< state [2np]
+  double time = 0.0;
+  double belt_velocity = 0.0;
+  double belt_acceleration = 0.0;
+};
+
+/// Decides, in one place, what contacts do after an event (Filippov): of the contacts at zero relative velocity
+/// (`at_rest`, true where `modes` says stick or the guard was just reached) as many stick as |λ| ≤ μ_s N allows; the
+/// worst offender is released in the direction of its stick force until all agree. Where both stick and slip satisfy
+/// the equations (μ_k N < |λ| ≤ μ_s N) stick is chosen. The order of evaluation has no influence.
+/// @param modes    modes before the instant
+/// @param at_rest  contacts to be decided
+/// @param release  contact whose stick force has reached its limit (−1: none): it is released whatever rounding says
+/// @throws NumericalFailure when no consistent choice exists
+[[nodiscard]] Resolution resolve(const Instant& now, const std::vector<ContactMode>& modes,
+                                 const std::vector<bool>& at_rest, int release);
+
+/// λ of the sticking contacts (belt acceleration followed), given the sliding ones in `force`; in place.
+void stick_forces(const Instant& now, const std::vector<bool>& stuck, Eigen::VectorXd& force);
+
+}  // namespace slipmode::dynamics

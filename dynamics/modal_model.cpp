@@ -1,0 +1,253 @@
+#include "dynamics/modal_model.hpp"
+
+#include "core/errors.hpp"
+#include "core/v8.hpp"
+#include "fem/modes.hpp"
+
+#include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <limits>
+
+namespace slipmode::dynamics {
+namespace {
+
+/// C in modal coordinates counts as diagonal when the rest is below this share of it.
+constexpr double kProportionalTolerance = 1e-12;
+/// Above this condition number of its eigenvectors the state matrix is treated as defective.
+constexpr double kLargestCondition = 1e10;
+
+Eigen::MatrixXd contact_directions(const HybridSystem& system) {
+  Eigen::MatrixXd W(system.size(), static_cast<Eigen::Index>(system.contacts().size()));
+  for (Eigen::Index c = 0; c < W.cols(); ++c) W.col(c) = system.contacts()[static_cast<std::size_t>(c)].direction;
+  return W;
+}
+
+/// The least-squares a + b ω² through the modal dampings, if it fits to rounding.
+std::optional<fem::Rayleigh> fit_rayleigh(const Eigen::VectorXd& omega, const Eigen::VectorXd& damping) {
+  Eigen::MatrixXd A(omega.size(), 2);
+  A << Eigen::VectorXd::Ones(omega.size()), omega.array().square().matrix();
+  const Eigen::Vector2d ab = A.colPivHouseholderQr().solve(damping);
+  if ((A * ab - damping).norm() > kProportionalTolerance * std::max(damping.norm(), 1e-300)) return std::nullopt;
+  return fem::Rayleigh{ab(0), ab(1)};
+}
+
+/// Everything that follows from G, the inputs and the rows.
+void finish(ModalModel& m) {
+  const auto np = m.np;
+  const auto apply_transposed_G = [&](const Eigen::VectorXd& row) {
+    Eigen::VectorXd out(2 * np);
+    out.head(np) = m.g11.cwiseProduct(row.head(np)) + m.g21.cwiseProduct(row.tail(np));
+    out.tail(np) = m.g12.cwiseProduct(row.head(np)) + m.g22.cwiseProduct(row.tail(np));
+    return out;
+  };
+  m.acceleration_row.resize(2 * np, m.contacts);
+  for (int c = 0; c < m.contacts; ++c) m.acceleration_row.col(c) = apply_transposed_G(m.velocity_row.col(c));
+  m.mobility = m.velocity_row.transpose() * m.input;
+  m.load_acceleration = m.velocity_row.transpose() * m.load;
+  for (Eigen::Index i = 0; i < m.n; ++i) {
+    const double half_trace = (m.g11(i) + m.g22(i)) / 2.0, det = m.g11(i) * m.g22(i) - m.g12(i) * m.g21(i);
+    const double gap = half_trace * half_trace - det;
+    const double size = gap < 0 ? std::sqrt(det) : std::abs(half_trace) + std::sqrt(gap);
+    m.fastest = std::max(m.fastest, size);
+  }
+}
+
+void size_arrays(ModalModel& m) {
+  const auto np = m.np;
+  for (auto* g : {&m.g11, &m.g12, &m.g21, &m.g22}) *g = Eigen::VectorXd::Zero(np);
+  m.input = m.displacement_row = m.velocity_row = Eigen::MatrixXd::Zero(2 * np, m.contacts);
+  m.load = Eigen::VectorXd::Zero(2 * np);
+}
+
+/// Real modes: pair = (η, η̇).
+void fill_proportional(ModalModel& m, const Eigen::VectorXd& omega, const Eigen::VectorXd& damping,
+                       const Eigen::MatrixXd& rows, const Eigen::VectorXd& modal_load) {
+  size_arrays(m);
+  m.omega = m.damping = Eigen::VectorXd::Zero(m.np);
+  m.omega.head(m.n) = omega;
+  m.damping.head(m.n) = damping;
+  m.g12.head(m.n).setOnes();
+  m.g21.head(m.n) = -omega.array().square().matrix();
+  m.g22.head(m.n) = -damping;
+  m.input.middleRows(m.np, m.n) = rows.transpose();
+  m.velocity_row.middleRows(m.np, m.n) = rows.transpose();
+  m.displacement_row.topRows(m.n) = rows.transpose();
+  m.load.segment(m.np, m.n) = modal_load;
+  m.rayleigh = fit_rayleigh(omega, damping);
+}
+
+void fill_shapes(ModalModel& m, const Eigen::MatrixXd& shapes, const Eigen::MatrixXd& shapes_M) {
+  m.to_q = m.to_v = Eigen::MatrixXd::Zero(m.n, 2 * m.np);
+  m.from_q = m.from_v = Eigen::MatrixXd::Zero(2 * m.np, m.n);
+  m.to_q.leftCols(m.n) = shapes;
+  m.to_v.middleCols(m.np, m.n) = shapes;
+  m.from_q.topRows(m.n) = shapes_M.transpose();
+  m.from_v.middleRows(m.np, m.n) = shapes_M.transpose();
+}
+
+/// Complex modes of the state matrix, in real form: a conjugate pair μ = σ ± iw becomes [σ w; −w σ], two real
+/// eigenvalues a diagonal block. Scaled by the modes of the undamped structure first, so that the state is balanced.
+void fill_general(ModalModel& m, const fem::Modes& modes, const Eigen::MatrixXd& shapes_M, const Eigen::MatrixXd& D,
+                  const Eigen::MatrixXd& rows, const Eigen::VectorXd& modal_load) {
+  const auto n = m.n, np = m.np;
+  const double scale = std::max(modes.omega.maxCoeff(), 1e-300);
+  // State y = (scale·η, η̇).
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(2 * n, 2 * n);
+  A.topRightCorner(n, n).diagonal().setConstant(scale);
+  A.bottomLeftCorner(n, n).diagonal() = -modes.omega.array().square().matrix() / scale;
+  A.bottomRightCorner(n, n) = -D;
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(A);
+  if (solver.info() != Eigen::Success)
+    throw NumericalFailure("eigenvalues of the damped structure did not converge",
+                           std::numeric_limits<double>::quiet_NaN(), {}, std::numeric_limits<double>::quiet_NaN());
+
+  size_arrays(m);
+  m.proportional = false;
+  Eigen::MatrixXd T(2 * n, 2 * n);  // y = T x, columns in pair order (first, second)
+  const auto& values = solver.eigenvalues();
+  const auto vectors = solver.eigenvectors();
+  Eigen::Index pair = 0;
+  const auto put = [&](const Eigen::VectorXd& first, const Eigen::VectorXd& second, Eigen::Matrix2d G) {
+    T.col(pair) = first;
+    T.col(n + pair) = second;
+    m.g11(pair) = G(0, 0);
+    m.g12(pair) = G(0, 1);
+    m.g21(pair) = G(1, 0);
+    m.g22(pair) = G(1, 1);
+    ++pair;
+  };
+  std::optional<Eigen::Index> unpaired_real;
+  for (Eigen::Index k = 0; k < 2 * n; ++k) {
+    const auto mu = values(k);
+    if (mu.imag() > 0) {
+      put(vectors.col(k).real(), vectors.col(k).imag(),
+          (Eigen::Matrix2d() << mu.real(), mu.imag(), -mu.imag(), mu.real()).finished());
+    } else if (mu.imag() == 0 && unpaired_real) {
+      const auto j = *unpaired_real;
+      put(vectors.col(j).real(), vectors.col(k).real(),
+          (Eigen::Matrix2d() << values(j).real(), 0, 0, mu.real()).finished());
+      unpaired_real.reset();
+    } else if (mu.imag() == 0) {
+      unpaired_real = k;
+    }
+  }
+  const Eigen::VectorXd singular = Eigen::BDCSVD<Eigen::MatrixXd>(T).singularValues();
+  const double condition = singular(0) / singular(2 * n - 1);
+  if (!(condition < kLargestCondition))
+    throw NumericalFailure(
+        "the damping makes two modes coincide (condition number of the eigenvectors " + std::to_string(condition) +
+            ", at most 1e10 is workable): change the damping matrix slightly or make it proportional",
+        std::numeric_limits<double>::quiet_NaN(), {}, condition);
+  const Eigen::MatrixXd T_inverse = T.inverse();
+
+  const auto spread_rows = [&](const Eigen::MatrixXd& source, Eigen::MatrixXd& target) {  // 2n x k → 2np x k
+    target.topRows(n) = source.topRows(n);
+    target.middleRows(np, n) = source.bottomRows(n);
+  };
+  const Eigen::MatrixXd eta = T.topRows(n) / scale, eta_dot = T.bottomRows(n);  // η = eta x, η̇ = eta_dot x
+  spread_rows(T_inverse.rightCols(n) * rows.transpose(), m.input);
+  Eigen::MatrixXd load = Eigen::MatrixXd::Zero(2 * np, 1);
+  spread_rows(T_inverse.rightCols(n) * modal_load, load);
+  m.load = load;
+  spread_rows((rows * eta).transpose(), m.displacement_row);
+  spread_rows((rows * eta_dot).transpose(), m.velocity_row);
+
+  Eigen::MatrixXd wide = Eigen::MatrixXd::Zero(2 * np, n);
+  spread_rows((modes.shapes * eta).transpose(), wide);
+  m.to_q = wide.transpose();
+  spread_rows((modes.shapes * eta_dot).transpose(), wide);
+  m.to_v = wide.transpose();
+  m.from_q = m.from_v = Eigen::MatrixXd::Zero(2 * np, n);
+  spread_rows(T_inverse.leftCols(n) * scale * shapes_M.transpose(), m.from_q);
+  spread_rows(T_inverse.rightCols(n) * shapes_M.transpose(), m.from_v);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> root(D);
+  const Eigen::MatrixXd half =
+      root.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * root.eigenvectors().transpose();
+  spread_rows((half * eta_dot).transpose(), wide);
+  m.dissipation_root = wide.transpose();
+}
+
+}  // namespace
+
+Eigen::Matrix2d ModalModel::exponential(Eigen::Index i, double t) const {
+  // e^{Gt} = e^{τt}(c I + s (G − τI)), τ = tr/2, c and s the (hyperbolic) cosine and sine of sqrt(|Δ|) t.
+  const double tau = (g11(i) + g22(i)) / 2.0;
+  const double delta = g11(i) * g22(i) - g12(i) * g21(i) - tau * tau;  // > 0: oscillating
+  const double z = delta * t * t;
+  double c, s, growth = std::exp(tau * t);
+  if (std::abs(z) < 1e-4) {
+    c = 1.0 - z / 2.0 * (1.0 - z / 12.0 * (1.0 - z / 30.0 * (1.0 - z / 56.0)));
+    s = t * (1.0 - z / 6.0 * (1.0 - z / 20.0 * (1.0 - z / 42.0 * (1.0 - z / 72.0))));
+  } else if (z > 0) {
+    const double w = std::sqrt(delta);
+    c = std::cos(w * t);
+    s = std::sin(w * t) / w;
+  } else {
+    // Two decaying exponentials, so that a fast decay does not multiply 0 by infinity.
+    const double w = std::sqrt(-delta);
+    const double det = g11(i) * g22(i) - g12(i) * g21(i);
+    const double slow_rate = tau < 0.0 ? det / (tau - w) : tau + w;  // no cancellation in the slow rate
+    const double slow = std::exp(slow_rate * t), fast = std::exp((tau - w) * t);
+    growth = 1.0;
+    c = (slow + fast) / 2.0;
+    s = (slow - fast) / (2.0 * w);
+  }
+  Eigen::Matrix2d G;
+  G << g11(i) - tau, g12(i), g21(i), g22(i) - tau;
+  return growth * (c * Eigen::Matrix2d::Identity() + s * G);
+}
+
+ModalModel build_modal_model(const HybridSystem& system, bool rows_only) {
+  const fem::Structure& structure = system.structure();
+  ModalModel m;
+  m.n = structure.size();
+  m.np = padded(m.n);
+  m.contacts = static_cast<int>(system.contacts().size());
+  m.contact_offset.resize(m.contacts);
+  for (int c = 0; c < m.contacts; ++c) m.contact_offset(c) = system.contacts()[static_cast<std::size_t>(c)].offset;
+
+  const Eigen::MatrixXd W = contact_directions(system);
+  const bool loaded = system.load().size() > 0;
+  const auto rayleigh = structure.rayleigh();
+  const auto rayleigh_damping = [&](const Eigen::VectorXd& omega) -> Eigen::VectorXd {
+    return rayleigh->mass + (rayleigh->stiffness * omega.array().square());
+  };
+
+  if (rows_only && rayleigh && structure.is_chain_like()) {
+    Eigen::MatrixXd vectors(m.n, m.contacts + (loaded ? 1 : 0));
+    vectors.leftCols(m.contacts) = W;
+    if (loaded) vectors.rightCols(1) = system.load();
+    const fem::ModalRows modal = fem::modal_rows(structure, vectors);
+    const Eigen::VectorXd load =
+        loaded ? Eigen::VectorXd(modal.rows.bottomRows(1).transpose()) : Eigen::VectorXd::Zero(m.n);
+    fill_proportional(m, modal.omega, rayleigh_damping(modal.omega), modal.rows.topRows(m.contacts), load);
+    m.rayleigh = rayleigh;
+    finish(m);
+    return m;
+  }
+
+  const fem::Modes modes = fem::natural_modes(structure);
+  const Eigen::MatrixXd rows = W.transpose() * modes.shapes;
+  const Eigen::VectorXd load =
+      loaded ? Eigen::VectorXd(modes.shapes.transpose() * system.load()) : Eigen::VectorXd::Zero(m.n);
+  const Eigen::MatrixXd shapes_M = fem::multiply(structure.M(), modes.shapes);
+  if (rayleigh) {
+    fill_proportional(m, modes.omega, rayleigh_damping(modes.omega), rows, load);
+    m.rayleigh = rayleigh;
+    fill_shapes(m, modes.shapes, shapes_M);
+  } else {
+    const Eigen::MatrixXd D = modes.shapes.transpose() * fem::multiply(structure.C(), modes.shapes);
+    const Eigen::VectorXd diagonal = D.diagonal();
+    if ((D - Eigen::MatrixXd(diagonal.asDiagonal())).norm() <= kProportionalTolerance * D.norm()) {
+      fill_proportional(m, modes.omega, diagonal, rows, load);
+      fill_shapes(m, modes.shapes, shapes_M);
+    } else {
+      fill_general(m, modes, shapes_M, (D + D.transpose()) / 2.0, rows, load);
+    }
+  }
+  finish(m);
+  return m;
+}
+
+}  // namespace slipmode::dynamics

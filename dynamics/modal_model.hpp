@@ -1,0 +1,52 @@
+#pragma once
+
+#include "dynamics/system.hpp"
+
+#include <Eigen/Core>
+#include <optional>
+
+namespace slipmode::dynamics {
+
+/// The slipping structure in decoupled first-order form: n independent pairs x = (x₁, x₂),
+///
+///     ẋ = G x + Σ_c b_c λ_c + p,      wᵀq = u_cᵀ x,      wᵀq̇ = g_cᵀ x,
+///
+/// G block diagonal with 2 x 2 blocks. With proportional damping a pair is a modal displacement and velocity and
+/// G = [0 1; −ω² −d]; otherwise it is the real form of a complex pair (or two real eigenvalues) of the state matrix.
+/// Pairs are stored one array per component, padded with zeros to whole vectors: lane i of first and lane i of second
+/// form pair i. A state vector is [x₁ (np); x₂ (np)].
+struct ModalModel {
+  Eigen::Index n = 0;   ///< pairs (= degrees of freedom)
+  Eigen::Index np = 0;  ///< n padded to a multiple of 8
+  int contacts = 0;
+
+  Eigen::VectorXd g11, g12, g21, g22;  ///< blocks of G [np]
+  Eigen::MatrixXd input;               ///< b_c, columns [2np x nc]
+  Eigen::VectorXd load;                ///< p [2np]
+  Eigen::MatrixXd displacement_row;    ///< u_c, columns [2np x nc]
+  Eigen::MatrixXd velocity_row;        ///< g_c, columns [2np x nc]
+  Eigen::MatrixXd acceleration_row;    ///< Gᵀ g_c: wᵀq̈ = this·x + g_cᵀ(Σ b λ + p) [2np x nc]
+  Eigen::MatrixXd mobility;            ///< g_cᵀ b_d = (Wᵀ M⁻¹ W)_cd [nc x nc]
+  Eigen::VectorXd load_acceleration;   ///< g_cᵀ p [nc]
+  Eigen::VectorXd contact_offset;      ///< [nc]
+  double fastest = 0.0;                ///< largest |eigenvalue| of G [1/s]
+
+  bool proportional = true;
+  std::optional<fem::Rayleigh> rayleigh;  ///< set when all dampings fit a + b ω²
+  Eigen::VectorXd omega, damping;         ///< proportional: ω [rad/s], d = φᵀCφ [1/s], padded
+
+  /// q = Q x, q̇ = V x; x = Xq q + Xv q̇ [n x 2np], [2np x n]. Empty when only the contacts' rows were computed.
+  Eigen::MatrixXd to_q, to_v, from_q, from_v;
+  /// q̇ᵀCq̇ = |L x|² for damping that is not proportional [n x 2np].
+  Eigen::MatrixXd dissipation_root;
+
+  [[nodiscard]] bool has_shapes() const { return to_q.size() > 0; }
+  /// e^{G_i t} of pair i as {a, b; c, d}: stable for oscillating, critical, overdamped and rigid-body pairs.
+  [[nodiscard]] Eigen::Matrix2d exponential(Eigen::Index pair, double t) const;
+};
+
+/// Builds the model. Rows only: a long chain's frequencies and contact rows without mode shapes, O(n²).
+/// @throws NumericalFailure  when damping is not proportional and the state matrix is close to defective
+[[nodiscard]] ModalModel build_modal_model(const HybridSystem& system, bool rows_only);
+
+}  // namespace slipmode::dynamics

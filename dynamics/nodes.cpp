@@ -1,0 +1,143 @@
+#include "dynamics/nodes.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <numbers>
+
+namespace slipmode::dynamics {
+namespace {
+
+using Real = long double;
+using MatrixL = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
+using VectorL = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
+
+/// Legendre polynomials P_0..P_degree at x in [-1, 1].
+VectorL legendre(int degree, Real x) {
+  VectorL p(degree + 1);
+  p(0) = 1;
+  if (degree > 0) p(1) = x;
+  for (int k = 2; k <= degree; ++k) p(k) = ((2 * k - 1) * x * p(k - 1) - (k - 1) * p(k - 2)) / k;
+  return p;
+}
+
+/// Roots of a function on (-1, 1] found by scanning and bisection: few, simple, well apart.
+template <class F>
+VectorL simple_roots(F f, int count) {
+  VectorL roots(count);
+  const int scan = 4000;
+  int found = 0;
+  Real a = -1 + Real(1e-9), fa = f(a);
+  for (int i = 1; i <= scan && found < count; ++i) {
+    const Real b = -1 + Real(2) * i / scan, fb = f(b);
+    if ((fa < 0) != (fb < 0)) {
+      Real lo = a, hi = b;
+      for (int it = 0; it < 90; ++it) {
+        const Real mid = (lo + hi) / 2;
+        ((f(mid) < 0) == (fa < 0) ? lo : hi) = mid;
+      }
+      roots(found++) = (lo + hi) / 2;
+    }
+    a = b;
+    fa = fb;
+  }
+  return roots;
+}
+
+/// Matrix that takes values at `points` to values at `targets` of the interpolating polynomial.
+MatrixL interpolation(const VectorL& points, const VectorL& targets) {
+  MatrixL L(targets.size(), points.size());
+  for (Eigen::Index i = 0; i < targets.size(); ++i)
+    for (Eigen::Index j = 0; j < points.size(); ++j) {
+      Real product = 1;
+      for (Eigen::Index k = 0; k < points.size(); ++k)
+        if (k != j) product *= (targets(i) - points(k)) / (points(j) - points(k));
+      L(i, j) = product;
+    }
+  return L;
+}
+
+/// Bernstein polynomials of the given degree at the points: rows are points.
+MatrixL bernstein_values(int degree, const VectorL& points) {
+  MatrixL B(points.size(), degree + 1);
+  for (Eigen::Index i = 0; i < points.size(); ++i) {
+    Real binomial = 1;
+    for (int k = 0; k <= degree; ++k) {
+      B(i, k) = binomial * std::pow(points(i), Real(k)) * std::pow(1 - points(i), Real(degree - k));
+      binomial = binomial * (degree - k) / (k + 1);
+    }
+  }
+  return B;
+}
+
+RadauTables build() {
+  VectorL c(kNodes);
+  c.head(kNodes - 1) = simple_roots(
+      [](Real x) {
+        const VectorL p = legendre(kNodes, x);
+        return (p(kNodes) - p(kNodes - 1)) / (x - 1);
+      },
+      kNodes - 1);
+  for (int j = 0; j + 1 < kNodes; ++j) c(j) = (c(j) + 1) / 2;
+  c(kNodes - 1) = 1;
+
+  MatrixL P(kNodes, kNodes), V(kNodes, kNodes);
+  for (int i = 0; i < kNodes; ++i) {
+    P.row(i) = legendre(kNodes - 1, 2 * c(i) - 1).transpose();
+    for (int k = 0; k < kNodes; ++k) V(i, k) = std::pow(c(i), Real(k));
+  }
+  const MatrixL to_legendre = P.inverse();
+
+  VectorL with_start(kNodes + 1);
+  with_start << 0, c;
+  const MatrixL to_bernstein8 = bernstein_values(kNodes, with_start).inverse();
+
+  RadauTables t;
+  t.node = c.cast<double>();
+  t.weight = to_legendre.row(0).transpose().cast<double>();
+  t.bernstein7 = bernstein_values(kNodes - 1, c).inverse().cast<double>();
+  t.bernstein8 = to_bernstein8.bottomRightCorner(kNodes, kNodes).cast<double>();
+  t.bernstein8_start = to_bernstein8.col(0).tail(kNodes).cast<double>();
+  t.legendre_tail = to_legendre.bottomRows(2).cast<double>();
+  t.left_half = interpolation(c, c / 2).cast<double>();
+  t.right_half = interpolation(c, c / 2 + VectorL::Constant(kNodes, Real(0.5))).cast<double>();
+  t.monomial = V.inverse().cast<double>();
+  return t;
+}
+
+}  // namespace
+
+RadauTables::Vector8 RadauTables::lagrange(double t) const {
+  Vector8 values;
+  for (int j = 0; j < kNodes; ++j) {
+    double product = 1.0;
+    for (int k = 0; k < kNodes; ++k)
+      if (k != j) product *= (t - node(k)) / (node(j) - node(k));
+    values(j) = product;
+  }
+  return values;
+}
+
+const RadauTables& radau() {
+  static const RadauTables tables = build();
+  return tables;
+}
+
+GaussRule gauss_rule(int points) {
+  // Newton on P_n from the Chebyshev guess converges for every n of use here.
+  GaussRule rule{Eigen::VectorXd(points), Eigen::VectorXd(points)};
+  for (int i = 0; i < points; ++i) {
+    Real x = std::cos(std::numbers::pi_v<Real> * (i + Real(0.75)) / (points + Real(0.5))), slope = 0;
+    for (int it = 0; it < 50; ++it) {
+      const VectorL p = legendre(points, x);
+      slope = points * (x * p(points) - p(points - 1)) / (x * x - 1);
+      const Real dx = p(points) / slope;
+      x -= dx;
+      if (std::abs(dx) < 1e-19L) break;
+    }
+    rule.node(points - 1 - i) = static_cast<double>((x + 1) / 2);
+    rule.weight(points - 1 - i) = static_cast<double>(1 / ((1 - x * x) * slope * slope));
+  }
+  return rule;
+}
+
+}  // namespace slipmode::dynamics

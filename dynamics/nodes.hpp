@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+namespace slipmode::dynamics {
+
+/// Collocation nodes per step: eight, one vector register.
+inline constexpr int kNodes = 8;
+
+/// Universal matrices of an eight-node Radau IIA step on the unit interval (last node at 1).
+///
+/// Values at the nodes are "node values"; a polynomial of degree 7 through them represents a contact force, one of
+/// degree 8 through them and the value at 0 represents a contact velocity. Matrices act on column vectors of node
+/// values. Source: Hairer & Wanner, Solving Ordinary Differential Equations II, IV.5 (nodes); Farouki, 2012 (Bernstein
+/// form).
+struct RadauTables {
+  using Matrix8 = Eigen::Matrix<double, 8, 8>;
+  using Vector8 = Eigen::Matrix<double, 8, 1>;
+
+  Vector8 node;              ///< c_1 < ... < c_8 = 1
+  Vector8 weight;            ///< ∫₀¹ ℓ_j
+  Matrix8 bernstein7;        ///< node values → Bernstein coefficients of the degree-7 interpolant
+  Matrix8 bernstein8;        ///< node values → coefficients 1..8 of the degree-8 interpolant through f(0) too
+  Vector8 bernstein8_start;  ///< contribution of f(0) to those (coefficient 0 is f(0) itself)
+  Eigen::Matrix<double, 2, 8> legendre_tail;  ///< node values → Legendre coefficients of degree 6 and 7
+  Matrix8 left_half;                          ///< node values on [0,1] → node values on [0,½]
+  Matrix8 right_half;                         ///< node values on [0,1] → node values on [½,1]
+  Matrix8 monomial;                           ///< node values → coefficients of 1, t, ..., t⁷
+
+  /// Lagrange basis of the eight nodes at t.
+  [[nodiscard]] Vector8 lagrange(double t) const;
+};
+
+/// The tables, computed once.
+[[nodiscard]] const RadauTables& radau();
+
+/// Gauss-Legendre rule on [0,1], exact to degree 2·points − 1.
+struct GaussRule {
+  Eigen::VectorXd node, weight;
+};
+[[nodiscard]] GaussRule gauss_rule(int points);
+
+}  // namespace slipmode::dynamics

@@ -1,0 +1,225 @@
+#include "dynamics/pair_kernels.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace slipmode::dynamics {
+namespace {
+
+/// Below this phase (fastest rate times time) a Taylor series of kTaylorOrder terms is exact to rounding.
+constexpr double kTaylorPhase = 0.25;
+constexpr int kTaylorOrder = 12;
+
+/// The eight node values of each contact through an 8 x 8 matrix.
+void map_nodes(const RadauTables::Matrix8& matrix, int contacts, const double* forces, double* out) {
+  for (int c = 0; c < contacts; ++c) store8(out + kNodes * c, matrix8_times(matrix.data(), forces + kNodes * c));
+}
+
+/// x(tau) by Taylor series; forces are polynomials through the nodes of a step of size h.
+template <Load load>
+void taylor(const ModalModel& m, const double* x, const double* forces, double h, double tau, double* out_x) {
+  const auto np = m.np;
+  alignas(64) double stack_coefficients[kNodes * 4];
+  std::vector<double> heap;
+  double* coefficient = stack_coefficients;  // of (t/tau)^k, contact after contact
+  if (m.contacts > 4) {
+    heap.resize(static_cast<std::size_t>(kNodes * m.contacts));
+    coefficient = heap.data();
+  }
+  for (int c = 0; c < m.contacts; ++c) {
+    alignas(64) double monomial[kNodes];
+    store8(monomial, matrix8_times(radau().monomial.data(), forces + kNodes * c));
+    double power = tau;
+    for (int k = 0; k < kNodes; ++k, power *= tau / h) coefficient[kNodes * c + k] = monomial[k] * power;
+  }
+  for (Eigen::Index i = 0; i < np; i += kLanes) {
+    const V8 g11 = load8(m.g11.data() + i) * tau, g12 = load8(m.g12.data() + i) * tau;
+    const V8 g21 = load8(m.g21.data() + i) * tau, g22 = load8(m.g22.data() + i) * tau;
+    V8 y1 = load8(x + i), y2 = load8(x + np + i), sum1 = y1, sum2 = y2;
+    for (int k = 0; k < kTaylorOrder; ++k) {
+      V8 next1 = g11 * y1 + g12 * y2, next2 = g21 * y1 + g22 * y2;
+      if (load == Load::kIncluded && k == 0) {
+        next1 += load8(m.load.data() + i) * tau;
+        next2 += load8(m.load.data() + np + i) * tau;
+      }
+      if (k < kNodes)
+        for (int c = 0; c < m.contacts; ++c) {
+          const double* b = m.input.data() + 2 * np * c;
+          next1 += load8(b + i) * coefficient[kNodes * c + k];
+          next2 += load8(b + np + i) * coefficient[kNodes * c + k];
+        }
+      y1 = next1 * (1.0 / (k + 1));
+      y2 = next2 * (1.0 / (k + 1));
+      sum1 += y1;
+      sum2 += y2;
+    }
+    store8(out_x + i, sum1);
+    store8(out_x + np + i, sum2);
+  }
+}
+
+}  // namespace
+
+bool solve_newton(const double* A, const V8& d, const V8& r, V8& out_delta) {
+  alignas(64) double scaled[kNodes];
+  const double largest = std::max(max8(d), -min8(d));
+  V8 row_sum{};
+  for (int j = 0; j < kNodes; ++j) {
+    const V8 a = load8(A + kNodes * j);
+    row_sum += a < 0.0 ? -a : a;
+  }
+  if (largest * max8(row_sum) < 0.05) {
+    // δ = r + B(r + B(r + B r)), B = A diag(d): error below 1e-5 of δ, which Newton's next step squares away.
+    V8 delta = r;
+    for (int term = 0; term < 4; ++term) {
+      store8(scaled, d * delta);
+      delta = r + matrix8_times(A, scaled);
+    }
+    out_delta = delta;
+    return true;
+  }
+  V8 column[kNodes + 1];
+  alignas(64) double slope[kNodes];
+  store8(slope, d);
+  for (int j = 0; j < kNodes; ++j) {
+    column[j] = -load8(A + kNodes * j) * slope[j];
+    column[j][j] += 1.0;
+  }
+  column[kNodes] = r;
+#pragma GCC unroll 8
+  for (int k = 0; k < kNodes; ++k) {
+    const double pivot = column[k][k];
+    if (!(std::abs(pivot) > 1e-12)) return false;
+    V8 multiplier = column[k];
+    multiplier[k] -= 1.0;
+    multiplier *= 1.0 / pivot;
+#pragma GCC unroll 9
+    for (int j = k + 1; j <= kNodes; ++j) column[j] -= multiplier * column[j][k];
+  }
+  out_delta = column[kNodes];
+  return true;
+}
+
+template <Load load>
+void propagate(const Propagator& p, const double* x, const double* forces, int contacts, Eigen::Index np,
+               double* out_x) {
+  const int columns = kNodes * contacts;
+  for (Eigen::Index i = 0; i < np; i += kLanes) {
+    const V8 x1 = load8(x + i), x2 = load8(x + np + i);
+    V8 y1 = load8(p.e11.data() + i) * x1;
+    V8 z1 = load8(p.e12.data() + i) * x2;
+    V8 y2 = load8(p.e21.data() + i) * x1;
+    V8 z2 = load8(p.e22.data() + i) * x2;
+    if (load == Load::kIncluded) {
+      y1 += load8(p.load.data() + i);
+      y2 += load8(p.load.data() + np + i);
+    }
+    const double* response = p.response.data() + i;
+    for (int j = 0; j < columns; j += 2) {
+      y1 += load8(response) * forces[j];
+      y2 += load8(response + np) * forces[j];
+      z1 += load8(response + 2 * np) * forces[j + 1];
+      z2 += load8(response + 3 * np) * forces[j + 1];
+      response += 4 * np;
+    }
+    store8(out_x + i, y1 + z1);
+    store8(out_x + np + i, y2 + z2);
+  }
+}
+
+template <Load load>
+void advance_within(const StepTables& tables, const double* x, const double* forces, int level, double tau,
+                    double* out_x) {
+  const ModalModel& m = tables.model();
+  const int nc = m.contacts;
+  alignas(64) double stack_forces[2 * kNodes * 4];
+  Eigen::VectorXd heap;
+  double* current = stack_forces;
+  if (nc > 4) {
+    heap.resize(2 * kNodes * nc);
+    current = heap.data();
+  }
+  double* other = current + kNodes * nc;
+  std::copy_n(forces, kNodes * nc, current);
+  double h = tables.step(level);
+  const double* from = x;
+  while (tau > 0.0 && m.fastest * std::min(tau, h) > kTaylorPhase && level + 1 < StepTables::kLevels) {
+    if (tau >= h) {
+      propagate<load>(tables.propagator(level), from, current, nc, m.np, out_x);
+      return;
+    }
+    ++level;
+    h /= 2.0;
+    if (tau >= h) {
+      map_nodes(radau().left_half, nc, current, other);
+      propagate<load>(tables.propagator(level), from, other, nc, m.np, out_x);
+      from = out_x;
+      tau -= h;
+      map_nodes(radau().right_half, nc, current, other);
+    } else {
+      map_nodes(radau().left_half, nc, current, other);
+    }
+    std::swap(current, other);
+  }
+  taylor<load>(m, from, current, h, tau, out_x);
+}
+
+template void propagate<Load::kIncluded>(const Propagator&, const double*, const double*, int, Eigen::Index, double*);
+template void propagate<Load::kLeftOut>(const Propagator&, const double*, const double*, int, Eigen::Index, double*);
+template void advance_within<Load::kIncluded>(const StepTables&, const double*, const double*, int, double, double*);
+template void advance_within<Load::kLeftOut>(const StepTables&, const double*, const double*, int, double, double*);
+
+double viscous_loss(const StepTables& tables, int level, const double* x, const double* forces, double theta,
+                    const double* velocity_part) {
+  const ModalModel& m = tables.model();
+  const NodeStates& nodes = tables.node_states(level);
+  const auto& weight = radau().weight;
+  const double length = theta * tables.step(level);
+  const int columns = kNodes * m.contacts;
+  const auto np = m.np;
+  if (!m.proportional) {
+    Eigen::MatrixXd states(2 * np, kNodes + 1);
+    states.col(0) = Eigen::Map<const Eigen::VectorXd>(x, 2 * np);
+    for (int j = 0; j < kNodes; ++j)
+      propagate(nodes.node[static_cast<std::size_t>(j)], x, forces, m.contacts, np, states.col(j + 1).data());
+    Eigen::MatrixXd rates = m.dissipation_root * states;
+    if (velocity_part)
+      rates = (rates * Eigen::Map<const Eigen::Matrix<double, kNodes, kNodes + 1>>(velocity_part).transpose()).eval();
+    else
+      rates = rates.rightCols(kNodes).eval();
+    return length * (rates.colwise().squaredNorm() * weight).value();
+  }
+  V8 total{};
+  for (Eigen::Index i = 0; i < np; i += kLanes) {
+    const V8 x1 = load8(x + i), x2 = load8(x + np + i);
+    V8 velocity[kNodes];
+    for (int j = 0; j < kNodes; ++j) {
+      const Propagator& p = nodes.node[static_cast<std::size_t>(j)];
+      V8 y = load8(p.load.data() + np + i) + load8(p.e21.data() + i) * x1;
+      V8 z = load8(p.e22.data() + i) * x2;
+      const double* response = p.response.data() + np + i;
+      for (int k = 0; k < columns; k += 2) {
+        y += load8(response) * forces[k];
+        z += load8(response + 2 * np) * forces[k + 1];
+        response += 4 * np;
+      }
+      velocity[j] = y + z;
+    }
+    V8 sum{};
+    if (velocity_part) {
+      for (int j = 0; j < kNodes; ++j) {
+        V8 v = x2 * velocity_part[j];
+        for (int k = 0; k < kNodes; ++k) v += velocity[k] * velocity_part[kNodes * (k + 1) + j];
+        sum += weight(j) * v * v;
+      }
+    } else {
+      for (int j = 0; j < kNodes; ++j) sum += weight(j) * velocity[j] * velocity[j];
+    }
+    total += load8(m.damping.data() + i) * sum;
+  }
+  return length * sum8(total);
+}
+
+}  // namespace slipmode::dynamics

@@ -1,0 +1,67 @@
+#pragma once
+
+#include "core/v8.hpp"
+#include "dynamics/step_tables.hpp"
+
+#include <Eigen/Core>
+
+/// The inner loops of the collocation flow: fixed-size products on eight lanes, no allocation.
+namespace slipmode::dynamics {
+
+/// aᵀb over `size` entries, a multiple of 8, both aligned.
+[[gnu::always_inline]] inline double dot_padded(const double* a, const double* b, Eigen::Index size) {
+  V8 sum{};
+  for (Eigen::Index i = 0; i < size; i += kLanes) sum += load8(a + i) * load8(b + i);
+  return sum8(sum);
+}
+
+/// Σ_i column_i x_i for `count` columns of eight lanes.
+[[gnu::always_inline]] inline V8 node_sums(const double* columns, const double* x, Eigen::Index count) {
+  V8 a{}, b{}, c{}, d{};
+  Eigen::Index i = 0;
+  for (; i + 4 <= count; i += 4) {
+    a += load8(columns + kLanes * i) * x[i];
+    b += load8(columns + kLanes * (i + 1)) * x[i + 1];
+    c += load8(columns + kLanes * (i + 2)) * x[i + 2];
+    d += load8(columns + kLanes * (i + 3)) * x[i + 3];
+  }
+  for (; i < count; ++i) a += load8(columns + kLanes * i) * x[i];
+  return (a + b) + (c + d);
+}
+
+/// y = A x for a column-major 8 x 8 matrix.
+[[gnu::always_inline]] inline V8 matrix8_times(const double* A, const double* x) {
+  V8 a = load8(A) * x[0], b = load8(A + 8) * x[1], c = load8(A + 16) * x[2], d = load8(A + 24) * x[3];
+  a += load8(A + 32) * x[4];
+  b += load8(A + 40) * x[5];
+  c += load8(A + 48) * x[6];
+  d += load8(A + 56) * x[7];
+  return (a + b) + (c + d);
+}
+
+/// Solves (I − A diag(d)) δ = r by Gauss-Jordan elimination over the lanes, or by a short Neumann series where A
+/// diag(d) is small. False when a pivot vanishes.
+bool solve_newton(const double* A, const V8& d, const V8& r, V8& out_delta);
+
+/// Whether the constant load acts: on states it does, on their differences (tangent vectors) it does not.
+enum class Load : bool { kLeftOut, kIncluded };
+
+/// out = e^{Gh} x + load + response · forces.
+template <Load load = Load::kIncluded>
+void propagate(const Propagator& p, const double* x, const double* forces, int contacts, Eigen::Index np,
+               double* out_x);
+
+/// State at tau within a step of tabulated size whose forces are polynomials through the nodes: halves the step down
+/// the table (exact at every size), then a short Taylor series.
+template <Load load = Load::kIncluded>
+void advance_within(const StepTables& tables, const double* x, const double* forces, int level, double tau,
+                    double* out_x);
+
+/// ∫ q̇ᵀCq̇ dt over the first `theta` of a step, from the modal velocities at the nodes.
+/// @param velocity_part  null for the whole step, else the 8 x 9 matrix (column major) from velocities at 0 and the
+/// nodes
+///                       to those at the nodes of the part
+double viscous_loss(const StepTables& tables, int level, const double* x, const double* forces, double theta,
+                    const double* velocity_part);
+
+}  // namespace slipmode::dynamics

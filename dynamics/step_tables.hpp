@@ -1,0 +1,76 @@
+#pragma once
+
+#include "dynamics/modal_model.hpp"
+#include "dynamics/nodes.hpp"
+
+#include <Eigen/Core>
+#include <array>
+#include <atomic>
+#include <memory>
+#include <mutex>
+
+namespace slipmode::dynamics {
+
+/// What a step of size h does to the pairs: x(h) = e^{Gh} x(0) + load + Σ_c Σ_j response_cj λ_c(node j).
+struct Propagator {
+  double h = 0.0;
+  Eigen::VectorXd e11, e12, e21, e22;  ///< e^{Gh} [np]
+  Eigen::VectorXd load;                ///< ∫ e^{G(h−t)} p dt [2np]
+  Eigen::MatrixXd response;            ///< ∫ e^{G(h−t)} b_c ℓ_j(t/h) dt, column 8c + j [2np x 8nc]
+};
+
+/// The scalar Volterra equations of a step: contact velocities at the nodes,
+/// w = free x(0) + load + kernel λ, all exact for λ of degree 7.
+struct Collocation {
+  Eigen::MatrixXd free;    ///< rows are nodes: g_cᵀ e^{G c_j h}; contact c in columns [2np c, 2np (c+1)) [8 x 2np nc]
+  Eigen::MatrixXd load;    ///< [8 x nc]
+  Eigen::MatrixXd kernel;  ///< [8nc x 8nc]
+  Eigen::MatrixXd kernel_inverse;  ///< used when every contact sticks [8nc x 8nc]
+};
+
+/// Modal velocities at the nodes, for the energy audit of proportional damping; both state components otherwise.
+struct NodeStates {
+  std::array<Propagator, kNodes> node;  ///< propagator to each node, forces given at the nodes of the whole step
+};
+
+/// Tables for steps of size top·2^{-level}, built when first used; safe to share between threads.
+class StepTables {
+ public:
+  static constexpr int kLevels = 48;
+
+  explicit StepTables(const ModalModel& model);
+  ~StepTables();
+
+  [[nodiscard]] double step(int level) const { return top_ / static_cast<double>(std::int64_t{1} << level); }
+  [[nodiscard]] const Propagator& propagator(int level) const { return get(propagators_[index(level)], level); }
+  [[nodiscard]] const Collocation& collocation(int level) const { return get(collocations_[index(level)], level); }
+  [[nodiscard]] const NodeStates& node_states(int level) const { return get(node_states_[index(level)], level); }
+  [[nodiscard]] const ModalModel& model() const { return model_; }
+
+ private:
+  template <class T>
+  using Slot = std::atomic<const T*>;
+
+  static std::size_t index(int level) { return static_cast<std::size_t>(level); }
+  template <class T>
+  const T& get(Slot<T>& slot, int level) const {
+    const T* table = slot.load(std::memory_order_acquire);
+    return table ? *table : build(slot, level);
+  }
+  template <class T>
+  const T& build(Slot<T>& slot, int level) const;
+  void make(Propagator& out, int level) const;
+  void make(Collocation& out, int level) const;
+  void make(NodeStates& out, int level) const;
+  /// Propagator to the time end·h of a step of size h whose forces are given at the nodes of [0, h].
+  void propagate_to(double end, double h, Propagator& out) const;
+
+  const ModalModel& model_;
+  double top_;
+  mutable std::mutex building_;
+  mutable std::array<Slot<Propagator>, kLevels> propagators_{};
+  mutable std::array<Slot<Collocation>, kLevels> collocations_{};
+  mutable std::array<Slot<NodeStates>, kLevels> node_states_{};
+};
+
+}  // namespace slipmode::dynamics

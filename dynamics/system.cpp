@@ -1,0 +1,65 @@
+#include "dynamics/system.hpp"
+
+#include "core/errors.hpp"
+#include "dynamics/cache.hpp"
+
+#include <Eigen/Dense>
+#include <string>
+
+namespace slipmode::dynamics {
+
+HybridSystem::HybridSystem(fem::Structure structure, std::vector<friction::Contact> contacts, friction::Drive drive,
+                           Eigen::VectorXd load)
+    : structure_(std::move(structure)),
+      contacts_(std::move(contacts)),
+      drive_(drive),
+      load_(std::move(load)),
+      cache_(std::make_shared<SystemCache>()) {
+  const auto n = structure_.size();
+  Eigen::MatrixXd W(n, static_cast<Eigen::Index>(contacts_.size()));
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    if (contacts_[c].direction.size() != n)
+      throw InvalidInput("contact " + std::to_string(c + 1) + ": direction has " +
+                         std::to_string(contacts_[c].direction.size()) + " entries, the structure has " +
+                         std::to_string(n) + " degrees of freedom");
+    friction::validate(contacts_[c]);
+    W.col(static_cast<Eigen::Index>(c)) = contacts_[c].direction.normalized();
+  }
+  friction::validate(drive_);
+  if (load_.size() > 0 && (load_.size() != n || !load_.allFinite()))
+    throw InvalidInput("constant load has " + std::to_string(load_.size()) +
+                       " entries or values that are not finite; " + std::to_string(n) + " finite values are expected");
+  if (W.cols() > 0) {
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(W);
+    qr.setThreshold(1e-12);
+    if (qr.rank() < W.cols())
+      throw InvalidInput("the directions of the " + std::to_string(W.cols()) +
+                         " contacts are linearly dependent (rank " + std::to_string(qr.rank()) +
+                         "): two contacts act on the same degree of freedom, or a reduced "
+                         "basis has fewer vectors than contacts; merge them or keep more modes");
+  }
+}
+
+HybridSystem HybridSystem::with_drive(friction::Drive drive) const {
+  friction::validate(drive);
+  HybridSystem copy = *this;
+  copy.drive_ = drive;
+  return copy;
+}
+
+State HybridSystem::rest() const { return {0.0, Eigen::VectorXd::Zero(size()), Eigen::VectorXd::Zero(size()), {}}; }
+
+double HybridSystem::energy(const State& state) const {
+  const double energy = structure_.energy(state.q, state.v);
+  return load_.size() > 0 ? energy - load_.dot(state.q) : energy;
+}
+
+const ModelTables& SystemCache::tables(const HybridSystem& system, bool rows_only) {
+  const bool rows = rows_only && system.structure().rayleigh() && system.structure().is_chain_like();
+  const std::lock_guard lock(building_);
+  auto& slot = rows ? rows_ : full_;
+  if (!slot) slot = std::make_unique<ModelTables>(build_modal_model(system, rows));
+  return *slot;
+}
+
+}  // namespace slipmode::dynamics
