@@ -151,14 +151,16 @@ fem::Structure load_structure(const StoreReader& store, const std::string& group
   const std::vector<std::string> names = store.texts(group + "/dof_names");
   const auto n = static_cast<Eigen::Index>(names.size());
   const std::string units = store.text(group + "/units");
-  fem::Matrix M = load_matrix(store, group + "/M", n);
-  fem::Matrix K = load_matrix(store, group + "/K", n);
-  // The coefficients rather than C, when known: the structure then knows its damping to be proportional.
+  const fem::Matrix M = load_matrix(store, group + "/M", n);
+  const fem::Matrix C = load_matrix(store, group + "/C", n);
+  const fem::Matrix K = load_matrix(store, group + "/K", n);
+  // The coefficients where they give C to the last bit, else C: either way the model is the one that was saved.
   if (store.has(group + "/rayleigh")) {
     const Eigen::VectorXd rayleigh = store.vector(group + "/rayleigh", 2);
-    return {std::move(M), fem::Rayleigh{rayleigh(0), rayleigh(1)}, std::move(K), names, units};
+    fem::Structure proportional(M, fem::Rayleigh{rayleigh(0), rayleigh(1)}, K, names, units);
+    if (fem::to_sparse(proportional.C()).isApprox(fem::to_sparse(C), 0.0)) return proportional;
   }
-  return {std::move(M), load_matrix(store, group + "/C", n), std::move(K), names, units};
+  return {M, C, K, names, units};
 }
 
 }  // namespace

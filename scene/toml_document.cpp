@@ -2,10 +2,13 @@
 #include "scene/toml_reader.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <numeric>
 #include <sstream>
+#include <utility>
 
 namespace slipmode::scene {
 
@@ -51,18 +54,39 @@ std::optional<std::size_t> as_index(const std::string& part) {
   return index;
 }
 
+std::string lower(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+/// Letters to insert, drop, replace or swap with their neighbour to turn `a` into `b` (optimal string alignment).
 std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
+  std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
+  std::iota(last.begin(), last.end(), std::size_t{0});
   for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0]++;
+    row[0] = i + 1;
     for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+      row[j + 1] = std::min({last[j] + (a[i] == b[j] ? 0 : 1), last[j + 1] + 1, row[j] + 1});
+      const bool swapped = i > 0 && j > 0 && a[i] == b[j - 1] && a[i - 1] == b[j];
+      if (swapped) row[j + 1] = std::min(row[j + 1], before[j - 1] + 1);
     }
+    before = std::exchange(last, row);
   }
-  return row.back();
+  return last.back();
+}
+
+std::string full_text(const toml::node& node) {
+  if (const auto* text = node.as_string()) return fmt::format("\"{}\"", text->get());
+  if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
+  if (const auto* array = node.as_array()) {
+    std::vector<std::string> items;
+    for (const toml::node& item : *array) items.push_back(full_text(item));
+    return fmt::format("[{}]", fmt::join(items, ", "));
+  }
+  if (node.is_table()) return "a table";
+  std::ostringstream out;
+  node.visit([&](const auto& value) { out << value; });
+  return out.str();
 }
 
 }  // namespace
@@ -146,9 +170,7 @@ std::string TomlDocument::place(const std::string& dotted, const toml::node* nod
 
 std::string value_text(const toml::node& node) {
   constexpr std::size_t kLongest = 60;
-  std::ostringstream out;
-  node.visit([&](const auto& value) { out << value; });
-  std::string text = out.str();
+  std::string text = full_text(node);
   std::ranges::replace(text, '\n', ' ');
   if (text.size() > kLongest) text = text.substr(0, kLongest - 3) + "...";
   return text;
@@ -158,7 +180,7 @@ std::optional<std::string> nearest(const std::string& word, const std::vector<st
   std::optional<std::string> best;
   std::size_t least = std::max<std::size_t>(2, word.size() / 3) + 1;
   for (const std::string& candidate : candidates) {
-    const std::size_t distance = edit_distance(word, candidate);
+    const std::size_t distance = edit_distance(lower(word), lower(candidate));
     if (distance < least && distance < candidate.size()) {
       least = distance;
       best = candidate;
