@@ -1,5 +1,6 @@
 #include "dynamics/bernstein.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace slipmode::dynamics {
@@ -7,28 +8,39 @@ namespace {
 
 /// Below this width a sign change that does not separate is called a touch.
 constexpr double kSmallestInterval = 1e-12;
+/// Relative accuracy of a root: the last Newton step, so that its error is the square of this.
+constexpr double kRootTolerance = 1e-9;
 
-/// The single root of a polynomial that is positive just after 0 and not positive at 1: bisection kept safe, secant
-/// fast.
+constexpr std::size_t index(int k) { return static_cast<std::size_t>(k); }
+
+/// The single root of a polynomial that is positive just after 0 and not positive at 1: Newton on the power form, kept
+/// inside a shrinking bracket.
 double single_root(const BernsteinPolynomial& p) {
-  double lo = 0.0, hi = 1.0, f_lo = p.coefficient[0], f_hi = p(1.0);
-  for (int i = 0; i < 200 && hi - lo > 1e-16 * hi; ++i) {
-    double t = f_lo > 0 ? lo - f_lo * (hi - lo) / (f_hi - f_lo) : lo + (hi - lo) / 2;
-    if (!(t > lo && t < hi)) t = lo + (hi - lo) / 2;
-    if (t == lo || t == hi) break;
-    const double f = p(t);
-    if (f == 0) return t;
-    if (f > 0) {
-      lo = t;
-      f_lo = f;
-      f_hi /= 2;  // Illinois: no end point stays for ever
-    } else {
-      hi = t;
-      f_hi = f;
-      f_lo /= 2;
-    }
+  std::array<double, BernsteinPolynomial::kMaxDegree + 1> power =
+      p.coefficient;  // forward differences, then × binomial
+  for (int order = 1; order <= p.degree; ++order)
+    for (int k = p.degree; k >= order; --k) power[index(k)] -= power[index(k - 1)];
+  double binomial = 1.0;
+  for (int k = 1; k <= p.degree; ++k) {
+    binomial *= static_cast<double>(p.degree - k + 1) / k;
+    power[index(k)] *= binomial;
   }
-  return hi;
+  double lo = 0.0, hi = 1.0, t = 0.5;
+  if (p.coefficient[0] > 0)
+    t = std::clamp(p.coefficient[0] / (p.coefficient[0] - p.coefficient[index(p.degree)]), 0.05, 0.95);
+  for (int i = 0; i < 100; ++i) {
+    double f = power[index(p.degree)], slope = 0.0;
+    for (int k = p.degree - 1; k >= 0; --k) {
+      slope = slope * t + f;
+      f = f * t + power[index(k)];
+    }
+    (f > 0 ? lo : hi) = t;
+    double next = t - f / slope;
+    if (!(next > lo && next < hi)) next = lo + (hi - lo) / 2;
+    if (std::abs(next - t) <= kRootTolerance * next || hi - lo <= kRootTolerance * hi) return next;
+    t = next;
+  }
+  return t;
 }
 
 std::optional<FirstRoot> search(const BernsteinPolynomial& p, double lo, double width) {

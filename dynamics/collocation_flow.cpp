@@ -18,7 +18,20 @@ constexpr double kEndNodeGain = 1e-3;
 constexpr double kLargestOvershoot = 0.7;
 /// The step is doubled when the error of the doubled one, eighth order, is foreseen to pass with this margin.
 constexpr double kGrowth = 1.0 / (256.0 * 8.0);
+/// Largest product of the law's slope, the mobility and the step that is tried.
+constexpr double kLargestGrowth = 1.2;
 constexpr int kNewtonLimit = 12;
+/// Newton stops at a change of this size (in units of the law's velocity scale): the next one would be its square.
+constexpr double kNewtonChange = 2e-6;
+/// Sliding slower than this share of the velocities at play is no sliding.
+constexpr double kAtRest = 1e-13;
+
+/// How many times to halve a step whose eighth-order error is too large by this factor: at least once.
+int halvings(double excess) {
+  int exponent = 0;
+  std::frexp(excess, &exponent);
+  return std::clamp(1 + exponent / kNodes, 1, 4);
+}
 
 double sign_of(ContactMode mode) { return static_cast<double>(static_cast<int>(mode)); }
 
@@ -67,6 +80,45 @@ void CollocationFlow::free_velocities(const Collocation& table) {
   }
 }
 
+void CollocationFlow::guess_forces(int level, bool retry) {
+  // The last solution continued; a rejected step's own solution; or the force at the start.
+  const auto& t = radau();
+  for (int c = 0; c < nc_; ++c) {
+    double* forces = forces_.data() + kNodes * c;
+    const RadauTables::Matrix8* matrix = nullptr;
+    const int finer = level - step_level_ + 1;
+    if (solved_ && retry && finer == 2) matrix = &t.left_half;
+    if (solved_ && !retry && finer >= 0 && finer < static_cast<int>(t.following.size()))
+      matrix = &t.following[static_cast<std::size_t>(finer)];
+    store8(forces, matrix ? matrix8_times(matrix->data(), forces) : broadcast8(force_now_(c)));
+  }
+}
+
+int CollocationFlow::foreseen_level(int level) const {
+  // Sliding slows down ever faster where the law rises steeply: look ahead by a parabola through the last step's
+  // velocities and keep (law's slope × mobility × step) within what eight nodes resolve.
+  if (!solved_) return level;
+  const auto& node = radau().node;
+  const double last_step = tables_.step(step_level_);
+  for (int c = 0; c < nc_; ++c) {
+    const auto i = static_cast<std::size_t>(c);
+    const ContactForces& law = laws_[i];
+    if (law.kind != ContactForces::Kind::kStribeck || modes_[i] == ContactMode::kStick) continue;
+    const double sign = sign_of(modes_[i]);
+    const auto speed = [&](int j) { return sign * (belt_nodes_(kNodes * c + j) - velocity_(kNodes * c + j)); };
+    const double s1 = speed(2), s2 = speed(5), s3 = speed(7);
+    const double d12 = (s2 - s1) / (node(5) - node(2)), d23 = (s3 - s2) / (node(7) - node(5));
+    const double bend = (d23 - d12) / (node(7) - node(2)), slope = d23 + bend * (node(7) - node(5));
+    for (; level + 1 < StepTables::kLevels; ++level) {
+      const double ahead = tables_.step(level) / last_step;
+      const double foreseen = std::max(0.0, s3 + ahead * (slope + bend * ahead));
+      const double growth = law.alpha * law.drop * std::exp(-law.alpha * foreseen) * model_.mobility(c, c);
+      if (growth * tables_.step(level) < kLargestGrowth) break;
+    }
+  }
+  return level;
+}
+
 bool CollocationFlow::solve_forces(const Collocation& table, double h) {
   const double V = belt_.velocity(begin_), a = belt_.acceleration(begin_);
   const V8 node = load8(radau().node.data());
@@ -98,8 +150,7 @@ bool CollocationFlow::solve_single_slip(const Collocation& table) {
   const V8 clip = broadcast8(-kLargestOvershoot * 2);
 
   alignas(64) double force[kNodes];
-  store8(force, broadcast8(force_now_(0)));
-  V8 v = free + matrix8_times(table.kernel.data(), force);
+  V8 v = free + matrix8_times(table.kernel.data(), forces_.data());
   for (int iteration = 0; iteration < kNewtonLimit; ++iteration) {
     V8 lambda, slope;
     if (smooth) {
@@ -126,7 +177,7 @@ bool CollocationFlow::solve_single_slip(const Collocation& table) {
     v += delta;
     const double change = std::max(max8(delta), -min8(delta));
     if (!(change < 1e12)) return false;
-    if (change < 3e-7 * velocity_scale || change < 1e-14) {
+    if (change < kNewtonChange * velocity_scale || change < 1e-14) {
       store8(forces_.data(), lambda + slope * delta);
       store8(velocity_.data(), v);
       return true;
@@ -207,7 +258,7 @@ bool CollocationFlow::solve_coupled(const Collocation& table) {
           curvature = std::max(curvature, rate * block(dv, c).cwiseAbs().maxCoeff());
       }
     }
-    if (!any_nonlinear || curvature < 3e-7) return true;
+    if (!any_nonlinear || curvature < kNewtonChange) return true;
   }
   return false;
 }
@@ -297,11 +348,11 @@ bool CollocationFlow::step(double t_limit) {
   }
   const double remaining = limit - begin_;
 
-  int level = level_;
+  int level = foreseen_level(level_);
   while (level + 1 < StepTables::kLevels && tables_.step(level + 1) >= remaining) ++level;
   Guarded guard;
   double h = 0.0, tau = 0.0, error = 0.0, tolerance = 0.0;
-  for (;; ++level, ++statistics_.rejected) {
+  for (bool retry = false;; retry = true, ++statistics_.rejected) {
     if (level >= StepTables::kLevels)
       throw NumericalFailure(
           "the contact forces could not be resolved by any step size at t = " + std::to_string(begin_), begin_,
@@ -309,17 +360,34 @@ bool CollocationFlow::step(double t_limit) {
     h = tables_.step(level);
     const Collocation& table = tables_.collocation(level);
     free_velocities(table);
-    if (!solve_forces(table, h)) continue;
-    error = force_error();
+    guess_forces(level, retry);
+    solved_ = solve_forces(table, h);
+    step_level_ = level;
+    if (!solved_) {
+      ++level;
+      continue;
+    }
+    error = force_error() * h / tables_.step(0);
+    const bool smallest = level + 1 == StepTables::kLevels;
+    if (!(error <= options_.tolerance / kEndNodeGain) && !smallest) {
+      level += halvings(error * kEndNodeGain / options_.tolerance);
+      continue;
+    }
     guard = first_guard();
     tau = std::min(guard.contact >= 0 ? guard.theta * h : h, remaining);
     tolerance = options_.tolerance * (tau < h || dense_ ? 1.0 : 1.0 / kEndNodeGain);
-    if (!(error <= tolerance) && level + 1 < StepTables::kLevels) continue;
-    if (guard.contact >= 0 && deepest_overshoot() > kLargestOvershoot) continue;
+    if (!(error <= tolerance) && !smallest) {
+      level += halvings(error / tolerance);
+      continue;
+    }
+    if (guard.contact >= 0 && deepest_overshoot() > kLargestOvershoot) {
+      do ++level;
+      while (tables_.step(level + 1) > guard.theta * h);
+      continue;
+    }
     break;
   }
   const bool at_guard = guard.contact >= 0 && guard.theta * h <= remaining;
-  step_level_ = level;
 
   if (tau < h) {
     advance_partial(x_begin_.data(), forces_.data(), level, tau, x_.data());
@@ -338,6 +406,7 @@ bool CollocationFlow::step(double t_limit) {
   if (tangents_.size() > 0) push_tangents(level, tau);
 
   level_ = error < tolerance * kGrowth && level > 0 ? level - 1 : level;
+  solved_ = tau == h;
   if (fresh_) start_level_[stuck_count()] = level_;
   fresh_ = false;
   std::fill(multiplicity_.begin(), multiplicity_.end(), 0);
@@ -376,10 +445,7 @@ void CollocationFlow::refine_event(const Guarded& guard, double& tau, Eigen::Vec
       const double sign = force(c) > 0 ? 1.0 : -1.0;
       stick_forces({model_, laws_, x.data(), begin_ + tau, V, a}, stuck, force);
       value = laws_[i].static_limit - sign * force(c);
-      const double step = 1e-4;
-      const RadauTables::Vector8 slope =
-          (radau().lagrange(theta + step) - radau().lagrange(theta - step)) / (2 * step * h);
-      rate = -sign * forces_.segment<kNodes>(kNodes * c).dot(slope);
+      rate = -sign * forces_.segment<kNodes>(kNodes * c).dot(radau().lagrange_slope(theta)) / h;
     } else {
       const double sign = sign_of(modes_[i]);
       value = sign * (V - contact_velocity(c, x.data()));
@@ -434,83 +500,115 @@ void CollocationFlow::account(int level, double theta) {
   work_.exchanged += std::abs(contact) + viscous;
 }
 
-void CollocationFlow::settle_event(int contact, bool touching) {
-  const auto record = [&](int c, EventKind kind, ContactMode before) {
-    const auto i = static_cast<std::size_t>(c);
-    Event e{time_, c, kind, before, c >= 0 ? modes_[i] : before, 0.0, 0.0, 0.0};
-    if (c >= 0) {
-      e.displacement =
-          dot_padded(model_.displacement_row.col(c).data(), x_.data(), 2 * model_.np) + model_.contact_offset(c);
-      e.velocity = contact_velocity(c, x_.data());
-      e.force = force_now_(c);
-    }
-    events_.push_back(e);
-    ++statistics_.events;
-  };
-  const double V = belt_.velocity(time_);
-  if (contact >= 0 && touching) {
-    record(contact, EventKind::kGrazing, modes_[static_cast<std::size_t>(contact)]);
-    multiplicity_[static_cast<std::size_t>(contact)] =
-        modes_[static_cast<std::size_t>(contact)] == ContactMode::kStick ? 0 : 2;
-    return;
+void CollocationFlow::record(int contact, EventKind kind, ContactMode before) {
+  Event e{time_, contact, kind, before, before, 0.0, 0.0, 0.0};
+  if (contact >= 0) {
+    e.after = modes_[static_cast<std::size_t>(contact)];
+    e.displacement = dot_padded(model_.displacement_row.col(contact).data(), x_.data(), 2 * model_.np) +
+                     model_.contact_offset(contact);
+    e.velocity = contact_velocity(contact, x_.data());
+    e.force = force_now_(contact);
   }
+  events_.push_back(e);
+  ++statistics_.events;
+}
 
+void CollocationFlow::record_change(int contact, ContactMode before) {
+  const ContactMode after = modes_[static_cast<std::size_t>(contact)];
+  record(contact,
+         after == before                 ? EventKind::kGrazing
+         : before == ContactMode::kStick ? EventKind::kRelease
+         : after == ContactMode::kStick  ? EventKind::kStick
+                                         : EventKind::kReversal,
+         before);
+}
+
+void CollocationFlow::settle_event(int contact, bool touching) {
+  if (contact >= 0 && touching) {
+    const auto i = static_cast<std::size_t>(contact);
+    record(contact, EventKind::kGrazing, modes_[i]);
+    multiplicity_[i] = modes_[i] == ContactMode::kStick ? 0 : 2;
+  } else if (nc_ == 1 && contact == 0) {
+    settle_single();
+  } else {
+    settle_coupled(contact);
+  }
+  guard_against_zeno();
+}
+
+void CollocationFlow::settle_single() {
+  const ContactMode before = modes_[0];
+  const double force_before = force_now_(0), gap = belt_.velocity(time_) - contact_velocity(0, x_.data());
+  const double impulse = gap / model_.mobility(0, 0);
+  const double* input = model_.input.data();
+  for (Eigen::Index i = 0; i < 2 * model_.np; i += kLanes)
+    store8(x_.data() + i, load8(x_.data() + i) + impulse * load8(input + i));
+  const SingleResolution next =
+      resolve_single(instant(x_), before == ContactMode::kStick, force_before > 0 ? 1.0 : -1.0);
+  modes_[0] = next.mode;
+  multiplicity_[0] = next.multiplicity;
+  force_now_(0) = next.force;
+  restart_steps();
+  if (tangents_.size() > 0) salt_tangents(Eigen::VectorXd::Constant(1, force_before), force_now_, {before}, 0);
+  record_change(0, before);
+}
+
+void CollocationFlow::settle_coupled(int contact) {
   // Contacts at rest on the belt, to be decided together: the sticking ones, the one whose guard was reached, and any
   // other whose sliding speed is zero to rounding.
+  const double V = belt_.velocity(time_);
   std::vector<bool> at_rest(modes_.size());
+  std::vector<Eigen::Index> resting;
   for (std::size_t c = 0; c < modes_.size(); ++c) {
     const auto i = static_cast<int>(c);
     if (!laws_[c].sticks()) continue;
     const double speed = std::abs(V - contact_velocity(i, x_.data()));
     const double scale = model_.velocity_row.col(i).cwiseAbs().dot(x_.cwiseAbs()) + std::abs(V);
-    at_rest[c] = modes_[c] == ContactMode::kStick || i == contact || speed <= 1e-13 * scale;
+    at_rest[c] = modes_[c] == ContactMode::kStick || i == contact || speed <= kAtRest * scale;
+    if (at_rest[c]) resting.push_back(i);
   }
-  std::vector<Eigen::Index> resting;
-  for (std::size_t c = 0; c < at_rest.size(); ++c)
-    if (at_rest[c]) resting.push_back(static_cast<Eigen::Index>(c));
-  Eigen::VectorXd gap(static_cast<Eigen::Index>(resting.size()));
-  for (std::size_t k = 0; k < resting.size(); ++k)
-    gap(static_cast<Eigen::Index>(k)) = V - contact_velocity(static_cast<int>(resting[k]), x_.data());
   if (!resting.empty()) {
-    const Eigen::VectorXd impulse = Eigen::MatrixXd(model_.mobility(resting, resting)).ldlt().solve(gap);
-    for (std::size_t k = 0; k < resting.size(); ++k)
-      x_ += model_.input.col(resting[k]) * impulse(static_cast<Eigen::Index>(k));
+    Eigen::VectorXd gap(static_cast<Eigen::Index>(resting.size()));
+    for (Eigen::Index k = 0; k < gap.size(); ++k)
+      gap(k) = V - contact_velocity(static_cast<int>(resting[static_cast<std::size_t>(k)]), x_.data());
+    x_ += Eigen::MatrixXd(model_.input(Eigen::all, resting)) *
+          Eigen::MatrixXd(model_.mobility(resting, resting)).ldlt().solve(gap);
   }
 
   const bool released = contact >= 0 && modes_[static_cast<std::size_t>(contact)] == ContactMode::kStick;
   const std::vector<ContactMode> before = modes_;
   const Eigen::VectorXd force_before = force_now_;
-  const Resolution next = resolve(instant(x_), modes_, at_rest, released ? contact : -1);
-  start_modes(next);
-  if (tangents_.size() > 0) salt_tangents(force_before, next.force, before, contact);
+  start_modes(resolve(instant(x_), modes_, at_rest, released ? contact : -1));
+  if (tangents_.size() > 0) salt_tangents(force_before, force_now_, before, contact);
 
   if (contact < 0) record(-1, EventKind::kDriveCorner, ContactMode::kStick);
-  for (std::size_t c = 0; c < modes_.size(); ++c) {
-    if (modes_[c] == before[c]) continue;
-    const EventKind kind = before[c] == ContactMode::kStick   ? EventKind::kRelease
-                           : modes_[c] == ContactMode::kStick ? EventKind::kStick
-                                                              : EventKind::kReversal;
-    record(static_cast<int>(c), kind, before[c]);
-  }
-  if (events_.empty() && contact >= 0) record(contact, EventKind::kGrazing, before[static_cast<std::size_t>(contact)]);
+  for (std::size_t c = 0; c < modes_.size(); ++c)
+    if (modes_[c] != before[c] || static_cast<int>(c) == contact) record_change(static_cast<int>(c), before[c]);
+}
 
+void CollocationFlow::guard_against_zeno() {
   recent_events_.push_back(time_);
   const auto window = static_cast<std::size_t>(options_.max_events_per_window);
-  if (recent_events_.size() > window) {
-    const double since = recent_events_[recent_events_.size() - 1 - window];
-    if (time_ - since < options_.zeno_window)
-      throw NumericalFailure("Zeno: more than " + std::to_string(window) + " events within " +
-                                 std::to_string(options_.zeno_window) + " before t = " + std::to_string(time_),
-                             time_, x_, time_ - since);
-    if (recent_events_.size() > 8 * window) recent_events_.erase(recent_events_.begin(), recent_events_.end() - window);
-  }
+  if (recent_events_.size() <= window) return;
+  const double since = recent_events_[recent_events_.size() - 1 - window];
+  if (time_ - since < options_.zeno_window)
+    throw NumericalFailure("Zeno: more than " + std::to_string(window) + " events within " +
+                               std::to_string(options_.zeno_window) + " before t = " + std::to_string(time_),
+                           time_, x_, time_ - since);
+  if (recent_events_.size() > 8 * window)
+    recent_events_.erase(recent_events_.begin(), recent_events_.end() - static_cast<std::ptrdiff_t>(window));
 }
 
 void CollocationFlow::start_modes(const Resolution& resolution) {
   modes_ = resolution.modes;
   multiplicity_ = resolution.multiplicity;
   force_now_ = resolution.force;
+  restart_steps();
+}
+
+void CollocationFlow::restart_steps() {
   level_ = start_level_[stuck_count()];
+  solved_ = false;
   fresh_ = true;
 }
 

@@ -56,6 +56,8 @@ class CollocationFlow {
   };
 
   void free_velocities(const Collocation& table);
+  void guess_forces(int level, bool retry);
+  [[nodiscard]] int foreseen_level(int level) const;
   bool solve_forces(const Collocation& table, double h);
   bool solve_single_slip(const Collocation& table);
   bool solve_coupled(const Collocation& table);
@@ -67,7 +69,13 @@ class CollocationFlow {
   void refine_event(const Guarded& guard, double& tau, Eigen::VectorXd& x) const;
   void account(int level, double theta);
   void settle_event(int contact, bool touching);
+  void settle_single();
+  void settle_coupled(int contact);
+  void record(int contact, EventKind kind, ContactMode before);
+  void record_change(int contact, ContactMode before);
+  void guard_against_zeno();
   void start_modes(const Resolution& resolution);
+  void restart_steps();
   void push_tangents(int level, double tau);
   void salt_tangents(const Eigen::VectorXd& force_before, const Eigen::VectorXd& force_after,
                      const std::vector<ContactMode>& modes_before, int contact);
@@ -91,6 +99,7 @@ class CollocationFlow {
   std::vector<int> multiplicity_, step_multiplicity_;
   Eigen::VectorXd force_now_;  ///< λ at time_
   int level_ = 3, step_level_ = 0;
+  bool solved_ = false;           ///< forces_ hold a solution of the step of step_level_ that began at step_begin()
   bool fresh_ = true;             ///< no step taken since the last event
   std::vector<int> start_level_;  ///< remembered first step size after an event, by number of sticking contacts
 

@@ -89,10 +89,8 @@ void CollocationFlow::salt_tangents(const Eigen::VectorXd& force_before, const E
     }
     const Eigen::MatrixXd mobility = model_.mobility(stuck, stuck);
     gradient = mobility.ldlt().solve(rows).row(position);  // −dλ/dx
-    const double h = tables_.step(step_level_), theta = (time_ - begin_) / h, step = 1e-4;
-    const RadauTables::Vector8 slope =
-        (radau().lagrange(theta + step) - radau().lagrange(theta - step)) / (2 * step * h);
-    rate = -forces_.segment<kNodes>(kNodes * contact).dot(slope);
+    const double h = tables_.step(step_level_);
+    rate = -forces_.segment<kNodes>(kNodes * contact).dot(radau().lagrange_slope((time_ - begin_) / h)) / h;
   }
   tangents_ += jump * (gradient * tangents_) / rate;
 }

@@ -12,6 +12,8 @@ namespace {
 /// Forces are compared with their limits, and accelerations with zero, to this relative accuracy.
 constexpr double kForceTolerance = 1e-10;
 constexpr double kReleaseTolerance = 1e-6;
+/// Below this share of the largest friction acceleration, sliding is taken to start with zero acceleration.
+constexpr double kSimpleStart = 1e-7;
 /// Up to this many undecided contacts every combination can be tried.
 constexpr int kMaxEnumerated = 6;
 
@@ -128,6 +130,19 @@ ContactForces contact_forces(const friction::Contact& contact) {
   return f;
 }
 
+SingleResolution resolve_single(const Instant& now, bool released, double release_sign) {
+  const ModalModel& m = now.model;
+  const ContactForces& law = now.laws[0];
+  double free = m.load_acceleration(0);
+  const double* row = m.acceleration_row.data();
+  for (Eigen::Index i = 0; i < 2 * m.np; ++i) free += row[i] * now.x[i];
+  const double stick = (now.belt_acceleration - free) / m.mobility(0, 0);
+  if (!released && std::abs(stick) <= law.static_limit * (1 + kForceTolerance)) return {ContactMode::kStick, stick, 0};
+  const double sign = released ? release_sign : (stick > 0 ? 1.0 : -1.0);
+  const double excess = sign * stick - law.onset();  // sliding starts with this, times the mobility
+  return {slip_mode(sign), sign * law.onset(), excess > kSimpleStart * law.static_limit ? 1 : 2};
+}
+
 void stick_forces(const Instant& now, const std::vector<bool>& stuck, Eigen::VectorXd& force) {
   std::vector<Eigen::Index> open;
   for (std::size_t c = 0; c < stuck.size(); ++c)
@@ -206,7 +221,7 @@ Resolution resolve(const Instant& now, const std::vector<ContactMode>& modes, co
     const auto i = static_cast<Eigen::Index>(c);
     const double scale = now.model.mobility(i, i) * now.laws[c].static_limit;
     const double start = sign_of(out.modes[c]) * (now.belt_acceleration - acceleration(i));
-    out.multiplicity[c] = start > 1e-7 * scale ? 1 : 2;
+    out.multiplicity[c] = start > kSimpleStart * scale ? 1 : 2;
   }
   return out;
 }

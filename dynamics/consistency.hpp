@@ -56,6 +56,14 @@ struct Instant {
 [[nodiscard]] Resolution resolve(const Instant& now, const std::vector<ContactMode>& modes,
                                  const std::vector<bool>& at_rest, int release);
 
+/// `resolve` for a system with one contact, without allocation.
+struct SingleResolution {
+  ContactMode mode;
+  double force;
+  int multiplicity;
+};
+[[nodiscard]] SingleResolution resolve_single(const Instant& now, bool released, double release_sign);
+
 /// λ of the sticking contacts (belt acceleration followed), given the sliding ones in `force`; in place.
 void stick_forces(const Instant& now, const std::vector<bool>& stuck, Eigen::VectorXd& force);
 

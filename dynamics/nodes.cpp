@@ -100,6 +100,19 @@ RadauTables build() {
   t.legendre_tail = to_legendre.bottomRows(2).cast<double>();
   t.left_half = interpolation(c, c / 2).cast<double>();
   t.right_half = interpolation(c, c / 2 + VectorL::Constant(kNodes, Real(0.5))).cast<double>();
+  for (std::size_t r = 0; r < t.following.size(); ++r) {
+    const int degree = r == 0 ? 4 : 5;
+    const Real length = Real(2) / static_cast<Real>(1 << r);
+    MatrixL ahead(kNodes, degree + 1);
+    for (int i = 0; i < kNodes; ++i) ahead.row(i) = legendre(degree, 1 + 2 * length * c(i)).transpose();
+    t.following[r] = (ahead * to_legendre.topRows(degree + 1)).cast<double>();
+  }
+  for (int j = 0; j < kNodes; ++j) {
+    Real product = 1;
+    for (int k = 0; k < kNodes; ++k)
+      if (k != j) product *= c(j) - c(k);
+    t.barycentric(j) = static_cast<double>(1 / product);
+  }
   t.monomial = V.inverse().cast<double>();
   return t;
 }
@@ -107,14 +120,24 @@ RadauTables build() {
 }  // namespace
 
 RadauTables::Vector8 RadauTables::lagrange(double t) const {
-  Vector8 values;
+  // Products of (t − c_k) from the left and from the right: no division, and exact at a node.
+  Vector8 values = barycentric;
+  double left = 1.0, right = 1.0;
   for (int j = 0; j < kNodes; ++j) {
-    double product = 1.0;
-    for (int k = 0; k < kNodes; ++k)
-      if (k != j) product *= (t - node(k)) / (node(j) - node(k));
-    values(j) = product;
+    values(j) *= left;
+    values(kNodes - 1 - j) *= right;
+    left *= t - node(j);
+    right *= t - node(kNodes - 1 - j);
   }
   return values;
+}
+
+RadauTables::Vector8 RadauTables::lagrange_slope(double t) const {
+  Vector8 powers;  // derivative of 1, t, ..., t⁷
+  double power = 1.0;
+  powers(0) = 0.0;
+  for (int k = 1; k < kNodes; ++k, power *= t) powers(k) = k * power;
+  return monomial.transpose() * powers;
 }
 
 const RadauTables& radau() {

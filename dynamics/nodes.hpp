@@ -28,8 +28,15 @@ struct RadauTables {
   Matrix8 right_half;                         ///< node values on [0,1] → node values on [½,1]
   Matrix8 monomial;                           ///< node values → coefficients of 1, t, ..., t⁷
 
+  /// Node values on [0,1] → values at the nodes of the following interval of length 2, 1, ½, ¼: a first guess only, by
+  /// the part of degree 5 (for length 2: 4), since extrapolation magnifies what is at the end of the expansion.
+  std::array<Matrix8, 4> following;
+  Vector8 barycentric;  ///< 1 / Π_{k≠j} (c_j − c_k)
+
   /// Lagrange basis of the eight nodes at t.
   [[nodiscard]] Vector8 lagrange(double t) const;
+  /// Its derivative at t.
+  [[nodiscard]] Vector8 lagrange_slope(double t) const;
 };
 
 /// The tables, computed once.
