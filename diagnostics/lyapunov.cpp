@@ -89,7 +89,8 @@ void check(const LyapunovOptions& options) {
 /// The end of a run; nothing else is kept.
 dynamics::State advance(const dynamics::HybridSystem& system, const dynamics::State& from, double duration,
                         const dynamics::FlowOptions& flow) {
-  return dynamics::simulate(system, from, {.duration = duration, .keep_events = false, .flow = flow}).final_state;
+  const dynamics::SimulateOptions run{.duration = duration, .keep_events = false, .flow = flow};
+  return continued(system, dynamics::simulate(system, from, run).final_state);
 }
 
 }  // namespace

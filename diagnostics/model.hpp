@@ -35,6 +35,12 @@ struct Model {
 /// from one belt speed to the next, where the old modes need not hold.
 [[nodiscard]] dynamics::State restarted(const dynamics::State& state);
 
+/// A state to go on from within a run: contacts that stick, or whose mode and sliding speed disagree in sign, are put
+/// on the belt's speed exactly (smallest change of v). A run holds that speed to its tolerance only, and a start must
+/// be consistent with its modes to rounding. Speeds off by more than 10⁻⁶ of the largest are left for simulate to
+/// refuse.
+[[nodiscard]] dynamics::State continued(const dynamics::HybridSystem& system, const dynamics::State& state);
+
 /// Steady sliding at the drive's speed at time 0: K q = p + Σ w λ with λ at its kinetic value for that speed (zero for
 /// a belt at rest), v = 0. A static equilibrium that need not be stable.
 /// @throws InvalidInput  if K is singular to rounding (a structure free to move as a rigid body)

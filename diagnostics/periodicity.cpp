@@ -84,7 +84,7 @@ class SlipHistory {
   }
 
   /// The mismatch when every slip of `contact` later than `begin` has a partner one T before, else nothing.
-  [[nodiscard]] std::optional<double> partners(int contact, double begin, double T) const {
+  [[nodiscard]] std::optional<double> partners(int contact, double begin, double T, double tolerance) const {
     const std::vector<std::size_t>& mine = of(contact);
     double worst = 0.0;
     for (auto late = mine.rbegin(); late != mine.rend() && slip(*late).time > begin; ++late) {
@@ -95,7 +95,7 @@ class SlipHistory {
       for (auto near = after == mine.begin() ? after : std::prev(after); near != mine.end() && near <= after; ++near) {
         best = std::min(best, std::max(std::abs(slip(*near).time - wanted) / T, difference(*late, *near)));
       }
-      if (!(best <= options_.tolerance)) return std::nullopt;
+      if (!(best <= tolerance)) return std::nullopt;
       worst = std::max(worst, best);
     }
     return worst;
@@ -142,29 +142,70 @@ int matches_needed(const SlipHistory& history, const std::vector<std::size_t>& m
   return matches;
 }
 
-/// The result for shift p of the section contact if it is a period, else nothing.
-std::optional<PeriodResult> try_period(const SlipHistory& history, int section, int p, int matches,
-                                       const PeriodOptions& options) {
-  const std::vector<std::size_t>& mine = history.of(section);
+/// Largest relative difference, and mean time apart, of the last slips of a contact and those p before.
+struct Shift {
+  double mismatch = 0.0;
+  double T = 0.0;
+};
+
+Shift compare_shift(const SlipHistory& history, const std::vector<std::size_t>& mine, int p, int matches) {
   const std::size_t n = mine.size();
   const auto shift = static_cast<std::size_t>(p);
-  const auto count = static_cast<std::size_t>(matches);
-  double worst = 0.0;
-  for (std::size_t k = n - count; k < n; ++k) {
-    worst = std::max(worst, history.difference(mine[k], mine[k - shift]));
-    if (worst > options.tolerance) return std::nullopt;
+  const std::size_t begin = n - static_cast<std::size_t>(matches);
+  const auto lag = [&](std::size_t k) { return history.slip(mine[k]).time - history.slip(mine[k - shift]).time; };
+  Shift result;
+  for (std::size_t k = begin; k < n; ++k) {
+    result.mismatch = std::max(result.mismatch, history.difference(mine[k], mine[k - shift]));
+    result.T += lag(k) / matches;
   }
-  double T = 0.0;
-  for (std::size_t k = n - count; k < n; ++k) {
-    T += (history.slip(mine[k]).time - history.slip(mine[k - shift]).time) / matches;
+  if (!(result.T > 0.0)) return {.mismatch = std::numeric_limits<double>::infinity()};
+  for (std::size_t k = begin; k < n; ++k) {
+    result.mismatch = std::max(result.mismatch, std::abs(lag(k) - result.T) / result.T);
   }
-  if (!(T > 0.0)) return std::nullopt;
-  for (std::size_t k = n - count; k < n; ++k) {
-    const double lag = history.slip(mine[k]).time - history.slip(mine[k - shift]).time;
-    worst = std::max(worst, std::abs(lag - T) / T);
+  return result;
+}
+
+/// True when the last slip of contact `section` differs from the one p before: the usual end of a trial.
+bool differs_at_once(const SlipHistory& history, const std::vector<std::size_t>& mine, int p, double tolerance) {
+  return history.difference(mine.back(), mine[mine.size() - 1 - static_cast<std::size_t>(p)]) > tolerance;
+}
+
+/// The result for shift p of the section contact if all contacts repeat within `tolerance`, else nothing.
+std::optional<PeriodResult> try_period(const SlipHistory& history, int section, int p, int matches, double tolerance) {
+  const std::vector<std::size_t>& mine = history.of(section);
+  if (differs_at_once(history, mine, p, tolerance)) return std::nullopt;
+  const Shift shift = compare_shift(history, mine, p, matches);
+  if (!(shift.mismatch <= tolerance)) return std::nullopt;
+  PeriodResult result{
+      .motion = Motion::kPeriodic, .period = p, .T = shift.T, .contact = section, .mismatch = shift.mismatch};
+  const std::size_t first = mine[mine.size() - static_cast<std::size_t>(matches)];
+  const double begin = history.slip(first).time - 0.5 * shift.T;
+  for (int c = 0; c < history.contacts(); ++c) {
+    if (c == section) continue;
+    const std::optional<double> mismatch = history.partners(c, begin, shift.T, tolerance);
+    if (!mismatch) return std::nullopt;
+    result.mismatch = std::max(result.mismatch, *mismatch);
   }
-  if (worst > options.tolerance) return std::nullopt;
-  return PeriodResult{.motion = Motion::kPeriodic, .period = p, .T = T, .contact = section, .mismatch = worst};
+  return result;
+}
+
+/// `found`, or the smallest of its divisors that is not clearly worse.
+PeriodResult prefer_divisor(const SlipHistory& history, const PeriodResult& found, int matches,
+                            const PeriodOptions& options) {
+  constexpr double kNear = 100.0;
+  constexpr double kClearlyWorse = 10.0;
+  PeriodResult best = found;
+  for (int q = found.period - 1; q >= 1; --q) {
+    if (found.period % q != 0) continue;
+    std::optional<PeriodResult> divisor = try_period(history, found.contact, q, matches, kNear * options.tolerance);
+    if (!divisor) continue;
+    const double doubt = found.mismatch / divisor->mismatch;
+    best.doubt = std::max(best.doubt, doubt);
+    if (doubt * kClearlyWorse < 1.0) continue;
+    divisor->doubt = best.doubt;
+    best = *divisor;
+  }
+  return best;
 }
 
 }  // namespace
@@ -206,19 +247,8 @@ PeriodResult detect_period(std::span<const SlipState> slips, const PeriodOptions
   for (int p = 1; p <= options.max_period; ++p) {
     const int matches = matches_needed(history, history.of(section), p, options);
     if (seen < p + matches) return result;
-    std::optional<PeriodResult> found = try_period(history, section, p, matches, options);
-    if (!found) continue;
-
-    const double begin =
-        history.slip(history.of(section)[static_cast<std::size_t>(seen - matches)]).time - 0.5 * found->T;
-    bool all = true;
-    for (int c = 0; all && c < history.contacts(); ++c) {
-      if (c == section) continue;
-      const std::optional<double> mismatch = history.partners(c, begin, found->T);
-      all = mismatch.has_value();
-      if (all) found->mismatch = std::max(found->mismatch, *mismatch);
-    }
-    if (all) return *found;
+    const std::optional<PeriodResult> found = try_period(history, section, p, matches, options.tolerance);
+    if (found) return prefer_divisor(history, *found, matches, options);
   }
   result.motion = Motion::kAperiodic;
   return result;

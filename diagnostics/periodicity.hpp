@@ -46,15 +46,20 @@ struct PeriodResult {
   int period = 0;         ///< slips of the section contact per period; 0 unless periodic
   double T = 0.0;         ///< period in time, mean over the matched repeats [s]; 0 unless periodic
   int contact = -1;       ///< section contact: the one that slips most often, the lowest if several do
-  double mismatch = 0.0;  ///< largest relative difference found in the matched stretch
+  double mismatch = 0.0;  ///< largest relative difference of slips `period` apart in the matched stretch
+  /// How well the period is told from its divisors: mismatch / (smallest mismatch of a divisor). 0: clear, as when no
+  /// divisor comes near. Near 1: the motion still decays towards a shorter period, and waiting will tell.
+  double doubt = 0.0;
 };
 
-/// Smallest period p of the last slips: slip states p apart agree within tolerance over the last
+/// Period of the last slips. First the smallest p for which slip states p apart agree within tolerance over the last
 /// max(repeats·p, min_matches) slips (see long_stretch), at a constant time apart; with several contacts, every slip of
-/// every contact in that stretch must have its partner one T before. Simultaneous slips of several contacts may come in
-/// any order.
+/// every contact in that stretch must have its partner one T before. Simultaneous slips may come in any order.
 ///
-/// Smallest means: a doubling whose split is below tolerance counts as not doubled.
+/// A slow decay towards a shorter period q can pass that test for a multiple p of q first, by chance of its phase. So a
+/// divisor q that repeats within 100 tolerances and not ten times worse than p is taken instead (`mismatch` then
+/// exceeds the tolerance and `doubt` says by how much p is better). A doubling whose split is below tolerance counts as
+/// not doubled.
 /// @param slips   in time order
 /// @param states  optional, one column (q; v) per slip: then the whole state must repeat too, relative to the largest
 ///                column norm about the mean

@@ -1,6 +1,7 @@
 #include "diagnostics/settle.hpp"
 
 #include "core/errors.hpp"
+#include "diagnostics/model.hpp"
 
 #include <fmt/format.h>
 
@@ -17,9 +18,10 @@ void check(const SettleOptions& options) {
     throw InvalidInput(fmt::format("settle: expected block > 0, transient >= 0, limit >= block, found {}, {}, {}",
                                    options.block, options.transient, options.limit));
   }
-  if (options.max_slips < 1 || options.energy_samples < 0) {
-    throw InvalidInput(fmt::format("settle: expected max_slips >= 1 and energy_samples >= 0, found {}, {}",
-                                   options.max_slips, options.energy_samples));
+  if (options.max_slips < 1 || options.energy_samples < 0 || !(options.energy_time > 0.0)) {
+    throw InvalidInput(
+        fmt::format("settle: expected max_slips >= 1, energy_samples >= 0 and energy_time > 0, found {}, {}, {}",
+                    options.max_slips, options.energy_samples, options.energy_time));
   }
 }
 
@@ -63,11 +65,10 @@ double mean_energy(const dynamics::HybridSystem& system, const Eigen::MatrixXd& 
   return sum / static_cast<double>(q.cols());
 }
 
-/// True when motion without events gains speed from the first half of the samples to the second.
-bool is_growing(const Eigen::MatrixXd& v) {
-  const Eigen::Index half = v.cols() / 2;
-  if (half == 0) return false;
-  return v.rightCols(half).squaredNorm() > 1.001 * v.leftCols(half).squaredNorm();
+/// Energy of a state about steady sliding, which falls while a motion without events dies out.
+double energy_about_sliding(const dynamics::HybridSystem& system, const dynamics::State& state) {
+  const Eigen::VectorXd centre = sliding_equilibrium(system).q;
+  return system.structure().energy(state.q - centre, state.v);
 }
 
 /// The slips of the last period: those after the section contact's slip before last by one period.
@@ -100,13 +101,14 @@ class Settling {
     while (true) {
       check_stop(options_);
       const double length = std::min(options_.block, options_.limit - waited);
+      const dynamics::State begin = out_.end;
       const dynamics::Trajectory block = run_block(length);
       waited += length;
       if (own_scale) options_.period.scale = reach_.scale();
       out_.period = detect_period(slips_, options_.period);
-      if (out_.period.motion == Motion::kPeriodic) break;
+      if (out_.period.motion == Motion::kPeriodic && out_.period.doubt <= kNoDoubt) break;
       const bool quiet = block.events.empty();
-      if (quiet && out_.stick_fraction == 0.0 && !is_growing(block.v)) {
+      if (quiet && out_.stick_fraction == 0.0 && !is_growing(begin)) {
         out_.period = {.motion = Motion::kSliding};
         break;
       }
@@ -120,6 +122,7 @@ class Settling {
       out_.period.motion = Motion::kSticking;
     }
     keep_slips();
+    measure_energy();
     return std::move(out_);
   }
 
@@ -127,7 +130,7 @@ class Settling {
   dynamics::Trajectory run(dynamics::SimulateOptions simulate_options) {
     simulate_options.flow = options_.flow;
     dynamics::Trajectory part = dynamics::simulate(system_, out_.end, simulate_options);
-    out_.end = part.final_state;
+    out_.end = continued(system_, part.final_state);
     out_.time += simulate_options.duration;
     out_.events += part.statistics.events;
     if (options_.flow.audit) {
@@ -137,8 +140,7 @@ class Settling {
   }
 
   dynamics::Trajectory run_block(double length) {
-    const double sample = options_.energy_samples > 0 ? length / options_.energy_samples : 0.0;
-    dynamics::Trajectory block = run({.duration = length, .sample = sample});
+    dynamics::Trajectory block = run({.duration = length});
     reach_.add(block.events);
     const std::vector<SlipState> slips = slip_states(block.events);
     slips_.insert(slips_.end(), slips.begin(), slips.end());
@@ -148,8 +150,29 @@ class Settling {
     const auto contacts = static_cast<double>(system_.contacts().size());
     out_.stick_fraction = contacts > 0.0 ? stuck / (contacts * length) : 0.0;
     out_.slip_rate = static_cast<double>(slips.size()) / length;
-    out_.mean_energy = mean_energy(system_, block.q, block.v);
     return block;
+  }
+
+  /// True when motion without events gains energy over the block, as on its way to a first stick. Structures with a
+  /// rigid-body motion have no equilibrium to measure from: they are given the time.
+  [[nodiscard]] bool is_growing(const dynamics::State& begin) const {
+    try {
+      return energy_about_sliding(system_, out_.end) > 1.001 * energy_about_sliding(system_, begin);
+    } catch (const InvalidInput&) {
+      return true;
+    }
+  }
+
+  /// Samples are taken in a run of their own: they would only slow down the long one.
+  void measure_energy() {
+    if (options_.energy_samples == 0) return;
+    const bool periodic = out_.period.motion == Motion::kPeriodic;
+    const double time = periodic ? out_.period.T : options_.energy_time;
+    const double sample = time / options_.energy_samples;
+    const dynamics::Trajectory run = dynamics::simulate(
+        system_, out_.end, {.duration = time, .sample = sample, .keep_events = false, .flow = options_.flow});
+    const Eigen::Index columns = std::min<Eigen::Index>(options_.energy_samples, run.q.cols());
+    out_.mean_energy = mean_energy(system_, run.q.leftCols(columns), run.v.leftCols(columns));
   }
 
   /// Stuck to a belt that does not move: nothing will ever happen again.
@@ -173,6 +196,8 @@ class Settling {
     const std::size_t count = std::min(slips_.size(), static_cast<std::size_t>(options_.max_slips));
     out_.slips.assign(slips_.end() - static_cast<std::ptrdiff_t>(count), slips_.end());
   }
+
+  static constexpr double kNoDoubt = 0.01;
 
   const dynamics::HybridSystem& system_;
   SettleOptions options_;
@@ -204,7 +229,7 @@ Orbit settle_to_orbit(const dynamics::HybridSystem& system, const dynamics::Stat
   dynamics::SimulateOptions run{.duration = 2.5 * settled.period.T, .flow = options.flow};
   run.on_event = [&](const dynamics::Event& event, const dynamics::State& state) {
     if (event.kind != dynamics::EventKind::kRelease || event.contact != settled.period.contact) return true;
-    states.push_back(state);
+    states.push_back(continued(system, state));
     if (orbit.displacements.size() < count) orbit.displacements.push_back(event.displacement);
     return states.size() < 2 * count;
   };

@@ -14,8 +14,10 @@ struct SettleOptions {
   double block = 5000.0;      ///< then runs of this length, each judged [s]
   double limit = 100000.0;    ///< until the motion is periodic or so much time has passed, transient not counted [s]
   PeriodOptions period = {};
-  int max_slips = 1000;      ///< slip states reported when the motion is not periodic: the last ones
-  int energy_samples = 512;  ///< equally spaced over a block, for the mean energy; 0: none
+  int max_slips = 1000;  ///< slip states reported when the motion is not periodic: the last ones
+  /// The mean energy is taken afterwards over one period of a periodic motion, else over this time [s].
+  double energy_time = 1000.0;
+  int energy_samples = 512;  ///< equally spaced, for the mean energy; 0: none is taken
   dynamics::FlowOptions flow = {};
   const StopFlag* stop = nullptr;  ///< polled between blocks
 };
@@ -25,7 +27,7 @@ struct Settled {
   PeriodResult period;
   std::vector<SlipState> slips;  ///< the last p ones of a periodic motion, else the last max_slips
   double stick_fraction = 0.0;   ///< share of the last block in stick, mean over contacts
-  double mean_energy = 0.0;      ///< of HybridSystem::energy over the last block's samples [J]; NaN without samples
+  double mean_energy = 0.0;      ///< of HybridSystem::energy; NaN without samples [J]
   double slip_rate = 0.0;        ///< slips of all contacts per unit of time in the last block [1/s]
   double time = 0.0;             ///< simulated in all, transient included [s]
   std::int64_t events = 0;       ///< in all
@@ -34,7 +36,8 @@ struct Settled {
 };
 
 /// Runs `start` until it is seen to be periodic, stuck or sliding for a whole block, or the limit is reached.
-/// Slips of earlier blocks are kept while they may help to see a long period (as at very low belt speed).
+/// A period in doubt (PeriodResult::doubt) is waited for as well. Slips of earlier blocks are kept while they may help
+/// to see a long period (as at very low belt speed).
 /// @throws InvalidInput      for block ≤ 0, transient < 0, limit < block, and as simulate
 /// @throws NumericalFailure  as simulate
 /// @throws Interrupted       if the stop flag was set

@@ -161,9 +161,9 @@ class Validation {
     dynamics::State state = report_.full.end;
     for (int k = 0; k < options_.horizon_starts; ++k) {
       attractor_starts_.push_back(state);
-      state = dynamics::simulate(system, state,
-                                 {.duration = options_.horizon_gap, .keep_events = false, .flow = options_.settle.flow})
-                  .final_state;
+      const dynamics::SimulateOptions gap{
+          .duration = options_.horizon_gap, .keep_events = false, .flow = options_.settle.flow};
+      state = continued(system, dynamics::simulate(system, state, gap).final_state);
     }
   }
 
