@@ -45,7 +45,7 @@ BifurcationPanel thinned(const BifurcationPanel& panel, const Range& x, const Ra
 Figure bifurcation_diagram(const std::vector<BifurcationPanel>& panels, const BifurcationLabels& labels) {
   const int count = static_cast<int>(panels.size());
   const int panel_height = count == 1 ? 620 : 460;
-  Figure figure(1200, panel_height * count + 70);
+  Figure figure(1200, panel_height * count + 85);
   common_style(figure);
 
   Range x, y;
@@ -53,7 +53,7 @@ Figure bifurcation_diagram(const std::vector<BifurcationPanel>& panels, const Bi
     x.include(panel.parameter);
     y.include(panel.value);
   }
-  const double bottom = 75.0 / figure.height(), top = 1.0 - 40.0 / figure.height();
+  const double bottom = 90.0 / figure.height(), top = 1.0 - 40.0 / figure.height();
   figure.command(fmt::format("set multiplot layout {},1 margins 0.08,0.975,{:.4f},{:.4f} spacing 0,{:.4f}", count,
                              bottom, top, 45.0 / figure.height()));
   figure.command("unset key");

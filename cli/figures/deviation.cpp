@@ -62,7 +62,7 @@ Figure deviation(const std::vector<DeviationCase>& cases) {
   for (const auto& motion : cases) {
     for (const auto& curve : motion.curves) most = std::max(most, curve.modes.maxCoeff());
   }
-  figure.command(fmt::format("set multiplot layout 2,{} margins 0.085,0.985,0.09,0.945 spacing 0.03,0.05", columns));
+  figure.command(fmt::format("set multiplot layout 2,{} margins 0.085,0.985,0.108,0.945 spacing 0.03,0.05", columns));
   figure.command(fmt::format("set xrange [0.5:{}]", most + 0.5));
   figure.command(most <= 20 ? "set xtics 1" : "set xtics auto");
   figure.command("set logscale y");

@@ -31,7 +31,7 @@ Figure energy_shares(const EnergyShares& shares) {
   const Eigen::VectorXd rest = left_out(shares.pom).head(std::min<Eigen::Index>(n, shares.pom.size() - 1));
   const double smallest = std::max(1e-12, 100.0 * shares.pom.head(n).minCoeff());
 
-  figure.command("set multiplot layout 1,2 margins 0.085,0.985,0.14,0.91 spacing 0.095,0");
+  figure.command("set multiplot layout 1,2 margins 0.085,0.985,0.165,0.91 spacing 0.095,0");
   figure.command(fmt::format("set xrange [0.4:{}]", static_cast<double>(n) + 0.6));
   figure.command(fmt::format("set logscale y; set yrange [{:.3g}:160]", 0.5 * smallest));
   figure.command("set format y '10^{%L}'");

@@ -25,14 +25,14 @@ Figure mode_shapes(const ModeShapes& shapes) {
   const int count = std::min<int>(kLargestCount, static_cast<int>(shapes.poms.cols()));
   const int columns = std::min(count, count <= 4 ? 2 : 3);
   const int rows = (count + columns - 1) / columns;
-  Figure figure(1200, rows * 260 + 90);
+  Figure figure(1200, rows * 260 + 105);
   common_style(figure);
 
   const Eigen::Index n = shapes.poms.rows();
   const Eigen::VectorXd number = Eigen::VectorXd::LinSpaced(n, 1.0, static_cast<double>(n));
   const double height = figure.height();
   figure.command(fmt::format("set multiplot layout {},{} margins 0.065,0.985,{:.4f},{:.4f} spacing 0.035,{:.4f}", rows,
-                             columns, 75.0 / height, 1.0 - 45.0 / height, 50.0 / height));
+                             columns, 90.0 / height, 1.0 - 45.0 / height, 50.0 / height));
   figure.command(fmt::format("set xrange [0.5:{}]", static_cast<double>(n) + 0.5));
   figure.command("set yrange [-1.15:1.15]; set ytics 0.5");
   if (n <= 20) figure.command("set xtics 1");

@@ -33,7 +33,7 @@ Figure phase_portraits(const std::vector<PhasePortrait>& portraits, const Portra
   const int columns = std::min(layout.columns, count);
   const int rows = (count + columns - 1) / columns;
   const int panel_height = columns <= 2 ? 480 : 370;
-  Figure figure(1200, rows * panel_height + 40);
+  Figure figure(1200, rows * panel_height + 60);
   common_style(figure);
 
   const bool shared_axes = layout.axes == PortraitLayout::Axes::kShared;
@@ -46,7 +46,7 @@ Figure phase_portraits(const std::vector<PhasePortrait>& portraits, const Portra
 
   const double height = figure.height();
   figure.command(fmt::format("set multiplot layout {},{} margins 0.095,0.985,{:.4f},{:.4f} spacing {},{:.4f}", rows,
-                             columns, 75.0 / height, 1.0 - 45.0 / height, shared_axes ? 0.02 : 0.065, 85.0 / height));
+                             columns, 95.0 / height, 1.0 - 45.0 / height, shared_axes ? 0.02 : 0.065, 85.0 / height));
   figure.command("unset key");
   for (int i = 0; i < count; ++i) {
     const Box& box = boxes[i % columns];

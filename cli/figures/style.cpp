@@ -7,7 +7,8 @@ namespace slipmode::figures {
 
 std::string axis_label(std::string_view quantity, std::string_view unit) {
   const bool dimensionless = unit.empty() || unit == "1" || unit == "-" || unit == "dimensionless";
-  return fmt::format("{} [{}]", quantity, dimensionless ? "–" : literal(unit));
+  // A no-break space: renderers of SVG drop an ordinary one after a subscript.
+  return fmt::format("{} [{}]", quantity, dimensionless ? "–" : literal(unit));
 }
 
 void common_style(Figure& figure) {

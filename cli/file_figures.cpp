@@ -1,0 +1,230 @@
+#include "cli/file_figures.hpp"
+
+#include "cli/figures/bifurcation.hpp"
+#include "cli/figures/deviation.hpp"
+#include "cli/figures/energy_shares.hpp"
+#include "cli/figures/mode_shapes.hpp"
+#include "cli/figures/phase_portraits.hpp"
+#include "cli/figures/style.hpp"
+#include "cli/figures/time_history.hpp"
+#include "cli/portraits.hpp"
+#include "cli/validation_setup.hpp"
+#include "rom/reduce.hpp"
+#include "scene/provenance.hpp"
+#include "scene/records.hpp"
+#include "scene/table.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <map>
+
+namespace slipmode::cli {
+namespace {
+
+using figures::Figure;
+using scene::StoreReader;
+
+std::string_view colour_of(const std::string& role) {
+  if (role == "full") return figures::kFullColour;
+  return role == "LNM" ? figures::kLnmColour : figures::kPomColour;
+}
+
+Eigen::VectorXd to_vector(const std::vector<double>& values) {
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+/// "x_{10}": the displacement of the scene's first contact as the figures call it.
+std::string contact_symbol(const scene::Scene& scene, const std::string& letter) {
+  return fmt::format("{}_{{{}}}", letter, scene.contacts.front().at);
+}
+
+Figure bifurcation(const StoreReader& store) {
+  const scene::Scene scene = scene::load_scene_of(store);
+  std::vector<figures::BifurcationPanel> panels;
+  std::string label, unit;
+  for (const std::string group : {"sweep/full", "sweep/reduced"}) {
+    if (!store.has(group)) continue;
+    const scene::Table slips = scene::load_table(store, group + "/slips");
+    const auto& contact = slips.numbers("contact");
+    const auto& parameter = slips.numbers("parameter");
+    const auto& displacement = slips.numbers("displacement");
+    std::vector<double> x, y;
+    for (std::size_t i = 0; i < contact.size(); ++i) {
+      if (contact[i] != 0.0) continue;
+      x.push_back(parameter[i]);
+      y.push_back(displacement[i]);
+    }
+    panels.push_back({store.text(group + "/title"), to_vector(x), to_vector(y),
+                      group == "sweep/full" ? figures::kFullColour : figures::kPomColour});
+    label = store.text(group + "/label");
+    unit = store.entry(group + "/values/parameter").meaning.units;
+  }
+  return figures::bifurcation_diagram(panels, {.parameter = label,
+                                               .parameter_unit = unit,
+                                               .value = "slip-state displacement " + contact_symbol(scene, "x"),
+                                               .value_unit = Units::of(scene.units).length});
+}
+
+Figure portraits(const StoreReader& store, const std::string& group, figures::PortraitLayout::Axes axes) {
+  const scene::Scene scene = scene::load_scene_of(store);
+  const Units units = Units::of(scene.units);
+  const PortraitSet set = load_portraits(store, group);
+  std::vector<figures::PhasePortrait> panels;
+  for (const Portrait& portrait : set.portraits) {
+    panels.push_back({portrait.title, portrait.displacement, portrait.velocity, colour_of(portrait.role)});
+  }
+  return figures::phase_portraits(panels, {.columns = set.columns,
+                                           .displacement = "displacement " + contact_symbol(scene, "x"),
+                                           .displacement_unit = units.length,
+                                           .velocity = "velocity " + contact_symbol(scene, "v"),
+                                           .velocity_unit = units.velocity,
+                                           .axes = axes});
+}
+
+/// Curves of one motion: rows of a table that belong to it, by basis.
+figures::DeviationCase deviation_case(const scene::Table& table, const std::string& title,
+                                      const std::vector<std::size_t>& rows) {
+  std::map<std::string, std::vector<std::size_t>> by_basis;
+  for (const std::size_t row : rows) by_basis[table.texts("basis")[row]].push_back(row);
+  figures::DeviationCase motion{.title = title, .curves = {}};
+  for (const auto& [basis, of_basis] : by_basis) {
+    const auto pick = [&](const std::string& column) {
+      Eigen::VectorXd values(static_cast<Eigen::Index>(of_basis.size()));
+      for (Eigen::Index i = 0; i < values.size(); ++i) values[i] = table.numbers(column)[of_basis[i]];
+      return values;
+    };
+    motion.curves.push_back({basis, pick("modes"), pick("dX"), pick("dE"), colour_of(basis)});
+  }
+  std::stable_sort(motion.curves.begin(), motion.curves.end(),
+                   [](const auto& a, const auto& b) { return a.name == "POM" && b.name != "POM"; });
+  return motion;
+}
+
+Figure deviation(const StoreReader& store) {
+  const scene::Scene scene = scene::load_scene_of(store);
+  const scene::Table shares = scene::load_table(store, "validation/shares");
+  const scene::Table orbits = scene::load_table(store, "validation/orbits");
+  std::vector<figures::DeviationCase> cases;
+  std::vector<std::size_t> all(shares.rows());
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
+  cases.push_back(deviation_case(
+      shares, fmt::format("V = {:g}, up to t = {:g}", store.number("validation/full/speed"), scene.validation.horizon),
+      all));
+  std::map<double, std::vector<std::size_t>, std::greater<>> by_speed;
+  for (std::size_t i = 0; i < orbits.rows(); ++i) by_speed[orbits.numbers("speed")[i]].push_back(i);
+  for (const auto& [speed, rows] : by_speed) {
+    cases.push_back(deviation_case(orbits, fmt::format("V = {:g}, one period", speed), rows));
+  }
+  constexpr std::size_t kMostColumns = 4;
+  if (cases.size() > kMostColumns) cases.resize(kMostColumns);
+  return figures::deviation(cases);
+}
+
+/// The LNMs of the scene a file was made from, beside which POMs are drawn.
+Eigen::MatrixXd lnms(const scene::Scene& scene, Eigen::Index count) {
+  return rom::lnm_basis(scene::build_system(scene).structure(), count).vectors;
+}
+
+Figure shapes(const StoreReader& store) {
+  const pod::PodResult result = scene::load_pod(store);
+  return figures::mode_shapes({.poms = result.basis.vectors,
+                               .lnms = lnms(scene::load_scene_of(store), result.basis.modes()),
+                               .shares = result.shares});
+}
+
+Figure reduced_shapes(const StoreReader& store) {
+  const pod::Basis basis = scene::load_basis(store, std::string(scene::kReducedGroup) + "/basis");
+  const bool compare = basis.kind != pod::BasisKind::kLnm;
+  return figures::mode_shapes({.poms = basis.vectors,
+                               .lnms = compare ? lnms(scene::load_scene_of(store), basis.modes()) : Eigen::MatrixXd(),
+                               .shares = basis.energy});
+}
+
+Figure energy(const StoreReader& store) {
+  const scene::Scene scene = scene::load_scene_of(store);
+  const pod::PodResult result = scene::load_pod(store);
+  const auto candidates = pom_and_lnm(scene, scene::build_system(scene).structure(), result);
+  const auto& lnm = candidates[candidates[0].name == "LNM" ? 0 : 1];
+  return figures::energy_shares(
+      {.pom = result.shares, .lnm_captured = lnm.captured, .threshold = scene.reduction.choice.energy});
+}
+
+std::vector<std::pair<double, double>> stick_intervals(const dynamics::Trajectory& trajectory) {
+  std::vector<std::pair<double, double>> intervals;
+  const double begin = trajectory.times[0], end = trajectory.times[trajectory.times.size() - 1];
+  double since = begin;
+  bool stuck = false, known = false;
+  for (const auto& event : trajectory.events) {
+    if (event.contact != 0) continue;
+    if (!known) stuck = event.before == dynamics::ContactMode::kStick;
+    known = true;
+    if (stuck) intervals.emplace_back(since, event.time);
+    stuck = event.after == dynamics::ContactMode::kStick;
+    since = event.time;
+  }
+  if (stuck) intervals.emplace_back(since, end);
+  return intervals;
+}
+
+/// The last stretch of a trajectory: long ones would be black.
+Figure history(const StoreReader& store) {
+  constexpr Eigen::Index kShown = 1000;
+  const scene::Scene scene = scene::load_scene_of(store);
+  const Units units = Units::of(scene.units);
+  const dynamics::Trajectory trajectory = scene::load_trajectory(store);
+  const Eigen::Index shown = std::min(kShown, trajectory.times.size());
+  std::vector<std::pair<double, double>> stick;
+  const double begin = trajectory.times[trajectory.times.size() - shown];
+  for (const auto& interval : stick_intervals(trajectory)) {
+    if (interval.second > begin) stick.push_back(interval);
+  }
+  return figures::time_history({.contact = scene.contacts.front().name,
+                                .time = trajectory.times.tail(shown),
+                                .displacement = trajectory.contact_q.row(0).tail(shown),
+                                .velocity = trajectory.contact_v.row(0).tail(shown),
+                                .force = trajectory.lambda.row(0).tail(shown),
+                                .stick = stick,
+                                .time_unit = units.time,
+                                .displacement_unit = units.length,
+                                .velocity_unit = units.velocity,
+                                .force_unit = units.force});
+}
+
+Figure trajectory_portrait(const StoreReader& store) {
+  constexpr Eigen::Index kShown = 5000;
+  const scene::Scene scene = scene::load_scene_of(store);
+  const Units units = Units::of(scene.units);
+  const dynamics::Trajectory trajectory = scene::load_trajectory(store);
+  const Eigen::Index shown = std::min(kShown, trajectory.times.size());
+  return figures::phase_portraits({{scene.title, trajectory.contact_q.row(0).tail(shown),
+                                    trajectory.contact_v.row(0).tail(shown), figures::kFullColour}},
+                                  {.columns = 1,
+                                   .displacement = "displacement " + contact_symbol(scene, "x"),
+                                   .displacement_unit = units.length,
+                                   .velocity = "velocity " + contact_symbol(scene, "v"),
+                                   .velocity_unit = units.velocity});
+}
+
+}  // namespace
+
+std::vector<FileFigure> figures_of(const StoreReader& store) {
+  using Axes = figures::PortraitLayout::Axes;
+  std::vector<FileFigure> out;
+  const auto add = [&](const std::string& group, std::string name, std::string what, auto draw) {
+    if (store.has(group)) out.push_back({std::move(name), std::move(what), [&store, draw] { return draw(store); }});
+  };
+  add("validation/shares", "deviation", "deviations against the number of modes", deviation);
+  add("sweep", "bifurcation", "slip states against the swept key", bifurcation);
+  add("portraits/levels", "levels", "phase portraits, fewer and fewer modes",
+      [](const StoreReader& file) { return portraits(file, "portraits/levels", Axes::kShared); });
+  add("portraits/orbits", "orbits", "periodic orbits, full above reduced",
+      [](const StoreReader& file) { return portraits(file, "portraits/orbits", Axes::kPerColumn); });
+  add(scene::kPodGroup, "shapes", "proper orthogonal modes beside linear natural modes", shapes);
+  add(scene::kPodGroup, "energy", "energy shares", energy);
+  add(scene::kReducedGroup, "shapes", "basis of the reduced model", reduced_shapes);
+  add(scene::kTrajectoryGroup, "history", "displacement, velocity and force of the first contact", history);
+  add(scene::kTrajectoryGroup, "portrait", "phase portrait of the first contact", trajectory_portrait);
+  return out;
+}
+
+}  // namespace slipmode::cli

@@ -1,0 +1,24 @@
+#include "cli/interrupt.hpp"
+
+#include <csignal>
+
+namespace slipmode::cli {
+namespace {
+
+StopFlag stop_requested = false;
+static_assert(StopFlag::is_always_lock_free, "only lock-free atomics may be used in a signal handler");
+
+void request_stop(int) { stop_requested.store(true); }
+
+}  // namespace
+
+const StopFlag& watch_for_interrupt() {
+  struct sigaction action = {};
+  action.sa_handler = request_stop;
+  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  return stop_requested;
+}
+
+}  // namespace slipmode::cli

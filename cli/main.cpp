@@ -1,0 +1,127 @@
+#include "cli/interrupt.hpp"
+#include "cli/verbs.hpp"
+#include "core/errors.hpp"
+#include "scene/provenance.hpp"
+
+#include <fmt/format.h>
+#include <cstdio>
+#include <new>
+#include <string_view>
+
+namespace slipmode::cli {
+namespace {
+
+void add_common_options(CLI::App& command, Session& session) {
+  command.add_flag("--json", session.json,
+                   "print one JSON object on standard output, everything else on standard error");
+  command
+      .add_option("--set", session.overrides, "override a scene's key: KEY=VALUE, e.g. drive.speed=0.25 (repeatable)")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  command.add_option("--threads", session.threads, "threads to use; 0: as many as the machine runs at once")
+      ->check(CLI::Range(0, 4096));
+  command.add_option("--seed", session.seed, "seed of the random initial states (overrides ensemble.seed)");
+  command.add_flag("--quiet", session.quiet, "no progress, no summary");
+}
+
+void print_line(std::FILE* stream, const std::string& text) {
+  if (text.empty()) return;
+  std::fputs(text.c_str(), stream);
+  if (text.back() != '\n') std::fputc('\n', stream);
+}
+
+std::string status_of(int exit_code) {
+  if (exit_code == kDone) return "done";
+  return exit_code == kInterrupted ? "interrupted" : "failed";
+}
+
+/// Ends the program with a message: on standard error for people, as the one JSON object for programs.
+int fail(const Session& session, ExitCode code, const std::string& message, Json details = Json::object()) {
+  print_line(stderr, "slipmode: " + message);
+  if (session.json) {
+    Json object = {{"status", status_of(code)}, {"exit_code", static_cast<int>(code)}, {"message", message}};
+    object.update(details);
+    print_line(stdout, object.dump(2, ' ', false, Json::error_handler_t::replace));
+  }
+  return code;
+}
+
+int fail_numerically(const Session& session, const NumericalFailure& failure) {
+  const std::vector<double> state(failure.state.begin(), failure.state.end());
+  return fail(session, kNumericalFailure, describe(failure),
+              {{"time", failure.time}, {"residual", failure.residual}, {"state", state}});
+}
+
+/// The text of a verb that did not end well goes to standard error, whatever was asked for.
+int report(const Session& session, const Report& result) {
+  if (session.json) {
+    Json object = {{"status", status_of(result.exit_code)}, {"exit_code", result.exit_code}};
+    object.update(result.data);
+    print_line(stdout, object.dump(2, ' ', false, Json::error_handler_t::replace));
+  }
+  if (result.exit_code != kDone) {
+    print_line(stderr, "slipmode: " + result.text);
+  } else if (!session.json && !session.quiet) {
+    print_line(stdout, result.text);
+  }
+  return result.exit_code;
+}
+
+int run_verb(const Session& session, const Verb& verb) {
+  try {
+    return report(session, verb.run(session));
+  } catch (const InvalidInput& error) {
+    return fail(session, kBadInput, error.what());
+  } catch (const NumericalFailure& error) {
+    return fail_numerically(session, error);
+  } catch (const Interrupted& error) {
+    return fail(session, kInterrupted, error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(session, kBadInput, "not enough memory; ask for a smaller structure, fewer samples or fewer members");
+  } catch (const std::exception& error) {
+    return fail(session, kInternalError, error.what());
+  }
+}
+
+int run_main(int argc, char** argv) {
+  Session session;
+  session.stop = &watch_for_interrupt();
+  CLI::App app{
+      "slipmode: structures with friction contacts, their proper orthogonal modes, and reduced models that are checked "
+      "against the full one",
+      "slipmode"};
+  app.set_version_flag("--version",
+                       fmt::format("slipmode {} ({}, {})", scene::version(), scene::git_commit(), scene::compiler()));
+  app.require_subcommand(1);
+  app.footer(
+      "Exit codes: 0 done, 2 bad input, 3 numerical failure, 130 interrupted (the same command goes on).\n"
+      "Example:\n  slipmode run datasets/chain10/scene.toml -o out/chain10\n"
+      "Help on a verb: slipmode VERB --help");
+  const std::vector<Verb> verbs = {add_run(app),   add_modes(app),    add_simulate(app), add_pod(app), add_reduce(app),
+                                   add_sweep(app), add_validate(app), add_plot(app),     add_info(app)};
+  for (const Verb& verb : verbs) add_common_options(*verb.command, session);
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);
+    for (int i = 1; i < argc; ++i) session.json = session.json || std::string_view(argv[i]) == "--json";
+    return fail(session, kBadInput, fmt::format("{}\nRun 'slipmode --help' or 'slipmode VERB --help'.", error.what()));
+  }
+  for (const Verb& verb : verbs) {
+    if (verb.command->parsed()) return run_verb(session, verb);
+  }
+  return kBadInput;
+}
+
+}  // namespace
+}  // namespace slipmode::cli
+
+int main(int argc, char** argv) {
+  try {
+    return slipmode::cli::run_main(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "slipmode: %s\n", error.what());
+    return slipmode::cli::kInternalError;
+  }
+}

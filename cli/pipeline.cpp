@@ -1,0 +1,159 @@
+#include "cli/pipeline.hpp"
+
+#include "cli/file_figures.hpp"
+#include "cli/validate_run.hpp"
+#include "cli/validation_setup.hpp"
+#include "core/parallel.hpp"
+#include "fem/modes.hpp"
+#include "rom/reduce.hpp"
+#include "scene/records.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <chrono>
+
+namespace slipmode::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The pipeline's state on its way; each stage is timed under its name.
+class Pipeline {
+ public:
+  Pipeline(const Session& session, const scene::Scene& scene, fs::path folder)
+      : session_(session), scene_(scene), folder_(std::move(folder)), full_(scene::build_system(scene)) {}
+
+  PipelineResult run() {
+    const bool validates = has_section(scene_, "validation");
+    const bool reduces = validates || has_section(scene_, "reduction");
+    const bool gathers = reduces || has_section(scene_, "ensemble");
+    timed("modes", [this] { modes(); });
+    timed("trajectory", [this, gathers] { trajectory(gathers); });
+    if (gathers) timed("ensemble", [this] { ensemble(); });
+    if (reduces) timed("pod", [this] { pod(); });
+    if (reduces) timed("reduce", [this] { reduce(); });
+    if (validates) timed("validate", [this] { validate(); });
+    timed("figures", [this] { figures(); });
+    return std::move(result_);
+  }
+
+ private:
+  template <class Work>
+  void timed(const std::string& name, const Work& work) {
+    session_.check_interrupt();
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    result_.stages.push_back({name, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
+  }
+
+  fs::path file(const std::string& name) {
+    result_.files.push_back(name);
+    return folder_ / name;
+  }
+
+  void modes() {
+    constexpr Eigen::Index kShown = 20;
+    const Eigen::Index n = full_.size(), contacts = static_cast<Eigen::Index>(full_.contacts().size());
+    result_.slipping = fem::natural_modes(full_.structure(), std::min(kShown, n)).omega;
+    if (n <= contacts) return;
+    Eigen::MatrixXd w(n, contacts);
+    for (Eigen::Index c = 0; c < contacts; ++c) w.col(c) = full_.contacts()[c].direction;
+    result_.sticking = fem::constrained_modes(full_.structure(), w, std::min(kShown, n - contacts)).omega;
+  }
+
+  /// One run as [time] says; where an ensemble follows, only a stretch to look at.
+  void trajectory(bool excerpt) {
+    constexpr double kExcerpt = 200.0, kFineSample = 0.1;
+    dynamics::SimulateOptions options = scene::simulate_options(scene_);
+    if (excerpt) {
+      options.duration = std::min(options.duration, options.transient + kExcerpt);
+      options.sample = std::min(options.sample, kFineSample);
+    }
+    options.on_event = [this](const auto&, const auto&) { return !session_.stop->load(); };
+    const auto run = dynamics::simulate(full_, scene::initial_state(scene_, full_), options);
+    session_.check_interrupt();
+    scene::Provenance provenance = scene::provenance_of(scene_, "slipmode run");
+    provenance.audit = run.audit;
+    scene::StoreWriter writer(file("trajectory.h5"));
+    scene::save(writer, provenance);
+    scene::save(writer, scene::kTrajectoryGroup, run);
+    writer.commit();
+  }
+
+  void ensemble() {
+    result_.ensemble = run_scene_ensemble(session_, scene_, full_);
+    store_ensemble(file("ensemble.h5"), scene_, *result_.ensemble);
+    result_.snapshots = result_.ensemble->ensemble.snapshots.cols();
+  }
+
+  void pod() {
+    result_.pod = pod::pod(result_.ensemble->ensemble);
+    result_.ensemble->ensemble = {};
+    scene::StoreWriter writer(file("pod.h5"));
+    scene::save(writer, scene::provenance_of(scene_, "slipmode run"));
+    scene::save(writer, scene::kPodGroup, *result_.pod);
+    writer.commit();
+  }
+
+  void reduce() {
+    candidates_ = pom_and_lnm(scene_, full_.structure(), *result_.pod);
+    result_.chosen = validation_options(scene_, candidates_).chosen;
+    for (const auto& candidate : candidates_) {
+      const pod::Basis basis = candidate.basis.truncated(result_.chosen);
+      const std::string name = fmt::format("reduced_{}.h5", candidate.name == "POM" ? "pom" : "lnm");
+      scene::StoreWriter writer(file(name));
+      scene::save(writer, scene::provenance_of(scene_, "slipmode run"));
+      scene::save(writer, scene::kReducedGroup,
+                  scene::ReducedModel{.system = rom::reduce(full_, basis), .basis = basis});
+      writer.commit();
+    }
+  }
+
+  void validate() {
+    result_.validation = validate_into(session_, scene_, full_, candidates_, validation_options(scene_, candidates_),
+                                       file("validation.h5"));
+  }
+
+  /// Read from the files just written, so that `slipmode plot` draws the same; drawn side by side, as each is a process
+  /// of its own.
+  void figures() {
+    std::vector<std::pair<std::string, figures::Figure>> drawn;
+    for (const std::string& name : result_.files) {
+      const scene::StoreReader store(folder_ / name);
+      if (name.starts_with("reduced_")) continue;  // the same shapes as in pod.h5
+      for (const FileFigure& figure : figures_of(store)) drawn.emplace_back(figure.name, figure.draw());
+    }
+    const ParallelOptions parallel{.threads = session_.threads, .stop = session_.stop, .progress = {}};
+    rethrow_first(parallel_for(drawn.size(), parallel, [&](std::size_t i) {
+      const auto& [name, figure] = drawn[i];
+      figures::save(figure, {folder_ / (name + ".svg"), folder_ / (name + ".png")});
+    }));
+    for (const auto& entry : drawn) {
+      result_.figures.push_back(entry.first + ".svg");
+      result_.figures.push_back(entry.first + ".png");
+    }
+  }
+
+  const Session& session_;
+  const scene::Scene& scene_;
+  fs::path folder_;
+  dynamics::HybridSystem full_;
+  std::vector<diagnostics::Candidate> candidates_;
+  PipelineResult result_;
+};
+
+}  // namespace
+
+double PipelineResult::basis_wall() const {
+  double sum = 0.0;
+  for (const Stage& stage : stages) {
+    if (stage.name == "ensemble" || stage.name == "pod" || stage.name == "reduce") sum += stage.wall;
+  }
+  return sum;
+}
+
+PipelineResult run_pipeline(const Session& session, const scene::Scene& scene, const fs::path& folder) {
+  return Pipeline(session, scene, folder).run();
+}
+
+}  // namespace slipmode::cli

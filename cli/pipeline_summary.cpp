@@ -1,0 +1,83 @@
+#include "cli/pipeline.hpp"
+#include "cli/text_table.hpp"
+#include "cli/validation_store.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace slipmode::cli {
+namespace {
+
+std::vector<double> to_list(const Eigen::VectorXd& values) { return {values.begin(), values.end()}; }
+
+Json ensemble_json(const PipelineResult& result) {
+  Json failures = Json::array();
+  for (const auto& member : result.ensemble->members) {
+    if (!member.failure.empty()) failures.push_back(member.failure);
+  }
+  return {{"runs", result.ensemble->members.size()},
+          {"snapshots", result.snapshots},
+          {"audit_residual", worst_audit(*result.ensemble)},
+          {"failures", failures}};
+}
+
+std::string frequencies(const Eigen::VectorXd& omega) {
+  constexpr Eigen::Index kShown = 5;
+  std::string out;
+  for (Eigen::Index k = 0; k < std::min(kShown, omega.size()); ++k) out += fmt::format(" {:.5g}", omega[k]);
+  return omega.size() > kShown ? out + " ..." : out;
+}
+
+}  // namespace
+
+Json to_json(const PipelineResult& result, const scene::Scene& scene) {
+  Json out = {{"verb", "run"}, {"title", scene.title}, {"units", scene.units}};
+  out["modes"] = {{"slipping_omega", to_list(result.slipping)}, {"sticking_omega", to_list(result.sticking)}};
+  if (result.ensemble) out["ensemble"] = ensemble_json(result);
+  if (result.pod) {
+    out["pod"] = {{"rank", result.pod->rank},
+                  {"shares", to_list(result.pod->shares)},
+                  {"chosen_modes", result.chosen},
+                  {"chosen_energy", result.pod->shares.head(result.chosen).sum()}};
+  }
+  if (result.validation) {
+    out["validation"] = to_json(*result.validation);
+    if (result.validation->cost) {
+      out["validation"]["cost"]["basis_wall_s"] = result.basis_wall();
+      out["validation"]["cost"]["break_even_runs"] = result.validation->cost->break_even(result.basis_wall());
+    }
+  }
+  for (const auto& stage : result.stages) out["seconds"][stage.name] = stage.wall;
+  out["files"] = result.files;
+  out["figures"] = result.figures;
+  return out;
+}
+
+std::string summary_text(const PipelineResult& result, const scene::Scene& scene) {
+  std::string out = scene.title + "\n";
+  out += fmt::format("  frequencies ω, slipping:{}\n", frequencies(result.slipping));
+  if (result.sticking.size() > 0) out += fmt::format("  frequencies ω, sticking:{}\n", frequencies(result.sticking));
+  if (result.ensemble) {
+    out += fmt::format("  ensemble: {} runs, {} snapshots, largest energy residual {:.1e}\n",
+                       result.ensemble->members.size(), result.snapshots, worst_audit(*result.ensemble));
+  }
+  if (result.pod) {
+    out += fmt::format("  reduction: {} of {} modes hold {:.2f} % of the energy\n", result.chosen,
+                       result.pod->basis.modes(), 100.0 * result.pod->shares.head(result.chosen).sum());
+  }
+  if (result.validation) {
+    out += '\n' + summary_text(*result.validation);
+    if (result.validation->cost) {
+      out += fmt::format("  the basis cost {:.2f} s, paid back after {:.0f} such runs\n", result.basis_wall(),
+                         result.validation->cost->break_even(result.basis_wall()));
+    }
+  }
+  out += '\n';
+  std::string times;
+  for (const auto& stage : result.stages) {
+    times += fmt::format("{}{} {:.2f} s", times.empty() ? "" : ", ", stage.name, stage.wall);
+  }
+  return out + "  " + times + '\n';
+}
+
+}  // namespace slipmode::cli

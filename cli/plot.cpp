@@ -1,0 +1,66 @@
+#include "cli/file_figures.hpp"
+#include "cli/verbs.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <algorithm>
+
+namespace slipmode::cli {
+namespace {
+
+struct Arguments {
+  std::string input, output, figure;
+};
+
+const FileFigure& select(const std::vector<FileFigure>& figures, const Arguments& arguments) {
+  if (figures.empty()) {
+    throw InvalidInput(
+        fmt::format("'{}' holds nothing to draw; figures come from trajectories, PODs, reduced models, "
+                    "sweeps and validations ('slipmode info' says what is inside)",
+                    arguments.input));
+  }
+  if (arguments.figure.empty()) return figures.front();
+  for (const FileFigure& figure : figures) {
+    if (figure.name == arguments.figure) return figure;
+  }
+  std::vector<std::string> names;
+  for (const FileFigure& figure : figures) names.push_back(figure.name);
+  throw InvalidInput(
+      fmt::format("--figure {}: '{}' can give {}", arguments.figure, arguments.input, fmt::join(names, ", ")));
+}
+
+Report run(const Arguments& arguments) {
+  figures::require_figure_extension(arguments.output);
+  require_writable(arguments.output);
+  const scene::StoreReader store(arguments.input);
+  const std::vector<FileFigure> figures = figures_of(store);
+  const FileFigure& figure = select(figures, arguments);
+  figures::save(figure.draw(), {arguments.output});
+
+  Report report;
+  report.text = fmt::format("{}: {}\n", figure.what, arguments.output);
+  Json others = Json::array();
+  for (const FileFigure& other : figures) {
+    if (other.name == figure.name) continue;
+    others.push_back(other.name);
+    report.text += fmt::format("  also in this file: --figure {} ({})\n", other.name, other.what);
+  }
+  report.data = {{"verb", "plot"}, {"file", arguments.output}, {"figure", figure.name}, {"others", others}};
+  return report;
+}
+
+}  // namespace
+
+Verb add_plot(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("plot", "draw what a result file holds (svg, png or pdf)");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("FILE", arguments->input, "result file (HDF5)")->required();
+  command->add_option("-o,--output", arguments->output, "figure; .svg, .png or .pdf chooses the format")->required();
+  command->add_option("--figure", arguments->figure, "which figure, if the file can give several");
+  command->footer(
+      "Example:\n  slipmode plot sweep.h5 -o bifurcation.svg\n"
+      "  slipmode plot out/chain10/pod.h5 --figure energy -o energy.png");
+  return {command, [arguments](const Session&) { return run(*arguments); }};
+}
+
+}  // namespace slipmode::cli

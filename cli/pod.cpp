@@ -1,0 +1,64 @@
+#include "pod/pod.hpp"
+
+#include "cli/steps.hpp"
+#include "cli/text_table.hpp"
+#include "cli/verbs.hpp"
+#include "scene/records.hpp"
+
+#include <fmt/format.h>
+
+namespace slipmode::cli {
+namespace {
+
+struct Arguments {
+  std::string input, output;
+  Eigen::Index modes = 0;
+};
+
+Report run(const Session& session, const Arguments& arguments) {
+  require_writable(arguments.output);
+  const scene::StoreReader store(arguments.input);
+  scene::Provenance provenance = scene::load_provenance(store);
+  const pod::Ensemble ensemble = load_snapshots(store);
+  session.check_interrupt();
+  const pod::PodResult result = pod::pod(ensemble, {.choice = {.modes = arguments.modes, .energy = 1.0}});
+
+  provenance.command = "slipmode pod";
+  scene::StoreWriter writer(arguments.output);
+  scene::save(writer, provenance);
+  scene::save(writer, scene::kPodGroup, result);
+  writer.commit();
+
+  const Eigen::VectorXd sum = cumulative(result.shares);
+  TextTable table({"mode", "energy share [%]", "cumulative [%]"});
+  for (Eigen::Index i = 0; i < std::min<Eigen::Index>(result.shares.size(), 20); ++i) {
+    table.add({fmt::format("{}", i + 1), fmt::format("{:.4f}", 100.0 * result.shares[i]),
+               fmt::format("{:.4f}", 100.0 * sum[i])});
+  }
+  Report report;
+  report.text = fmt::format("{} snapshots of {} degrees of freedom, rank {}\n{}Modes: {}\n", ensemble.snapshots.cols(),
+                            ensemble.snapshots.rows(), result.rank, table.str(), arguments.output);
+  report.data = {{"verb", "pod"},
+                 {"file", arguments.output},
+                 {"snapshots", ensemble.snapshots.cols()},
+                 {"degrees_of_freedom", ensemble.snapshots.rows()},
+                 {"rank", result.rank},
+                 {"modes", result.basis.modes()},
+                 {"shares", std::vector<double>(result.shares.begin(), result.shares.end())}};
+  return report;
+}
+
+}  // namespace
+
+Verb add_pod(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("pod", "proper orthogonal modes of an ensemble or a trajectory");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("FILE", arguments->input, "result of 'slipmode simulate'")->required();
+  command->add_option("-o,--output", arguments->output, "result file (HDF5)")->required();
+  command->add_option("--modes", arguments->modes, "number of modes to keep; 0: all that the data hold")
+      ->check(CLI::NonNegativeNumber);
+  command->footer("Example:\n  slipmode pod ensemble.h5 -o pod.h5");
+  return {command, [arguments](const Session& session) { return run(session, *arguments); }};
+}
+
+}  // namespace slipmode::cli

@@ -1,0 +1,121 @@
+#include "cli/portraits.hpp"
+
+#include "core/errors.hpp"
+#include "rom/reduce.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+
+namespace slipmode::cli {
+namespace {
+
+using diagnostics::Model;
+
+/// Contact 0 of a run from `start`; a run that fails gives an empty portrait rather than no figure at all.
+Portrait run_portrait(const dynamics::HybridSystem& system, const dynamics::State& start, std::string title,
+                      std::string role) {
+  constexpr double kDuration = 500.0, kSample = 0.1;
+  Portrait portrait{.title = std::move(title), .role = std::move(role), .displacement = {}, .velocity = {}};
+  try {
+    const auto run = dynamics::simulate(system, diagnostics::restarted(start),
+                                        {.duration = kDuration,
+                                         .sample = kSample,
+                                         .keep_events = false,
+                                         .output = dynamics::SimulateOptions::Output::kContacts});
+    portrait.displacement = run.contact_q.row(0);
+    portrait.velocity = run.contact_v.row(0);
+  } catch (const NumericalFailure&) {
+    portrait.title += " (failed)";
+  }
+  return portrait;
+}
+
+/// Contact 0 of the full structure along a lifted record, the orbit closed.
+Portrait orbit_portrait(const dynamics::HybridSystem& full, const Model& model, double speed,
+                        const diagnostics::Orbit& orbit, std::string title, std::string role) {
+  constexpr Eigen::Index kSamples = 1500;
+  const diagnostics::Record record = diagnostics::sample_orbit(model, speed, orbit.states.front(), orbit.T, kSamples);
+  const auto& contact = full.contacts().front();
+  Portrait portrait{.title = std::move(title), .role = std::move(role), .displacement = {}, .velocity = {}};
+  portrait.displacement.resize(kSamples + 1);
+  portrait.velocity.resize(kSamples + 1);
+  portrait.displacement.head(kSamples) = (record.q.transpose() * contact.direction).array() + contact.offset;
+  portrait.velocity.head(kSamples) = record.v.transpose() * contact.direction;
+  portrait.displacement[kSamples] = portrait.displacement[0];
+  portrait.velocity[kSamples] = portrait.velocity[0];
+  return portrait;
+}
+
+}  // namespace
+
+PortraitSet level_portraits(const dynamics::HybridSystem& full, const diagnostics::Candidate& candidate,
+                            const diagnostics::ValidationReport& report) {
+  constexpr std::size_t kMostPanels = 8;
+  constexpr Eigen::Index kFewest = 3;  // one and two modes leave the frame (S4 section 3.4.2)
+  const dynamics::HybridSystem at_speed = full.with_drive(friction::Belt::constant(report.speed));
+  PortraitSet set{.columns = 4, .portraits = {}};
+  set.portraits.push_back(run_portrait(at_speed, report.full.end, fmt::format("full, {} dofs", full.size()), "full"));
+  std::vector<Eigen::Index> levels;
+  for (const auto& row : report.candidates.front().shares) {
+    if (row.modes >= std::min(kFewest, report.chosen) && row.modes < full.size()) levels.push_back(row.modes);
+  }
+  std::sort(levels.rbegin(), levels.rend());
+  if (levels.size() >= kMostPanels) levels.erase(levels.begin(), levels.end() - (kMostPanels - 1));
+  for (const Eigen::Index modes : levels) {
+    const pod::Basis basis = candidate.basis.truncated(modes);
+    set.portraits.push_back(run_portrait(rom::reduce(at_speed, basis),
+                                         rom::restrict_state(full.structure(), basis, report.full.end),
+                                         fmt::format("{} {}s", modes, candidate.name), candidate.name));
+  }
+  return set;
+}
+
+PortraitSet orbit_portraits(const dynamics::HybridSystem& full, const diagnostics::Candidate& candidate,
+                            const diagnostics::ValidationReport& report) {
+  const Model full_model = diagnostics::belt_model(full);
+  const Model reduced_model = diagnostics::reduced_belt_model(full, candidate.basis.truncated(report.chosen));
+  std::vector<Portrait> above, below;
+  for (const auto& row : report.candidates.front().orbits) {
+    if (row.modes != report.chosen || !row.comparison) continue;
+    const auto& orbits = *row.comparison;
+    above.push_back(orbit_portrait(full, full_model, row.speed, orbits.full,
+                                   fmt::format("full, V = {:g}, period {}", row.speed, orbits.full.period), "full"));
+    below.push_back(orbit_portrait(
+        full, reduced_model, row.speed, orbits.reduced,
+        fmt::format("{} {}s, period {}", report.chosen, candidate.name, orbits.reduced.period), candidate.name));
+  }
+  PortraitSet set{.columns = static_cast<int>(above.size()), .portraits = std::move(above)};
+  set.portraits.insert(set.portraits.end(), below.begin(), below.end());
+  return set;
+}
+
+void store_portraits(scene::StoreWriter& writer, const std::string& group, const PortraitSet& set, const Units& units) {
+  if (set.portraits.empty()) return;
+  writer.write(group + "/columns", static_cast<std::int64_t>(set.columns), {"", "panels in a row"});
+  writer.write(group + "/count", static_cast<std::int64_t>(set.portraits.size()), {"", "number of portraits"});
+  for (std::size_t i = 0; i < set.portraits.size(); ++i) {
+    const Portrait& portrait = set.portraits[i];
+    const std::string name = fmt::format("{}/{:02}/", group, i);
+    writer.write(name + "title", portrait.title, {"", "which model, which motion"});
+    writer.write(name + "role", portrait.role, {"", "full, or the kind of basis"});
+    writer.write(name + "displacement", portrait.displacement, {units.length, "displacement of the first contact"});
+    writer.write(name + "velocity", portrait.velocity, {units.velocity, "velocity of the first contact"});
+  }
+}
+
+PortraitSet load_portraits(const scene::StoreReader& store, const std::string& group) {
+  PortraitSet set{.columns = static_cast<int>(store.integer(group + "/columns")), .portraits = {}};
+  const std::int64_t count = store.integer(group + "/count");
+  for (std::int64_t i = 0; i < count; ++i) {
+    const std::string name = fmt::format("{}/{:02}/", group, i);
+    const Eigen::VectorXd displacement = store.vector(name + "displacement");
+    set.portraits.push_back({.title = store.text(name + "title"),
+                             .role = store.text(name + "role"),
+                             .displacement = displacement,
+                             .velocity = store.vector(name + "velocity", displacement.size())});
+  }
+  return set;
+}
+
+}  // namespace slipmode::cli

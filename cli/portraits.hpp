@@ -1,0 +1,38 @@
+#pragma once
+
+#include "cli/units.hpp"
+#include "diagnostics/validate.hpp"
+#include "scene/scene.hpp"
+#include "scene/store.hpp"
+
+#include <string>
+#include <vector>
+
+namespace slipmode::cli {
+
+/// Displacement and velocity of the first contact over a stretch of time, kept for a figure.
+struct Portrait {
+  std::string title;
+  std::string role;  ///< "full", or the name of the reduced model's basis
+  Eigen::VectorXd displacement, velocity;
+};
+
+/// Portraits of one figure, row by row.
+struct PortraitSet {
+  int columns = 1;
+  std::vector<Portrait> portraits;
+};
+
+/// Full model and reduced ones with fewer and fewer modes at the table's speed, all from one start (S4 Figure 3.7).
+[[nodiscard]] PortraitSet level_portraits(const dynamics::HybridSystem& full, const diagnostics::Candidate& candidate,
+                                          const diagnostics::ValidationReport& report);
+
+/// Periodic orbits, full above reduced (S4 Figure 3.8), one column per speed at which both have one.
+[[nodiscard]] PortraitSet orbit_portraits(const dynamics::HybridSystem& full, const diagnostics::Candidate& candidate,
+                                          const diagnostics::ValidationReport& report);
+
+/// Writes a group with one sub-group per portrait. An empty set writes nothing.
+void store_portraits(scene::StoreWriter& writer, const std::string& group, const PortraitSet& set, const Units& units);
+[[nodiscard]] PortraitSet load_portraits(const scene::StoreReader& store, const std::string& group);
+
+}  // namespace slipmode::cli

@@ -1,0 +1,83 @@
+#include "rom/reduce.hpp"
+
+#include "cli/steps.hpp"
+#include "cli/text_table.hpp"
+#include "cli/verbs.hpp"
+#include "fem/modes.hpp"
+#include "scene/records.hpp"
+
+#include <fmt/format.h>
+
+namespace slipmode::cli {
+namespace {
+
+struct Arguments {
+  std::string scene, basis, output;
+  Eigen::Index modes = 0;
+};
+
+/// LNMs have no energies of their own: without a count there is nothing to choose by.
+Eigen::Index mode_count(const Arguments& arguments, const scene::Scene& scene, const BasisSource& source) {
+  pod::ModeChoice choice = scene.reduction.choice;
+  if (arguments.modes > 0) choice.modes = arguments.modes;
+  if (choice.modes == 0 && source.shares.size() == 0) {
+    throw InvalidInput(
+        fmt::format("basis '{}' has no energy shares to choose by; give --modes or reduction.modes", arguments.basis));
+  }
+  return chosen_modes(choice, source.shares, source.basis.modes());
+}
+
+Report run(const Session& session, const Arguments& arguments) {
+  require_writable(arguments.output);
+  const scene::Scene scene = session.load(arguments.scene);
+  const dynamics::HybridSystem full = scene::build_system(scene);
+  const BasisSource source = load_basis_source(arguments.basis, full.structure());
+  const Eigen::Index modes = mode_count(arguments, scene, source);
+  const pod::Basis basis = source.basis.truncated(modes);
+  const dynamics::HybridSystem reduced = rom::reduce(full, basis);
+
+  scene::StoreWriter writer(arguments.output);
+  scene::save(writer, scene::provenance_of(scene, fmt::format("slipmode reduce --modes {}", modes)));
+  scene::save(writer, scene::kReducedGroup, scene::ReducedModel{.system = reduced, .basis = basis});
+  writer.commit();
+
+  const Eigen::VectorXd omega_full = fem::natural_modes(full.structure(), modes).omega;
+  const Eigen::VectorXd omega_reduced = fem::natural_modes(reduced.structure()).omega;
+  TextTable table({"mode", "ω full", "ω reduced"});
+  for (Eigen::Index k = 0; k < modes; ++k) {
+    table.add(
+        {fmt::format("{}", k + 1), fmt::format("{:.8g}", omega_full[k]), fmt::format("{:.8g}", omega_reduced[k])});
+  }
+  Report report;
+  report.data = {{"verb", "reduce"},
+                 {"file", arguments.output},
+                 {"modes", modes},
+                 {"degrees_of_freedom", full.size()},
+                 {"omega_full", std::vector<double>(omega_full.begin(), omega_full.end())},
+                 {"omega_reduced", std::vector<double>(omega_reduced.begin(), omega_reduced.end())}};
+  std::string energy;
+  if (source.shares.size() > 0) {
+    const double kept = source.shares.head(modes).sum();
+    report.data["energy"] = kept;
+    energy = fmt::format(", {:.3f} % of the energy", 100.0 * kept);
+  }
+  report.text = fmt::format("{} degrees of freedom reduced to {} modes{}\n{}Reduced model: {}\n", full.size(), modes,
+                            energy, table.str(), arguments.output);
+  return report;
+}
+
+}  // namespace
+
+Verb add_reduce(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("reduce", "project a scene's model on a basis");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("SCENE", arguments->scene, "scene file (TOML)")->required();
+  command->add_option("BASIS", arguments->basis, "result of 'slipmode pod', or the word lnm")->required();
+  command->add_option("-o,--output", arguments->output, "result file (HDF5)")->required();
+  command->add_option("--modes", arguments->modes, "number of modes; 0: as [reduction] says")
+      ->check(CLI::NonNegativeNumber);
+  command->footer("Example:\n  slipmode reduce datasets/chain10/scene.toml pod.h5 --modes 6 -o rom6.h5");
+  return {command, [arguments](const Session& session) { return run(session, *arguments); }};
+}
+
+}  // namespace slipmode::cli

@@ -1,0 +1,77 @@
+#include "cli/figures/gnuplot.hpp"
+#include "cli/pipeline.hpp"
+#include "cli/verbs.hpp"
+#include "cli/work_folder.hpp"
+
+#include <fmt/format.h>
+#include <fstream>
+
+namespace slipmode::cli {
+namespace {
+
+struct Arguments {
+  std::string scene, output;
+};
+
+void write_text(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream out(path);
+  out << text;
+  out.close();
+  if (!out) throw InvalidInput(fmt::format("cannot write '{}': is the disc full?", path.string()));
+}
+
+/// Finished parts stay beside the target, marked by a file that says why there is no more.
+Report incomplete(const WorkFolder& folder, const NumericalFailure& failure) {
+  write_text(folder.path() / "INCOMPLETE.txt", describe(failure) + "\n");
+  Report report;
+  report.exit_code = kNumericalFailure;
+  report.text = fmt::format("{}\nFinished parts are kept in {}", describe(failure), folder.path().string());
+  report.data = {
+      {"verb", "run"}, {"message", describe(failure)}, {"time", failure.time}, {"incomplete", folder.path().string()}};
+  return report;
+}
+
+Report interrupted(const WorkFolder& folder) {
+  Report report;
+  report.exit_code = kInterrupted;
+  report.text = fmt::format("interrupted; finished parts are kept in {}\nThe same command goes on from there.",
+                            folder.path().string());
+  report.data = {{"verb", "run"}, {"message", report.text}, {"incomplete", folder.path().string()}};
+  return report;
+}
+
+Report run(const Session& session, const Arguments& arguments) {
+  const scene::Scene scene = session.load(arguments.scene);
+  WorkFolder folder(arguments.output);
+  std::filesystem::remove(folder.path() / "INCOMPLETE.txt");
+  try {
+    const PipelineResult result = run_pipeline(session, scene, folder.path());
+    Report report{.data = to_json(result, scene), .text = summary_text(result, scene)};
+    report.data["folder"] = arguments.output;
+    write_text(folder.path() / "summary.json", report.data.dump(2) + "\n");
+    write_text(folder.path() / "summary.txt", report.text);
+    folder.finish();
+    report.text += fmt::format("Results and figures (*.svg, *.png): {}\n", arguments.output);
+    return report;
+  } catch (const NumericalFailure& failure) {
+    folder.keep();
+    return incomplete(folder, failure);
+  } catch (const Interrupted&) {
+    folder.keep();
+    return interrupted(folder);
+  }
+}
+
+}  // namespace
+
+Verb add_run(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("run", "the whole pipeline: figures, tables and data of what a scene asks for");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("SCENE", arguments->scene, "scene file (TOML)")->required();
+  command->add_option("-o,--output", arguments->output, "folder for results; made if missing")->required();
+  command->footer("Example:\n  slipmode run datasets/chain10/scene.toml -o out/chain10");
+  return {command, [arguments](const Session& session) { return run(session, *arguments); }};
+}
+
+}  // namespace slipmode::cli

@@ -1,0 +1,64 @@
+#pragma once
+
+#include "core/errors.hpp"
+#include "core/parallel.hpp"
+#include "core/progress.hpp"
+#include "scene/scene.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace slipmode::cli {
+
+/// JSON that keeps the order in which a verb says things.
+using Json = nlohmann::ordered_json;
+
+enum ExitCode : int {
+  kDone = 0,
+  kInternalError = 1,  ///< a defect of the program or of the machine, not of the input
+  kBadInput = 2,
+  kNumericalFailure = 3,
+  kInterrupted = 130,
+};
+
+/// The options every verb has, and the flag that Ctrl-C sets.
+struct Session {
+  bool json = false;   ///< one JSON object on standard output, everything else on standard error
+  bool quiet = false;  ///< no progress, no summary
+  int threads = 0;     ///< 0: as many as the machine runs at once
+  std::optional<std::uint64_t> seed;
+  std::vector<std::string> overrides;  ///< --set, in order
+  const StopFlag* stop = nullptr;
+
+  /// Options for the parallel runner, with progress shown on `line`.
+  [[nodiscard]] ParallelOptions parallel(ProgressLine& line) const;
+  [[nodiscard]] ProgressMode progress_mode() const { return quiet ? ProgressMode::kQuiet : ProgressMode::kAutomatic; }
+  /// Reads a scene with --set and --seed applied (--seed is an override of ensemble.seed, so provenance holds it).
+  [[nodiscard]] scene::Scene load(const std::filesystem::path& path) const;
+  /// Throws Interrupted when Ctrl-C was pressed.
+  void check_interrupt() const;
+};
+
+/// What a verb has to say: the same content as text and as JSON, and how it ended.
+struct Report {
+  Json data = Json::object();
+  std::string text;
+  int exit_code = kDone;
+};
+
+/// Throws unless a file can be made there: to be called before any work that would be lost.
+/// @throws InvalidInput  when the folder is missing or not writable, or the path is a folder
+void require_writable(const std::filesystem::path& file);
+
+/// What went wrong, when and in which state, for people.
+[[nodiscard]] std::string describe(const NumericalFailure& failure);
+
+/// True when the scene, or an override of it, has that table ("ensemble", "validation", ...). A --seed alone makes
+/// none.
+[[nodiscard]] bool has_section(const scene::Scene& scene, const std::string& name);
+
+}  // namespace slipmode::cli

@@ -1,0 +1,138 @@
+#include "cli/steps.hpp"
+#include "cli/text_table.hpp"
+#include "cli/verbs.hpp"
+#include "scene/records.hpp"
+
+#include <fmt/format.h>
+#include <cmath>
+
+namespace slipmode::cli {
+namespace {
+
+struct Arguments {
+  std::string scene, output;
+  bool single = false;
+};
+
+struct Run {
+  dynamics::Trajectory trajectory;
+  std::optional<NumericalFailure> failure;  ///< set: the trajectory ends before it
+};
+
+/// One run, watched: progress by simulated time, Ctrl-C polled at every event.
+dynamics::Trajectory simulate_watched(const Session& session, const dynamics::HybridSystem& system,
+                                      const dynamics::State& start, dynamics::SimulateOptions options) {
+  ProgressLine line("simulate", session.progress_mode());
+  const double duration = options.duration;
+  options.on_event = [&](const dynamics::Event& event, const dynamics::State&) {
+    constexpr double kParts = 1000.0;
+    line.update(static_cast<std::size_t>(kParts * (event.time - start.time) / duration),
+                static_cast<std::size_t>(kParts));
+    return !session.stop->load();
+  };
+  dynamics::Trajectory trajectory = dynamics::simulate(system, start, options);
+  session.check_interrupt();
+  return trajectory;
+}
+
+/// A failure part-way does not lose what came before: the run is done again up to there.
+Run simulate_or_part(const Session& session, const dynamics::HybridSystem& system, const dynamics::State& start,
+                     dynamics::SimulateOptions options) {
+  try {
+    return {simulate_watched(session, system, start, options), std::nullopt};
+  } catch (const NumericalFailure& failure) {
+    const double reached = failure.time - start.time - options.sample;
+    if (!(reached > options.transient + options.sample)) throw;
+    options.duration = reached;
+    return {simulate_watched(session, system, start, options), failure};
+  }
+}
+
+Report run_trajectory(const Session& session, const Arguments& arguments, const scene::Scene& scene) {
+  const dynamics::HybridSystem system = scene::build_system(scene);
+  const Run run =
+      simulate_or_part(session, system, scene::initial_state(scene, system), scene::simulate_options(scene));
+  const dynamics::Trajectory& trajectory = run.trajectory;
+
+  scene::StoreWriter writer(arguments.output);
+  scene::Provenance provenance = scene::provenance_of(scene, "slipmode simulate");
+  provenance.audit = trajectory.audit;
+  scene::save(writer, provenance);
+  scene::save(writer, scene::kTrajectoryGroup, trajectory);
+  if (run.failure) {
+    writer.write("trajectory/incomplete", describe(*run.failure), {"", "the run stopped early: why and where"});
+  }
+  writer.commit();
+
+  const auto& statistics = trajectory.statistics;
+  std::vector<double> stick_fraction;
+  for (const double time : statistics.stick_time) stick_fraction.push_back(time / scene.time.duration);
+  Report report;
+  report.data = {{"verb", "simulate"},
+                 {"file", arguments.output},
+                 {"kind", "trajectory"},
+                 {"samples", trajectory.times.size()},
+                 {"events", trajectory.events.size()},
+                 {"stick_fraction", stick_fraction},
+                 {"audit_residual", trajectory.audit.residual()}};
+  if (run.failure) {
+    report.exit_code = kNumericalFailure;
+    report.text = fmt::format("{}\nThe part before it is kept in {}.", describe(*run.failure), arguments.output);
+    report.data["message"] = describe(*run.failure);
+    report.data["time"] = run.failure->time;
+    report.data["incomplete"] = true;
+    return report;
+  }
+  report.text =
+      fmt::format("{}: {} samples, {} events, energy residual {:.2g}\nTrajectory: {}\n", scene.title,
+                  trajectory.times.size(), trajectory.events.size(), trajectory.audit.residual(), arguments.output);
+  return report;
+}
+
+Report run_ensemble(const Session& session, const Arguments& arguments, const scene::Scene& scene) {
+  const diagnostics::EnsembleRun run = run_scene_ensemble(session, scene, scene::build_system(scene));
+  store_ensemble(arguments.output, scene, run);
+
+  Report report;
+  Json failures = Json::array();
+  for (const auto& member : run.members) {
+    if (!member.failure.empty()) failures.push_back(member.failure);
+  }
+  report.data = {{"verb", "simulate"},
+                 {"file", arguments.output},
+                 {"kind", "ensemble"},
+                 {"members", run.members.size()},
+                 {"snapshots", run.ensemble.snapshots.cols()},
+                 {"audit_residual", worst_audit(run)},
+                 {"failures", failures}};
+  report.text = fmt::format("{}: {} runs, {} snapshots, largest energy residual {:.2g}\nEnsemble: {}\n", scene.title,
+                            run.members.size(), run.ensemble.snapshots.cols(), worst_audit(run), arguments.output);
+  if (!failures.empty()) {
+    report.exit_code = kNumericalFailure;
+    report.text = fmt::format("{} of {} runs failed; the others are kept in {}\n  first: {}\n", failures.size(),
+                              run.members.size(), arguments.output, failures.front().get<std::string>());
+  }
+  return report;
+}
+
+}  // namespace
+
+Verb add_simulate(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("simulate", "one trajectory, or the scene's ensemble");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("SCENE", arguments->scene, "scene file (TOML)")->required();
+  command->add_option("-o,--output", arguments->output, "result file (HDF5)")->required();
+  command->add_flag("--single", arguments->single, "one trajectory from [initial], even if the scene has [ensemble]");
+  command->footer(
+      "Example:\n  slipmode simulate datasets/chain10/scene.toml -o ensemble.h5\n"
+      "  slipmode simulate datasets/chain10/scene.toml --single --set time.duration=500.0 "
+      "--set time.transient=0.0 -o run.h5");
+  return {command, [arguments](const Session& session) {
+            require_writable(arguments->output);
+            const scene::Scene scene = session.load(arguments->scene);
+            const bool ensemble = !arguments->single && has_section(scene, "ensemble");
+            return ensemble ? run_ensemble(session, *arguments, scene) : run_trajectory(session, *arguments, scene);
+          }};
+}
+
+}  // namespace slipmode::cli

@@ -1,0 +1,134 @@
+#include "cli/steps.hpp"
+
+#include "cli/units.hpp"
+#include "rom/reduce.hpp"
+#include "scene/records.hpp"
+#include "scene/table.hpp"
+
+#include <fmt/format.h>
+#include <cmath>
+#include <limits>
+
+namespace slipmode::cli {
+namespace {
+
+std::vector<dynamics::State> ensemble_starts(const scene::Scene& scene, const dynamics::HybridSystem& system) {
+  const dynamics::State centre = scene::initial_state(scene, system);
+  if (scene.ensemble.spread == 0.0) {
+    return std::vector<dynamics::State>(static_cast<std::size_t>(scene.ensemble.members), centre);
+  }
+  std::vector<dynamics::State> starts =
+      diagnostics::random_states(system, {.count = scene.ensemble.members,
+                                          .spread = scene.ensemble.spread,
+                                          .seed = scene.ensemble.seed,
+                                          .centre = diagnostics::RandomStateOptions::Centre::kRest});
+  for (dynamics::State& start : starts) {
+    start.q += centre.q;
+    start.v += centre.v;
+  }
+  return starts;
+}
+
+}  // namespace
+
+diagnostics::Model scene_model(const scene::Scene& scene, const dynamics::HybridSystem& system) {
+  if (scene.drive.is_constant()) return diagnostics::belt_model(system);
+  return {.system = [system](double) { return system; }};
+}
+
+diagnostics::EnsembleRun run_scene_ensemble(const Session& session, const scene::Scene& scene,
+                                            const dynamics::HybridSystem& system) {
+  std::vector<double> speeds = scene.ensemble.speeds;
+  if (speeds.empty()) speeds.push_back(scene.drive.velocity(0.0));
+  ProgressLine line("ensemble", session.progress_mode());
+  return diagnostics::run_ensemble(scene_model(scene, system), speeds, ensemble_starts(scene, system),
+                                   {.duration = scene.time.duration,
+                                    .transient = scene.time.transient,
+                                    .sample = scene.time.sample,
+                                    .flow = scene.flow,
+                                    .parallel = session.parallel(line)});
+}
+
+double worst_audit(const diagnostics::EnsembleRun& run) {
+  double worst = 0.0;
+  for (const auto& member : run.members) {
+    if (member.failure.empty()) worst = std::max(worst, std::abs(member.audit.residual()));
+  }
+  return worst;
+}
+
+void store_ensemble(const std::filesystem::path& path, const scene::Scene& scene, const diagnostics::EnsembleRun& run) {
+  const Units units = Units::of(scene.units);
+  scene::StoreWriter writer(path);
+  scene::Provenance provenance = scene::provenance_of(scene, "slipmode simulate");
+  scene::Table members{.description = "runs of the ensemble", .columns = {}};
+  std::vector<double> parameter, start, columns, events, residual;
+  std::vector<std::string> failure;
+  for (const auto& member : run.members) {
+    const bool worse = !provenance.audit || std::abs(member.audit.residual()) > std::abs(provenance.audit->residual());
+    if (member.failure.empty() && worse) provenance.audit = member.audit;
+    parameter.push_back(member.parameter);
+    start.push_back(static_cast<double>(member.start));
+    columns.push_back(static_cast<double>(member.columns));
+    events.push_back(static_cast<double>(member.statistics.events));
+    residual.push_back(member.failure.empty() ? member.audit.residual() : std::numeric_limits<double>::quiet_NaN());
+    failure.push_back(member.failure);
+  }
+  members.columns = {{"speed", {units.velocity, "belt speed"}, parameter},
+                     {"start", {"", "number of the initial state"}, start},
+                     {"snapshots", {"", "snapshots it gave"}, columns},
+                     {"events", {"", "events located"}, events},
+                     {"audit_residual", {"1", "energy balance relative to the energy exchanged"}, residual},
+                     {"failure", {"", "why it failed; empty: it did not"}, failure}};
+  scene::save(writer, provenance);
+  scene::save(writer, scene::kEnsembleGroup, run.ensemble);
+  scene::save(writer, "members", members);
+  writer.commit();
+}
+
+pod::Ensemble load_snapshots(const scene::StoreReader& store) {
+  if (store.has(scene::kEnsembleGroup)) return scene::load_ensemble(store);
+  if (store.has(scene::kTrajectoryGroup)) {
+    return {.snapshots = scene::load_trajectory(store).q, .run_begin = {0}};
+  }
+  store.fail("ensemble", "the file holds neither an ensemble nor a trajectory; make one with 'slipmode simulate'");
+}
+
+Eigen::VectorXd cumulative(const Eigen::VectorXd& shares) {
+  Eigen::VectorXd sum = shares;
+  for (Eigen::Index i = 1; i < sum.size(); ++i) sum[i] += sum[i - 1];
+  return sum;
+}
+
+Eigen::Index chosen_modes(const pod::ModeChoice& choice, const Eigen::VectorXd& shares, Eigen::Index available) {
+  if (choice.modes > available) {
+    throw InvalidInput(
+        fmt::format("{} modes asked for, but there are only {}; ask for fewer (reduction.modes or --modes)",
+                    choice.modes, available));
+  }
+  if (choice.modes > 0) return choice.modes;
+  const Eigen::VectorXd sum = cumulative(shares);
+  for (Eigen::Index i = 0; i < std::min(available, sum.size()); ++i) {
+    if (sum[i] >= choice.energy) return i + 1;
+  }
+  return available;
+}
+
+BasisSource load_basis_source(const std::string& source, const fem::Structure& structure) {
+  const Eigen::Index n = structure.size();
+  if (source == "lnm") return {.basis = rom::lnm_basis(structure, n), .shares = {}};
+  const scene::StoreReader store(source);
+  if (store.has(scene::kPodGroup)) {
+    const pod::PodResult result = scene::load_pod(store, scene::kPodGroup, n);
+    return {.basis = result.basis, .shares = result.shares};
+  }
+  const std::string reduced_basis = std::string(scene::kReducedGroup) + "/basis";
+  const std::string group = store.has(reduced_basis) ? reduced_basis : std::string(scene::kBasisGroup);
+  if (!store.has(group)) {
+    store.fail(group, "the file holds no basis; make one with 'slipmode pod', or say 'lnm' for linear natural modes");
+  }
+  const pod::Basis basis = scene::load_basis(store, group, n);
+  return {.basis = basis, .shares = basis.energy};
+}
+
+}  // namespace slipmode::cli

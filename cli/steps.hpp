@@ -1,0 +1,48 @@
+#pragma once
+
+#include "cli/session.hpp"
+#include "diagnostics/ensemble_run.hpp"
+#include "pod/pod.hpp"
+#include "scene/provenance.hpp"
+
+#include <filesystem>
+
+namespace slipmode::cli {
+
+/// The scene's system as a model whose parameter is the belt speed. A belt that is not constant keeps its own speed.
+[[nodiscard]] diagnostics::Model scene_model(const scene::Scene& scene, const dynamics::HybridSystem& system);
+
+/// Runs what [ensemble] asks for: `members` starts (the scene's initial state plus `spread` times standard normal
+/// numbers in every displacement and velocity) at each of its belt speeds.
+/// @throws as diagnostics::run_ensemble
+[[nodiscard]] diagnostics::EnsembleRun run_scene_ensemble(const Session& session, const scene::Scene& scene,
+                                                          const dynamics::HybridSystem& system);
+
+/// Writes groups `ensemble`, `members` and `provenance`.
+void store_ensemble(const std::filesystem::path& path, const scene::Scene& scene, const diagnostics::EnsembleRun& run);
+
+/// Largest energy residual of the members that went well.
+[[nodiscard]] double worst_audit(const diagnostics::EnsembleRun& run);
+
+/// Reads what a POD can be made of: an ensemble, or the samples of one trajectory.
+/// @throws InvalidInput  when the file holds neither
+[[nodiscard]] pod::Ensemble load_snapshots(const scene::StoreReader& store);
+
+/// The number of modes a choice asks for, given the energy shares of all modes.
+/// @throws InvalidInput  when more modes are asked than there are
+[[nodiscard]] Eigen::Index chosen_modes(const pod::ModeChoice& choice, const Eigen::VectorXd& shares,
+                                        Eigen::Index available);
+
+/// Cumulative shares.
+[[nodiscard]] Eigen::VectorXd cumulative(const Eigen::VectorXd& shares);
+
+/// A basis from the scene's point of view: POMs read from a file, or the structure's LNMs for the word "lnm".
+struct BasisSource {
+  pod::Basis basis;
+  Eigen::VectorXd shares;  ///< energy share of each vector; empty for LNMs and user bases without energies
+};
+/// @param source  "lnm", or a result file with a POD, a basis or a reduced model
+/// @throws InvalidInput  when the file holds no basis, or one for another number of degrees of freedom
+[[nodiscard]] BasisSource load_basis_source(const std::string& source, const fem::Structure& structure);
+
+}  // namespace slipmode::cli

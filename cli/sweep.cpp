@@ -1,0 +1,212 @@
+#include "diagnostics/sweep.hpp"
+
+#include "cli/steps.hpp"
+#include "cli/sweep_store.hpp"
+#include "cli/text_table.hpp"
+#include "cli/validation_setup.hpp"
+#include "cli/verbs.hpp"
+#include "rom/reduce.hpp"
+#include "scene/journal.hpp"
+#include "scene/records.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <charconv>
+#include <fstream>
+#include <iterator>
+
+namespace slipmode::cli {
+namespace {
+
+struct Arguments {
+  std::string scene, over, output;
+  std::string model = "full";
+  bool follow = false;
+  std::size_t segments = 1;
+};
+
+/// KEY=FROM:TO:STEP.
+struct Over {
+  std::string key;
+  std::vector<double> values;
+};
+
+Over parse_over(const std::string& text) {
+  const auto complain = [&text](const std::string& what) {
+    return InvalidInput(
+        fmt::format("--over {}: {}; expected KEY=FROM:TO:STEP, e.g. drive.speed=0.5:0.001:0.001", text, what));
+  };
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) throw complain("no KEY=");
+  std::vector<double> numbers;
+  for (std::size_t begin = equals + 1; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(':', begin), text.size());
+    double value = 0.0;
+    const auto [stopped, error] = std::from_chars(text.data() + begin, text.data() + end, value);
+    if (error != std::errc() || stopped != text.data() + end) {
+      throw complain(fmt::format("'{}' is not a number", text.substr(begin, end - begin)));
+    }
+    numbers.push_back(value);
+    begin = end + 1;
+  }
+  if (numbers.size() != 3) throw complain(fmt::format("{} numbers found", numbers.size()));
+  return {text.substr(0, equals), diagnostics::sweep_values(numbers[0], numbers[1], numbers[2])};
+}
+
+/// The model swept, where it starts, and what identifies it for resuming.
+struct Subject {
+  diagnostics::Model model;
+  dynamics::State start;
+  std::string title, identity;
+};
+
+std::string file_fingerprint(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return scene::fingerprint({std::istreambuf_iterator<char>(in), {}});
+}
+
+/// Systems by the key's value. The belt's speed is special: modal data are then shared by all values.
+diagnostics::SystemFactory system_factory(const scene::Scene& scene, const std::string& key,
+                                          const std::optional<pod::Basis>& basis) {
+  if (key == "drive.speed" && scene.drive.is_constant()) {
+    const dynamics::HybridSystem full = scene::build_system(scene);
+    return (basis ? diagnostics::reduced_belt_model(full, *basis) : diagnostics::belt_model(full)).system;
+  }
+  return [scene, key, basis](double value) {
+    const dynamics::HybridSystem full = scene::build_system(scene::set_key(scene, key, value));
+    return basis ? rom::reduce(full, *basis) : full;
+  };
+}
+
+Subject full_subject(const scene::Scene& scene, const std::string& key) {
+  const dynamics::HybridSystem system = scene::build_system(scene);
+  return {.model = {.system = system_factory(scene, key, {})},
+          .start = scene::initial_state(scene, system),
+          .title = fmt::format("full model, {} degrees of freedom", system.size()),
+          .identity = "full"};
+}
+
+Subject reduced_subject(const scene::Scene& scene, const std::string& key, const std::string& file) {
+  const dynamics::HybridSystem system = scene::build_system(scene);
+  const scene::StoreReader store(file);
+  if (!store.has(scene::kReducedGroup)) {
+    store.fail(scene::kReducedGroup, "the file holds no reduced model; make one with 'slipmode reduce'");
+  }
+  const pod::Basis basis = scene::load_basis(store, std::string(scene::kReducedGroup) + "/basis", system.size());
+  const diagnostics::Model belt = diagnostics::reduced_belt_model(system, basis);
+  return {.model = {.system = system_factory(scene, key, basis),
+                    .basis = basis,
+                    .energy_offset = key == "drive.speed" ? belt.energy_offset : 0.0},
+          .start = rom::restrict_state(system.structure(), basis, scene::initial_state(scene, system)),
+          .title = fmt::format("reduced model, {} modes", basis.modes()),
+          .identity = "rom " + file_fingerprint(file)};
+}
+
+Subject subject(const scene::Scene& scene, const std::string& key, const std::string& model) {
+  if (model == "full") return full_subject(scene, key);
+  constexpr std::string_view kPrefix = "rom:";
+  if (model.starts_with(kPrefix)) return reduced_subject(scene, key, model.substr(kPrefix.size()));
+  throw InvalidInput(fmt::format("--model {}: expected full, or rom:FILE with a result of 'slipmode reduce'", model));
+}
+
+/// Every value is tried before the first is computed: a typing error must not show after an hour.
+void check_values(const scene::Scene& scene, const Over& over, Eigen::Index size) {
+  for (const double value : over.values) {
+    const scene::Scene changed = scene::set_key(scene, over.key, value);
+    if (changed.structure.masses == scene.structure.masses) continue;
+    throw InvalidInput(
+        fmt::format("--over {}: the number of degrees of freedom must stay at {} along a sweep, value {} "
+                    "changes it; run one sweep per size with --set",
+                    over.key, size, value));
+  }
+}
+
+Report interrupted(const Arguments& arguments, const Over& over, std::size_t finished) {
+  Report report;
+  report.exit_code = kInterrupted;
+  report.text = fmt::format(
+      "interrupted with {} of {} values done; they are kept in {}\nThe same command goes on from "
+      "there.",
+      finished, over.values.size(), scene::Journal::path_for(arguments.output).string());
+  report.data = {{"verb", "sweep"}, {"finished", finished}, {"values", over.values.size()}, {"message", report.text}};
+  return report;
+}
+
+Report summary(const Arguments& arguments, const Subject& swept, const Over& over,
+               const std::vector<diagnostics::SweepPoint>& points) {
+  Report report;
+  TextTable table({"motion", "values", "share [%]"});
+  Json motions = Json::object();
+  for (const MotionCount& count : count_motions(points)) {
+    const double share = 100.0 * static_cast<double>(count.values) / static_cast<double>(points.size());
+    table.add({count.motion, fmt::format("{}", count.values), fixed(share, 1)});
+    motions[count.motion] = count.values;
+  }
+  Json failures = Json::array();
+  for (const auto& point : points) {
+    if (!point.ok()) failures.push_back({{"value", point.parameter}, {"reason", point.failure}});
+  }
+  report.data = {{"verb", "sweep"},         {"file", arguments.output}, {"model", swept.title}, {"key", over.key},
+                 {"values", points.size()}, {"motions", motions},       {"failures", failures}};
+  report.text = fmt::format("{}: {} values of {}\n{}Sweep: {}\n", swept.title, points.size(), over.key, table.str(),
+                            arguments.output);
+  if (!failures.empty()) {
+    report.text += fmt::format("{} values failed, first at {}: {}\n", failures.size(),
+                               failures.front()["value"].get<double>(), failures.front()["reason"].get<std::string>());
+    if (failures.size() == points.size()) report.exit_code = kNumericalFailure;
+  }
+  return report;
+}
+
+Report run(const Session& session, const Arguments& arguments) {
+  require_writable(arguments.output);
+  const Over over = parse_over(arguments.over);
+  const scene::Scene scene = session.load(arguments.scene);
+  const Subject swept = subject(scene, over.key, arguments.model);
+  check_values(scene, over, swept.start.q.size());
+
+  const std::string manner = arguments.follow ? fmt::format(" --follow --segments {}", arguments.segments) : "";
+  const std::string task = fmt::format("slipmode sweep --over {} --model {}{}", arguments.over, swept.title, manner);
+  const std::string identity = scene::fingerprint(
+      fmt::format("{}\n{}\n{}\n{}", scene::version(), task, swept.identity, scene::scene_to_toml(scene)));
+  scene::Journal journal(scene::Journal::path_for(arguments.output), identity);
+  ProgressLine line("sweep", session.progress_mode());
+  const diagnostics::SweepResult result = diagnostics::sweep(
+      swept.model, over.values, swept.start,
+      {.mode = arguments.follow ? diagnostics::SweepMode::kFollow : diagnostics::SweepMode::kIndependent,
+       .segments = arguments.segments,
+       .settle = settle_options(scene),
+       .parallel = session.parallel(line),
+       .sink = journal_sink(journal)});
+  if (result.interrupted) return interrupted(arguments, over, result.points.size());
+
+  const Units units = Units::of(scene.units);
+  scene::StoreWriter writer(arguments.output);
+  scene::save(writer, scene::provenance_of(scene, task));
+  store_sweep(writer, swept.model.basis ? "sweep/reduced" : "sweep/full", swept.title, sweep_axis(over.key, units),
+              units, result.points);
+  writer.commit();
+  journal.remove();
+  return summary(arguments, swept, over, result.points);
+}
+
+}  // namespace
+
+Verb add_sweep(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("sweep", "settled motion against one key of the scene");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("SCENE", arguments->scene, "scene file (TOML)")->required();
+  command->add_option("--over", arguments->over, "key and range: KEY=FROM:TO:STEP")->required();
+  command->add_option("-o,--output", arguments->output, "result file (HDF5)")->required();
+  command->add_flag("--follow", arguments->follow, "start each value where the one before it ended");
+  command->add_option("--segments", arguments->segments, "with --follow: number of chains side by side")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--model", arguments->model, "full, or rom:FILE with a result of 'slipmode reduce'");
+  command->footer(
+      "Times per value: [validation] transient and duration.\n"
+      "Example:\n  slipmode sweep datasets/chain10/scene.toml --over drive.speed=0.5:0.001:0.001 --follow "
+      "-o sweep.h5");
+  return {command, [arguments](const Session& session) { return run(session, *arguments); }};
+}
+
+}  // namespace slipmode::cli

@@ -1,0 +1,200 @@
+#include "cli/sweep_store.hpp"
+
+#include "core/errors.hpp"
+
+#include <fmt/format.h>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <memory>
+#include <utility>
+
+namespace slipmode::cli {
+namespace {
+
+using diagnostics::Motion;
+using diagnostics::Settled;
+using diagnostics::SlipState;
+using diagnostics::SweepPoint;
+
+/// Reads the values of a record one after the other.
+class Cursor {
+ public:
+  explicit Cursor(const scene::JournalRecord& record) : record_(record) {}
+  double next() {
+    if (at_ >= record_.values.size()) {
+      throw InvalidInput(fmt::format("journal record {} {}: it is too short; remove the journal and start again",
+                                     record_.table, record_.index));
+    }
+    return record_.values[at_++];
+  }
+  int next_int() { return static_cast<int>(next()); }
+  Eigen::VectorXd next_vector() {
+    Eigen::VectorXd values(static_cast<Eigen::Index>(next()));
+    for (double& value : values) value = next();
+    return values;
+  }
+
+ private:
+  const scene::JournalRecord& record_;
+  std::size_t at_ = 0;
+};
+
+void append(std::vector<double>& values, const Eigen::VectorXd& vector) {
+  values.push_back(static_cast<double>(vector.size()));
+  values.insert(values.end(), vector.begin(), vector.end());
+}
+
+}  // namespace
+
+scene::JournalRecord to_record(const SweepPoint& point) {
+  const Settled& settled = point.settled;
+  std::vector<double> values = {point.parameter,
+                                static_cast<double>(settled.period.motion),
+                                static_cast<double>(settled.period.period),
+                                settled.period.T,
+                                static_cast<double>(settled.period.contact),
+                                settled.period.mismatch,
+                                settled.stick_fraction,
+                                settled.mean_energy,
+                                settled.slip_rate,
+                                settled.time,
+                                static_cast<double>(settled.events),
+                                settled.audit_residual};
+  values.push_back(static_cast<double>(settled.slips.size()));
+  for (const SlipState& slip : settled.slips) {
+    values.insert(values.end(), {slip.time, static_cast<double>(slip.contact), slip.displacement});
+  }
+  values.push_back(settled.end.time);
+  append(values, settled.end.q);
+  append(values, settled.end.v);
+  values.push_back(static_cast<double>(settled.end.modes.size()));
+  for (const auto mode : settled.end.modes) values.push_back(static_cast<double>(mode));
+  return {point.model == 0 ? "full" : "reduced", static_cast<std::int64_t>(point.index), values, point.failure};
+}
+
+SweepPoint from_record(const scene::JournalRecord& record) {
+  Cursor cursor(record);
+  SweepPoint point;
+  point.index = static_cast<std::size_t>(record.index);
+  point.model = record.table == "full" ? 0 : 1;
+  point.failure = record.note;
+  point.parameter = cursor.next();
+  Settled& settled = point.settled;
+  settled.period.motion = static_cast<Motion>(cursor.next_int());
+  settled.period.period = cursor.next_int();
+  settled.period.T = cursor.next();
+  settled.period.contact = cursor.next_int();
+  settled.period.mismatch = cursor.next();
+  settled.stick_fraction = cursor.next();
+  settled.mean_energy = cursor.next();
+  settled.slip_rate = cursor.next();
+  settled.time = cursor.next();
+  settled.events = static_cast<std::int64_t>(cursor.next());
+  settled.audit_residual = cursor.next();
+  settled.slips.resize(static_cast<std::size_t>(cursor.next()));
+  for (SlipState& slip : settled.slips) {
+    slip.time = cursor.next();
+    slip.contact = cursor.next_int();
+    slip.displacement = cursor.next();
+  }
+  settled.end.time = cursor.next();
+  settled.end.q = cursor.next_vector();
+  settled.end.v = cursor.next_vector();
+  settled.end.modes.resize(static_cast<std::size_t>(cursor.next()));
+  for (auto& mode : settled.end.modes) mode = static_cast<dynamics::ContactMode>(cursor.next_int());
+  return point;
+}
+
+diagnostics::SweepSink journal_sink(scene::Journal& journal) {
+  const auto kept = std::make_shared<std::map<std::pair<std::size_t, int>, SweepPoint>>();
+  for (const scene::JournalRecord& record : journal.records()) {
+    SweepPoint point = from_record(record);
+    const std::pair key(point.index, point.model);
+    kept->insert_or_assign(key, std::move(point));
+  }
+  return {.recall = [kept](std::size_t index, int model) -> std::optional<SweepPoint> {
+            const auto found = kept->find({index, model});
+            if (found == kept->end()) return std::nullopt;
+            return found->second;
+          },
+          .store = [&journal](const SweepPoint& point) { journal.append(to_record(point)); }};
+}
+
+SweepAxis sweep_axis(const std::string& key, const Units& units) {
+  if (key == "drive.speed") return {key, "belt speed V", units.velocity};
+  return {key, key, key.ends_with("normal_load") ? units.force : "1"};
+}
+
+void store_sweep(scene::StoreWriter& writer, const std::string& group, const std::string& title, const SweepAxis& axis,
+                 const Units& units, const std::vector<SweepPoint>& points) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> parameter, period, T, stick, energy, rate, time, events, residual;
+  std::vector<std::string> motion, failure;
+  std::vector<double> slip_parameter, slip_contact, slip_displacement;
+  for (const SweepPoint& point : points) {
+    const Settled& settled = point.settled;
+    const bool ok = point.ok();
+    parameter.push_back(point.parameter);
+    motion.push_back(ok ? diagnostics::to_string(settled.period.motion) : "failed");
+    period.push_back(ok ? settled.period.period : kNone);
+    T.push_back(ok ? settled.period.T : kNone);
+    stick.push_back(ok ? settled.stick_fraction : kNone);
+    energy.push_back(ok ? settled.mean_energy : kNone);
+    rate.push_back(ok ? settled.slip_rate : kNone);
+    time.push_back(ok ? settled.time : kNone);
+    events.push_back(ok ? static_cast<double>(settled.events) : kNone);
+    residual.push_back(ok ? settled.audit_residual : kNone);
+    failure.push_back(point.failure);
+    if (!ok) continue;
+    for (const SlipState& slip : settled.slips) {
+      slip_parameter.push_back(point.parameter);
+      slip_contact.push_back(slip.contact);
+      slip_displacement.push_back(slip.displacement);
+    }
+  }
+  writer.describe_group(group, title);
+  writer.write(group + "/title", title, {"", "which model"});
+  writer.write(group + "/key", axis.key, {"", "the scene's key that was swept"});
+  writer.write(group + "/label", axis.label, {"", "name of the key for an axis"});
+  scene::save(writer, group + "/values",
+              scene::Table{"one row per value of the key",
+                           {{"parameter", {axis.units, axis.key}, parameter},
+                            {"motion", {"", "periodic, aperiodic, undecided, sticking, sliding or failed"}, motion},
+                            {"period", {"", "slips per period; 0: not periodic"}, period},
+                            {"T", {units.time, "period; 0: not periodic"}, T},
+                            {"stick_fraction", {"1", "share of time in stick, mean over contacts"}, stick},
+                            {"mean_energy", {units.energy, "mean energy over the last block"}, energy},
+                            {"slip_rate", {units.rate, "slips of all contacts per unit of time"}, rate},
+                            {"time", {units.time, "simulated in all"}, time},
+                            {"events", {"", "events located"}, events},
+                            {"audit_residual", {"1", "energy balance relative to the energy exchanged"}, residual},
+                            {"failure", {"", "why the value failed; empty: it did not"}, failure}}});
+  scene::save(writer, group + "/slips",
+              scene::Table{"one row per slip state: where a contact was when it began to slip",
+                           {{"parameter", {axis.units, axis.key}, slip_parameter},
+                            {"contact", {"", "number of the contact, from 0"}, slip_contact},
+                            {"displacement", {units.length, "displacement of the contact"}, slip_displacement}}});
+}
+
+std::vector<MotionCount> count_motions(const std::vector<SweepPoint>& points) {
+  std::map<std::pair<int, int>, std::size_t> counts;  // periodic ones by period first, then the other kinds
+  for (const SweepPoint& point : points) {
+    constexpr int kFailed = 1000;
+    const auto& period = point.settled.period;
+    const int kind = point.ok() ? static_cast<int>(period.motion) : kFailed;
+    ++counts[{kind, point.ok() && period.motion == Motion::kPeriodic ? period.period : 0}];
+  }
+  std::vector<MotionCount> out;
+  for (const auto& [key, values] : counts) {
+    const auto& [kind, period] = key;
+    const bool failed = kind > static_cast<int>(Motion::kSliding);
+    const std::string name = period > 0 ? fmt::format("period {}", period)
+                             : failed   ? std::string("failed")
+                                        : std::string(diagnostics::to_string(static_cast<Motion>(kind)));
+    out.push_back({name, values});
+  }
+  return out;
+}
+
+}  // namespace slipmode::cli

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "cli/units.hpp"
+#include "diagnostics/sweep.hpp"
+#include "scene/journal.hpp"
+#include "scene/store.hpp"
+#include "scene/table.hpp"
+
+#include <string>
+#include <vector>
+
+namespace slipmode::cli {
+
+/// A finished value as a line of the journal, and back to the last bit.
+[[nodiscard]] scene::JournalRecord to_record(const diagnostics::SweepPoint& point);
+/// @throws InvalidInput  when the record does not hold a sweep point
+[[nodiscard]] diagnostics::SweepPoint from_record(const scene::JournalRecord& record);
+
+/// A sink that keeps finished values in a journal and takes over those it already holds. The journal must outlive it.
+[[nodiscard]] diagnostics::SweepSink journal_sink(scene::Journal& journal);
+
+/// What a sweep was over.
+struct SweepAxis {
+  std::string key;    ///< "drive.speed"
+  std::string label;  ///< for an axis: "belt speed V"
+  std::string units;
+};
+[[nodiscard]] SweepAxis sweep_axis(const std::string& key, const Units& units);
+
+/// Writes `group`: a table `values` (one row per value), a table `slips` (one row per slip state) and a title.
+void store_sweep(scene::StoreWriter& writer, const std::string& group, const std::string& title, const SweepAxis& axis,
+                 const Units& units, const std::vector<diagnostics::SweepPoint>& points);
+
+/// How often each kind of motion was met, as "period 1: 120, period 5: 33, aperiodic: 200".
+struct MotionCount {
+  std::string motion;
+  std::size_t values = 0;
+};
+[[nodiscard]] std::vector<MotionCount> count_motions(const std::vector<diagnostics::SweepPoint>& points);
+
+}  // namespace slipmode::cli

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace slipmode::cli {
+
+/// A table for a terminal: columns as wide as needed, first column to the left, the others to the right.
+class TextTable {
+ public:
+  explicit TextTable(std::vector<std::string> header) : rows_{std::move(header)} {}
+  /// One cell per column; missing cells are empty.
+  void add(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
+  /// The lines, each ended by a line break, the header underlined.
+  [[nodiscard]] std::string str() const;
+
+ private:
+  std::vector<std::vector<std::string>> rows_;
+};
+
+/// Number of characters shown for UTF-8 text.
+[[nodiscard]] std::size_t shown_width(const std::string& text);
+
+/// A value with `digits` after the point, "–" for NaN.
+[[nodiscard]] std::string fixed(double value, int digits);
+
+}  // namespace slipmode::cli

@@ -1,0 +1,50 @@
+#include "diagnostics/validate.hpp"
+
+#include "cli/validate_run.hpp"
+#include "cli/validation_setup.hpp"
+#include "cli/validation_store.hpp"
+#include "cli/verbs.hpp"
+
+#include <fmt/format.h>
+
+namespace slipmode::cli {
+namespace {
+
+struct Arguments {
+  std::string scene, input, output;
+  bool no_sweep = false;
+};
+
+Report run(const Session& session, const Arguments& arguments) {
+  require_writable(arguments.output);
+  const scene::Scene scene = session.load(arguments.scene);
+  const dynamics::HybridSystem full = scene::build_system(scene);
+  const auto candidates = load_candidates(scene, full.structure(), arguments.input);
+  diagnostics::ValidationOptions options = validation_options(scene, candidates);
+  if (arguments.no_sweep) options.sweep_values.clear();
+  const diagnostics::ValidationReport result =
+      validate_into(session, scene, full, candidates, options, arguments.output);
+
+  Report report;
+  report.data = {{"verb", "validate"}, {"file", arguments.output}, {"validation", to_json(result)}};
+  report.text = fmt::format("{}Validation: {}\n", summary_text(result), arguments.output);
+  return report;
+}
+
+}  // namespace
+
+Verb add_validate(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("validate", "compare reduced models with the full one");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("SCENE", arguments->scene, "scene file (TOML)")->required();
+  command
+      ->add_option("FILE", arguments->input,
+                   "what to judge: a POD or an ensemble (POMs and LNMs of every size), or a reduced model")
+      ->required();
+  command->add_option("-o,--output", arguments->output, "result file (HDF5)")->required();
+  command->add_flag("--no-sweep", arguments->no_sweep, "leave the bifurcation diagram out");
+  command->footer("Example:\n  slipmode validate datasets/chain10/scene.toml pod.h5 -o validation.h5");
+  return {command, [arguments](const Session& session) { return run(session, *arguments); }};
+}
+
+}  // namespace slipmode::cli

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "cli/session.hpp"
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace slipmode::cli {
+
+/// A verb ready to run once the command line has been parsed.
+struct Verb {
+  CLI::App* command = nullptr;
+  std::function<Report(const Session&)> run;
+};
+
+// Each adds one sub-command with its arguments, help and example; one file per verb.
+[[nodiscard]] Verb add_run(CLI::App& app);
+[[nodiscard]] Verb add_modes(CLI::App& app);
+[[nodiscard]] Verb add_simulate(CLI::App& app);
+[[nodiscard]] Verb add_pod(CLI::App& app);
+[[nodiscard]] Verb add_reduce(CLI::App& app);
+[[nodiscard]] Verb add_validate(CLI::App& app);
+[[nodiscard]] Verb add_sweep(CLI::App& app);
+[[nodiscard]] Verb add_plot(CLI::App& app);
+[[nodiscard]] Verb add_info(CLI::App& app);
+
+}  // namespace slipmode::cli
