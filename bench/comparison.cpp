@@ -1,0 +1,247 @@
+#include "bench/comparison.hpp"
+
+#include "bench/chain_system.hpp"
+#include "bench/clock.hpp"
+#include "bench/cvode_peer.hpp"
+#include "bench/odeint_peer.hpp"
+#include "fixtures/scenes.hpp"
+#include "fixtures/taylor_reference.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+namespace slipmode::bench {
+namespace {
+
+using dynamics::HybridSystem;
+using dynamics::State;
+
+constexpr double kPeerTolerance = 1e-9;
+constexpr double kTanhTolerance = 1e-7;
+
+/// Where a stretch begins and where it ends in truth.
+struct Truth {
+  State start;
+  PeerRun end;
+};
+
+std::vector<double> plain(const Eigen::VectorXd& values) { return {values.begin(), values.end()}; }
+
+/// The independent reference: Taylor series of order 30 in extended precision, without modal coordinates.
+std::vector<Truth> true_stretches(const HybridSystem& system, const State& first, const ComparisonCase& setting) {
+  fixtures::TaylorReference<long double> reference(fixtures::reference_of(system));
+  std::vector<Truth> result;
+  for (const State& start : starts_on_attractor(system, first, setting.stretch, setting.stretches)) {
+    const fixtures::ReferenceRun run = reference.run(start.q, start.v, 0.0, setting.stretch);
+    PeerRun end{plain(run.q), plain(run.v), {}, 0};
+    for (const auto& event : run.events) end.event_times.push_back(event.time);
+    result.push_back({start, std::move(end)});
+  }
+  return result;
+}
+
+using Method = std::function<PeerRun(const State& start, double duration)>;
+
+/// Errors of a method on all stretches; event_time_error is infinite where an event is missing or extra.
+MethodFigures errors_of(const Method& method, const std::vector<Truth>& truth, double stretch) {
+  MethodFigures figures;
+  for (const Truth& t : truth) {
+    const PeerRun run = method(t.start, stretch);
+    figures.events += static_cast<long>(run.event_times.size());
+    for (std::size_t i = 0; i < run.q.size(); ++i) {
+      figures.error = std::max({figures.error, std::abs(run.q[i] - t.end.q[i]), std::abs(run.v[i] - t.end.v[i])});
+    }
+    if (run.event_times.size() != t.end.event_times.size()) {
+      figures.event_time_error = std::numeric_limits<double>::infinity();
+      continue;
+    }
+    for (std::size_t i = 0; i < run.event_times.size(); ++i) {
+      figures.event_time_error =
+          std::max(figures.event_time_error, std::abs(run.event_times[i] - t.end.event_times[i]));
+    }
+  }
+  return figures;
+}
+
+dynamics::Trajectory run_slipmode(const HybridSystem& system, const State& start, double duration, double tolerance,
+                                  bool audit) {
+  return dynamics::simulate(system, start, {.duration = duration, .flow = {.tolerance = tolerance, .audit = audit}});
+}
+
+Method slipmode_method(const HybridSystem& system, double tolerance) {
+  return [&system, tolerance](const State& start, double duration) {
+    const auto run = run_slipmode(system, start, duration, tolerance, false);
+    PeerRun result{plain(run.final_state.q), plain(run.final_state.v), {}, 0};
+    for (const auto& event : run.events) {
+      if (event.before != event.after) result.event_times.push_back(event.time);
+    }
+    return result;
+  };
+}
+
+Method cvode_method(const ChainProblem& problem) {
+  return [&problem](const State& start, double duration) {
+    return run_cvode_adams(problem, plain(start.q), plain(start.v), duration, kPeerTolerance, kPeerTolerance);
+  };
+}
+
+Method odeint_method(const ChainProblem& problem) {
+  return [&problem](const State& start, double duration) {
+    return run_odeint_dopri5(problem, plain(start.q), plain(start.v), duration, kPeerTolerance, kPeerTolerance);
+  };
+}
+
+/// The loosest tolerance at which every event is found and the error is at most `allowed`.
+MethodFigures tolerable(const HybridSystem& system, const std::vector<Truth>& truth, double stretch, double allowed) {
+  for (const double tolerance :
+       {1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 3e-9, 1e-9, 3e-10, 1e-10, 3e-11, 1e-11, 1e-12, 1e-13}) {
+    MethodFigures figures = errors_of(slipmode_method(system, tolerance), truth, stretch);
+    figures.tolerance = tolerance;
+    if (figures.error <= allowed && std::isfinite(figures.event_time_error)) return figures;
+  }
+  throw std::runtime_error("no tolerance makes slipmode as accurate as its peers");
+}
+
+/// First short run on a new system less a second one: whatever is built once.
+double setup_seconds(const ChainProblem& problem, double tolerance, dynamics::SimulateOptions::Output output) {
+  constexpr double kShortRun = 100.0;
+  std::vector<double> times;
+  for (int i = 0; i < 3; ++i) {
+    const double begin = thread_seconds();
+    const HybridSystem system = system_of(problem);
+    const auto run = [&] {
+      (void)dynamics::simulate(
+          system, system.rest(),
+          {.duration = kShortRun, .output = output, .flow = {.tolerance = tolerance, .audit = false}});
+    };
+    run();
+    const double first = thread_seconds() - begin;
+    times.push_back(std::max(0.0, first - thread_seconds_of(run)));
+  }
+  return median(times);
+}
+
+long timed(const Method& method, const State& start, double duration, std::vector<double>& out_seconds) {
+  const double begin = thread_seconds();
+  const PeerRun run = method(start, duration);
+  out_seconds.push_back(thread_seconds() - begin);
+  return static_cast<long>(run.event_times.size());
+}
+
+/// Timed runs by turns, so that a slow spell of the machine meets all of them.
+void time_all(Comparison& row, const HybridSystem& system, const State& start) {
+  const ComparisonCase& setting = row.setting;
+  const int peer_repeats = std::max(1, setting.repeats / 3);
+  std::vector<double> own, audited, cvode, odeint;
+  const double tolerance = row.slipmode.tolerance;
+  (void)run_slipmode(system, start, setting.duration, tolerance, false);  // builds what is built once
+  for (int i = 0; i < setting.repeats; ++i) {
+    row.slipmode.timed_events = 0;
+    own.push_back(thread_seconds_of([&] {
+      row.slipmode.timed_events =
+          count_mode_changes(run_slipmode(system, start, setting.duration, tolerance, false).events);
+    }));
+    audited.push_back(thread_seconds_of(
+        [&] { row.audit_residual = run_slipmode(system, start, setting.duration, tolerance, true).audit.residual(); }));
+    if (i >= peer_repeats) continue;
+    row.cvode.timed_events = timed(cvode_method(setting.problem), start, setting.duration, cvode);
+    row.odeint.timed_events = timed(odeint_method(setting.problem), start, setting.duration, odeint);
+  }
+  row.slipmode.seconds = median(own);
+  row.audit_seconds = median(audited);
+  row.cvode.seconds = median(cvode);
+  row.odeint.seconds = median(odeint);
+}
+
+void to_json(nlohmann::json& out, const MethodFigures& m, double duration) {
+  out = {
+      {"tolerance", m.tolerance},
+      {"seconds", m.seconds},
+      {"seconds_per_unit", m.seconds / duration},
+      {"state_error", m.error},
+      {"event_time_error", std::isfinite(m.event_time_error) ? nlohmann::json(m.event_time_error) : nlohmann::json()},
+      {"events", m.events},
+      {"timed_events", m.timed_events}};
+}
+
+}  // namespace
+
+Comparison compare(const ComparisonCase& setting) {
+  Comparison row;
+  row.setting = setting;
+  const HybridSystem system = system_of(setting.problem);
+  const State start = start_on_attractor(system, setting.transient);
+  const std::vector<Truth> truth = true_stretches(system, start, setting);
+  for (const Truth& t : truth) row.reference_events += static_cast<long>(t.end.event_times.size());
+
+  row.cvode = errors_of(cvode_method(setting.problem), truth, setting.stretch);
+  row.odeint = errors_of(odeint_method(setting.problem), truth, setting.stretch);
+  row.cvode.tolerance = row.odeint.tolerance = kPeerTolerance;
+  row.slipmode = tolerable(system, truth, setting.stretch, std::min(row.cvode.error, row.odeint.error));
+
+  using Output = dynamics::SimulateOptions::Output;
+  row.setup_rows_seconds = setup_seconds(setting.problem, row.slipmode.tolerance, Output::kContacts);
+  row.setup_shapes_seconds = setup_seconds(setting.problem, row.slipmode.tolerance, Output::kAllDofs);
+  time_all(row, system, start);
+  return row;
+}
+
+TanhFigures measure_tanh(const Comparison& exact, double epsilon) {
+  const ComparisonCase& setting = exact.setting;
+  const HybridSystem system = system_of(setting.problem);
+  const State start = start_on_attractor(system, setting.transient);
+  const Method method = [&](const State& from, double duration) {
+    return run_cvode_bdf_tanh(setting.problem, epsilon, plain(from.q), plain(from.v), duration, kTanhTolerance,
+                              1e-2 * kTanhTolerance);
+  };
+  TanhFigures row{.setting = setting, .epsilon = epsilon, .tolerance = kTanhTolerance};
+  row.error = errors_of(method, true_stretches(system, start, setting), setting.stretch).error;
+  std::vector<double> seconds;
+  for (int i = 0; i < std::max(1, setting.repeats / 3); ++i) (void)timed(method, start, setting.duration, seconds);
+  row.seconds = median(seconds);
+  row.slipmode_seconds = exact.slipmode.seconds;
+  row.cvode_seconds = exact.cvode.seconds;
+  return row;
+}
+
+void to_json(nlohmann::json& out, const Comparison& row) {
+  const double duration = row.setting.duration;
+  nlohmann::json own, cvode, odeint;
+  to_json(own, row.slipmode, duration);
+  to_json(cvode, row.cvode, duration);
+  to_json(odeint, row.odeint, duration);
+  out = {{"case", row.setting.problem.name},
+         {"masses", row.setting.problem.n},
+         {"belt_speed", row.setting.problem.belt},
+         {"duration", duration},
+         {"stretch", row.setting.stretch},
+         {"stretches", row.setting.stretches},
+         {"reference_events", row.reference_events},
+         {"slipmode", own},
+         {"cvode_adams", cvode},
+         {"odeint_dopri5", odeint},
+         {"ratio_cvode", row.ratio_cvode()},
+         {"ratio_odeint", row.ratio_odeint()},
+         {"wanted_cvode", row.setting.wanted_cvode},
+         {"wanted_odeint", row.setting.wanted_odeint},
+         {"audit_seconds", row.audit_seconds},
+         {"audit_residual", row.audit_residual},
+         {"setup_rows_seconds", row.setup_rows_seconds},
+         {"setup_shapes_seconds", row.setup_shapes_seconds}};
+}
+
+void to_json(nlohmann::json& out, const TanhFigures& row) {
+  out = {{"case", row.setting.problem.name},
+         {"epsilon", row.epsilon},
+         {"tolerance", row.tolerance},
+         {"seconds", row.seconds},
+         {"state_error", row.error},
+         {"ratio_slipmode", row.seconds / row.slipmode_seconds},
+         {"ratio_cvode", row.seconds / row.cvode_seconds}};
+}
+
+}  // namespace slipmode::bench
