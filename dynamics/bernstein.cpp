@@ -9,7 +9,7 @@ namespace {
 /// Below this width a sign change that does not separate is called a touch.
 constexpr double kSmallestInterval = 1e-12;
 /// Relative accuracy of a root: the last Newton step, so that its error is the square of this.
-constexpr double kRootTolerance = 1e-9;
+constexpr double kRootTolerance = 1e-6;
 
 constexpr std::size_t index(int k) { return static_cast<std::size_t>(k); }
 

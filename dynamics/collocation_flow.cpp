@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace slipmode::dynamics {
 namespace {
@@ -20,6 +21,8 @@ constexpr double kLargestOvershoot = 0.7;
 constexpr double kGrowth = 1.0 / (256.0 * 8.0);
 /// Largest product of the law's slope, the mobility and the step that is tried.
 constexpr double kLargestGrowth = 1.2;
+/// An event's time is final when the next correction is below this share of the step.
+constexpr double kNegligibleShift = 1e-15;
 constexpr int kNewtonLimit = 12;
 /// Newton stops at a change of this size (in units of the law's velocity scale): the next one would be its square.
 constexpr double kNewtonChange = 2e-6;
@@ -57,6 +60,12 @@ CollocationFlow::CollocationFlow(const HybridSystem& system, const StepTables& t
   for (const auto& contact : system.contacts()) laws_.push_back(contact_forces(contact));
   for (auto* v : {&free_, &velocity_, &forces_, &belt_nodes_, &slope_}) *v = Eigen::VectorXd::Zero(kNodes * nc_);
   statistics_.stick_time.assign(static_cast<std::size_t>(nc_), 0.0);
+  for (std::size_t c = 0; c < laws_.size(); ++c) {
+    const auto i = static_cast<Eigen::Index>(c);
+    steep_speed_.push_back(
+        std::log(laws_[c].alpha * laws_[c].drop * model_.mobility(i, i) * tables_.step(0) / kLargestGrowth) /
+        laws_[c].alpha);
+  }
   std::vector<bool> at_rest(static_cast<std::size_t>(nc_));
   for (std::size_t c = 0; c < at_rest.size(); ++c) at_rest[c] = modes_[c] == ContactMode::kStick;
   start_modes(resolve(instant(x_), modes_, at_rest, -1));
@@ -82,7 +91,7 @@ void CollocationFlow::free_velocities(const Collocation& table) {
 
 void CollocationFlow::guess_forces(int level, bool retry) {
   // The last solution continued; a rejected step's own solution; or the force at the start.
-  const auto& t = radau();
+  const RadauTables& t = nodes_;
   for (int c = 0; c < nc_; ++c) {
     double* forces = forces_.data() + kNodes * c;
     const RadauTables::Matrix8* matrix = nullptr;
@@ -96,9 +105,10 @@ void CollocationFlow::guess_forces(int level, bool retry) {
 
 int CollocationFlow::foreseen_level(int level) const {
   // Sliding slows down ever faster where the law rises steeply: look ahead by a parabola through the last step's
-  // velocities and keep (law's slope × mobility × step) within what eight nodes resolve.
+  // velocities and keep α (μ_s − μ_k) N e^{−αv} × mobility × step within what eight nodes resolve. Solved for v once,
+  // so that no exponential is needed here.
   if (!solved_) return level;
-  const auto& node = radau().node;
+  const auto& node = nodes_.node;
   const double last_step = tables_.step(step_level_);
   for (int c = 0; c < nc_; ++c) {
     const auto i = static_cast<std::size_t>(c);
@@ -112,8 +122,7 @@ int CollocationFlow::foreseen_level(int level) const {
     for (; level + 1 < StepTables::kLevels; ++level) {
       const double ahead = tables_.step(level) / last_step;
       const double foreseen = std::max(0.0, s3 + ahead * (slope + bend * ahead));
-      const double growth = law.alpha * law.drop * std::exp(-law.alpha * foreseen) * model_.mobility(c, c);
-      if (growth * tables_.step(level) < kLargestGrowth) break;
+      if (foreseen >= steep_speed_[i] - level * (std::numbers::ln2 / law.alpha)) break;
     }
   }
   return level;
@@ -121,7 +130,7 @@ int CollocationFlow::foreseen_level(int level) const {
 
 bool CollocationFlow::solve_forces(const Collocation& table, double h) {
   const double V = belt_.velocity(begin_), a = belt_.acceleration(begin_);
-  const V8 node = load8(radau().node.data());
+  const V8 node = load8(nodes_.node.data());
   const V8 belt = broadcast8(V) + broadcast8(a * h) * node;
   for (int c = 0; c < nc_; ++c) store8(belt_nodes_.data() + kNodes * c, belt);
   if (nc_ != 1) return solve_coupled(table);
@@ -264,13 +273,13 @@ bool CollocationFlow::solve_coupled(const Collocation& table) {
 }
 
 double CollocationFlow::force_error() const {
-  const auto& tail = radau().legendre_tail;
   double worst = 0.0;
   for (int c = 0; c < nc_; ++c) {
     const auto i = static_cast<std::size_t>(c);
     if (laws_[i].kind == ContactForces::Kind::kFree) continue;
-    const Eigen::Vector2d last = tail * forces_.segment<kNodes>(kNodes * c);
-    const double sixth = std::abs(last(0)), seventh = std::abs(last(1));
+    const V8 forces = load8(forces_.data() + kNodes * c);
+    const double sixth = std::abs(sum8(forces * load8(nodes_.legendre6.data())));
+    const double seventh = std::abs(sum8(forces * load8(nodes_.legendre7.data())));
     // The first coefficient left out, if the sequence keeps falling as it does.
     const double next = seventh * std::min(1.0, seventh / std::max(sixth, 1e-300));
     worst = std::max(worst, next / laws_[i].static_limit);
@@ -294,7 +303,7 @@ CollocationFlow::Guarded CollocationFlow::first_guard() const {
     }
     if (const auto root = first_root(p); root && root->at < first.theta) first = {root->at, c, root->touching};
   };
-  const auto& t = radau();
+  const RadauTables& t = nodes_;
   for (int c = 0; c < nc_; ++c) {
     const auto i = static_cast<std::size_t>(c);
     const ContactForces& law = laws_[i];
@@ -410,7 +419,7 @@ bool CollocationFlow::step(double t_limit) {
   if (fresh_) start_level_[stuck_count()] = level_;
   fresh_ = false;
   std::fill(multiplicity_.begin(), multiplicity_.end(), 0);
-  const auto& last = radau().lagrange(tau / h);
+  const auto& last = nodes_.lagrange(tau / h);
   for (int c = 0; c < nc_; ++c)
     force_now_(c) = tau < h ? forces_.segment<kNodes>(kNodes * c).dot(last) : forces_(kNodes * c + kNodes - 1);
   if (!at_guard && !(corner && time_ == limit)) return false;
@@ -428,42 +437,57 @@ void CollocationFlow::advance_partial(const double* x, const double* forces, int
 }
 
 void CollocationFlow::refine_event(const Guarded& guard, double& tau, Eigen::VectorXd& x) const {
+  // Newton on the guard's exact value; the polynomial that announced it was only close.
+  if (guard.touching) return;
   const double h = tables_.step(step_level_);
   const int c = guard.contact;
   const auto i = static_cast<std::size_t>(c);
-  if (guard.touching) return;
-  for (int iteration = 0; iteration < 2; ++iteration) {
-    const double theta = tau / h;
-    const auto basis = radau().lagrange(theta);
-    Eigen::VectorXd force(nc_);
-    for (int d = 0; d < nc_; ++d) force(d) = forces_.segment<kNodes>(kNodes * d).dot(basis);
-    const double V = belt_.velocity(begin_) + belt_.acceleration(begin_) * tau, a = belt_.acceleration(begin_);
+  for (int iteration = 0; iteration < 3; ++iteration) {
+    const double a = belt_.acceleration(begin_), V = belt_.velocity(begin_) + a * tau;
+    const RadauTables::Vector8 basis = nodes_.lagrange(tau / h);
     double value, rate;
     if (modes_[i] == ContactMode::kStick) {
-      std::vector<bool> stuck(modes_.size());
-      for (std::size_t d = 0; d < stuck.size(); ++d) stuck[d] = modes_[d] == ContactMode::kStick;
-      const double sign = force(c) > 0 ? 1.0 : -1.0;
-      stick_forces({model_, laws_, x.data(), begin_ + tau, V, a}, stuck, force);
-      value = laws_[i].static_limit - sign * force(c);
-      rate = -sign * forces_.segment<kNodes>(kNodes * c).dot(radau().lagrange_slope(theta)) / h;
+      const double sign = forces_.segment<kNodes>(kNodes * c).dot(basis) > 0 ? 1.0 : -1.0;
+      value = laws_[i].static_limit - sign * stick_force(c, x, tau, basis);
+      rate = -sign * forces_.segment<kNodes>(kNodes * c).dot(nodes_.lagrange_slope(tau / h)) / h;
     } else {
       const double sign = sign_of(modes_[i]);
       value = sign * (V - contact_velocity(c, x.data()));
-      const double acceleration = dot_padded(model_.acceleration_row.col(c).data(), x.data(), 2 * model_.np) +
-                                  model_.load_acceleration(c) + model_.mobility.row(c).dot(force);
+      double acceleration =
+          dot_padded(model_.acceleration_row.col(c).data(), x.data(), 2 * model_.np) + model_.load_acceleration(c);
+      for (int d = 0; d < nc_; ++d)
+        acceleration += model_.mobility(c, d) * forces_.segment<kNodes>(kNodes * d).dot(basis);
       rate = sign * (a - acceleration);
     }
     const double shift = -value / rate;
-    if (!(std::abs(shift) < 1e-2 * h) || tau + shift <= 0.0 || std::abs(shift) <= 1e-16 * h) return;
+    if (!(std::abs(shift) < 1e-2 * h) || tau + shift <= 0.0) return;
     tau += shift;
+    if (std::abs(shift) <= kNegligibleShift * h) return;
     advance_partial(x_begin_.data(), forces_.data(), step_level_, tau, x.data());
+    if (shift * shift <= kNegligibleShift * h * h) return;  // Newton's next shift would be negligible
   }
+}
+
+double CollocationFlow::stick_force(int c, const Eigen::VectorXd& x, double tau,
+                                    const RadauTables::Vector8& basis) const {
+  const double a = belt_.acceleration(begin_);
+  if (nc_ == 1)
+    return (a - dot_padded(model_.acceleration_row.data(), x.data(), 2 * model_.np) - model_.load_acceleration(0)) /
+           model_.mobility(0, 0);
+  Eigen::VectorXd force(nc_);
+  std::vector<bool> stuck(modes_.size());
+  for (int d = 0; d < nc_; ++d) {
+    stuck[static_cast<std::size_t>(d)] = modes_[static_cast<std::size_t>(d)] == ContactMode::kStick;
+    force(d) = forces_.segment<kNodes>(kNodes * d).dot(basis);
+  }
+  stick_forces({model_, laws_, x.data(), begin_ + tau, belt_.velocity(begin_) + a * tau, a}, stuck, force);
+  return force(c);
 }
 
 void CollocationFlow::account(int level, double theta) {
   const double h = tables_.step(level), length = theta * h;
   const bool whole = theta >= 1.0;
-  const auto& t = radau();
+  const RadauTables& t = nodes_;
   double contact = 0.0, drive = 0.0;
   Eigen::Matrix<double, kNodes, kNodes> to_part;  // node values of the step → node values of the part walked
   Eigen::Matrix<double, kNodes, kNodes + 1> velocity_part;  // same for velocities, through the value at 0 too
@@ -621,7 +645,7 @@ void CollocationFlow::evaluate(double t, Eigen::VectorXd& out_x, Eigen::VectorXd
   out_x.resize(2 * model_.np);
   out_force.resize(nc_);
   advance_partial(x_begin_.data(), forces_.data(), step_level_, tau, out_x.data());
-  const auto basis = radau().lagrange(tau / h);
+  const auto basis = nodes_.lagrange(tau / h);
   for (int c = 0; c < nc_; ++c) out_force(c) = forces_.segment<kNodes>(kNodes * c).dot(basis);
 }
 

@@ -67,6 +67,8 @@ class CollocationFlow {
   void advance_full(const Propagator& p, const double* x, const double* forces, double* out_x) const;
   void advance_partial(const double* x, const double* forces, int level, double tau, double* out_x) const;
   void refine_event(const Guarded& guard, double& tau, Eigen::VectorXd& x) const;
+  [[nodiscard]] double stick_force(int c, const Eigen::VectorXd& x, double tau,
+                                   const RadauTables::Vector8& basis) const;
   void account(int level, double theta);
   void settle_event(int contact, bool touching);
   void settle_single();
@@ -86,12 +88,14 @@ class CollocationFlow {
   [[nodiscard]] Instant instant(const Eigen::VectorXd& x) const;
 
   const StepTables& tables_;
+  const RadauTables& nodes_ = radau();
   const ModalModel& model_;
   friction::Belt belt_;
   FlowOptions options_;
   bool dense_;
   int nc_;
   std::vector<ContactForces> laws_;
+  std::vector<double> steep_speed_;  ///< sliding speed at which a law is just resolved by the largest step [m/s]
 
   double time_, begin_;
   Eigen::VectorXd x_, x_begin_, x_end_;

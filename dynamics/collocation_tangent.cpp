@@ -90,7 +90,7 @@ void CollocationFlow::salt_tangents(const Eigen::VectorXd& force_before, const E
     const Eigen::MatrixXd mobility = model_.mobility(stuck, stuck);
     gradient = mobility.ldlt().solve(rows).row(position);  // −dλ/dx
     const double h = tables_.step(step_level_);
-    rate = -forces_.segment<kNodes>(kNodes * contact).dot(radau().lagrange_slope((time_ - begin_) / h)) / h;
+    rate = -forces_.segment<kNodes>(kNodes * contact).dot(nodes_.lagrange_slope((time_ - begin_) / h)) / h;
   }
   tangents_ += jump * (gradient * tangents_) / rate;
 }

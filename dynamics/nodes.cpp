@@ -97,7 +97,8 @@ RadauTables build() {
   t.bernstein7 = bernstein_values(kNodes - 1, c).inverse().cast<double>();
   t.bernstein8 = to_bernstein8.bottomRightCorner(kNodes, kNodes).cast<double>();
   t.bernstein8_start = to_bernstein8.col(0).tail(kNodes).cast<double>();
-  t.legendre_tail = to_legendre.bottomRows(2).cast<double>();
+  t.legendre6 = to_legendre.row(kNodes - 2).transpose().cast<double>();
+  t.legendre7 = to_legendre.row(kNodes - 1).transpose().cast<double>();
   t.left_half = interpolation(c, c / 2).cast<double>();
   t.right_half = interpolation(c, c / 2 + VectorL::Constant(kNodes, Real(0.5))).cast<double>();
   for (std::size_t r = 0; r < t.following.size(); ++r) {

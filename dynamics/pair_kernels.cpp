@@ -62,46 +62,6 @@ void taylor(const ModalModel& m, const double* x, const double* forces, double h
 
 }  // namespace
 
-bool solve_newton(const double* A, const V8& d, const V8& r, V8& out_delta) {
-  alignas(64) double scaled[kNodes];
-  const double largest = std::max(max8(d), -min8(d));
-  V8 row_sum{};
-  for (int j = 0; j < kNodes; ++j) {
-    const V8 a = load8(A + kNodes * j);
-    row_sum += a < 0.0 ? -a : a;
-  }
-  if (largest * max8(row_sum) < 0.05) {
-    // δ = r + B(r + B(r + B r)), B = A diag(d): error below 1e-5 of δ, which Newton's next step squares away.
-    V8 delta = r;
-    for (int term = 0; term < 4; ++term) {
-      store8(scaled, d * delta);
-      delta = r + matrix8_times(A, scaled);
-    }
-    out_delta = delta;
-    return true;
-  }
-  V8 column[kNodes + 1];
-  alignas(64) double slope[kNodes];
-  store8(slope, d);
-  for (int j = 0; j < kNodes; ++j) {
-    column[j] = -load8(A + kNodes * j) * slope[j];
-    column[j][j] += 1.0;
-  }
-  column[kNodes] = r;
-#pragma GCC unroll 8
-  for (int k = 0; k < kNodes; ++k) {
-    const double pivot = column[k][k];
-    if (!(std::abs(pivot) > 1e-12)) return false;
-    V8 multiplier = column[k];
-    multiplier[k] -= 1.0;
-    multiplier *= 1.0 / pivot;
-#pragma GCC unroll 9
-    for (int j = k + 1; j <= kNodes; ++j) column[j] -= multiplier * column[j][k];
-  }
-  out_delta = column[kNodes];
-  return true;
-}
-
 template <Load load>
 void propagate(const Propagator& p, const double* x, const double* forces, int contacts, Eigen::Index np,
                double* out_x) {

@@ -4,6 +4,8 @@
 #include "dynamics/step_tables.hpp"
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
 
 /// The inner loops of the collocation flow: fixed-size products on eight lanes, no allocation.
 namespace slipmode::dynamics {
@@ -41,7 +43,45 @@ namespace slipmode::dynamics {
 
 /// Solves (I − A diag(d)) δ = r by Gauss-Jordan elimination over the lanes, or by a short Neumann series where A
 /// diag(d) is small. False when a pivot vanishes.
-bool solve_newton(const double* A, const V8& d, const V8& r, V8& out_delta);
+[[gnu::always_inline]] inline bool solve_newton(const double* A, const V8& d, const V8& r, V8& out_delta) {
+  alignas(64) double scaled[kNodes];
+  const double largest = std::max(max8(d), -min8(d));
+  V8 row_sum{};
+  for (int j = 0; j < kNodes; ++j) {
+    const V8 a = load8(A + kNodes * j);
+    row_sum += a < 0.0 ? -a : a;
+  }
+  if (largest * max8(row_sum) < 0.05) {
+    // δ = r + B(r + B(r + B r)), B = A diag(d): error below 1e-5 of δ, which Newton's next step squares away.
+    V8 delta = r;
+    for (int term = 0; term < 4; ++term) {
+      store8(scaled, d * delta);
+      delta = r + matrix8_times(A, scaled);
+    }
+    out_delta = delta;
+    return true;
+  }
+  V8 column[kNodes + 1];
+  alignas(64) double slope[kNodes];
+  store8(slope, d);
+  for (int j = 0; j < kNodes; ++j) {
+    column[j] = -load8(A + kNodes * j) * slope[j];
+    column[j][j] += 1.0;
+  }
+  column[kNodes] = r;
+#pragma GCC unroll 8
+  for (int k = 0; k < kNodes; ++k) {
+    const double pivot = column[k][k];
+    if (!(std::abs(pivot) > 1e-12)) return false;
+    V8 multiplier = column[k];
+    multiplier[k] -= 1.0;
+    multiplier *= 1.0 / pivot;
+#pragma GCC unroll 9
+    for (int j = k + 1; j <= kNodes; ++j) column[j] -= multiplier * column[j][k];
+  }
+  out_delta = column[kNodes];
+  return true;
+}
 
 /// Whether the constant load acts: on states it does, on their differences (tangent vectors) it does not.
 enum class Load : bool { kLeftOut, kIncluded };
