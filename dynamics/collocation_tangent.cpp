@@ -7,7 +7,7 @@
 namespace slipmode::dynamics {
 
 double CollocationFlow::force_slope(int c, ContactMode mode, double velocity, double belt) const {
-  const ContactForces& law = laws_[static_cast<std::size_t>(c)];
+  const ContactForces& law = laws()[static_cast<std::size_t>(c)];
   if (mode == ContactMode::kStick || law.is_constant()) return 0.0;
   if (!law.sticks()) {
     double slope;
@@ -22,7 +22,7 @@ void CollocationFlow::set_tangents(Eigen::MatrixXd tangents) {
   tangents_ = std::move(tangents);
   std::vector<Eigen::Index> stuck;
   for (int c = 0; c < nc_; ++c)
-    if (modes_[static_cast<std::size_t>(c)] == ContactMode::kStick) stuck.push_back(c);
+    if (point_.modes[static_cast<std::size_t>(c)] == ContactMode::kStick) stuck.push_back(c);
   if (stuck.empty()) return;
   const Eigen::MatrixXd rows = model_.velocity_row(Eigen::all, stuck).transpose();
   const Eigen::MatrixXd mobility = model_.mobility(stuck, stuck);
@@ -58,17 +58,16 @@ void CollocationFlow::push_tangents(int level, double tau) {
   }
 }
 
-void CollocationFlow::salt_tangents(const Eigen::VectorXd& force_before, const Eigen::VectorXd& force_after,
-                                    const std::vector<ContactMode>& modes_before, int contact) {
+void CollocationFlow::salt_tangents(const Eigen::VectorXd& force_before, int contact) {
   // δx⁺ = δx + (f⁺ − f⁻) (∇g δx) / ġ⁻ for the guard g that was reached; f⁺ − f⁻ = Σ b_c Δλ_c.
   if (contact < 0) return;
-  const Eigen::VectorXd jump = model_.input * (force_after - force_before);
-  const double a = belt_.acceleration(begin_), V = belt_.velocity(time_);
+  const Eigen::VectorXd jump = model_.input * (point_.force - force_before);
+  const double a = belt().acceleration(begin_), V = belt().velocity(point_.time);
   Eigen::RowVectorXd gradient;
   double rate;
-  if (modes_before[static_cast<std::size_t>(contact)] != ContactMode::kStick) {
+  if (step_modes_[static_cast<std::size_t>(contact)] != ContactMode::kStick) {
     gradient = -model_.velocity_row.col(contact).transpose();
-    rate = a - (model_.acceleration_row.col(contact).dot(x_) + model_.load_acceleration(contact) +
+    rate = a - (model_.acceleration_row.col(contact).dot(point_.x) + model_.load_acceleration(contact) +
                 model_.mobility.row(contact).dot(force_before));
   } else {
     // g = ±μ_s N − λ_stick(x): λ of the sticking contacts from a = Gᵀrow x + mobility λ, the sliding ones following
@@ -76,21 +75,21 @@ void CollocationFlow::salt_tangents(const Eigen::VectorXd& force_before, const E
     std::vector<Eigen::Index> stuck;
     Eigen::Index position = 0;
     for (int c = 0; c < nc_; ++c)
-      if (modes_before[static_cast<std::size_t>(c)] == ContactMode::kStick) {
+      if (step_modes_[static_cast<std::size_t>(c)] == ContactMode::kStick) {
         if (c == contact) position = static_cast<Eigen::Index>(stuck.size());
         stuck.push_back(c);
       }
     Eigen::MatrixXd rows = model_.acceleration_row(Eigen::all, stuck).transpose();
     for (int d = 0; d < nc_; ++d) {
       const double slope =
-          force_slope(d, modes_before[static_cast<std::size_t>(d)], model_.velocity_row.col(d).dot(x_), V);
+          force_slope(d, step_modes_[static_cast<std::size_t>(d)], model_.velocity_row.col(d).dot(point_.x), V);
       if (slope != 0.0)
         rows += Eigen::VectorXd(model_.mobility(stuck, d)) * slope * model_.velocity_row.col(d).transpose();
     }
     const Eigen::MatrixXd mobility = model_.mobility(stuck, stuck);
     gradient = mobility.ldlt().solve(rows).row(position);  // −dλ/dx
     const double h = tables_.step(step_level_);
-    rate = -forces_.segment<kNodes>(kNodes * contact).dot(nodes_.lagrange_slope((time_ - begin_) / h)) / h;
+    rate = -forces_.segment<kNodes>(kNodes * contact).dot(nodes_.lagrange_slope((point_.time - begin_) / h)) / h;
   }
   tangents_ += jump * (gradient * tangents_) / rate;
 }

@@ -17,7 +17,6 @@ constexpr double kSimpleStart = 1e-7;
 /// Up to this many undecided contacts every combination can be tried.
 constexpr int kMaxEnumerated = 6;
 
-double sign_of(ContactMode mode) { return static_cast<double>(static_cast<int>(mode)); }
 ContactMode slip_mode(double sign) { return sign > 0 ? ContactMode::kSlipPositive : ContactMode::kSlipNegative; }
 
 /// wᵀq̈ of every contact with all forces zero.

@@ -7,6 +7,9 @@
 
 namespace slipmode::dynamics {
 
+/// Sign of the sliding speed: −1, 0 (stick) or 1.
+[[nodiscard]] inline double sign_of(ContactMode mode) { return static_cast<double>(static_cast<int>(mode)); }
+
 /// A contact's law in the numbers the flow needs, times the normal load.
 struct ContactForces {
   /// kFree: no force ever (μ_s N = 0); kConstant: the force in slip is constant; kStribeck: it depends on the sliding

@@ -60,7 +60,7 @@ std::vector<ContactMode> start_modes(const HybridSystem& system, const State& st
 /// The modal model a run needs, and its state there.
 struct Prepared {
   const ModelTables& tables;
-  Eigen::VectorXd x;
+  HybridPoint start;
   FlowOptions options;
 };
 
@@ -74,17 +74,21 @@ Prepared prepare(const HybridSystem& system, const State& start, FlowOptions opt
   Eigen::VectorXd x = Eigen::VectorXd::Zero(2 * m.np);
   if (!at_origin) x = m.from_q * start.q + m.from_v * start.v;
   if (options.zeno_window == 0.0) options.zeno_window = 0.01 * 2.0 * std::numbers::pi / std::max(m.fastest, 1e-300);
-  return {tables, std::move(x), options};
+  const auto nc = static_cast<Eigen::Index>(system.contacts().size());
+  HybridPoint point{start.time, std::move(x), start_modes(system, start),
+                    std::vector<int>(static_cast<std::size_t>(nc), 0), Eigen::VectorXd::Zero(nc)};
+  return {tables, std::move(point), options};
 }
 
-State physical(const ModalModel& m, double time, const Eigen::VectorXd& x, const std::vector<ContactMode>& modes) {
-  if (!m.has_shapes()) return {time, {}, {}, modes};
-  return {time, m.to_q * x, m.to_v * x, modes};
+State physical(const ModalModel& m, const HybridPoint& point) {
+  if (!m.has_shapes()) return {point.time, {}, {}, point.modes};
+  return {point.time, m.to_q * point.x, m.to_v * point.x, point.modes};
 }
 
 /// Energy from the modal coordinates where they decouple it, else from the state.
-double modal_energy(const HybridSystem& system, const ModalModel& m, const Eigen::VectorXd& x) {
-  if (!m.proportional) return system.energy(physical(m, 0.0, x, {}));
+double modal_energy(const HybridSystem& system, const ModalModel& m, const HybridPoint& point) {
+  if (!m.proportional) return system.energy(physical(m, point));
+  const Eigen::VectorXd& x = point.x;
   const auto eta = x.head(m.np), rate = x.tail(m.np);
   return 0.5 * rate.squaredNorm() + 0.5 * m.omega.cwiseProduct(eta).squaredNorm() - m.load.tail(m.np).dot(eta);
 }
@@ -165,33 +169,33 @@ void run(AnyFlow& flow, const HybridSystem& system, const ModalModel& m, const S
          const SimulateOptions& options, Trajectory& out) {
   const double end = start.time + options.duration, keep_from = start.time + options.transient;
   Recorder recorder(options, m, start.time, out);
-  out.audit.energy_start = modal_energy(system, m, flow.x());
+  out.audit.energy_start = modal_energy(system, m, flow.point());
   double largest_energy = std::abs(out.audit.energy_start);
   Eigen::VectorXd x(2 * m.np), force(m.contacts);
   std::vector<Eigen::VectorXd> event_q, event_v;
   bool going = true;
-  while (going && flow.time() < end) {
+  while (going && flow.point().time < end) {
     const bool event = flow.step(end);
-    while (recorder.next_time() <= flow.time()) {
+    while (recorder.next_time() <= flow.point().time) {
       const double t = recorder.next_time();
       flow.evaluate(t, x, force);
       recorder.sample(t, x, force);
     }
     if (!event) continue;
-    if (options.flow.audit) largest_energy = std::max(largest_energy, std::abs(modal_energy(system, m, flow.x())));
+    if (options.flow.audit) largest_energy = std::max(largest_energy, std::abs(modal_energy(system, m, flow.point())));
     for (const Event& e : flow.events()) {
       if (e.time < keep_from) continue;
       if (options.keep_events) out.events.push_back(e);
       if (options.event_states) {
-        const State s = physical(m, flow.time(), flow.x(), flow.modes());
+        const State s = physical(m, flow.point());
         event_q.push_back(s.q);
         event_v.push_back(s.v);
       }
-      if (options.on_event && !options.on_event(e, physical(m, flow.time(), flow.x(), flow.modes()))) going = false;
+      if (options.on_event && !options.on_event(e, physical(m, flow.point()))) going = false;
     }
   }
   while (recorder.next_time() <= end && going) {  // the last sample may lie a rounding error past the last step
-    flow.evaluate(flow.time(), x, force);
+    flow.evaluate(flow.point().time, x, force);
     recorder.sample(recorder.next_time(), x, force);
   }
   recorder.finish();
@@ -203,8 +207,8 @@ void run(AnyFlow& flow, const HybridSystem& system, const ModalModel& m, const S
       out.event_v.col(static_cast<Eigen::Index>(k)) = event_v[k];
     }
   }
-  out.final_state = physical(m, flow.time(), flow.x(), flow.modes());
-  out.audit.energy_end = modal_energy(system, m, flow.x());
+  out.final_state = physical(m, flow.point());
+  out.audit.energy_end = modal_energy(system, m, flow.point());
   out.audit.contact_work = flow.work().contact_work;
   out.audit.drive_work = flow.work().drive_work;
   out.audit.friction_loss = flow.work().drive_work - flow.work().contact_work;
@@ -229,8 +233,7 @@ Trajectory simulate(const HybridSystem& system, const State& start, const Simula
       options.output == SimulateOptions::Output::kContacts && !options.event_states && !options.on_event;
   Prepared p = prepare(system, start, options.flow, rows_suffice);
   Trajectory out;
-  CollocationFlow flow(system, p.tables.steps, p.x, start.time, start_modes(system, start), p.options,
-                       options.sample > 0);
+  CollocationFlow flow(system, p.tables.steps, std::move(p.start), p.options);
   run(flow, system, p.tables.model, start, options, out);
   return out;
 }
@@ -240,15 +243,15 @@ TangentResult tangent_flow(const HybridSystem& system, const State& start, doubl
   require(duration >= 0 && std::isfinite(duration), "duration must be finite and not negative");
   Prepared p = prepare(system, start, options, false);
   const ModalModel& m = p.tables.model;
-  CollocationFlow flow(system, p.tables.steps, p.x, start.time, start_modes(system, start), p.options, true);
+  CollocationFlow flow(system, p.tables.steps, std::move(p.start), p.options);
   Eigen::MatrixXd basis(2 * m.np, 2 * m.n);
   basis << m.from_q, m.from_v;
   flow.set_tangents(std::move(basis));
   TangentResult out;
   const double end = start.time + duration;
-  while (flow.time() < end)
+  while (flow.point().time < end)
     if (flow.step(end)) out.events.insert(out.events.end(), flow.events().begin(), flow.events().end());
-  out.end = physical(m, flow.time(), flow.x(), flow.modes());
+  out.end = physical(m, flow.point());
   out.monodromy.resize(2 * m.n, 2 * m.n);
   out.monodromy << m.to_q * flow.tangents(), m.to_v * flow.tangents();
   return out;

@@ -1,0 +1,66 @@
+#pragma once
+
+#include "dynamics/consistency.hpp"
+#include "dynamics/simulate.hpp"
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace slipmode::dynamics {
+
+/// Where a trajectory is: what both flows carry from step to step.
+struct HybridPoint {
+  double time = 0.0;
+  Eigen::VectorXd x;  ///< state of the slipping structure's modal model [2np]
+  std::vector<ContactMode> modes;
+  std::vector<int> multiplicity;  ///< order of the zero of each sliding speed right at `time`: 0, 1 or 2
+  Eigen::VectorXd force;          ///< λ at `time`, right limit [nc]
+};
+
+/// Running sums of the energy balance (see EnergyAudit).
+struct WorkSums {
+  double contact_work = 0.0, drive_work = 0.0, viscous_loss = 0.0, exchanged = 0.0;
+
+  void add(double contact, double drive, double viscous);
+};
+
+/// Turns a guard that was reached into events: puts the state onto the guard, lets consistency decide the new modes,
+/// keeps the record. The same for either flow.
+class EventResolver {
+ public:
+  EventResolver(const HybridSystem& system, const ModalModel& model, const FlowOptions& options);
+
+  [[nodiscard]] const std::vector<ContactForces>& laws() const { return laws_; }
+  [[nodiscard]] const friction::Belt& belt() const { return belt_; }
+  [[nodiscard]] Instant instant(double time, const double* x) const;
+  /// wᵀq̇ of contact c.
+  [[nodiscard]] double contact_velocity(int c, const double* x) const;
+
+  /// Decides the modes of contacts that start at rest on the belt.
+  void start(HybridPoint& point) const;
+  /// @param contact   whose guard was reached, or −1 for a corner of the drive
+  /// @param touching  the guard was touched and not crossed: a grazing
+  /// @throws NumericalFailure  Zeno, or no consistent modes
+  void settle(HybridPoint& point, int contact, bool touching);
+
+  /// Events of the last `settle` (simultaneous ones together).
+  [[nodiscard]] const std::vector<Event>& events() const { return events_; }
+  void clear() { events_.clear(); }
+
+ private:
+  void settle_single(HybridPoint& point);
+  void settle_coupled(HybridPoint& point, int contact);
+  void record(const HybridPoint& point, int contact, EventKind kind, ContactMode before);
+  void record_change(const HybridPoint& point, int contact, ContactMode before);
+  void guard_against_zeno(const HybridPoint& point);
+
+  const ModalModel& model_;
+  friction::Belt belt_;
+  std::vector<ContactForces> laws_;
+  int max_events_per_window_;
+  double zeno_window_;
+  std::vector<Event> events_;
+  std::vector<double> recent_;
+};
+
+}  // namespace slipmode::dynamics
