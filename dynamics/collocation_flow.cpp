@@ -20,6 +20,9 @@ constexpr double kGrowth = 1.0 / (256.0 * 8.0);
 constexpr double kLargestGrowth = 1.2;
 /// An event's time is final when the next correction is below this share of the step.
 constexpr double kNegligibleShift = 1e-15;
+/// A stick force starts at its limit when it is this close (relative).
+constexpr double kAtLimit = 1e-10;
+constexpr int kRefinements = 20;
 
 /// How many times to halve a step whose eighth-order error is too large by this factor: at least once.
 int halvings(double excess) {
@@ -76,8 +79,11 @@ CollocationFlow::Guarded CollocationFlow::first_guard() const {
     if (!law.sticks()) continue;
     if (point_.modes[i] == ContactMode::kStick) {
       const V8 b = matrix8_times(t.bernstein7.data(), forces_.data() + kNodes * c);
-      if (max8(b) >= law.static_limit) consider(law.static_limit - b, 0.0, kNodes - 1, c, 0);
-      if (min8(b) <= -law.static_limit) consider(law.static_limit + b, 0.0, kNodes - 1, c, 0);
+      for (const double sign : {1.0, -1.0}) {
+        V8 margin = law.static_limit - sign * b;
+        if (std::abs(margin[0]) <= kAtLimit * law.static_limit) margin[0] = 0.0;  // on the guard: where to, shows next
+        if (!(min8(margin) > 0.0)) consider(margin, 0.0, kNodes - 1, c, 0);
+      }
       continue;
     }
     const double sign = sign_of(point_.modes[i]);
@@ -167,7 +173,10 @@ bool CollocationFlow::step(double t_limit) {
 
   if (tau < h) {
     advance_within(tables_, x_begin_.data(), forces_.data(), level, tau, point_.x.data());
-    if (at_guard) refine_event(guard, tau, point_.x);
+    if (at_guard)
+      refine_event(guard, tau, point_.x);
+    else
+      resolver_.hold(begin_ + tau, point_.modes, point_.x.data());  // between nodes a stick is only nearly held
   } else {
     propagate(tables_.propagator(level), x_begin_.data(), forces_.data(), nc_, model_.np, point_.x.data());
   }
@@ -178,7 +187,12 @@ bool CollocationFlow::step(double t_limit) {
   for (int c = 0; c < nc_; ++c)
     if (point_.modes[static_cast<std::size_t>(c)] == ContactMode::kStick)
       statistics_.stick_time[static_cast<std::size_t>(c)] += tau;
-  if (options_.audit) account(level, tau / h);
+  if (options_.audit) {
+    if (tau < h)
+      account_pieces(level, tau);
+    else
+      account(level, x_begin_.data(), forces_.data(), velocity_.data(), begin_, 1.0);
+  }
   if (tangents_.size() > 0) push_tangents(level, tau);
 
   level_ = error < tolerance * kGrowth && level > 0 ? level - 1 : level;
@@ -208,14 +222,16 @@ void CollocationFlow::refine_event(const Guarded& guard, double& tau, Eigen::Vec
   const double h = tables_.step(step_level_);
   const int c = guard.contact;
   const auto i = static_cast<std::size_t>(c);
-  for (int iteration = 0; iteration < 3; ++iteration) {
+  double previous = 0.0;
+  for (int iteration = 0; iteration < kRefinements; ++iteration) {
     const double a = belt().acceleration(begin_), V = belt().velocity(begin_) + a * tau;
     const RadauTables::Vector8 basis = nodes_.lagrange(tau / h);
-    double value, rate;
+    double value, rate, usual_rate;
     if (point_.modes[i] == ContactMode::kStick) {
       const double sign = forces_.segment<kNodes>(kNodes * c).dot(basis) > 0 ? 1.0 : -1.0;
       value = laws()[i].static_limit - sign * stick_force(c, x, tau, basis);
       rate = -sign * forces_.segment<kNodes>(kNodes * c).dot(nodes_.lagrange_slope(tau / h)) / h;
+      usual_rate = laws()[i].static_limit / h;
     } else {
       const double sign = sign_of(point_.modes[i]);
       value = sign * (V - resolver_.contact_velocity(c, x.data()));
@@ -224,13 +240,17 @@ void CollocationFlow::refine_event(const Guarded& guard, double& tau, Eigen::Vec
       for (int d = 0; d < nc_; ++d)
         acceleration += model_.mobility(c, d) * forces_.segment<kNodes>(kNodes * d).dot(basis);
       rate = sign * (a - acceleration);
+      usual_rate = model_.mobility(c, c) * laws()[i].static_limit;
     }
     const double shift = -value / rate;
     if (!(std::abs(shift) < 1e-2 * h) || tau + shift <= 0.0) return;
     tau += shift;
     if (std::abs(shift) <= kNegligibleShift * h) return;
     advance_within(tables_, x_begin_.data(), forces_.data(), step_level_, tau, x.data());
-    if (shift * shift <= kNegligibleShift * h * h) return;  // Newton's next shift would be negligible
+    // Newton squares its error; the factor shows in two shifts, and before that is bounded by a usual curvature.
+    const double factor = previous > 0.0 ? std::abs(shift) / (previous * previous) : std::abs(usual_rate / rate) / h;
+    if (factor * shift * shift <= kNegligibleShift * h) return;
+    previous = std::abs(shift);
   }
 }
 
@@ -250,8 +270,35 @@ double CollocationFlow::stick_force(int c, const Eigen::VectorXd& x, double tau,
   return force(c);
 }
 
-void CollocationFlow::account(int level, double theta) {
-  const double h = tables_.step(level), length = theta * h;
+void CollocationFlow::account_pieces(int level, double tau) {
+  double t = begin_;
+  Eigen::VectorXd x = x_begin_, next(x.size()), velocity(kNodes * nc_);
+  const auto velocities = [&](int piece, const double* forces) {
+    const Collocation& table = tables_.collocation(piece);
+    for (int c = 0; c < nc_; ++c)
+      velocity.segment<kNodes>(kNodes * c) =
+          table.free.middleCols(2 * model_.np * c, 2 * model_.np) * x + table.load.col(c);
+    velocity += table.kernel * Eigen::Map<const Eigen::VectorXd>(forces, kNodes * nc_);
+  };
+  walk_pieces(
+      tables_, forces_.data(), level, tau,
+      [&](int piece, const double* forces) {
+        velocities(piece, forces);
+        account(piece, x.data(), forces, velocity.data(), t, 1.0);
+        propagate(tables_.propagator(piece), x.data(), forces, nc_, model_.np, next.data());
+        x.swap(next);
+        t += tables_.step(piece);
+      },
+      [&](int piece, const double* forces, double rest) {
+        // Down to a table of the length of the rest, so that its polynomials need no more than the Taylor series does.
+        velocities(piece, forces);
+        account(piece, x.data(), forces, velocity.data(), t, rest / tables_.step(piece));
+      });
+}
+
+void CollocationFlow::account(int level, const double* x, const double* forces, const double* velocities, double begin,
+                              double theta) {
+  const double length = theta * tables_.step(level);
   const bool whole = theta >= 1.0;
   const RadauTables& t = nodes_;
   double contact = 0.0, drive = 0.0;
@@ -267,24 +314,19 @@ void CollocationFlow::account(int level, double theta) {
       for (int k = 0; k < kNodes; ++k) velocity_part(j, k + 1) = to_part(j, k) * at / t.node(k);
     }
   }
-  const double V = belt().velocity(begin_), a = belt().acceleration(begin_);
+  const double V = belt().velocity(begin), a = belt().acceleration(begin);
   for (int c = 0; c < nc_; ++c) {
-    RadauTables::Vector8 force = forces_.segment<kNodes>(kNodes * c), speed = velocity_.segment<kNodes>(kNodes * c);
+    const RadauTables::Vector8 given = Eigen::Map<const RadauTables::Vector8>(velocities + kNodes * c);
+    RadauTables::Vector8 force = Eigen::Map<const RadauTables::Vector8>(forces + kNodes * c), speed = given;
     if (!whole) {
       force = to_part * force;
-      if (step_modes_[static_cast<std::size_t>(c)] == ContactMode::kStick)
-        speed = V + a * length * t.node.array();
-      else
-        speed = velocity_part.col(0) * resolver_.contact_velocity(c, x_begin_.data()) +
-                velocity_part.rightCols<kNodes>() * velocity_.segment<kNodes>(kNodes * c);
+      speed = velocity_part.col(0) * resolver_.contact_velocity(c, x) + velocity_part.rightCols<kNodes>() * given;
     }
     const RadauTables::Vector8 weighted = length * t.weight.cwiseProduct(force);
     contact += weighted.dot(speed);
     drive += V * weighted.sum() + a * length * weighted.dot(t.node);
   }
-  const double viscous =
-      viscous_loss(tables_, level, x_begin_.data(), forces_.data(), theta, whole ? nullptr : velocity_part.data());
-  work_.add(contact, drive, viscous);
+  work_.add(contact, drive, viscous_loss(tables_, level, x, forces, theta, whole ? nullptr : velocity_part.data()));
 }
 
 void CollocationFlow::restart_steps() {
@@ -300,10 +342,9 @@ std::size_t CollocationFlow::stuck_count() const {
 void CollocationFlow::evaluate(double t, Eigen::VectorXd& out_x, Eigen::VectorXd& out_force) const {
   const double h = tables_.step(step_level_), tau = std::clamp(t - begin_, 0.0, h);
   out_x.resize(2 * model_.np);
-  out_force.resize(nc_);
   advance_within(tables_, x_begin_.data(), forces_.data(), step_level_, tau, out_x.data());
-  const auto basis = nodes_.lagrange(tau / h);
-  for (int c = 0; c < nc_; ++c) out_force(c) = forces_.segment<kNodes>(kNodes * c).dot(basis);
+  resolver_.hold(t, step_modes_, out_x.data());
+  out_force = resolver_.forces(t, step_modes_, out_x.data());
 }
 
 }  // namespace slipmode::dynamics

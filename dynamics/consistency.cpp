@@ -25,19 +25,13 @@ Eigen::VectorXd free_acceleration(const Instant& now) {
   return now.model.acceleration_row.transpose() * x + now.model.load_acceleration;
 }
 
-double smooth_force(const Instant& now, int c) {
-  const Eigen::Map<const Eigen::VectorXd> x(now.x, 2 * now.model.np);
-  double slope;
-  return now.laws[static_cast<std::size_t>(c)].smooth(now.belt_velocity - now.model.velocity_row.col(c).dot(x), slope);
-}
-
 struct Trial {
   std::vector<ContactMode> modes;
   Eigen::VectorXd force;
 };
 
 /// Forces for given modes of the undecided contacts; true when every one of them obeys its law.
-bool evaluate(const Instant& now, const std::vector<bool>& at_rest, int release, Trial& trial) {
+bool evaluate(const Instant& now, const std::vector<bool>& at_rest, const std::vector<bool>& released, Trial& trial) {
   const auto nc = trial.modes.size();
   std::vector<bool> stuck(nc);
   for (std::size_t c = 0; c < nc; ++c) {
@@ -56,7 +50,7 @@ bool evaluate(const Instant& now, const std::vector<bool>& at_rest, int release,
     } else {
       const double scale = std::max(now.model.mobility(i, i) * limit, std::abs(now.belt_acceleration));
       // A release is located to the accuracy of the stick force; a continuous law then starts with zero acceleration.
-      const double tolerance = static_cast<int>(c) == release ? kReleaseTolerance : kForceTolerance;
+      const double tolerance = released[c] ? kReleaseTolerance : kForceTolerance;
       if (sign_of(trial.modes[c]) * (now.belt_acceleration - acceleration(i)) < -tolerance * scale) return false;
     }
   }
@@ -64,7 +58,7 @@ bool evaluate(const Instant& now, const std::vector<bool>& at_rest, int release,
 }
 
 /// All combinations of the undecided contacts, most sticking first; the first consistent one.
-bool enumerate(const Instant& now, const std::vector<bool>& at_rest, int release, Trial& trial) {
+bool enumerate(const Instant& now, const std::vector<bool>& at_rest, const std::vector<bool>& released, Trial& trial) {
   std::vector<std::size_t> open;
   for (std::size_t c = 0; c < at_rest.size(); ++c)
     if (at_rest[c]) open.push_back(c);
@@ -83,9 +77,9 @@ bool enumerate(const Instant& now, const std::vector<bool>& at_rest, int release
                          : digit == 1 ? ContactMode::kSlipPositive
                                       : ContactMode::kSlipNegative;
         slips += digit != 0;
-        allowed = allowed && !(digit == 0 && static_cast<int>(c) == release);
+        allowed = allowed && !(digit == 0 && released[c]);
       }
-      if (allowed && slips == sliding && evaluate(now, at_rest, release, trial)) return true;
+      if (allowed && slips == sliding && evaluate(now, at_rest, released, trial)) return true;
     }
   return false;
 }
@@ -99,6 +93,12 @@ double ContactForces::smooth(double v, double& slope) const {
   const double e = drop * std::exp(-alpha * magnitude);
   slope = (kinetic + e) * dth - alpha * d_magnitude * e * th;
   return (kinetic + e) * th;
+}
+
+double ContactForces::sliding(ContactMode mode, double v) const {
+  double slope;
+  if (!sticks()) return smooth(v, slope);
+  return sign_of(mode) * (kinetic + drop * std::exp(-alpha * std::abs(v)));
 }
 
 ContactForces contact_forces(const friction::Contact& contact) {
@@ -158,21 +158,17 @@ void stick_forces(const Instant& now, const std::vector<bool>& stuck, Eigen::Vec
 }
 
 Resolution resolve(const Instant& now, const std::vector<ContactMode>& modes, const std::vector<bool>& at_rest,
-                   int release) {
+                   const std::vector<bool>& released) {
   const auto nc = modes.size();
   Trial trial{modes, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(nc))};
   const Eigen::Map<const Eigen::VectorXd> x(now.x, 2 * now.model.np);
   for (std::size_t c = 0; c < nc; ++c) {
     const auto i = static_cast<Eigen::Index>(c);
     const ContactForces& law = now.laws[c];
-    if (!law.sticks()) {
-      trial.force(i) = smooth_force(now, static_cast<int>(c));
-    } else if (!at_rest[c]) {
-      const double speed = std::abs(now.belt_velocity - now.model.velocity_row.col(i).dot(x));
-      trial.force(i) = sign_of(modes[c]) * (law.kinetic + law.drop * std::exp(-law.alpha * speed));
-    } else {
+    if (!law.sticks() || !at_rest[c])
+      trial.force(i) = law.sliding(modes[c], now.belt_velocity - now.model.velocity_row.col(i).dot(x));
+    else
       trial.modes[c] = ContactMode::kStick;
-    }
   }
 
   std::vector<bool> stuck(nc);
@@ -186,10 +182,13 @@ Resolution resolve(const Instant& now, const std::vector<ContactMode>& modes, co
     trial.force(i) = sign_of(trial.modes[c]) * now.laws[c].onset();
   };
   refresh();
-  if (release >= 0) {
-    slide(static_cast<std::size_t>(release));
-    refresh();
-  }
+  bool any_released = false;
+  for (std::size_t c = 0; c < nc; ++c)
+    if (released[c]) {
+      slide(c);
+      any_released = true;
+    }
+  if (any_released) refresh();
   for (std::size_t round = 0; round < nc; ++round) {
     std::size_t worst = nc;
     double excess = 0.0;
@@ -207,22 +206,57 @@ Resolution resolve(const Instant& now, const std::vector<ContactMode>& modes, co
     refresh();
   }
   Trial checked = trial;
-  if (!evaluate(now, at_rest, release, checked) && !enumerate(now, at_rest, release, checked))
+  if (!evaluate(now, at_rest, released, checked) && !enumerate(now, at_rest, released, checked))
     throw NumericalFailure(
         "no combination of stick and slip satisfies the friction laws at t = " + std::to_string(now.time), now.time, x,
         std::numeric_limits<double>::quiet_NaN());
   trial = checked;
 
   Resolution out{trial.modes, trial.force, std::vector<int>(nc, 0)};
-  const Eigen::VectorXd acceleration = free_acceleration(now) + now.model.mobility * out.force;
-  for (std::size_t c = 0; c < nc; ++c) {
-    if (!at_rest[c] || out.modes[c] == ContactMode::kStick) continue;
-    const auto i = static_cast<Eigen::Index>(c);
-    const double scale = now.model.mobility(i, i) * now.laws[c].static_limit;
-    const double start = sign_of(out.modes[c]) * (now.belt_acceleration - acceleration(i));
-    out.multiplicity[c] = start > kSimpleStart * scale ? 1 : 2;
-  }
+  for (std::size_t c = 0; c < nc; ++c)
+    if (at_rest[c] && out.modes[c] != ContactMode::kStick)
+      out.multiplicity[c] = start_multiplicity(now, static_cast<int>(c), out.modes[c], out.force) == 1 ? 1 : 2;
   return out;
+}
+
+int start_multiplicity(const Instant& now, int c, ContactMode mode, const Eigen::VectorXd& force) {
+  const ModalModel& m = now.model;
+  const double acceleration = m.acceleration_row.col(c).dot(Eigen::Map<const Eigen::VectorXd>(now.x, 2 * m.np)) +
+                              m.load_acceleration(c) + m.mobility.row(c).dot(force);
+  const double start = sign_of(mode) * (now.belt_acceleration - acceleration);
+  const double threshold = kSimpleStart * m.mobility(c, c) * now.laws[static_cast<std::size_t>(c)].static_limit;
+  return start > threshold ? 1 : start >= -threshold ? 2 : -1;
+}
+
+Eigen::VectorXd stick_force_rates(const Instant& now, const std::vector<ContactMode>& modes,
+                                  const Eigen::VectorXd& force) {
+  const ModalModel& m = now.model;
+  const auto np = m.np;
+  const Eigen::Map<const Eigen::VectorXd> x(now.x, 2 * np);
+  Eigen::VectorXd rate(2 * np);
+  rate.head(np) = m.g11.cwiseProduct(x.head(np)) + m.g12.cwiseProduct(x.tail(np));
+  rate.tail(np) = m.g21.cwiseProduct(x.head(np)) + m.g22.cwiseProduct(x.tail(np));
+  rate += m.input * force + m.load;
+  Eigen::VectorXd force_rate = Eigen::VectorXd::Zero(m.contacts);
+  std::vector<Eigen::Index> stuck;
+  for (int c = 0; c < m.contacts; ++c) {
+    const ContactForces& law = now.laws[static_cast<std::size_t>(c)];
+    if (modes[static_cast<std::size_t>(c)] == ContactMode::kStick) {
+      stuck.push_back(c);
+      continue;
+    }
+    const double v_rel = now.belt_velocity - m.velocity_row.col(c).dot(x);
+    double slope = 0.0;  // dλ/dv_rel
+    if (law.kind == ContactForces::Kind::kSmooth) static_cast<void>(law.smooth(v_rel, slope));
+    if (law.kind == ContactForces::Kind::kStribeck)
+      slope = -law.alpha * law.drop * std::exp(-law.alpha * std::abs(v_rel));
+    force_rate(c) = slope * (now.belt_acceleration - m.velocity_row.col(c).dot(rate));
+  }
+  const Eigen::VectorXd missing = -(m.acceleration_row.transpose() * rate + m.mobility * force_rate);
+  const Eigen::VectorXd solved =
+      Eigen::MatrixXd(m.mobility(stuck, stuck)).ldlt().solve(Eigen::VectorXd(missing(stuck)));
+  for (std::size_t k = 0; k < stuck.size(); ++k) force_rate(stuck[k]) = solved(static_cast<Eigen::Index>(k));
+  return force_rate;
 }
 
 }  // namespace slipmode::dynamics

@@ -26,6 +26,8 @@ struct ContactForces {
   [[nodiscard]] double onset() const { return kind == Kind::kStribeck ? kinetic + drop : kinetic; }
   [[nodiscard]] bool sticks() const { return kind == Kind::kConstant || kind == Kind::kStribeck; }
   [[nodiscard]] bool is_constant() const { return kind == Kind::kFree || kind == Kind::kConstant; }
+  /// λ while sliding with relative velocity v in this mode (not stick).
+  [[nodiscard]] double sliding(ContactMode mode, double v) const;
   /// λ of the smooth law (0 for a free contact) at relative velocity v, and dλ/dv.
   [[nodiscard]] double smooth(double v, double& slope) const;
 };
@@ -54,10 +56,10 @@ struct Instant {
 /// the equations (μ_k N < |λ| ≤ μ_s N) stick is chosen. The order of evaluation has no influence.
 /// @param modes    modes before the instant
 /// @param at_rest  contacts to be decided
-/// @param release  contact whose stick force has reached its limit (−1: none): it is released whatever rounding says
+/// @param released  contacts whose stick force has reached its limit: they slide whatever rounding says
 /// @throws NumericalFailure when no consistent choice exists
 [[nodiscard]] Resolution resolve(const Instant& now, const std::vector<ContactMode>& modes,
-                                 const std::vector<bool>& at_rest, int release);
+                                 const std::vector<bool>& at_rest, const std::vector<bool>& released);
 
 /// `resolve` for a system with one contact, without allocation.
 struct SingleResolution {
@@ -66,6 +68,14 @@ struct SingleResolution {
   int multiplicity;
 };
 [[nodiscard]] SingleResolution resolve_single(const Instant& now, bool released, double release_sign);
+
+/// Order of the zero of the sliding speed of a contact that starts to slide now under these forces: 1, or 2 when its
+/// acceleration relative to the belt vanishes to rounding. Less than 0: it would be driven back onto the belt.
+[[nodiscard]] int start_multiplicity(const Instant& now, int c, ContactMode mode, const Eigen::VectorXd& force);
+
+/// dλ/dt of the sticking contacts; sliding ones follow their laws.
+[[nodiscard]] Eigen::VectorXd stick_force_rates(const Instant& now, const std::vector<ContactMode>& modes,
+                                                const Eigen::VectorXd& force);
 
 /// λ of the sticking contacts (belt acceleration followed), given the sliding ones in `force`; in place.
 void stick_forces(const Instant& now, const std::vector<bool>& stuck, Eigen::VectorXd& force);

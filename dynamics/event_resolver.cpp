@@ -11,6 +11,8 @@ namespace {
 
 /// Sliding slower than this share of the velocities at play is no sliding.
 constexpr double kAtRest = 1e-13;
+/// A stick force this close to its limit (relative), and rising, reaches it together with the one that has.
+constexpr double kTogether = 1e-9;
 
 void assign(HybridPoint& point, Resolution resolution) {
   point.modes = std::move(resolution.modes);
@@ -43,10 +45,80 @@ double EventResolver::contact_velocity(int c, const double* x) const {
   return dot_padded(model_.velocity_row.col(c).data(), x, 2 * model_.np);
 }
 
+bool EventResolver::at_belt_speed(double time, int c, const double* x) const {
+  const double V = belt_.velocity(time);
+  const Eigen::Map<const Eigen::VectorXd> state(x, 2 * model_.np);
+  const double scale = model_.velocity_row.col(c).cwiseAbs().dot(state.cwiseAbs()) + std::abs(V);
+  return std::abs(V - contact_velocity(c, x)) <= kAtRest * scale;
+}
+
 void EventResolver::start(HybridPoint& point) const {
+  const Instant now = instant(point.time, point.x.data());
   std::vector<bool> at_rest;
   for (const ContactMode mode : point.modes) at_rest.push_back(mode == ContactMode::kStick);
-  assign(point, resolve(instant(point.time, point.x.data()), point.modes, at_rest, -1));
+  const std::vector<bool> none(at_rest.size(), false);
+  Resolution first = resolve(now, point.modes, at_rest, none);
+  // A contact said to slide at zero speed does so if its acceleration takes it there; else it is at rest.
+  bool again = false;
+  for (std::size_t c = 0; c < at_rest.size(); ++c) {
+    const auto i = static_cast<int>(c);
+    if (at_rest[c] || !laws_[c].sticks() || !at_belt_speed(point.time, i, point.x.data())) continue;
+    const int multiplicity = start_multiplicity(now, i, first.modes[c], first.force);
+    first.multiplicity[c] = std::max(multiplicity, 0);
+    if (multiplicity < 0) again = at_rest[c] = true;
+  }
+  assign(point, again ? resolve(now, point.modes, at_rest, none) : std::move(first));
+}
+
+void EventResolver::hold(double time, const std::vector<ContactMode>& modes, double* x) const {
+  std::vector<Eigen::Index> stuck;
+  for (std::size_t c = 0; c < modes.size(); ++c)
+    if (modes[c] == ContactMode::kStick) stuck.push_back(static_cast<Eigen::Index>(c));
+  hold(time, stuck, x);
+}
+
+void EventResolver::hold(double time, const std::vector<Eigen::Index>& contacts, double* x) const {
+  if (contacts.empty()) return;
+  const double V = belt_.velocity(time);
+  Eigen::VectorXd gap(static_cast<Eigen::Index>(contacts.size()));
+  for (Eigen::Index k = 0; k < gap.size(); ++k)
+    gap(k) = V - contact_velocity(static_cast<int>(contacts[static_cast<std::size_t>(k)]), x);
+  Eigen::Map<Eigen::VectorXd>(x, 2 * model_.np) +=
+      Eigen::MatrixXd(model_.input(Eigen::all, contacts)) *
+      Eigen::MatrixXd(model_.mobility(contacts, contacts)).ldlt().solve(gap);
+}
+
+Eigen::VectorXd EventResolver::forces(double time, const std::vector<ContactMode>& modes, const double* x) const {
+  Eigen::VectorXd force(model_.contacts);
+  std::vector<bool> stuck(modes.size());
+  for (std::size_t c = 0; c < modes.size(); ++c) {
+    const auto i = static_cast<Eigen::Index>(c);
+    stuck[c] = modes[c] == ContactMode::kStick;
+    if (!stuck[c])
+      force(i) = laws_[c].sliding(modes[c], belt_.velocity(time) - contact_velocity(static_cast<int>(c), x));
+  }
+  stick_forces(instant(time, x), stuck, force);
+  return force;
+}
+
+std::vector<bool> EventResolver::released_together(const HybridPoint& point, int contact) const {
+  std::vector<bool> released(point.modes.size());
+  if (contact < 0 || point.modes[static_cast<std::size_t>(contact)] != ContactMode::kStick) return released;
+  const Instant now = instant(point.time, point.x.data());
+  std::vector<bool> stuck;
+  for (const ContactMode mode : point.modes) stuck.push_back(mode == ContactMode::kStick);
+  Eigen::VectorXd force = point.force, rate;
+  stick_forces(now, stuck, force);
+  for (std::size_t c = 0; c < released.size(); ++c) {
+    const auto i = static_cast<Eigen::Index>(c);
+    if (i == contact) {
+      released[c] = true;
+    } else if (stuck[c] && std::abs(force(i)) >= laws_[c].static_limit * (1 - kTogether)) {
+      if (rate.size() == 0) rate = stick_force_rates(now, point.modes, force);
+      released[c] = rate(i) * force(i) > 0;
+    }
+  }
+  return released;
 }
 
 void EventResolver::settle(HybridPoint& point, int contact, bool touching) {
@@ -80,28 +152,18 @@ void EventResolver::settle_single(HybridPoint& point) {
 void EventResolver::settle_coupled(HybridPoint& point, int contact) {
   // Contacts at rest on the belt, to be decided together: the sticking ones, the one whose guard was reached, and any
   // other whose sliding speed is zero to rounding.
-  const double V = belt_.velocity(point.time);
   std::vector<bool> at_rest(point.modes.size());
   std::vector<Eigen::Index> resting;
   for (std::size_t c = 0; c < point.modes.size(); ++c) {
     const auto i = static_cast<int>(c);
     if (!laws_[c].sticks()) continue;
-    const double speed = std::abs(V - contact_velocity(i, point.x.data()));
-    const double scale = model_.velocity_row.col(i).cwiseAbs().dot(point.x.cwiseAbs()) + std::abs(V);
-    at_rest[c] = point.modes[c] == ContactMode::kStick || i == contact || speed <= kAtRest * scale;
+    at_rest[c] = point.modes[c] == ContactMode::kStick || i == contact || at_belt_speed(point.time, i, point.x.data());
     if (at_rest[c]) resting.push_back(i);
   }
-  if (!resting.empty()) {
-    Eigen::VectorXd gap(static_cast<Eigen::Index>(resting.size()));
-    for (Eigen::Index k = 0; k < gap.size(); ++k)
-      gap(k) = V - contact_velocity(static_cast<int>(resting[static_cast<std::size_t>(k)]), point.x.data());
-    point.x += Eigen::MatrixXd(model_.input(Eigen::all, resting)) *
-               Eigen::MatrixXd(model_.mobility(resting, resting)).ldlt().solve(gap);
-  }
-
-  const bool released = contact >= 0 && point.modes[static_cast<std::size_t>(contact)] == ContactMode::kStick;
+  hold(point.time, resting, point.x.data());
   const std::vector<ContactMode> before = point.modes;
-  assign(point, resolve(instant(point.time, point.x.data()), point.modes, at_rest, released ? contact : -1));
+  const std::vector<bool> released = released_together(point, contact);
+  assign(point, resolve(instant(point.time, point.x.data()), point.modes, at_rest, released));
 
   if (contact < 0) record(point, -1, EventKind::kDriveCorner, ContactMode::kStick);
   for (std::size_t c = 0; c < point.modes.size(); ++c)

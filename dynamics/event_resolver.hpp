@@ -36,6 +36,12 @@ class EventResolver {
   /// wᵀq̇ of contact c.
   [[nodiscard]] double contact_velocity(int c, const double* x) const;
 
+  /// Takes the velocity error of sticking contacts out of a state, by the impulse that their friction would exert.
+  void hold(double time, const std::vector<ContactMode>& modes, double* x) const;
+
+  /// λ of every contact in these modes, by their laws and by the belt's acceleration where they stick [nc].
+  [[nodiscard]] Eigen::VectorXd forces(double time, const std::vector<ContactMode>& modes, const double* x) const;
+
   /// Decides the modes of contacts that start at rest on the belt.
   void start(HybridPoint& point) const;
   /// @param contact   whose guard was reached, or −1 for a corner of the drive
@@ -48,6 +54,10 @@ class EventResolver {
   void clear() { events_.clear(); }
 
  private:
+  void hold(double time, const std::vector<Eigen::Index>& contacts, double* x) const;
+  [[nodiscard]] bool at_belt_speed(double time, int c, const double* x) const;
+  /// The contact whose limit was reached, and every other that reaches its own at the same instant.
+  [[nodiscard]] std::vector<bool> released_together(const HybridPoint& point, int contact) const;
   void settle_single(HybridPoint& point);
   void settle_coupled(HybridPoint& point, int contact);
   void record(const HybridPoint& point, int contact, EventKind kind, ContactMode before);

@@ -8,14 +8,7 @@
 namespace slipmode::dynamics {
 namespace {
 
-/// Below this phase (fastest rate times time) a Taylor series of kTaylorOrder terms is exact to rounding.
-constexpr double kTaylorPhase = 0.25;
 constexpr int kTaylorOrder = 12;
-
-/// The eight node values of each contact through an 8 x 8 matrix.
-void map_nodes(const RadauTables::Matrix8& matrix, int contacts, const double* forces, double* out) {
-  for (int c = 0; c < contacts; ++c) store8(out + kNodes * c, matrix8_times(matrix.data(), forces + kNodes * c));
-}
 
 /// x(tau) by Taylor series; forces are polynomials through the nodes of a step of size h.
 template <Load load>
@@ -93,37 +86,18 @@ template <Load load>
 void advance_within(const StepTables& tables, const double* x, const double* forces, int level, double tau,
                     double* out_x) {
   const ModalModel& m = tables.model();
-  const int nc = m.contacts;
-  alignas(64) double stack_forces[2 * kNodes * 4];
-  Eigen::VectorXd heap;
-  double* current = stack_forces;
-  if (nc > 4) {
-    heap.resize(2 * kNodes * nc);
-    current = heap.data();
-  }
-  double* other = current + kNodes * nc;
-  std::copy_n(forces, kNodes * nc, current);
-  double h = tables.step(level);
   const double* from = x;
-  while (tau > 0.0 && m.fastest * std::min(tau, h) > kTaylorPhase && level + 1 < StepTables::kLevels) {
-    if (tau >= h) {
-      propagate<load>(tables.propagator(level), from, current, nc, m.np, out_x);
-      return;
-    }
-    ++level;
-    h /= 2.0;
-    if (tau >= h) {
-      map_nodes(radau().left_half, nc, current, other);
-      propagate<load>(tables.propagator(level), from, other, nc, m.np, out_x);
-      from = out_x;
-      tau -= h;
-      map_nodes(radau().right_half, nc, current, other);
-    } else {
-      map_nodes(radau().left_half, nc, current, other);
-    }
-    std::swap(current, other);
-  }
-  taylor<load>(m, from, current, h, tau, out_x);
+  walk_pieces(
+      tables, forces, level, tau,
+      [&](int piece, const double* piece_forces) {
+        propagate<load>(tables.propagator(piece), from, piece_forces, m.contacts, m.np, out_x);
+        from = out_x;
+      },
+      [&](int piece, const double* piece_forces, double rest) {
+        taylor<load>(m, from, piece_forces, tables.step(piece), rest, out_x);
+        from = out_x;
+      });
+  if (from == x) std::copy_n(x, 2 * m.np, out_x);
 }
 
 template void propagate<Load::kIncluded>(const Propagator&, const double*, const double*, int, Eigen::Index, double*);

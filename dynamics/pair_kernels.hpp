@@ -91,16 +91,54 @@ template <Load load = Load::kIncluded>
 void propagate(const Propagator& p, const double* x, const double* forces, int contacts, Eigen::Index np,
                double* out_x);
 
-/// State at tau within a step of tabulated size whose forces are polynomials through the nodes: halves the step down
-/// the table (exact at every size), then a short Taylor series.
+/// Below this phase (fastest rate times time) a Taylor series of twelve terms is exact to rounding.
+inline constexpr double kTaylorPhase = 0.25;
+
+/// Walks [0, tau] of a step of tabulated size in pieces that are tabulated steps too, halving down the table, until
+/// what is left is short enough for a Taylor series.
+/// @param whole  whole(level, forces): a tabulated step with these node values of the forces
+/// @param rest   rest(level, forces, tau): the first tau of a tabulated step; last, not called when nothing is left
+template <class Whole, class Rest>
+void walk_pieces(const StepTables& tables, const double* forces, int level, double tau, Whole whole, Rest rest) {
+  const int nc = tables.model().contacts;
+  const auto map_nodes = [nc](const RadauTables::Matrix8& matrix, const double* from, double* to) {
+    for (int c = 0; c < nc; ++c) store8(to + kNodes * c, matrix8_times(matrix.data(), from + kNodes * c));
+  };
+  alignas(64) double stack_forces[2 * kNodes * 4];
+  Eigen::VectorXd heap;
+  double* current = stack_forces;
+  if (nc > 4) {
+    heap.resize(2 * kNodes * nc);
+    current = heap.data();
+  }
+  double* other = current + kNodes * nc;
+  std::copy_n(forces, kNodes * nc, current);
+  const RadauTables& nodes = radau();
+  for (double h = tables.step(level); tau > 0.0; std::swap(current, other)) {
+    if (tau >= h) return whole(level, current);
+    if (tables.model().fastest * tau <= kTaylorPhase || level + 1 == StepTables::kLevels)
+      return rest(level, current, tau);
+    ++level;
+    h /= 2.0;
+    if (tau >= h) {
+      map_nodes(nodes.left_half, current, other);
+      whole(level, other);
+      tau -= h;
+      map_nodes(nodes.right_half, current, other);
+    } else {
+      map_nodes(nodes.left_half, current, other);
+    }
+  }
+}
+
+/// State at tau within a step of tabulated size whose forces are polynomials through the nodes.
 template <Load load = Load::kIncluded>
 void advance_within(const StepTables& tables, const double* x, const double* forces, int level, double tau,
                     double* out_x);
 
 /// ∫ q̇ᵀCq̇ dt over the first `theta` of a step, from the modal velocities at the nodes.
 /// @param velocity_part  null for the whole step, else the 8 x 9 matrix (column major) from velocities at 0 and the
-/// nodes
-///                       to those at the nodes of the part
+///                       nodes to those at the nodes of the part
 double viscous_loss(const StepTables& tables, int level, const double* x, const double* forces, double theta,
                     const double* velocity_part);
 

@@ -52,7 +52,9 @@ struct EnergyAudit {
 
 struct FlowOptions {
   FlowMethod method = FlowMethod::kAutomatic;
-  double tolerance = 1e-9;          ///< local error of the contact force relative to its static limit (collocation)
+  /// Collocation: bound on the error of one step's contact impulse, as a share of the static limit times the largest
+  /// step (four radians of the fastest mode).
+  double tolerance = 1e-9;
   bool audit = true;                ///< integrate the energy balance along
   int max_events_per_window = 200;  ///< more events than this within `zeno_window` is reported as Zeno
   double zeno_window = 0.0;         ///< [s]; 0: one hundredth of the shortest natural period
