@@ -44,7 +44,8 @@ TEST(States, ContactVelocityAndDisplacementSurviveLifting) {
   const HybridSystem full = random_system(random, 6);
   const pod::Basis basis = random_basis(random, 6, 3);
   const auto& contact = full.contacts()[0];
-  const auto& seen = reduce(full, basis).contacts()[0];
+  const HybridSystem model = reduce(full, basis);
+  const auto& seen = model.contacts()[0];
   const State reduced{0.0, normal_matrix(random, 3, 1), normal_matrix(random, 3, 1)};
   const State lifted = lift(basis, reduced);
   EXPECT_NEAR(contact.direction.dot(lifted.q) + contact.offset, seen.direction.dot(reduced.q) + seen.offset, 1e-13);
