@@ -26,6 +26,11 @@ std::vector<ComparisonCase> comparison_cases(bool quick) {
   hundred.n = 100;
   cases.push_back({.problem = hundred, .wanted_cvode = 1000.0, .wanted_odeint = 40.0, .repeats = 6});
 
+  ChainProblem rich = hundred;
+  rich.name = "stribeck100-ground";
+  rich.ground = 0.25;
+  cases.push_back({.problem = rich, .repeats = 3});
+
   ChainProblem thousand = ten;
   thousand.name = "stribeck1000";
   thousand.n = 1000;
@@ -33,14 +38,14 @@ std::vector<ComparisonCase> comparison_cases(bool quick) {
   cases.push_back({.problem = thousand,
                    .transient = 500.0,
                    .duration = 2000.0,
-                   .stretches = 4,
+                   .stretches = 5,
                    .wanted_cvode = 500.0,
                    .wanted_odeint = 30.0,
                    .repeats = 3});
   if (quick) {
     for (ComparisonCase& c : cases) {
       c.duration *= 0.1;
-      c.stretches = 4;
+      c.stretches = 5;
       c.repeats = 3;
     }
   }

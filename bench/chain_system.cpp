@@ -1,5 +1,6 @@
 #include "bench/chain_system.hpp"
 
+#include "diagnostics/model.hpp"
 #include "fem/chain.hpp"
 
 #include <algorithm>
@@ -16,6 +17,11 @@ double slip_speed(const dynamics::HybridSystem& system, const dynamics::State& s
   return std::abs(system.drive().speed - system.contacts().front().direction.dot(state.v));
 }
 
+dynamics::State onwards(const dynamics::HybridSystem& system, const dynamics::State& state, double duration) {
+  const dynamics::SimulateOptions options{.duration = duration, .flow = {.tolerance = 1e-8, .audit = false}};
+  return diagnostics::continued(system, dynamics::simulate(system, state, options).final_state);
+}
+
 dynamics::State until_clear_slip(const dynamics::HybridSystem& system, dynamics::State state) {
   constexpr int kTries = 10000;
   for (int i = 0; i < kTries; ++i) {
@@ -24,7 +30,7 @@ dynamics::State until_clear_slip(const dynamics::HybridSystem& system, dynamics:
       state.modes.clear();
       return state;
     }
-    state = dynamics::simulate(system, state, {.duration = 0.25, .flow = {.tolerance = 1e-8}}).final_state;
+    state = onwards(system, state, 0.25);
   }
   throw std::runtime_error("the contact did not slip within 2500 units after the transient");
 }
@@ -40,16 +46,14 @@ dynamics::HybridSystem system_of(const ChainProblem& p) {
 }
 
 dynamics::State start_on_attractor(const dynamics::HybridSystem& system, double transient) {
-  const auto run = dynamics::simulate(system, system.rest(), {.duration = transient, .flow = {.tolerance = 1e-8}});
-  return until_clear_slip(system, run.final_state);
+  return until_clear_slip(system, onwards(system, system.rest(), transient));
 }
 
 std::vector<dynamics::State> starts_on_attractor(const dynamics::HybridSystem& system, const dynamics::State& first,
                                                  double spacing, int count) {
   std::vector<dynamics::State> starts{first};
   while (static_cast<int>(starts.size()) < count) {
-    const auto run = dynamics::simulate(system, starts.back(), {.duration = spacing, .flow = {.tolerance = 1e-8}});
-    starts.push_back(until_clear_slip(system, run.final_state));
+    starts.push_back(until_clear_slip(system, onwards(system, starts.back(), spacing)));
   }
   return starts;
 }

@@ -1,11 +1,14 @@
 // Speed and accuracy beside the peers, measured in one process: see bench/README.md.
 #include "bench/cases.hpp"
+#include "bench/library_cases.hpp"
 #include "bench/report.hpp"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 namespace {
@@ -14,12 +17,33 @@ using namespace slipmode::bench;
 
 struct Request {
   std::vector<std::string> cases;
-  bool quick = false, json = false, list = false;
+  bool quick = false, json = false, all = false;
 
-  [[nodiscard]] bool wants(const std::string& name) const {
-    return cases.empty() || std::find(cases.begin(), cases.end(), name) != cases.end();
+  [[nodiscard]] bool names(const std::string& name) const {
+    return std::find(cases.begin(), cases.end(), name) != cases.end();
   }
+  [[nodiscard]] bool wants(const std::string& name) const { return cases.empty() || names(name); }
 };
+
+struct LibraryCase {
+  std::string name;
+  std::function<Row(bool quick)> measure;
+  bool slow = false;  ///< only when named or with --all
+};
+
+std::vector<LibraryCase> library_cases() {
+  return {{"sweep-stribeck", [](bool quick) { return measure_sweep(false, quick); }},
+          {"sweep-coulomb", [](bool quick) { return measure_sweep(true, quick); }},
+          {"reduction", measure_reduction},
+          {"pod", measure_pod, true}};
+}
+
+std::vector<std::string> known_cases() {
+  std::vector<std::string> names{"tanh"};
+  for (const auto& c : comparison_cases(true)) names.push_back(c.problem.name);
+  for (const auto& c : library_cases()) names.push_back(c.name);
+  return names;
+}
 
 void say(const Request& request, const std::string& line) {
   std::FILE* stream = request.json ? stderr : stdout;
@@ -27,26 +51,38 @@ void say(const Request& request, const std::string& line) {
   std::fflush(stream);
 }
 
-void run_comparisons(const Request& request, nlohmann::json& out) {
-  std::vector<Comparison> for_tanh;
-  bool headed = false;
-  for (const ComparisonCase& setting : comparison_cases(request.quick)) {
-    const bool tanh = setting.problem.name == "stribeck10" && request.wants("tanh");
-    if (!request.wants(setting.problem.name) && !tanh) continue;
-    if (!headed) say(request, comparison_header());
-    headed = true;
-    const Comparison row = compare(setting);
-    say(request, comparison_line(row));
-    out["comparisons"].push_back(row);
-    if (tanh) for_tanh.push_back(row);
+void run_tanh(const Request& request, const Comparison& exact, nlohmann::json& out) {
+  say(request, "\n" + tanh_header());
+  for (const double epsilon : {1e-2, 1e-3, 1e-4}) {
+    const TanhFigures row = measure_tanh(exact, epsilon);
+    say(request, tanh_line(row));
+    out["tanh"].push_back(row);
   }
-  if (!for_tanh.empty()) say(request, "\n" + tanh_header());
-  for (const Comparison& exact : for_tanh) {
-    for (const double epsilon : {1e-2, 1e-3, 1e-4}) {
-      const TanhFigures row = measure_tanh(exact, epsilon);
-      say(request, tanh_line(row));
-      out["tanh"].push_back(row);
-    }
+}
+
+void run_comparisons(const Request& request, nlohmann::json& out) {
+  std::vector<Comparison> rows;
+  for (const ComparisonCase& setting : comparison_cases(request.quick)) {
+    const bool for_tanh = setting.problem.name == "stribeck10" && request.wants("tanh");
+    if (!request.wants(setting.problem.name) && !for_tanh) continue;
+    if (rows.empty()) say(request, time_header());
+    rows.push_back(compare(setting));
+    say(request, time_line(rows.back()));
+    out["comparisons"].push_back(rows.back());
+  }
+  if (rows.empty()) return;
+  say(request, "\n" + error_header());
+  for (const Comparison& row : rows) say(request, error_line(row));
+  if (request.wants("tanh")) run_tanh(request, rows.front(), out);
+  say(request, "");
+}
+
+void run_library_cases(const Request& request, nlohmann::json& out) {
+  for (const LibraryCase& c : library_cases()) {
+    if (!(request.names(c.name) || (request.cases.empty() && (request.all || !c.slow)))) continue;
+    const Row row = c.measure(request.quick);
+    for (const std::string& line : row.lines) say(request, line);
+    for (const auto& [name, value] : row.figures) out[c.name][name] = value;
   }
 }
 
@@ -55,14 +91,16 @@ void run_comparisons(const Request& request, nlohmann::json& out) {
 int main(int argc, char** argv) {
   CLI::App app("slipmode beside CVODE and Boost.odeint: time, error, events. Times are CPU time of one thread.");
   Request request;
-  app.add_option("--case", request.cases, "only these rows (may be repeated)");
+  app.add_option("--case", request.cases, "only these rows")->check(CLI::IsMember(known_cases()));
   app.add_flag("--quick", request.quick, "a tenth of the simulated time, fewer repeats");
+  app.add_flag("--all", request.all, "slow rows too (pod: a minute, 1 GiB)");
   app.add_flag("--json", request.json, "one JSON object on standard output, the table on standard error");
   CLI11_PARSE(app, argc, argv);
   try {
     nlohmann::json out{{"cpu", cpu_model()}, {"quick", request.quick}};
     say(request, cpu_model());
     run_comparisons(request, out);
+    run_library_cases(request, out);
     if (request.json) fmt::print("{}\n", out.dump(2));
   } catch (const std::exception& error) {
     fmt::print(stderr, "slipmode_bench: {}\n", error.what());

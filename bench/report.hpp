@@ -3,13 +3,15 @@
 #include "bench/comparison.hpp"
 
 #include <string>
-#include <vector>
 
 namespace slipmode::bench {
 
-/// Times in ms per 10⁴ units of simulated time; ratios of times; errors of the state.
-[[nodiscard]] std::string comparison_header();
-[[nodiscard]] std::string comparison_line(const Comparison& row);
+/// Times in ms per 10⁴ units of simulated time, and their ratios.
+[[nodiscard]] std::string time_header();
+[[nodiscard]] std::string time_line(const Comparison& row);
+/// Errors of the state and whether every method finds the reference's events.
+[[nodiscard]] std::string error_header();
+[[nodiscard]] std::string error_line(const Comparison& row);
 [[nodiscard]] std::string tanh_header();
 [[nodiscard]] std::string tanh_line(const TanhFigures& row);
 
