@@ -1,5 +1,6 @@
 // Reruns every dataset that ships and compares with its expected.toml.
 
+#include "core/parallel.hpp"
 #include "diagnostics/ensemble_run.hpp"
 #include "diagnostics/lyapunov.hpp"
 #include "diagnostics/settle.hpp"
@@ -30,6 +31,7 @@ struct Expectation {
   double speed = 0.0;
   std::vector<int> modes;
   std::vector<double> value, tolerance;
+  std::vector<double> displacement, velocity;  // where the run starts; empty: as the scene says
   std::string origin;
 };
 
@@ -45,6 +47,8 @@ Expectation read_expectation(scene::TomlReader& in, const std::string& dataset, 
   e.modes = in.integers_or("modes", {}, 1, 1'000'000);
   e.value = in.numbers_or("value", {}, scene::kFinite);
   e.tolerance = in.numbers_or("tolerance", {}, scene::kPositive, static_cast<std::int64_t>(e.value.size()));
+  e.displacement = in.numbers_or("displacement", {}, scene::kFinite);
+  e.velocity = in.numbers_or("velocity", {}, scene::kFinite, static_cast<std::int64_t>(e.displacement.size()));
   e.origin = in.text_or("origin", "");
   (void)in.text_or("units", "");
   in.finish();
@@ -79,31 +83,57 @@ struct Case {
 Case make_case(const Expectation& e) {
   Scene s = scene::load_scene(folder_of(e.dataset) / "scene.toml");
   s = set_key(s, "drive.speed", e.speed);
+  if (!e.displacement.empty()) s.initial = {scene::InitialSpec::At::kGiven, e.displacement, e.velocity};
   dynamics::HybridSystem system = build_system(s);
   dynamics::State start = initial_state(s, system);
   return {std::move(s), std::move(system), std::move(start), e.modes};
 }
 
-diagnostics::EnsembleRun run_ensemble(const Case& c) {
-  const diagnostics::Model model = diagnostics::belt_model(c.system);
-  return diagnostics::run_ensemble(model, {c.scene.drive.velocity(0.0)}, ensemble_states(c.scene, c.system),
-                                   {.duration = c.scene.time.duration,
-                                    .transient = c.scene.time.transient,
-                                    .sample = c.scene.time.sample,
-                                    .flow = c.scene.flow});
+/// Calls measure(start) for every member of the scene's ensemble and returns one column of values per member.
+Eigen::MatrixXd by_member(const Case& c, const std::function<Eigen::VectorXd(const dynamics::State&)>& measure) {
+  const std::vector<dynamics::State> starts = ensemble_states(c.scene, c.system);
+  std::vector<Eigen::VectorXd> columns(starts.size());
+  rethrow_first(parallel_for(starts.size(), {}, [&](std::size_t k) { columns[k] = measure(starts[k]); }));
+  Eigen::MatrixXd table(columns.front().size(), static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t k = 0; k < columns.size(); ++k) table.col(static_cast<Eigen::Index>(k)) = columns[k];
+  return table;
+}
+
+std::vector<double> mean_over_members(const Eigen::MatrixXd& table) {
+  const Eigen::VectorXd mean = table.rowwise().mean();
+  return {mean.begin(), mean.end()};
+}
+
+/// A run of `length` after the scene's transient.
+dynamics::SimulateOptions record(const Case& c, double length, double sample) {
+  return {.duration = c.scene.time.transient + length,
+          .transient = c.scene.time.transient,
+          .sample = sample,
+          .output = dynamics::SimulateOptions::Output::kContacts,
+          .flow = c.scene.flow};
 }
 
 std::vector<double> energy_share_cumulative(const Case& c) {
-  const pod::PodResult result = pod::pod(run_ensemble(c).ensemble);
+  const diagnostics::EnsembleRun run = diagnostics::run_ensemble(
+      diagnostics::belt_model(c.system), {c.scene.drive.velocity(0.0)}, ensemble_states(c.scene, c.system),
+      {.duration = c.scene.time.duration,
+       .transient = c.scene.time.transient,
+       .sample = c.scene.time.sample,
+       .flow = c.scene.flow});
+  const pod::PodResult result = pod::pod(run.ensemble);
   std::vector<double> shares;
   for (const int modes : c.modes) shares.push_back(100.0 * result.shares.head(modes).sum());
   return shares;
 }
 
 std::vector<double> mean_displacement_per_mass(const Case& c) {
-  const Eigen::VectorXd mean = run_ensemble(c).ensemble.snapshots.rowwise().mean();
-  const Eigen::VectorXd number = Eigen::VectorXd::LinSpaced(mean.size(), 1.0, static_cast<double>(mean.size()));
-  return {number.dot(mean) / number.squaredNorm()};
+  dynamics::SimulateOptions options = record(c, 50000.0, 1.0);
+  options.output = dynamics::SimulateOptions::Output::kAllDofs;
+  const Eigen::VectorXd number = Eigen::VectorXd::LinSpaced(c.system.size(), 1.0, static_cast<double>(c.system.size()));
+  return mean_over_members(by_member(c, [&](const dynamics::State& start) -> Eigen::VectorXd {
+    const Eigen::VectorXd mean = dynamics::simulate(c.system, start, options).q.rowwise().mean();
+    return Eigen::VectorXd::Constant(1, number.dot(mean) / number.squaredNorm());
+  }));
 }
 
 diagnostics::Orbit orbit_of(const Case& c) {
@@ -126,28 +156,22 @@ std::vector<double> largest_exponent(const Case& c) {
   options.transient = c.scene.time.transient;
   options.duration = 200000.0;
   options.flow = c.scene.flow;
-  return {diagnostics::largest_exponent(c.system, c.start, options).bits};
-}
-
-/// A record long enough for rates and extremes, densely sampled at the contacts.
-dynamics::Trajectory contact_record(const Case& c) {
-  return dynamics::simulate(c.system, c.start,
-                            {.duration = c.scene.time.transient + 50000.0,
-                             .transient = c.scene.time.transient,
-                             .sample = 0.05,
-                             .output = dynamics::SimulateOptions::Output::kContacts,
-                             .flow = c.scene.flow});
+  return mean_over_members(by_member(c, [&](const dynamics::State& start) -> Eigen::VectorXd {
+    return Eigen::VectorXd::Constant(1, diagnostics::largest_exponent(c.system, start, options).bits);
+  }));
 }
 
 std::vector<double> slip_rate(const Case& c) {
-  const dynamics::Trajectory run = contact_record(c);
-  const auto slips = std::ranges::count(run.events, dynamics::EventKind::kRelease, &dynamics::Event::kind);
-  return {static_cast<double>(slips) / 50000.0};
+  constexpr double kLength = 200000.0;
+  return mean_over_members(by_member(c, [&](const dynamics::State& start) -> Eigen::VectorXd {
+    const dynamics::Trajectory run = dynamics::simulate(c.system, start, record(c, kLength, 0.0));
+    const auto slips = std::ranges::count(run.events, dynamics::EventKind::kRelease, &dynamics::Event::kind);
+    return Eigen::VectorXd::Constant(1, static_cast<double>(slips) / kLength);
+  }));
 }
 
 /// Samples in stick are those between an event that starts a stick and the next event; the ends come from the events.
-std::vector<double> stick_force_range(const Case& c) {
-  const dynamics::Trajectory run = contact_record(c);
+Eigen::VectorXd stick_forces(const dynamics::Trajectory& run) {
   double low = INFINITY, high = -INFINITY;
   Eigen::Index k = 0;
   for (std::size_t i = 0; i + 1 < run.events.size(); ++i) {
@@ -159,12 +183,20 @@ std::vector<double> stick_force_range(const Case& c) {
     }
     if (run.events[i + 1].kind == dynamics::EventKind::kRelease) high = std::max(high, run.events[i + 1].force);
   }
-  return {low, high};
+  return Eigen::Vector2d(low, high);
+}
+
+std::vector<double> stick_force_range(const Case& c) {
+  return mean_over_members(by_member(c, [&](const dynamics::State& start) -> Eigen::VectorXd {
+    return stick_forces(dynamics::simulate(c.system, start, record(c, 50000.0, 0.1)));
+  }));
 }
 
 std::vector<double> driven_velocity_range(const Case& c) {
-  const dynamics::Trajectory run = contact_record(c);
-  return {run.contact_v.row(0).minCoeff(), run.contact_v.row(0).maxCoeff()};
+  return mean_over_members(by_member(c, [&](const dynamics::State& start) -> Eigen::VectorXd {
+    const dynamics::Trajectory run = dynamics::simulate(c.system, start, record(c, 50000.0, 0.1));
+    return Eigen::Vector2d(run.contact_v.row(0).minCoeff(), run.contact_v.row(0).maxCoeff());
+  }));
 }
 
 const std::map<std::string, std::function<std::vector<double>(const Case&)>>& measures() {
