@@ -100,6 +100,12 @@ figures::DeviationCase deviation_case(const scene::Table& table, const std::stri
   return motion;
 }
 
+/// False when there was no orbit to compare at any number of modes.
+bool has_values(const figures::DeviationCase& motion) {
+  return std::any_of(motion.curves.begin(), motion.curves.end(),
+                     [](const auto& curve) { return curve.delta_x.array().isFinite().any(); });
+}
+
 Figure deviation(const StoreReader& store) {
   const scene::Scene scene = scene::load_scene_of(store);
   const scene::Table shares = scene::load_table(store, "validation/shares");
@@ -113,7 +119,8 @@ Figure deviation(const StoreReader& store) {
   std::map<double, std::vector<std::size_t>, std::greater<>> by_speed;
   for (std::size_t i = 0; i < orbits.rows(); ++i) by_speed[orbits.numbers("speed")[i]].push_back(i);
   for (const auto& [speed, rows] : by_speed) {
-    cases.push_back(deviation_case(orbits, fmt::format("V = {:g}, one period", speed), rows));
+    figures::DeviationCase orbit = deviation_case(orbits, fmt::format("V = {:g}, one period", speed), rows);
+    if (has_values(orbit)) cases.push_back(std::move(orbit));
   }
   constexpr std::size_t kMostColumns = 4;
   if (cases.size() > kMostColumns) cases.resize(kMostColumns);

@@ -124,14 +124,12 @@ class Pipeline {
       for (const FileFigure& figure : figures_of(store)) drawn.emplace_back(figure.name, figure.draw());
     }
     const ParallelOptions parallel{.threads = session_.threads, .stop = session_.stop, .progress = {}};
-    rethrow_first(parallel_for(drawn.size(), parallel, [&](std::size_t i) {
-      const auto& [name, figure] = drawn[i];
-      figures::save(figure, {folder_ / (name + ".svg"), folder_ / (name + ".png")});
-    }));
     for (const auto& entry : drawn) {
-      result_.figures.push_back(entry.first + ".svg");
-      result_.figures.push_back(entry.first + ".png");
+      for (const char* extension : {".svg", ".png"}) result_.figures.push_back(entry.first + extension);
     }
+    rethrow_first(parallel_for(result_.figures.size(), parallel, [&](std::size_t i) {
+      figures::save(drawn[i / 2].second, {folder_ / result_.figures[i]});
+    }));
   }
 
   const Session& session_;

@@ -3,7 +3,7 @@
 #include "cli/validation_store.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
+#include <cmath>
 
 namespace slipmode::cli {
 namespace {
@@ -26,6 +26,11 @@ std::string frequencies(const Eigen::VectorXd& omega) {
   std::string out;
   for (Eigen::Index k = 0; k < std::min(kShown, omega.size()); ++k) out += fmt::format(" {:.5g}", omega[k]);
   return omega.size() > kShown ? out + " ..." : out;
+}
+
+std::string payback(double runs) {
+  if (std::isinf(runs)) return "never paid back: the reduced model is not faster at this size";
+  return fmt::format("paid back after {:.0f} such runs", std::ceil(runs));
 }
 
 }  // namespace
@@ -68,8 +73,8 @@ std::string summary_text(const PipelineResult& result, const scene::Scene& scene
   if (result.validation) {
     out += '\n' + summary_text(*result.validation);
     if (result.validation->cost) {
-      out += fmt::format("  the basis cost {:.2f} s, paid back after {:.0f} such runs\n", result.basis_wall(),
-                         result.validation->cost->break_even(result.basis_wall()));
+      out += fmt::format("  the basis took {:.2f} s, {}\n", result.basis_wall(),
+                         payback(result.validation->cost->break_even(result.basis_wall())));
     }
   }
   out += '\n';

@@ -15,13 +15,22 @@ struct Arguments {
   Eigen::Index modes = 0;
 };
 
+/// The decomposition knows numbers only: a refusal is told with the file and the option it belongs to.
+pod::PodResult decompose(const pod::Ensemble& ensemble, const Arguments& arguments) {
+  try {
+    return pod::pod(ensemble, {.choice = {.modes = arguments.modes, .energy = 1.0}});
+  } catch (const InvalidInput& refusal) {
+    throw InvalidInput(fmt::format("{}: --modes {}: {}", arguments.input, arguments.modes, refusal.what()));
+  }
+}
+
 Report run(const Session& session, const Arguments& arguments) {
   require_writable(arguments.output);
   const scene::StoreReader store(arguments.input);
   scene::Provenance provenance = scene::load_provenance(store);
   const pod::Ensemble ensemble = load_snapshots(store);
   session.check_interrupt();
-  const pod::PodResult result = pod::pod(ensemble, {.choice = {.modes = arguments.modes, .energy = 1.0}});
+  const pod::PodResult result = decompose(ensemble, arguments);
 
   provenance.command = "slipmode pod";
   scene::StoreWriter writer(arguments.output);

@@ -1,5 +1,6 @@
 #include "cli/portraits.hpp"
 
+#include "cli/sweep_store.hpp"
 #include "core/errors.hpp"
 #include "rom/reduce.hpp"
 
@@ -55,18 +56,19 @@ PortraitSet level_portraits(const dynamics::HybridSystem& full, const diagnostic
   constexpr Eigen::Index kFewest = 3;  // one and two modes leave the frame (S4 section 3.4.2)
   const dynamics::HybridSystem at_speed = full.with_drive(friction::Belt::constant(report.speed));
   PortraitSet set{.columns = 4, .portraits = {}};
-  set.portraits.push_back(run_portrait(at_speed, report.full.end, fmt::format("full, {} dofs", full.size()), "full"));
-  std::vector<Eigen::Index> levels;
+  set.portraits.push_back(
+      run_portrait(at_speed, report.full.end, fmt::format("full, {}", motion_text(report.full.period)), "full"));
+  std::vector<const diagnostics::ShareRow*> levels;
   for (const auto& row : report.candidates.front().shares) {
-    if (row.modes >= std::min(kFewest, report.chosen) && row.modes < full.size()) levels.push_back(row.modes);
+    const bool shown = row.modes >= std::min(kFewest, report.chosen) && row.modes < full.size();
+    if (shown && row.attractor) levels.push_back(&row);
   }
-  std::sort(levels.rbegin(), levels.rend());
+  std::sort(levels.begin(), levels.end(), [](const auto* a, const auto* b) { return a->modes > b->modes; });
   if (levels.size() >= kMostPanels) levels.erase(levels.begin(), levels.end() - (kMostPanels - 1));
-  for (const Eigen::Index modes : levels) {
-    const pod::Basis basis = candidate.basis.truncated(modes);
-    set.portraits.push_back(run_portrait(rom::reduce(at_speed, basis),
-                                         rom::restrict_state(full.structure(), basis, report.full.end),
-                                         fmt::format("{} {}s", modes, candidate.name), candidate.name));
+  for (const diagnostics::ShareRow* row : levels) {
+    set.portraits.push_back(run_portrait(
+        rom::reduce(at_speed, candidate.basis.truncated(row->modes)), row->attractor->end,
+        fmt::format("{} {}s, {}", row->modes, candidate.name, motion_text(row->attractor->period)), candidate.name));
   }
   return set;
 }

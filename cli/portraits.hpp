@@ -23,7 +23,7 @@ struct PortraitSet {
   std::vector<Portrait> portraits;
 };
 
-/// Full model and reduced ones with fewer and fewer modes at the table's speed, all from one start (S4 Figure 3.7).
+/// What the full model and reduced ones with fewer and fewer modes settle to at the table's speed (S4 Figure 3.7).
 [[nodiscard]] PortraitSet level_portraits(const dynamics::HybridSystem& full, const diagnostics::Candidate& candidate,
                                           const diagnostics::ValidationReport& report);
 

@@ -24,7 +24,7 @@ Eigen::Index mode_count(const Arguments& arguments, const scene::Scene& scene, c
     throw InvalidInput(
         fmt::format("basis '{}' has no energy shares to choose by; give --modes or reduction.modes", arguments.basis));
   }
-  return chosen_modes(choice, source.shares, source.basis.modes());
+  return chosen_modes(choice, source.shares, source.basis.modes(), fmt::format("basis '{}'", arguments.basis));
 }
 
 Report run(const Session& session, const Arguments& arguments) {

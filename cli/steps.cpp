@@ -100,11 +100,11 @@ Eigen::VectorXd cumulative(const Eigen::VectorXd& shares) {
   return sum;
 }
 
-Eigen::Index chosen_modes(const pod::ModeChoice& choice, const Eigen::VectorXd& shares, Eigen::Index available) {
+Eigen::Index chosen_modes(const pod::ModeChoice& choice, const Eigen::VectorXd& shares, Eigen::Index available,
+                          const std::string& source) {
   if (choice.modes > available) {
-    throw InvalidInput(
-        fmt::format("{} modes asked for, but there are only {}; ask for fewer (reduction.modes or --modes)",
-                    choice.modes, available));
+    throw InvalidInput(fmt::format("modes = {}: {} holds only {}; valid: 1 to {}, set by --modes or reduction.modes",
+                                   choice.modes, source, available, available));
   }
   if (choice.modes > 0) return choice.modes;
   const Eigen::VectorXd sum = cumulative(shares);

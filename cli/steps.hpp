@@ -29,9 +29,10 @@ void store_ensemble(const std::filesystem::path& path, const scene::Scene& scene
 [[nodiscard]] pod::Ensemble load_snapshots(const scene::StoreReader& store);
 
 /// The number of modes a choice asks for, given the energy shares of all modes.
+/// @param source  what the modes come from, for the message
 /// @throws InvalidInput  when more modes are asked than there are
 [[nodiscard]] Eigen::Index chosen_modes(const pod::ModeChoice& choice, const Eigen::VectorXd& shares,
-                                        Eigen::Index available);
+                                        Eigen::Index available, const std::string& source);
 
 /// Cumulative shares.
 [[nodiscard]] Eigen::VectorXd cumulative(const Eigen::VectorXd& shares);

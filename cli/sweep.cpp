@@ -170,6 +170,7 @@ Report run(const Session& session, const Arguments& arguments) {
   const std::string identity = scene::fingerprint(
       fmt::format("{}\n{}\n{}\n{}", scene::version(), task, swept.identity, scene::scene_to_toml(scene)));
   scene::Journal journal(scene::Journal::path_for(arguments.output), identity);
+  const std::size_t resumed = journal.records().size();
   ProgressLine line("sweep", session.progress_mode());
   const diagnostics::SweepResult result = diagnostics::sweep(
       swept.model, over.values, swept.start,
@@ -187,7 +188,10 @@ Report run(const Session& session, const Arguments& arguments) {
               units, result.points);
   writer.commit();
   journal.remove();
-  return summary(arguments, swept, over, result.points);
+  Report report = summary(arguments, swept, over, result.points);
+  report.data["resumed"] = resumed;
+  if (resumed > 0) report.text += fmt::format("{} values were taken over from an interrupted run\n", resumed);
+  return report;
 }
 
 }  // namespace
@@ -203,7 +207,7 @@ Verb add_sweep(CLI::App& app) {
       ->check(CLI::PositiveNumber);
   command->add_option("--model", arguments->model, "full, or rom:FILE with a result of 'slipmode reduce'");
   command->footer(
-      "Times per value: [validation] transient and duration.\n"
+      "Time simulated at each value: [validation] transient, block, limit.\n"
       "Example:\n  slipmode sweep datasets/chain10/scene.toml --over drive.speed=0.5:0.001:0.001 --follow "
       "-o sweep.h5");
   return {command, [arguments](const Session& session) { return run(session, *arguments); }};

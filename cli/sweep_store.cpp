@@ -177,23 +177,24 @@ void store_sweep(scene::StoreWriter& writer, const std::string& group, const std
                             {"displacement", {units.length, "displacement of the contact"}, slip_displacement}}});
 }
 
+std::string motion_text(const diagnostics::PeriodResult& period) {
+  if (period.motion == Motion::kPeriodic) return fmt::format("period {}", period.period);
+  return diagnostics::to_string(period.motion);
+}
+
 std::vector<MotionCount> count_motions(const std::vector<SweepPoint>& points) {
-  std::map<std::pair<int, int>, std::size_t> counts;  // periodic ones by period first, then the other kinds
+  constexpr int kFailed = 1000;
+  std::map<std::pair<int, int>, MotionCount> counts;  // periodic ones by period first, then the other kinds
   for (const SweepPoint& point : points) {
-    constexpr int kFailed = 1000;
     const auto& period = point.settled.period;
-    const int kind = point.ok() ? static_cast<int>(period.motion) : kFailed;
-    ++counts[{kind, point.ok() && period.motion == Motion::kPeriodic ? period.period : 0}];
+    const std::pair<int, int> key =
+        point.ok() ? std::pair(static_cast<int>(period.motion), period.period) : std::pair(kFailed, 0);
+    MotionCount& count = counts[key];
+    count.motion = point.ok() ? motion_text(period) : "failed";
+    ++count.values;
   }
   std::vector<MotionCount> out;
-  for (const auto& [key, values] : counts) {
-    const auto& [kind, period] = key;
-    const bool failed = kind > static_cast<int>(Motion::kSliding);
-    const std::string name = period > 0 ? fmt::format("period {}", period)
-                             : failed   ? std::string("failed")
-                                        : std::string(diagnostics::to_string(static_cast<Motion>(kind)));
-    out.push_back({name, values});
-  }
+  for (const auto& entry : counts) out.push_back(entry.second);
   return out;
 }
 

@@ -31,7 +31,10 @@ struct SweepAxis {
 void store_sweep(scene::StoreWriter& writer, const std::string& group, const std::string& title, const SweepAxis& axis,
                  const Units& units, const std::vector<diagnostics::SweepPoint>& points);
 
-/// How often each kind of motion was met, as "period 1: 120, period 5: 33, aperiodic: 200".
+/// "period 5", or the kind of motion.
+[[nodiscard]] std::string motion_text(const diagnostics::PeriodResult& period);
+
+/// How often each kind of motion was met: periodic ones by period, then the others.
 struct MotionCount {
   std::string motion;
   std::size_t values = 0;

@@ -90,7 +90,9 @@ diagnostics::ValidationOptions validation_options(const scene::Scene& scene,
   options.horizon_starts = spec.horizon_starts;
   options.orbit_speeds = spec.orbits;
   options.orbit_tolerance = spec.orbit_tolerance;
-  options.chosen = candidates.size() == 1 ? available : chosen_modes(scene.reduction.choice, shares, available);
+  options.chosen = candidates.size() == 1 ? available
+                                          : chosen_modes(scene.reduction.choice, shares, available,
+                                                         fmt::format("the ensemble's {} basis", first.name));
   options.sweep_values = spec.speeds.values();
   options.sweep_segments = static_cast<std::size_t>(spec.segments);
   options.settle = settle_options(scene);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <cmath>
 #include <limits>
+#include <map>
 
 namespace slipmode::cli {
 namespace {
@@ -14,201 +15,158 @@ using diagnostics::OrbitRow;
 using diagnostics::ShareRow;
 using diagnostics::ValidationReport;
 
-std::string motion_text(const diagnostics::PeriodResult& period) {
-  if (period.motion == diagnostics::Motion::kPeriodic) return fmt::format("period {}", period.period);
-  return diagnostics::to_string(period.motion);
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<std::string> share_cells(const ShareRow& row) {
+  const bool ok = row.failure.empty();
+  return {fixed(row.energy, 2),
+          fixed(ok ? row.horizon.dX : kNone, 2),
+          fixed(ok ? row.horizon.dE : kNone, 2),
+          fixed(row.attractor ? row.distance.wasserstein : kNone, 3),
+          row.attractor ? motion_text(row.attractor->period) : "failed",
+          fixed(row.lyapunov ? row.lyapunov->bits : kNone, 4)};
 }
 
-Json settled_json(const diagnostics::Settled& settled) {
-  return {{"motion", diagnostics::to_string(settled.period.motion)},
-          {"period", settled.period.period},
-          {"T", settled.period.T},
-          {"stick_fraction", settled.stick_fraction},
-          {"slip_rate", settled.slip_rate},
-          {"mean_energy", settled.mean_energy},
-          {"audit_residual", settled.audit_residual}};
-}
-
-Json deviation_json(const diagnostics::Deviation& deviation) {
-  return {{"dX", deviation.dX}, {"dE", deviation.dE}, {"dE_pointwise", deviation.dE_pointwise}};
-}
-
-Json distance_json(const diagnostics::AttractorDistance& distance) {
-  return {{"wasserstein", distance.wasserstein},
-          {"hausdorff", distance.hausdorff},
-          {"mean_energy_percent", distance.mean_energy_percent},
-          {"stick_fraction", distance.stick_fraction},
-          {"slip_rate", distance.slip_rate}};
-}
-
-Json share_json(const ShareRow& row) {
-  Json out = {{"modes", row.modes}, {"energy", row.energy}};
-  if (!row.failure.empty()) {
-    out["failure"] = row.failure;
-    return out;
-  }
-  out["horizon"] = deviation_json(row.horizon);
-  out["start_error"] = row.start_error;
-  if (row.attractor) {
-    out["attractor"] = settled_json(*row.attractor);
-    out["distance"] = distance_json(row.distance);
-  }
-  if (row.lyapunov) out["lyapunov_bits"] = row.lyapunov->bits;
-  return out;
-}
-
-Json orbit_json(const OrbitRow& row) {
-  Json out = {{"speed", row.speed}, {"modes", row.modes}};
-  if (!row.failure.empty()) out["failure"] = row.failure;
-  if (row.comparison) {
-    const auto& comparison = *row.comparison;
-    out["period_full"] = comparison.full.period;
-    out["period_reduced"] = comparison.reduced.period;
-    out["T_full"] = comparison.full.T;
-    out["T_reduced"] = comparison.reduced.T;
-    if (comparison.same_period) out["deviation"] = deviation_json(comparison.deviation);
-  }
-  return out;
-}
-
-Json motions_json(const std::vector<diagnostics::SweepPoint>& points) {
-  Json out = Json::object();
-  for (const MotionCount& count : count_motions(points)) out[count.motion] = count.values;
-  return out;
-}
-
-/// Rows of all candidates side by side: L, then for each its energy, ΔX, ΔE and motion.
+/// One row per number of modes, all bases side by side.
 std::string shares_text(const ValidationReport& report) {
   std::vector<std::string> header = {"modes"};
-  for (const CandidateReport& candidate : report.candidates) {
-    for (const char* what : {"energy %", "ΔX %", "ΔE %", "motion", "λ₁ bit"}) {
-      header.push_back(fmt::format("{} {}", candidate.name, what));
-    }
+  for (std::size_t c = 0; c < report.candidates.size(); ++c) {
+    header.insert(header.end(), {"energy %", "ΔX %", "ΔE %", "W", "motion", "λ bit"});
   }
   TextTable table(header);
+  table.group("", 1);
+  for (const CandidateReport& candidate : report.candidates) table.group(candidate.name, 6);
   for (std::size_t i = 0; i < report.candidates.front().shares.size(); ++i) {
     std::vector<std::string> cells = {fmt::format("{}", report.candidates.front().shares[i].modes)};
     for (const CandidateReport& candidate : report.candidates) {
-      if (i >= candidate.shares.size()) continue;
-      const ShareRow& row = candidate.shares[i];
-      const bool ok = row.failure.empty();
-      const double none = std::numeric_limits<double>::quiet_NaN();
-      cells.push_back(fixed(row.energy, 2));
-      cells.push_back(fixed(ok ? row.horizon.dX : none, 2));
-      cells.push_back(fixed(ok ? row.horizon.dE : none, 2));
-      cells.push_back(row.attractor ? motion_text(row.attractor->period) : "failed");
-      cells.push_back(fixed(row.lyapunov ? row.lyapunov->bits : none, 4));
+      const std::vector<std::string> more = share_cells(candidate.shares[i]);
+      cells.insert(cells.end(), more.begin(), more.end());
     }
     table.add(cells);
   }
   return table.str();
 }
 
-std::string orbits_text(const ValidationReport& report) {
-  TextTable table({"speed", "modes", "basis", "period full", "reduced", "T full", "T reduced", "ΔX %", "ΔE %"});
+/// ΔX and ΔE where both have the same period, else what the reduced model does instead.
+std::vector<std::string> orbit_cells(const OrbitRow& row) {
+  if (!row.comparison) return {"none", ""};
+  const auto& comparison = *row.comparison;
+  if (!comparison.same_period) return {fmt::format("period {}", comparison.reduced.period), ""};
+  return {fixed(comparison.deviation.dX, 2), fixed(comparison.deviation.dE, 2)};
+}
+
+/// The orbits of one speed: rows of all bases, by number of modes.
+struct SpeedOrbits {
+  double speed = 0.0;
+  int period = 0;  ///< of the full model; 0: no reduced model was compared
+  std::vector<std::vector<const OrbitRow*>> rows;
+};
+
+std::vector<SpeedOrbits> orbits_by_speed(const ValidationReport& report) {
+  std::vector<SpeedOrbits> out;
+  const std::size_t levels = report.candidates.front().shares.size();
+  const std::size_t speeds = levels == 0 ? 0 : report.candidates.front().orbits.size() / levels;
+  for (std::size_t s = 0; s < speeds; ++s) {
+    SpeedOrbits at;
+    for (std::size_t i = 0; i < levels; ++i) {
+      at.rows.emplace_back();
+      for (const CandidateReport& candidate : report.candidates) {
+        const OrbitRow& row = candidate.orbits[s * levels + i];
+        at.speed = row.speed;
+        if (row.comparison) at.period = row.comparison->full.period;
+        at.rows.back().push_back(&row);
+      }
+    }
+    out.push_back(std::move(at));
+  }
+  return out;
+}
+
+/// Why there is no orbit, each reason once with how often it was met.
+std::string orbit_failures(const ValidationReport& report) {
+  constexpr std::size_t kShown = 4;
+  std::map<std::string, int> reasons;
   for (const CandidateReport& candidate : report.candidates) {
     for (const OrbitRow& row : candidate.orbits) {
-      if (row.modes != report.chosen) continue;
-      std::vector<std::string> cells = {fmt::format("{:g}", row.speed), fmt::format("{}", row.modes), candidate.name};
-      if (row.comparison) {
-        const auto& c = *row.comparison;
-        const double none = std::numeric_limits<double>::quiet_NaN();
-        cells.insert(cells.end(),
-                     {fmt::format("{}", c.full.period), fmt::format("{}", c.reduced.period), fixed(c.full.T, 5),
-                      fixed(c.reduced.T, 5), fixed(c.same_period ? c.deviation.dX : none, 3),
-                      fixed(c.same_period ? c.deviation.dE : none, 3)});
-      } else {
-        cells.push_back("none: " + row.failure.substr(0, 50));
-      }
-      table.add(cells);
+      if (!row.failure.empty()) ++reasons[fmt::format("V = {:g}: {}", row.speed, row.failure)];
     }
   }
-  return table.str();
+  std::string out;
+  std::size_t shown = 0;
+  for (const auto& [reason, times] : reasons) {
+    if (shown++ < kShown) out += fmt::format("  none ({} times) at {}\n", times, reason);
+  }
+  if (reasons.size() > kShown) out += fmt::format("  and {} other reasons, all in the file\n", reasons.size() - kShown);
+  return out;
+}
+
+std::string orbits_text(const ValidationReport& report) {
+  const std::vector<SpeedOrbits> speeds = orbits_by_speed(report);
+  std::vector<std::string> header = {"modes"};
+  for (std::size_t s = 0; s < speeds.size(); ++s) {
+    for (const CandidateReport& candidate : report.candidates) {
+      header.push_back(candidate.name + " ΔX %");
+      header.emplace_back("ΔE %");
+    }
+  }
+  TextTable table(header);
+  table.group("", 1);
+  for (const SpeedOrbits& at : speeds) {
+    const std::string period = at.period > 0 ? fmt::format("period {}", at.period) : "no orbit";
+    table.group(fmt::format("V = {:g}, {}", at.speed, period), 2 * report.candidates.size());
+  }
+  for (std::size_t i = 0; i < report.candidates.front().shares.size(); ++i) {
+    std::vector<std::string> cells = {fmt::format("{}", report.candidates.front().shares[i].modes)};
+    for (const SpeedOrbits& at : speeds) {
+      for (const OrbitRow* row : at.rows[i]) {
+        const std::vector<std::string> more = orbit_cells(*row);
+        cells.insert(cells.end(), more.begin(), more.end());
+      }
+    }
+    table.add(cells);
+  }
+  return table.str() + orbit_failures(report);
 }
 
 std::string sweep_text(const ValidationReport& report) {
+  std::map<std::string, std::size_t> reduced;
   TextTable table({"motion", "full", "reduced"});
-  const auto full = count_motions(report.sweep->full);
-  const auto reduced = count_motions(report.sweep->reduced);
-  const auto find = [](const std::vector<MotionCount>& counts, const std::string& motion) {
-    for (const MotionCount& count : counts) {
-      if (count.motion == motion) return fmt::format("{}", count.values);
-    }
-    return std::string("0");
-  };
-  for (const MotionCount& count : full) {
-    table.add({count.motion, fmt::format("{}", count.values), find(reduced, count.motion)});
+  for (const MotionCount& count : count_motions(report.sweep->reduced)) reduced[count.motion] = count.values;
+  for (const MotionCount& count : count_motions(report.sweep->full)) {
+    table.add({count.motion, fmt::format("{}", count.values), fmt::format("{}", reduced[count.motion])});
+    reduced.erase(count.motion);
   }
-  for (const MotionCount& count : reduced) {
-    if (find(full, count.motion) == "0") table.add({count.motion, "0", fmt::format("{}", count.values)});
+  for (const MotionCount& count : count_motions(report.sweep->reduced)) {
+    if (reduced.contains(count.motion)) table.add({count.motion, "0", fmt::format("{}", count.values)});
   }
   return table.str();
 }
 
 }  // namespace
 
-Json to_json(const ValidationReport& report) {
-  Json out = {{"speed", report.speed},
-              {"chosen_modes", report.chosen},
-              {"full", settled_json(report.full)},
-              {"noise", distance_json(report.noise)}};
-  if (report.lyapunov) {
-    out["lyapunov_bits"] = report.lyapunov->bits;
-    out["lyapunov_error_nats"] = report.lyapunov->error;
-  }
-  for (const CandidateReport& candidate : report.candidates) {
-    Json shares = Json::array(), orbits = Json::array();
-    for (const ShareRow& row : candidate.shares) shares.push_back(share_json(row));
-    for (const OrbitRow& row : candidate.orbits) orbits.push_back(orbit_json(row));
-    out["bases"][candidate.name] = {{"shares", shares}, {"orbits", orbits}};
-  }
-  if (report.sweep) {
-    out["sweep"] = {{"full", motions_json(report.sweep->full)}, {"reduced", motions_json(report.sweep->reduced)}};
-  }
-  if (report.bifurcation) {
-    const auto& b = *report.bifurcation;
-    out["bifurcation"] = {{"values", b.values},
-                          {"failed", b.failed},
-                          {"same_motion", b.same_motion},
-                          {"same_period", b.same_period},
-                          {"periodic_full", b.periodic_full},
-                          {"periodic_reduced", b.periodic_reduced},
-                          {"mean_wasserstein", b.mean_wasserstein},
-                          {"median_wasserstein", b.median_wasserstein},
-                          {"mean_hausdorff", b.mean_hausdorff}};
-  }
-  if (report.cost) {
-    const auto& c = *report.cost;
-    out["cost"] = {{"duration", c.duration},
-                   {"full_wall_s", c.full_wall},
-                   {"full_cpu_s", c.full_cpu},
-                   {"reduced_wall_s", c.reduced_wall},
-                   {"reduced_cpu_s", c.reduced_cpu},
-                   {"full_setup_wall_s", c.full_setup_wall},
-                   {"projection_wall_s", c.projection_wall}};
-  }
-  return out;
-}
-
 std::string summary_text(const ValidationReport& report) {
-  std::string out = fmt::format("Full model at speed {:g}: {}", report.speed, motion_text(report.full.period));
+  std::string out = fmt::format("Full model at V = {:g}: {}", report.speed, motion_text(report.full.period));
   if (report.lyapunov) out += fmt::format(", largest exponent {:.4f} bit per unit of time", report.lyapunov->bits);
-  out += '\n';
+  out += fmt::format(
+      ", sticks {:.1f} % of the time\n"
+      "Reduced models at that speed: ΔX, ΔE over the horizon from shared starts; W: distance of the slip states of\n"
+      "the settled motions (two full runs: {}); λ: largest exponent\n",
+      100.0 * report.full.stick_fraction, fixed(report.noise.wasserstein, 3));
   out += shares_text(report);
-  bool any_orbit = false;
-  for (const auto& candidate : report.candidates) any_orbit = any_orbit || !candidate.orbits.empty();
-  if (any_orbit) out += fmt::format("\nPeriodic orbits, {} modes\n{}", report.chosen, orbits_text(report));
+  if (!report.candidates.front().orbits.empty()) {
+    out += "\nPeriodic orbits: deviation over one period where the periods are the same\n" + orbits_text(report);
+  }
   if (report.sweep && report.bifurcation) {
-    out += fmt::format("\nBelt-speed sweep, {} values, {} {}s\n{}", report.sweep->full.size(), report.chosen,
-                       report.candidates.front().name, sweep_text(report));
+    out += fmt::format("\nBelt-speed sweep: {} values, full model and {} {}s\n{}", report.sweep->full.size(),
+                       report.chosen, report.candidates.front().name, sweep_text(report));
     out += fmt::format("  same period at {:.1f} % of the values, median distance of slip states {:.3g}\n",
                        100.0 * report.bifurcation->same_period, report.bifurcation->median_wasserstein);
   }
   if (report.cost) {
     const auto& cost = *report.cost;
-    out +=
-        fmt::format("\nOne run of {:g} time units: full {:.3f} ms, reduced {:.3f} ms, {:.2f} times faster\n",
-                    cost.duration, 1e3 * cost.full_wall, 1e3 * cost.reduced_wall, cost.full_wall / cost.reduced_wall);
+    out += fmt::format("\nOne run of {:g} time units: full {:.3f} ms, {} {}s {:.3f} ms, speed-up {:.2f}\n",
+                       cost.duration, 1e3 * cost.full_wall, report.chosen, report.candidates.front().name,
+                       1e3 * cost.reduced_wall, cost.full_wall / cost.reduced_wall);
   }
   return out;
 }

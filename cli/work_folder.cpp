@@ -44,9 +44,9 @@ WorkFolder::WorkFolder(fs::path target) {
 }
 
 WorkFolder::~WorkFolder() {
-  if (settled_) return;
+  if (settled_ || first_made_.empty()) return;
   std::error_code ignored;
-  fs::remove_all(first_made_.empty() ? work_ : first_made_, ignored);
+  fs::remove_all(first_made_, ignored);
 }
 
 void WorkFolder::finish() {

@@ -6,8 +6,8 @@ namespace slipmode::cli {
 
 /// A sibling `DIR.partial` in which a result folder is made, so that DIR never holds half of a result.
 ///
-/// Unless finished or kept, the sibling is removed, with the parent folders that were made for it. Kept after an
-/// interruption, it holds the journal from which the same command goes on.
+/// Unless finished or kept, the sibling is removed again, with the parent folders that were made for it. One that an
+/// interrupted run left behind stays: it holds the journal from which the same command goes on.
 class WorkFolder {
  public:
   /// @throws InvalidInput  when DIR is a file, or its place is not writable

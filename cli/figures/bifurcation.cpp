@@ -68,7 +68,7 @@ Figure bifurcation_diagram(const std::vector<BifurcationPanel>& panels, const Bi
     figure.command(last ? fmt::format("set xlabel \"{}\"", axis_label(labels.parameter, labels.parameter_unit))
                         : std::string("unset xlabel"));
     figure.command(last ? "set format x '%g'" : "set format x ''");
-    figure.command(fmt::format("plot {} using 1:2 with points pointtype 7 pointsize 0.12 linecolor rgb '{}'", block,
+    figure.command(fmt::format("plot {} using 1:2 with points pointtype 7 pointsize 0.16 linecolor rgb '{}'", block,
                                points.colour));
   }
   figure.command("unset multiplot");

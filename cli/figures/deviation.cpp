@@ -10,8 +10,8 @@
 namespace slipmode::figures {
 namespace {
 
-/// Below this a deviation is rounding (all modes kept); it is left out of a logarithmic axis.
-constexpr double kSmallest = 1e-9;
+/// Below this a deviation [%] is rounding (all modes kept), which would stretch a logarithmic axis; it is left out.
+constexpr double kSmallest = 1e-5;
 
 Eigen::VectorXd drawable(const Eigen::VectorXd& values) {
   Eigen::VectorXd out = values.cwiseAbs();
@@ -62,7 +62,7 @@ Figure deviation(const std::vector<DeviationCase>& cases) {
   for (const auto& motion : cases) {
     for (const auto& curve : motion.curves) most = std::max(most, curve.modes.maxCoeff());
   }
-  figure.command(fmt::format("set multiplot layout 2,{} margins 0.085,0.985,0.108,0.945 spacing 0.03,0.05", columns));
+  figure.command(fmt::format("set multiplot layout 2,{} margins 0.085,0.985,0.108,0.915 spacing 0.03,0.05", columns));
   figure.command(fmt::format("set xrange [0.5:{}]", most + 0.5));
   figure.command(most <= 20 ? "set xtics 1" : "set xtics auto");
   figure.command("set logscale y");
@@ -76,7 +76,7 @@ Figure deviation(const std::vector<DeviationCase>& cases) {
       figure.command(i == 0 ? fmt::format("set ylabel \"{} [%]\"", upper ? "ΔX" : "|ΔE|")
                             : std::string("unset ylabel"));
       figure.command(upper ? "unset xlabel; set format x ''" : "set xlabel \"number of modes, L\"; set format x '%g'");
-      figure.command(upper && i == 0 ? "set key bottom left" : "unset key");
+      figure.command(upper && i == 0 ? kLegendAbove : "unset key");
       figure.command(curves(figure, cases[i], measure));
     }
   }

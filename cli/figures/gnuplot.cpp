@@ -90,11 +90,16 @@ void run_gnuplot(const std::string& script) {
   posix_spawn_file_actions_adddup2(&actions, input.descriptor(), STDIN_FILENO);
   posix_spawn_file_actions_adddup2(&actions, messages.descriptor(), STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&actions, messages.descriptor(), STDERR_FILENO);
+  // A process group of its own: Ctrl-C is for slipmode, which lets a figure be finished.
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
   char program[] = "gnuplot";
   char* arguments[] = {program, nullptr};
   pid_t child = 0;
-  const int failed = posix_spawnp(&child, program, &actions, nullptr, arguments, environ);
+  const int failed = posix_spawnp(&child, program, &actions, &attributes, arguments, environ);
   posix_spawn_file_actions_destroy(&actions);
+  posix_spawnattr_destroy(&attributes);
   if (failed == ENOENT) {
     throw InvalidInput("gnuplot is not installed or not in PATH; install it: apt-get install gnuplot-nox");
   }

@@ -18,24 +18,31 @@ Eigen::VectorXd turned_to(const Eigen::VectorXd& shape, const Eigen::VectorXd& r
   return shape.dot(reference) < 0.0 ? Eigen::VectorXd(-shape) : shape;
 }
 
+/// Few empty places, panels still wide enough for their titles.
+int columns_for(int count) {
+  if (count <= 4) return std::min(count, 2);
+  if (count <= 6) return 3;
+  return count == 9 || count == 10 ? 5 : 4;
+}
+
 }  // namespace
 
 Figure mode_shapes(const ModeShapes& shapes) {
   constexpr int kLargestCount = 12;
   const int count = std::min<int>(kLargestCount, static_cast<int>(shapes.poms.cols()));
-  const int columns = std::min(count, count <= 4 ? 2 : 3);
+  const int columns = columns_for(count);
   const int rows = (count + columns - 1) / columns;
-  Figure figure(1200, rows * 260 + 105);
+  Figure figure(1200, rows * 260 + 135);
   common_style(figure);
 
   const Eigen::Index n = shapes.poms.rows();
   const Eigen::VectorXd number = Eigen::VectorXd::LinSpaced(n, 1.0, static_cast<double>(n));
   const double height = figure.height();
-  figure.command(fmt::format("set multiplot layout {},{} margins 0.065,0.985,{:.4f},{:.4f} spacing 0.035,{:.4f}", rows,
-                             columns, 90.0 / height, 1.0 - 45.0 / height, 50.0 / height));
+  figure.command(fmt::format("set multiplot layout {},{} margins 0.085,0.985,{:.4f},{:.4f} spacing 0.025,{:.4f}", rows,
+                             columns, 90.0 / height, 1.0 - 75.0 / height, 50.0 / height));
   figure.command(fmt::format("set xrange [0.5:{}]", static_cast<double>(n) + 0.5));
   figure.command("set yrange [-1.15:1.15]; set ytics 0.5");
-  if (n <= 20) figure.command("set xtics 1");
+  if (n <= 20) figure.command(columns <= 3 || n <= 5 ? "set xtics 1" : "set xtics 2");
   figure.command("set xzeroaxis linecolor rgb '#999999' linewidth 0.8 linetype 1");
   const std::string marker = n <= 60 ? "linespoints pointtype 7 pointsize 0.7" : "lines";
   for (int i = 0; i < count; ++i) {
@@ -47,7 +54,7 @@ Figure mode_shapes(const ModeShapes& shapes) {
     figure.command(i % columns == 0 ? "set ylabel \"shape [–]\"; set format y '%g'" : "unset ylabel; set format y ''");
     figure.command(i + columns >= count ? "set xlabel \"mass number\"; set format x '%g'"
                                         : "unset xlabel; set format x ''");
-    figure.command(i == 0 && with_lnm ? "set key top left" : "unset key");
+    figure.command(i == 0 && with_lnm ? kLegendAbove : "unset key");
     std::string plot = fmt::format("plot {} using 1:2 with {} linewidth 1.6 linecolor rgb '{}' title 'POM'",
                                    figure.data({number, pom}), marker, kPomColour);
     if (with_lnm) {

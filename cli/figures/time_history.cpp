@@ -20,7 +20,7 @@ Figure time_history(const TimeHistory& history) {
                                    Row{"contact force", history.force, history.force_unit}};
   const double begin = history.time[0], end = history.time[history.time.size() - 1];
 
-  figure.command("set multiplot layout 3,1 margins 0.085,0.985,0.11,0.95 spacing 0,0.025");
+  figure.command("set multiplot layout 3,1 margins 0.085,0.97,0.11,0.95 spacing 0,0.025");
   figure.command("unset key");
   figure.command(fmt::format("set xrange [{:.10g}:{:.10g}]", begin, end));
   for (const auto& [from, to] : history.stick) {

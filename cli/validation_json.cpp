@@ -1,0 +1,115 @@
+#include "cli/sweep_store.hpp"
+#include "cli/validation_store.hpp"
+
+namespace slipmode::cli {
+namespace {
+
+using diagnostics::CandidateReport;
+using diagnostics::OrbitRow;
+using diagnostics::ShareRow;
+using diagnostics::ValidationReport;
+
+Json settled_json(const diagnostics::Settled& settled) {
+  return {{"motion", diagnostics::to_string(settled.period.motion)},
+          {"period", settled.period.period},
+          {"T", settled.period.T},
+          {"stick_fraction", settled.stick_fraction},
+          {"slip_rate", settled.slip_rate},
+          {"mean_energy", settled.mean_energy},
+          {"audit_residual", settled.audit_residual}};
+}
+
+Json deviation_json(const diagnostics::Deviation& deviation) {
+  return {{"dX", deviation.dX}, {"dE", deviation.dE}, {"dE_pointwise", deviation.dE_pointwise}};
+}
+
+Json distance_json(const diagnostics::AttractorDistance& distance) {
+  return {{"wasserstein", distance.wasserstein},
+          {"hausdorff", distance.hausdorff},
+          {"mean_energy_percent", distance.mean_energy_percent},
+          {"stick_fraction", distance.stick_fraction},
+          {"slip_rate", distance.slip_rate}};
+}
+
+Json share_json(const ShareRow& row) {
+  Json out = {{"modes", row.modes}, {"energy", row.energy}};
+  if (!row.failure.empty()) {
+    out["failure"] = row.failure;
+    return out;
+  }
+  out["horizon"] = deviation_json(row.horizon);
+  out["start_error"] = row.start_error;
+  if (row.attractor) {
+    out["attractor"] = settled_json(*row.attractor);
+    out["distance"] = distance_json(row.distance);
+  }
+  if (row.lyapunov) out["lyapunov_bits"] = row.lyapunov->bits;
+  return out;
+}
+
+Json orbit_json(const OrbitRow& row) {
+  Json out = {{"speed", row.speed}, {"modes", row.modes}};
+  if (!row.failure.empty()) out["failure"] = row.failure;
+  if (row.comparison) {
+    const auto& comparison = *row.comparison;
+    out["period_full"] = comparison.full.period;
+    out["period_reduced"] = comparison.reduced.period;
+    out["T_full"] = comparison.full.T;
+    out["T_reduced"] = comparison.reduced.T;
+    if (comparison.same_period) out["deviation"] = deviation_json(comparison.deviation);
+  }
+  return out;
+}
+
+Json motions_json(const std::vector<diagnostics::SweepPoint>& points) {
+  Json out = Json::object();
+  for (const MotionCount& count : count_motions(points)) out[count.motion] = count.values;
+  return out;
+}
+
+}  // namespace
+
+Json to_json(const ValidationReport& report) {
+  Json out = {{"speed", report.speed},
+              {"chosen_modes", report.chosen},
+              {"full", settled_json(report.full)},
+              {"noise", distance_json(report.noise)}};
+  if (report.lyapunov) {
+    out["lyapunov_bits"] = report.lyapunov->bits;
+    out["lyapunov_error_nats"] = report.lyapunov->error;
+  }
+  for (const CandidateReport& candidate : report.candidates) {
+    Json shares = Json::array(), orbits = Json::array();
+    for (const ShareRow& row : candidate.shares) shares.push_back(share_json(row));
+    for (const OrbitRow& row : candidate.orbits) orbits.push_back(orbit_json(row));
+    out["bases"][candidate.name] = {{"shares", shares}, {"orbits", orbits}};
+  }
+  if (report.sweep) {
+    out["sweep"] = {{"full", motions_json(report.sweep->full)}, {"reduced", motions_json(report.sweep->reduced)}};
+  }
+  if (report.bifurcation) {
+    const auto& b = *report.bifurcation;
+    out["bifurcation"] = {{"values", b.values},
+                          {"failed", b.failed},
+                          {"same_motion", b.same_motion},
+                          {"same_period", b.same_period},
+                          {"periodic_full", b.periodic_full},
+                          {"periodic_reduced", b.periodic_reduced},
+                          {"mean_wasserstein", b.mean_wasserstein},
+                          {"median_wasserstein", b.median_wasserstein},
+                          {"mean_hausdorff", b.mean_hausdorff}};
+  }
+  if (report.cost) {
+    const auto& c = *report.cost;
+    out["cost"] = {{"duration", c.duration},
+                   {"full_wall_s", c.full_wall},
+                   {"full_cpu_s", c.full_cpu},
+                   {"reduced_wall_s", c.reduced_wall},
+                   {"reduced_cpu_s", c.reduced_cpu},
+                   {"full_setup_wall_s", c.full_setup_wall},
+                   {"projection_wall_s", c.projection_wall}};
+  }
+  return out;
+}
+
+}  // namespace slipmode::cli
