@@ -187,12 +187,7 @@ bool CollocationFlow::step(double t_limit) {
   for (int c = 0; c < nc_; ++c)
     if (point_.modes[static_cast<std::size_t>(c)] == ContactMode::kStick)
       statistics_.stick_time[static_cast<std::size_t>(c)] += tau;
-  if (options_.audit) {
-    if (tau < h)
-      account_pieces(level, tau);
-    else
-      account(level, x_begin_.data(), forces_.data(), velocity_.data(), begin_, 1.0);
-  }
+  if (options_.audit) account(level, tau);
   if (tangents_.size() > 0) push_tangents(level, tau);
 
   level_ = error < tolerance * kGrowth && level > 0 ? level - 1 : level;
@@ -270,63 +265,57 @@ double CollocationFlow::stick_force(int c, const Eigen::VectorXd& x, double tau,
   return force(c);
 }
 
-void CollocationFlow::account_pieces(int level, double tau) {
+void CollocationFlow::account(int level, double tau) {
+  if (tau >= tables_.step(level))
+    return account_whole(level, x_begin_.data(), forces_.data(), velocity_.data(), begin_);
   double t = begin_;
   Eigen::VectorXd x = x_begin_, next(x.size()), velocity(kNodes * nc_);
-  const auto velocities = [&](int piece, const double* forces) {
-    const Collocation& table = tables_.collocation(piece);
-    for (int c = 0; c < nc_; ++c)
-      velocity.segment<kNodes>(kNodes * c) =
-          table.free.middleCols(2 * model_.np * c, 2 * model_.np) * x + table.load.col(c);
-    velocity += table.kernel * Eigen::Map<const Eigen::VectorXd>(forces, kNodes * nc_);
-  };
   walk_pieces(
       tables_, forces_.data(), level, tau,
       [&](int piece, const double* forces) {
-        velocities(piece, forces);
-        account(piece, x.data(), forces, velocity.data(), t, 1.0);
+        const Collocation& table = tables_.collocation(piece);
+        velocity.noalias() = table.kernel * Eigen::Map<const Eigen::VectorXd>(forces, kNodes * nc_);
+        for (int c = 0; c < nc_; ++c)
+          velocity.segment<kNodes>(kNodes * c) +=
+              table.free.middleCols(2 * model_.np * c, 2 * model_.np) * x + table.load.col(c);
+        account_whole(piece, x.data(), forces, velocity.data(), t);
         propagate(tables_.propagator(piece), x.data(), forces, nc_, model_.np, next.data());
         x.swap(next);
         t += tables_.step(piece);
       },
-      [&](int piece, const double* forces, double rest) {
-        // Down to a table of the length of the rest, so that its polynomials need no more than the Taylor series does.
-        velocities(piece, forces);
-        account(piece, x.data(), forces, velocity.data(), t, rest / tables_.step(piece));
-      });
+      [&](int piece, const double* forces, double rest) { account_rest(piece, x.data(), forces, t, rest); });
 }
 
-void CollocationFlow::account(int level, const double* x, const double* forces, const double* velocities, double begin,
-                              double theta) {
-  const double length = theta * tables_.step(level);
-  const bool whole = theta >= 1.0;
-  const RadauTables& t = nodes_;
+void CollocationFlow::account_whole(int level, const double* x, const double* forces, const double* velocities,
+                                    double begin) {
+  const double length = tables_.step(level), V = belt().velocity(begin), a = belt().acceleration(begin);
   double contact = 0.0, drive = 0.0;
-  Eigen::Matrix<double, kNodes, kNodes> to_part;  // node values of the step → node values of the part walked
-  Eigen::Matrix<double, kNodes, kNodes + 1> velocity_part;  // same for velocities, through the value at 0 too
-  if (!whole) {
-    for (int j = 0; j < kNodes; ++j) {
-      const double at = theta * t.node(j);
-      to_part.row(j) = t.lagrange(at).transpose();
-      double start = 1.0;
-      for (int k = 0; k < kNodes; ++k) start *= (at - t.node(k)) / -t.node(k);
-      velocity_part(j, 0) = start;
-      for (int k = 0; k < kNodes; ++k) velocity_part(j, k + 1) = to_part(j, k) * at / t.node(k);
-    }
-  }
-  const double V = belt().velocity(begin), a = belt().acceleration(begin);
   for (int c = 0; c < nc_; ++c) {
-    const RadauTables::Vector8 given = Eigen::Map<const RadauTables::Vector8>(velocities + kNodes * c);
-    RadauTables::Vector8 force = Eigen::Map<const RadauTables::Vector8>(forces + kNodes * c), speed = given;
-    if (!whole) {
-      force = to_part * force;
-      speed = velocity_part.col(0) * resolver_.contact_velocity(c, x) + velocity_part.rightCols<kNodes>() * given;
-    }
-    const RadauTables::Vector8 weighted = length * t.weight.cwiseProduct(force);
+    const Eigen::Map<const RadauTables::Vector8> force(forces + kNodes * c), speed(velocities + kNodes * c);
+    const RadauTables::Vector8 weighted = length * nodes_.weight.cwiseProduct(force);
     contact += weighted.dot(speed);
-    drive += V * weighted.sum() + a * length * weighted.dot(t.node);
+    drive += V * weighted.sum() + a * length * weighted.dot(nodes_.node);
   }
-  work_.add(contact, drive, viscous_loss(tables_, level, x, forces, theta, whole ? nullptr : velocity_part.data()));
+  work_.add(contact, drive, viscous_loss(tables_, level, x, forces));
+}
+
+void CollocationFlow::account_rest(int level, const double* x, const double* forces, double begin, double rest) {
+  // Five points suffice for what a Taylor series covers.
+  static const GaussRule rule = gauss_rule(5);
+  Eigen::VectorXd at(x_begin_.size());
+  double contact = 0.0, drive = 0.0, viscous = 0.0;
+  for (Eigen::Index k = 0; k < rule.node.size(); ++k) {
+    const double tau = rule.node(k) * rest, weight = rule.weight(k) * rest, t = begin + tau;
+    advance_within(tables_, x, forces, level, tau, at.data());
+    const RadauTables::Vector8 basis = nodes_.lagrange(tau / tables_.step(level));
+    for (int c = 0; c < nc_; ++c) {
+      const double force = Eigen::Map<const RadauTables::Vector8>(forces + kNodes * c).dot(basis);
+      contact += weight * force * resolver_.contact_velocity(c, at.data());
+      drive += weight * force * belt().velocity(t);
+    }
+    viscous += weight * model_.viscous_power(at);
+  }
+  work_.add(contact, drive, viscous);
 }
 
 void CollocationFlow::restart_steps() {

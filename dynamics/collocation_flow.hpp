@@ -60,8 +60,9 @@ class CollocationFlow {
   void refine_event(const Guarded& guard, double& tau, Eigen::VectorXd& x) const;
   [[nodiscard]] double stick_force(int c, const Eigen::VectorXd& x, double tau,
                                    const RadauTables::Vector8& basis) const;
-  void account(int level, const double* x, const double* forces, const double* velocities, double begin, double theta);
-  void account_pieces(int level, double tau);
+  void account(int level, double tau);
+  void account_whole(int level, const double* x, const double* forces, const double* velocities, double begin);
+  void account_rest(int level, const double* x, const double* forces, double begin, double rest);
   void restart_steps();
   void push_tangents(int level, double tau);
   void salt_tangents(const Eigen::VectorXd& force_before, int contact);

@@ -170,6 +170,11 @@ void fill_general(ModalModel& m, const fem::Modes& modes, const Eigen::MatrixXd&
 
 }  // namespace
 
+double ModalModel::viscous_power(const Eigen::VectorXd& x) const {
+  if (!proportional) return (dissipation_root * x).squaredNorm();
+  return damping.dot(x.tail(np).cwiseAbs2());
+}
+
 Eigen::Matrix2d ModalModel::exponential(Eigen::Index i, double t) const {
   // e^{Gt} = e^{τt}(c I + s (G − τI)), τ = tr/2, c and s the (hyperbolic) cosine and sine of sqrt(|Δ|) t.
   const double tau = (g11(i) + g22(i)) / 2.0;

@@ -40,6 +40,8 @@ struct ModalModel {
   /// q̇ᵀCq̇ = |L x|² for damping that is not proportional [n x 2np].
   Eigen::MatrixXd dissipation_root;
 
+  /// q̇ᵀCq̇ of a state [W].
+  [[nodiscard]] double viscous_power(const Eigen::VectorXd& x) const;
   [[nodiscard]] bool has_shapes() const { return to_q.size() > 0; }
   /// e^{G_i t} of pair i as {a, b; c, d}: stable for oscillating, critical, overdamped and rigid-body pairs.
   [[nodiscard]] Eigen::Matrix2d exponential(Eigen::Index pair, double t) const;

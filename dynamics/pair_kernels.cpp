@@ -105,31 +105,25 @@ template void propagate<Load::kLeftOut>(const Propagator&, const double*, const 
 template void advance_within<Load::kIncluded>(const StepTables&, const double*, const double*, int, double, double*);
 template void advance_within<Load::kLeftOut>(const StepTables&, const double*, const double*, int, double, double*);
 
-double viscous_loss(const StepTables& tables, int level, const double* x, const double* forces, double theta,
-                    const double* velocity_part) {
+double viscous_loss(const StepTables& tables, int level, const double* x, const double* forces) {
   const ModalModel& m = tables.model();
   const NodeStates& nodes = tables.node_states(level);
-  const auto& weight = radau().weight;
-  const double length = theta * tables.step(level);
   const int columns = kNodes * m.contacts;
   const auto np = m.np;
+  const auto points = nodes.rule.weight.size();
+  double total = 0.0;
   if (!m.proportional) {
-    Eigen::MatrixXd states(2 * np, kNodes + 1);
-    states.col(0) = Eigen::Map<const Eigen::VectorXd>(x, 2 * np);
-    for (int j = 0; j < kNodes; ++j)
-      propagate(nodes.node[static_cast<std::size_t>(j)], x, forces, m.contacts, np, states.col(j + 1).data());
-    Eigen::MatrixXd rates = m.dissipation_root * states;
-    if (velocity_part)
-      rates = (rates * Eigen::Map<const Eigen::Matrix<double, kNodes, kNodes + 1>>(velocity_part).transpose()).eval();
-    else
-      rates = rates.rightCols(kNodes).eval();
-    return length * (rates.colwise().squaredNorm() * weight).value();
+    Eigen::VectorXd state(2 * np);
+    for (Eigen::Index j = 0; j < points; ++j) {
+      propagate(nodes.node[static_cast<std::size_t>(j)], x, forces, m.contacts, np, state.data());
+      total += nodes.rule.weight(j) * m.viscous_power(state);
+    }
+    return total * tables.step(level);
   }
-  V8 total{};
   for (Eigen::Index i = 0; i < np; i += kLanes) {
     const V8 x1 = load8(x + i), x2 = load8(x + np + i);
-    V8 velocity[kNodes];
-    for (int j = 0; j < kNodes; ++j) {
+    V8 sum{};
+    for (Eigen::Index j = 0; j < points; ++j) {
       const Propagator& p = nodes.node[static_cast<std::size_t>(j)];
       V8 y = load8(p.load.data() + np + i) + load8(p.e21.data() + i) * x1;
       V8 z = load8(p.e22.data() + i) * x2;
@@ -139,21 +133,11 @@ double viscous_loss(const StepTables& tables, int level, const double* x, const 
         z += load8(response + 2 * np) * forces[k + 1];
         response += 4 * np;
       }
-      velocity[j] = y + z;
+      sum += nodes.rule.weight(j) * (y + z) * (y + z);
     }
-    V8 sum{};
-    if (velocity_part) {
-      for (int j = 0; j < kNodes; ++j) {
-        V8 v = x2 * velocity_part[j];
-        for (int k = 0; k < kNodes; ++k) v += velocity[k] * velocity_part[kNodes * (k + 1) + j];
-        sum += weight(j) * v * v;
-      }
-    } else {
-      for (int j = 0; j < kNodes; ++j) sum += weight(j) * velocity[j] * velocity[j];
-    }
-    total += load8(m.damping.data() + i) * sum;
+    total += sum8(load8(m.damping.data() + i) * sum);
   }
-  return length * sum8(total);
+  return total * tables.step(level);
 }
 
 }  // namespace slipmode::dynamics

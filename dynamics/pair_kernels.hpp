@@ -136,10 +136,7 @@ template <Load load = Load::kIncluded>
 void advance_within(const StepTables& tables, const double* x, const double* forces, int level, double tau,
                     double* out_x);
 
-/// ∫ q̇ᵀCq̇ dt over the first `theta` of a step, from the modal velocities at the nodes.
-/// @param velocity_part  null for the whole step, else the 8 x 9 matrix (column major) from velocities at 0 and the
-///                       nodes to those at the nodes of the part
-double viscous_loss(const StepTables& tables, int level, const double* x, const double* forces, double theta,
-                    const double* velocity_part);
+/// ∫ q̇ᵀCq̇ dt over a step, from the modal velocities at the points of the table's rule.
+double viscous_loss(const StepTables& tables, int level, const double* x, const double* forces);
 
 }  // namespace slipmode::dynamics

@@ -98,7 +98,11 @@ void StepTables::propagate_to(double end, double h, Propagator& out) const {
 void StepTables::make(Propagator& out, int level) const { propagate_to(1.0, step(level), out); }
 
 void StepTables::make(NodeStates& out, int level) const {
-  for (int j = 0; j < kNodes; ++j) propagate_to(radau().node(j), step(level), out.node[static_cast<std::size_t>(j)]);
+  const double h = step(level);
+  out.rule = gauss_rule(8 + static_cast<int>(std::ceil(1.5 * model_.fastest * h)));
+  out.node.resize(static_cast<std::size_t>(out.rule.node.size()));
+  for (std::size_t j = 0; j < out.node.size(); ++j)
+    propagate_to(out.rule.node(static_cast<Eigen::Index>(j)), h, out.node[j]);
 }
 
 void StepTables::make(Collocation& out, int level) const {

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
+#include <vector>
 
 namespace slipmode::dynamics {
 
@@ -28,9 +29,10 @@ struct Collocation {
   Eigen::MatrixXd kernel_inverse;  ///< used when every contact sticks [8nc x 8nc]
 };
 
-/// Modal velocities at the nodes, for the energy audit of proportional damping; both state components otherwise.
+/// States at the points of a quadrature rule that integrates squares of velocities to rounding, for the energy audit.
 struct NodeStates {
-  std::array<Propagator, kNodes> node;  ///< propagator to each node, forces given at the nodes of the whole step
+  GaussRule rule;
+  std::vector<Propagator> node;  ///< propagator to each point, forces given at the nodes of the whole step
 };
 
 /// Tables for steps of size top·2^{-level}, built when first used; safe to share between threads.
