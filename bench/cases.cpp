@@ -37,7 +37,7 @@ std::vector<ComparisonCase> comparison_cases(bool quick) {
   thousand.ground = 0.25;
   cases.push_back({.problem = thousand,
                    .transient = 500.0,
-                   .duration = 2000.0,
+                   .peer_duration = 2000.0,
                    .stretches = 5,
                    .wanted_cvode = 500.0,
                    .wanted_odeint = 30.0,
@@ -45,6 +45,7 @@ std::vector<ComparisonCase> comparison_cases(bool quick) {
   if (quick) {
     for (ComparisonCase& c : cases) {
       c.duration *= 0.1;
+      c.peer_duration *= 0.1;
       c.stretches = 5;
       c.repeats = 3;
     }

@@ -3,7 +3,6 @@
 #include "diagnostics/model.hpp"
 #include "fem/chain.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -56,11 +55,6 @@ std::vector<dynamics::State> starts_on_attractor(const dynamics::HybridSystem& s
     starts.push_back(until_clear_slip(system, onwards(system, starts.back(), spacing)));
   }
   return starts;
-}
-
-long count_mode_changes(const std::vector<dynamics::Event>& events) {
-  return static_cast<long>(
-      std::count_if(events.begin(), events.end(), [](const dynamics::Event& e) { return e.before != e.after; }));
 }
 
 }  // namespace slipmode::bench

@@ -16,7 +16,4 @@ namespace slipmode::bench {
 [[nodiscard]] std::vector<dynamics::State> starts_on_attractor(const dynamics::HybridSystem& system,
                                                                const dynamics::State& first, double spacing, int count);
 
-/// Number of changes of a contact's mode.
-[[nodiscard]] long count_mode_changes(const std::vector<dynamics::Event>& events);
-
 }  // namespace slipmode::bench

@@ -7,7 +7,7 @@
 namespace slipmode::bench {
 namespace {
 
-double per_ten_thousand(double seconds, double duration) { return 1e3 * seconds * 1e4 / duration; }
+double per_ten_thousand(double seconds_per_unit) { return 1e3 * 1e4 * seconds_per_unit; }
 
 std::string wanted(double ratio) { return ratio > 0.0 ? fmt::format("{:.0f}", ratio) : "-"; }
 
@@ -22,13 +22,11 @@ std::string time_header() {
 }
 
 std::string time_line(const Comparison& row) {
-  const double T = row.setting.duration;
   return fmt::format(
       "{:<19} {:>6.3f} {:>9.3f} {:>9.3f} {:>9.1f} {:>9.2f} {:>8.0f} {:>6} {:>8.1f} {:>6} {:>8.2f} {:>8.2f}",
-      row.setting.problem.name, static_cast<double>(row.slipmode.timed_events) / T,
-      per_ten_thousand(row.slipmode.seconds, T), per_ten_thousand(row.audit_seconds, T),
-      per_ten_thousand(row.cvode.seconds, T), per_ten_thousand(row.odeint.seconds, T), row.ratio_cvode(),
-      wanted(row.setting.wanted_cvode), row.ratio_odeint(), wanted(row.setting.wanted_odeint),
+      row.setting.problem.name, row.slipmode.events_per_unit, per_ten_thousand(row.slipmode.seconds),
+      per_ten_thousand(row.audit_seconds), per_ten_thousand(row.cvode.seconds), per_ten_thousand(row.odeint.seconds),
+      row.ratio_cvode(), wanted(row.setting.wanted_cvode), row.ratio_odeint(), wanted(row.setting.wanted_odeint),
       1e3 * row.setup_rows_seconds, 1e3 * row.setup_shapes_seconds);
 }
 
@@ -54,8 +52,18 @@ std::string tanh_header() {
 
 std::string tanh_line(const TanhFigures& row) {
   return fmt::format("{:<19} {:>8.0e} {:>9.1f} {:>10.0f} {:>9.2f} {:>8.1e}", row.setting.problem.name, row.epsilon,
-                     per_ten_thousand(row.seconds, row.setting.duration), row.seconds / row.slipmode_seconds,
-                     row.seconds / row.cvode_seconds, row.error);
+                     per_ten_thousand(row.seconds), row.seconds / row.slipmode_seconds, row.seconds / row.cvode_seconds,
+                     row.error);
+}
+
+std::string events_header() {
+  return fmt::format("{:<19} {:>8} {:>12} {:>10} {:>10}", "event times, 1e-12", "events", "to CVODE", "slipmode",
+                     "CVODE");
+}
+
+std::string events_line(const EventAgreement& row) {
+  return fmt::format("{:<19} {:>8} {:>12.1e} {:>10.1e} {:>10.1e}{}", row.name, row.events, row.difference,
+                     row.error_slipmode, row.error_cvode, row.holds() ? "" : "  apart");
 }
 
 std::string cpu_model() {

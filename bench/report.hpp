@@ -14,6 +14,8 @@ namespace slipmode::bench {
 [[nodiscard]] std::string error_line(const Comparison& row);
 [[nodiscard]] std::string tanh_header();
 [[nodiscard]] std::string tanh_line(const TanhFigures& row);
+[[nodiscard]] std::string events_header();
+[[nodiscard]] std::string events_line(const EventAgreement& row);
 
 /// The processor's model as the system names it.
 [[nodiscard]] std::string cpu_model();
