@@ -1,11 +1,14 @@
 #pragma once
 
 #include "dynamics/modal_model.hpp"
+#include "dynamics/regime.hpp"
 #include "dynamics/step_tables.hpp"
 #include "dynamics/system.hpp"
 
+#include <map>
 #include <memory>
 #include <mutex>
+#include <vector>
 
 namespace slipmode::dynamics {
 
@@ -22,10 +25,13 @@ class SystemCache {
  public:
   /// @param rows_only  contact rows without mode shapes, where the structure allows it
   [[nodiscard]] const ModelTables& tables(const HybridSystem& system, bool rows_only);
+  /// The regime in which these contacts stick, built when first visited.
+  [[nodiscard]] const RegimeTables& regime(const HybridSystem& system, const std::vector<bool>& stuck);
 
  private:
   std::mutex building_;
   std::unique_ptr<ModelTables> full_, rows_;
+  std::map<std::vector<bool>, std::unique_ptr<RegimeTables>> regimes_;
 };
 
 }  // namespace slipmode::dynamics

@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "dynamics/cache.hpp"
+#include "dynamics/closed_form_flow.hpp"
 #include "dynamics/collocation_flow.hpp"
 
 #include <Eigen/Dense>
@@ -55,6 +56,21 @@ std::vector<ContactMode> start_modes(const HybridSystem& system, const State& st
                 std::to_string(sliding) + "; leave the modes empty to have them derived");
   }
   return modes;
+}
+
+/// Above this size the closed form's changes of basis, O(n²) per event, cost more than they save.
+constexpr Eigen::Index kClosedFormSize = 64;
+
+FlowMethod choose_method(const HybridSystem& system, FlowMethod asked) {
+  if (asked == FlowMethod::kCollocation) return asked;
+  for (std::size_t c = 0; c < system.contacts().size(); ++c)
+    if (!contact_forces(system.contacts()[c]).is_constant()) {
+      if (asked == FlowMethod::kAutomatic) return FlowMethod::kCollocation;
+      throw InvalidInput("the closed-form flow needs piecewise-linear laws, but contact " + std::to_string(c + 1) +
+                         " has a force that depends on the sliding speed; use the collocation flow, or Coulomb's law");
+    }
+  return asked == FlowMethod::kClosedForm || system.size() <= kClosedFormSize ? FlowMethod::kClosedForm
+                                                                              : FlowMethod::kCollocation;
 }
 
 /// The modal model a run needs, and its state there.
@@ -231,10 +247,16 @@ Trajectory simulate(const HybridSystem& system, const State& start, const Simula
   require(options.sample >= 0 && std::isfinite(options.sample), "sampling interval must be finite and not negative");
   const bool rows_suffice =
       options.output == SimulateOptions::Output::kContacts && !options.event_states && !options.on_event;
-  Prepared p = prepare(system, start, options.flow, rows_suffice);
+  const FlowMethod method = choose_method(system, options.flow.method);
+  Prepared p = prepare(system, start, options.flow, rows_suffice && method == FlowMethod::kCollocation);
   Trajectory out;
-  CollocationFlow flow(system, p.tables.steps, std::move(p.start), p.options);
-  run(flow, system, p.tables.model, start, options, out);
+  if (method == FlowMethod::kClosedForm) {
+    ClosedFormFlow flow(system, std::move(p.start), p.options);
+    run(flow, system, p.tables.model, start, options, out);
+  } else {
+    CollocationFlow flow(system, p.tables.steps, std::move(p.start), p.options);
+    run(flow, system, p.tables.model, start, options, out);
+  }
   return out;
 }
 

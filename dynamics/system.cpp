@@ -62,4 +62,12 @@ const ModelTables& SystemCache::tables(const HybridSystem& system, bool rows_onl
   return *slot;
 }
 
+const RegimeTables& SystemCache::regime(const HybridSystem& system, const std::vector<bool>& stuck) {
+  const ModelTables& full = tables(system, false);
+  const std::lock_guard lock(building_);
+  auto& slot = regimes_[stuck];
+  if (!slot) slot = std::make_unique<RegimeTables>(system, full.model, stuck);
+  return *slot;
+}
+
 }  // namespace slipmode::dynamics

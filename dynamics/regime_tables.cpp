@@ -1,0 +1,239 @@
+#include "core/v8.hpp"
+#include "dynamics/regime.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace slipmode::dynamics {
+namespace {
+
+/// The longest window, in radians of the fastest pair: 2^12.
+constexpr double kTopPhase = 4096.0;
+/// Below this phase a Taylor series of kTaylorOrder terms is exact to rounding.
+constexpr double kTaylorPhase = 0.25;
+constexpr int kTaylorOrder = 13;
+/// Quadrature over this many radians at once.
+constexpr double kQuadraturePhase = 4.0;
+/// 1 + the Lebesgue constant of eight Chebyshev-Lobatto points (2.2), rounded up.
+constexpr double kInterpolationGain = 3.3;
+constexpr double kFactorial8 = 40320.0;
+
+/// M_k = ∫₀ᵗ e^{G(t−s)} s^k/k! ds for k = 0, 1, 2.
+struct Moments {
+  Eigen::Matrix2d of0 = Eigen::Matrix2d::Zero(), of1 = Eigen::Matrix2d::Zero(), of2 = Eigen::Matrix2d::Zero();
+};
+
+Moments moments(const ModalModel& pairs, Eigen::Index i, double rate, const Eigen::Matrix2d& E, double t) {
+  Moments out;
+  Eigen::Matrix2d G;
+  G << pairs.g11(i), pairs.g12(i), pairs.g21(i), pairs.g22(i);
+  const double phase = rate * t, slowest = std::abs(G.determinant()) / std::max(rate, 1e-300) * t;
+  if (slowest > 1.0) {  // then nothing cancels in the antiderivatives
+    const Eigen::Matrix2d inverse = G.inverse(), I = Eigen::Matrix2d::Identity();
+    out.of0 = inverse * (E - I);
+    out.of1 = inverse * (out.of0 - t * I);
+    out.of2 = inverse * (out.of1 - t * t / 2.0 * I);
+    return out;
+  }
+  static const GaussRule rule = gauss_rule(16);
+  const int panels = 1 + static_cast<int>(phase / kQuadraturePhase);
+  for (int p = 0; p < panels; ++p)
+    for (Eigen::Index k = 0; k < rule.node.size(); ++k) {
+      const double s = t * (p + rule.node(k)) / panels, weight = t * rule.weight(k) / panels;
+      const Eigen::Matrix2d S = weight * pairs.exponential(i, t - s);
+      out.of0 += S;
+      out.of1 += s * S;
+      out.of2 += s * s / 2.0 * S;
+    }
+  return out;
+}
+
+/// Values at the eight Chebyshev-Lobatto points of [0, 1] → Bernstein coefficients of the interpolant.
+struct LobattoTables {
+  Eigen::Matrix<double, 8, 1> point;
+  Eigen::Matrix<double, 8, 8> bernstein;
+};
+
+LobattoTables build_lobatto() {
+  LobattoTables t;
+  Eigen::Matrix<long double, 8, 8> values;
+  for (int j = 0; j < 8; ++j) {
+    const long double at = (1.0L - std::cos(std::numbers::pi_v<long double> * j / 7)) / 2;
+    t.point(j) = static_cast<double>(at);
+    long double binomial = 1;
+    for (int k = 0; k < 8; ++k) {
+      values(j, k) =
+          binomial * std::pow(at, static_cast<long double>(k)) * std::pow(1 - at, static_cast<long double>(7 - k));
+      binomial = binomial * (7 - k) / (k + 1);
+    }
+  }
+  t.bernstein = values.inverse().cast<double>();
+  return t;
+}
+
+}  // namespace
+
+RegimeTables::RegimeTables(const HybridSystem& system, const ModalModel& slipping, const std::vector<bool>& stuck)
+    : regime_(system, slipping, stuck), top_(kTopPhase / regime_.rate) {}
+
+RegimeTables::~RegimeTables() {
+  for (auto& slot : steps_) delete slot.load();
+  for (auto& slot : windows_) delete slot.load();
+  for (auto& slot : audits_) delete slot.load();
+}
+
+int RegimeTables::level_covering(double wanted) const {
+  int level = 0;
+  while (level + 1 < kLevels && length(level + 1) >= wanted) ++level;
+  return level;
+}
+
+template <class T>
+const T& RegimeTables::build(Slot<T>& slot, int level) const {
+  const std::lock_guard lock(building_);
+  if (const T* table = slot.load(std::memory_order_acquire)) return *table;
+  auto table = std::make_unique<T>();
+  make(*table, level);
+  slot.store(table.get(), std::memory_order_release);
+  return *table.release();
+}
+template const RegimeStep& RegimeTables::build(Slot<RegimeStep>&, int) const;
+template const RegimeWindow& RegimeTables::build(Slot<RegimeWindow>&, int) const;
+template const RegimeAudit& RegimeTables::build(Slot<RegimeAudit>&, int) const;
+
+void RegimeTables::step_of(double h, RegimeStep& out) const {
+  const ModalModel& pairs = regime_.pairs;
+  const auto np = pairs.np, V = regime_.speed_input();
+  out.h = h;
+  for (auto* e : {&out.e11, &out.e12, &out.e21, &out.e22}) *e = Eigen::VectorXd::Zero(np);
+  out.response = Eigen::MatrixXd::Zero(2 * np, regime_.inputs());
+  for (Eigen::Index i = 0; i < pairs.n; ++i) {
+    const Eigen::Matrix2d E = pairs.exponential(i, h);
+    out.e11(i) = E(0, 0);
+    out.e12(i) = E(0, 1);
+    out.e21(i) = E(1, 0);
+    out.e22(i) = E(1, 1);
+    const Moments M = moments(pairs, i, regime_.pair_rate(i), E, h);
+    const auto pair_of = [&](const auto& column) { return Eigen::Vector2d(column(i), column(np + i)); };
+    const Eigen::Vector2d held = pair_of(regime_.B_stuck), speed = pair_of(regime_.B.col(V));
+    for (Eigen::Index k = 0; k < regime_.inputs(); ++k) {
+      Eigen::Vector2d r = M.of0 * pair_of(regime_.B.col(k));
+      if (k == V) r += M.of1 * held;
+      if (k == V + 1) r += M.of1 * speed + M.of2 * held;
+      out.response(i, k) = r(0);
+      out.response(np + i, k) = r(1);
+    }
+  }
+}
+
+void RegimeTables::make(RegimeStep& out, int level) const { step_of(length(level), out); }
+
+void RegimeTables::make(RegimeAudit& out, int level) const {
+  const double h = length(level);
+  out.rule = gauss_rule(8 + static_cast<int>(std::ceil(1.5 * regime_.rate * h)));
+  out.point.resize(static_cast<std::size_t>(out.rule.node.size()));
+  for (std::size_t j = 0; j < out.point.size(); ++j)
+    step_of(out.rule.node(static_cast<Eigen::Index>(j)) * h, out.point[j]);
+}
+
+void RegimeTables::make(RegimeWindow& out, int level) const {
+  static const LobattoTables lobatto = build_lobatto();
+  const Regime& r = regime_;
+  const auto np = r.pairs.np, ni = r.inputs(), nc = r.row.cols(), V = r.speed_input();
+  const double h = length(level);
+  out.from_state = Eigen::MatrixXd::Zero(8, 2 * np * nc);
+  out.from_inputs = Eigen::MatrixXd::Zero(8, ni * nc);
+  RegimeStep step;
+  for (int j = 0; j < 8; ++j) {
+    const double t = lobatto.point(j) * h;
+    step_of(t, step);
+    for (Eigen::Index c = 0; c < nc; ++c) {
+      const auto first = r.row.col(c).head(np), second = r.row.col(c).tail(np);
+      out.from_state.row(j).segment(2 * np * c, np) =
+          (first.cwiseProduct(step.e11) + second.cwiseProduct(step.e21)).transpose();
+      out.from_state.row(j).segment(2 * np * c + np, np) =
+          (first.cwiseProduct(step.e12) + second.cwiseProduct(step.e22)).transpose();
+      Eigen::RowVectorXd inputs = r.row.col(c).transpose() * step.response + r.coefficient.col(c).transpose();
+      double stuck = 0.0;
+      for (std::size_t d = 0; d < r.stuck.size(); ++d)
+        if (r.stuck[d]) stuck += r.coefficient(static_cast<Eigen::Index>(d), c);
+      inputs(V) += stuck * t;
+      inputs(V + 1) += stuck * t * t / 2.0 + r.coefficient(V, c) * t;
+      out.from_inputs.row(j).segment(ni * c, ni) = inputs;
+    }
+  }
+  out.from_state = (lobatto.bernstein * out.from_state).eval();
+  out.from_inputs = (lobatto.bernstein * out.from_inputs).eval();
+
+  // |f − p| ≤ max|f⁽⁸⁾| (h/2)⁸ / (2⁶ 8!) on these points, and never more than the gain times max|f|.
+  out.remainder = Eigen::MatrixXd::Zero(np, nc);
+  for (Eigen::Index i = 0; i < r.pairs.n; ++i) {
+    const double share = std::min(kInterpolationGain, std::pow(r.pair_rate(i) * h / 2.0, 8) / (64.0 * kFactorial8));
+    out.remainder.row(i) = share * r.weight.row(i);
+  }
+}
+
+void advance(const RegimeTables& tables, double t, Eigen::VectorXd& x, Eigen::VectorXd& inputs) {
+  const Regime& r = tables.regime();
+  const ModalModel& m = r.pairs;
+  const auto np = m.np, ni = r.inputs(), V = r.speed_input();
+  for (int level = 0; level < RegimeTables::kLevels && r.rate * t > kTaylorPhase;) {
+    const double h = tables.length(level);
+    if (h > t) {
+      ++level;
+      continue;
+    }
+    const RegimeStep& s = tables.step(level);
+    for (Eigen::Index i = 0; i < np; i += kLanes) {
+      const V8 x1 = load8(x.data() + i), x2 = load8(x.data() + np + i);
+      V8 y1 = load8(s.e11.data() + i) * x1 + load8(s.e12.data() + i) * x2;
+      V8 y2 = load8(s.e21.data() + i) * x1 + load8(s.e22.data() + i) * x2;
+      const double* response = s.response.data() + i;
+      for (Eigen::Index k = 0; k < ni; ++k, response += 2 * np) {
+        y1 += load8(response) * inputs(k);
+        y2 += load8(response + np) * inputs(k);
+      }
+      store8(x.data() + i, y1);
+      store8(x.data() + np + i, y2);
+    }
+    r.advance_inputs(inputs, h);
+    t -= h;
+  }
+  if (t <= 0.0) return;
+  // x⁽ᵏ⁾ tᵏ/k!, with f = B ι, ḟ = B_stuck V + B_V a, f̈ = B_stuck a.
+  const double speed = inputs(V), acceleration = inputs(V + 1);
+  for (Eigen::Index i = 0; i < np; i += kLanes) {
+    const V8 g11 = load8(m.g11.data() + i), g12 = load8(m.g12.data() + i);
+    const V8 g21 = load8(m.g21.data() + i), g22 = load8(m.g22.data() + i);
+    V8 y1 = load8(x.data() + i), y2 = load8(x.data() + np + i), sum1 = y1, sum2 = y2;
+    for (int k = 0; k < kTaylorOrder; ++k) {
+      V8 next1 = g11 * y1 + g12 * y2, next2 = g21 * y1 + g22 * y2;
+      const double* held = r.B_stuck.data() + i;
+      const double* moving = r.B.data() + 2 * np * V + i;
+      if (k == 0)
+        for (Eigen::Index d = 0; d < ni; ++d) {
+          next1 += load8(r.B.data() + 2 * np * d + i) * inputs(d);
+          next2 += load8(r.B.data() + 2 * np * d + np + i) * inputs(d);
+        }
+      if (k == 1) {
+        next1 += (load8(held) * speed + load8(moving) * acceleration) * t;
+        next2 += (load8(held + np) * speed + load8(moving + np) * acceleration) * t;
+      }
+      if (k == 2) {
+        next1 += load8(held) * (acceleration * t * t / 2.0);
+        next2 += load8(held + np) * (acceleration * t * t / 2.0);
+      }
+      y1 = next1 * (t / (k + 1));
+      y2 = next2 * (t / (k + 1));
+      sum1 += y1;
+      sum2 += y2;
+    }
+    store8(x.data() + i, sum1);
+    store8(x.data() + np + i, sum2);
+  }
+  r.advance_inputs(inputs, t);
+}
+
+}  // namespace slipmode::dynamics
