@@ -120,6 +120,24 @@ TEST(Flow, ARestartFromAnEventReproducesTheRest) {
   }
 }
 
+TEST(Flow, ARunGoesOnFromItsOwnEndWhereverThatIs) {
+  // Ends in slip, in stick and between the nodes of a step alike; the whole run is the expected value.
+  for (const HybridSystem& chain : {stribeck_chain(), coulomb_chain()}) {
+    const FlowOptions flow{.tolerance = 1e-8};
+    const State start = swinging(10, 1, 1.5);
+    const Trajectory whole = simulate(chain, start, {.duration = 40.0, .flow = flow});
+    int stuck = 0;
+    for (double end = 0.37; end < 39.0; end += 1.31) {
+      const Trajectory first = simulate(chain, start, {.duration = end, .flow = flow});
+      stuck += first.final_state.modes.at(0) == ContactMode::kStick ? 1 : 0;
+      const Trajectory rest = simulate(chain, first.final_state, {.duration = 40.0 - end, .flow = flow});
+      EXPECT_EQ(first.events.size() + rest.events.size(), whole.events.size()) << "cut at " << end;
+      EXPECT_LT((rest.final_state.q - whole.final_state.q).cwiseAbs().maxCoeff(), 1e-6) << "cut at " << end;
+    }
+    EXPECT_GE(stuck, 5);
+  }
+}
+
 TEST(Flow, StopsWhereTheCallbackSaysSo) {
   int seen = 0;
   SimulateOptions options{.duration = 1000.0};
