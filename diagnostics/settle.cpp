@@ -169,8 +169,10 @@ class Settling {
     const bool periodic = out_.period.motion == Motion::kPeriodic;
     const double time = periodic ? out_.period.T : options_.energy_time;
     const double sample = time / options_.energy_samples;
-    const dynamics::Trajectory run = dynamics::simulate(
-        system_, out_.end, {.duration = time, .sample = sample, .keep_events = false, .flow = options_.flow});
+    dynamics::FlowOptions flow = options_.flow;
+    flow.audit = false;
+    const dynamics::Trajectory run =
+        dynamics::simulate(system_, out_.end, {.duration = time, .sample = sample, .keep_events = false, .flow = flow});
     const Eigen::Index columns = std::min<Eigen::Index>(options_.energy_samples, run.q.cols());
     out_.mean_energy = mean_energy(system_, run.q.leftCols(columns), run.v.leftCols(columns));
   }

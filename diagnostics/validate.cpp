@@ -46,6 +46,10 @@ void check(const dynamics::HybridSystem& full, const std::vector<Candidate>& can
                     "{}, {}, {}, {}",
                     options.horizon, options.sample, options.horizon_gap, options.horizon_starts));
   }
+  if (options.orbit_starts < 1) {
+    throw InvalidInput(
+        fmt::format("validation: expected at least one start for orbits, found {}", options.orbit_starts));
+  }
   for (const Candidate& candidate : candidates) {
     const Eigen::Index available = std::min(candidate.basis.modes(), candidate.captured.size());
     if (candidate.basis.vectors.rows() != full.size()) {
@@ -148,7 +152,7 @@ class Validation {
     run_items(3 + full_orbits_.size(), [&](std::size_t i) {
       const dynamics::HybridSystem system = full_model_.system(options_.speed);
       if (i == 0) settle_full(system);
-      if (i == 1) again = settle(system, elsewhere(), options_.settle);
+      if (i == 1) again = settle(system, starts_about(1).back(), attractor_settling());
       if (i == 2) exponent = largest_exponent(system, start_, options_.lyapunov);
       if (i > 2) full_orbits_[i - 3] = find_orbit(options_.orbit_speeds[i - 3]);
     });
@@ -157,7 +161,7 @@ class Validation {
   }
 
   void settle_full(const dynamics::HybridSystem& system) {
-    report_.full = settle(system, start_, options_.settle);
+    report_.full = settle(system, start_, attractor_settling());
     dynamics::State state = report_.full.end;
     for (int k = 0; k < options_.horizon_starts; ++k) {
       attractor_starts_.push_back(state);
@@ -167,14 +171,25 @@ class Validation {
     }
   }
 
-  /// Another start, so that two full runs share nothing but the attractor.
-  [[nodiscard]] dynamics::State elsewhere() const {
-    dynamics::State state = start_;
-    const dynamics::State shift =
-        random_states(full_, {.spread = 0.1, .centre = RandomStateOptions::Centre::kRest}).front();
-    state.q += shift.q;
-    state.v += shift.v;
-    return state;
+  /// The given start and `count` random ones about it, so that runs from two of them share nothing but the attractor.
+  [[nodiscard]] std::vector<dynamics::State> starts_about(Eigen::Index count) const {
+    std::vector<dynamics::State> starts = {start_};
+    if (count == 0) return starts;
+    const auto centre = RandomStateOptions::Centre::kRest;
+    for (const dynamics::State& shift : random_states(full_, {.count = count, .spread = 0.1, .centre = centre})) {
+      starts.push_back({.time = 0.0, .q = start_.q + shift.q, .v = start_.v + shift.v});
+    }
+    return starts;
+  }
+
+  /// Long blocks: of a chaotic motion, means over a short record are mostly scatter.
+  [[nodiscard]] SettleOptions attractor_settling() const {
+    SettleOptions settling = options_.settle;
+    settling.block = std::max(settling.block, 0.2 * settling.limit);
+    settling.energy_time = std::max(settling.energy_time, settling.block);
+    settling.energy_samples = std::max(settling.energy_samples, 16384);
+    settling.max_slips = std::max(settling.max_slips, 4000);
+    return settling;
   }
 
   [[nodiscard]] SettleOptions orbit_settling() const {
@@ -186,10 +201,12 @@ class Validation {
 
   [[nodiscard]] FullOrbit find_orbit(double speed) const {
     FullOrbit found;
-    try {
-      found.orbit = settle_to_orbit(full_model_.system(speed), start_, orbit_settling());
-    } catch (const NumericalFailure& failure) {
-      found.failure = failure.what();
+    for (const dynamics::State& start : starts_about(options_.orbit_starts - 1)) {
+      try {
+        return {.orbit = settle_to_orbit(full_model_.system(speed), start, orbit_settling())};
+      } catch (const NumericalFailure& failure) {
+        found.failure = fmt::format("{} (the last of {} starts)", failure.what(), options_.orbit_starts);
+      }
     }
     return found;
   }
@@ -239,7 +256,7 @@ class Validation {
 
       const dynamics::HybridSystem system = reduction.model->system(options_.speed);
       const dynamics::State start = on_subspace(reduction.basis, report_.full.end);
-      row.attractor = settle(system, start, options_.settle);
+      row.attractor = settle(system, start, attractor_settling());
       row.attractor->mean_energy += reduction.model->energy_offset;
       row.distance = attractor_distance(report_.full, *row.attractor);
       if (row.attractor->period.motion == Motion::kAperiodic) {

@@ -21,20 +21,25 @@ struct Candidate {
 };
 
 struct ValidationOptions {
-  double speed = 0.2;                         ///< belt speed of the energy-share table (the ensemble's) [m/s]
-  std::vector<Eigen::Index> modes = {};       ///< L to try; empty: 1..basis size
-  double horizon = 100.0;                     ///< of the shared-start comparison [s]
-  int horizon_starts = 16;                    ///< starts on the full model's attractor
-  double horizon_gap = 200.0;                 ///< between those starts [s]
-  double sample = 0.1;                        ///< of the shared-start records [s]
-  std::vector<double> orbit_speeds = {};      ///< belt speeds of the periodic-orbit table [m/s]
-  double orbit_tolerance = 1e-8;              ///< to which orbits must have settled
+  double speed = 0.2;                     ///< belt speed of the energy-share table (the ensemble's) [m/s]
+  std::vector<Eigen::Index> modes = {};   ///< L to try; empty: 1..basis size
+  double horizon = 100.0;                 ///< of the shared-start comparison [s]
+  int horizon_starts = 16;                ///< starts on the full model's attractor
+  double horizon_gap = 200.0;             ///< between those starts [s]
+  double sample = 0.1;                    ///< of the shared-start records [s]
+  std::vector<double> orbit_speeds = {};  ///< belt speeds of the periodic-orbit table [m/s]
+  double orbit_tolerance = 1e-8;          ///< to which orbits must have settled
+  /// Starts of the full model tried at a speed until one leads to a periodic orbit: the given one, then random ones
+  /// about it (spread 0.1). Where several motions coexist the given start alone may lead to chaos.
+  int orbit_starts = 12;
   Eigen::Index orbit_samples = 2048;          ///< per period
   Eigen::Index chosen = 0;                    ///< L of sweep and cost; 0: the first candidate's L at 99 % energy
   std::vector<double> sweep_values = {};      ///< belt speeds; empty: no bifurcation diagram [m/s]
   SweepMode sweep_mode = SweepMode::kFollow;  ///< kFollow: shared initial states as in S4
   std::size_t sweep_segments = 1;
-  SettleOptions settle = {};  ///< for attractors, orbits and the sweep
+  /// For orbits and the sweep; for attractors with blocks of at least a fifth of the limit, over which their mean
+  /// energy, stick fraction and slip rate are then taken.
+  SettleOptions settle = {};
   LyapunovOptions lyapunov = {};
   double cost_duration = 10000.0;  ///< simulated time of a timed run; 0: no timing [s]
   int cost_repeats = 5;
@@ -53,6 +58,10 @@ struct ShareRow {
   /// Of the reduced model; empty when its motion is not aperiodic or it failed.
   std::optional<LyapunovExponent> lyapunov = {};
   std::string failure = {};  ///< empty, or the first failure met
+
+  /// Aperiodic with an exponent above zero by more than four standard errors: motion without a period may as well be
+  /// quasi-periodic or still decaying.
+  [[nodiscard]] bool is_chaotic() const { return lyapunov && lyapunov->nats > 4.0 * lyapunov->error; }
 };
 
 /// One cell of the periodic-orbit table (the form of S4 Table 3.2): one speed, one basis, one L.
