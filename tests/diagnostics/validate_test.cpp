@@ -1,0 +1,210 @@
+#include "diagnostics/validate.hpp"
+
+#include "core/errors.hpp"
+#include "diagnostics/ensemble_run.hpp"
+#include "models.hpp"
+#include "pod/pod.hpp"
+#include "rom/reduce.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace slipmode::diagnostics {
+namespace {
+
+/// The chaotic chain's ensemble (short) and what is judged by it: POMs, and LNMs about the same mean.
+struct Study {
+  dynamics::HybridSystem full = tests::chain10(0.2);
+  dynamics::State start = full.rest();
+  pod::PodResult pod;
+  std::vector<Candidate> candidates;
+
+  Study() {
+    const pod::Ensemble ensemble{
+        .snapshots = dynamics::simulate(full, start, {.duration = 20000.0, .transient = 10000.0, .sample = 0.5}).q};
+    pod = pod::pod(ensemble);
+    pod::Basis lnm = rom::lnm_basis(full.structure(), 10);
+    lnm.mean = pod.basis.mean;
+    candidates = {{"POM", pod.basis, pod::captured_energy(ensemble, pod.basis)},
+                  {"LNM", lnm, pod::captured_energy(ensemble, lnm)}};
+  }
+};
+
+const Study& study() {
+  static const Study once;
+  return once;
+}
+
+/// Small enough for a test: no sweep, no timing unless asked.
+ValidationOptions quick() {
+  ValidationOptions options;
+  options.horizon_starts = 6;
+  options.settle = {.transient = 1000.0, .block = 2000.0, .limit = 10000.0};
+  options.lyapunov = {.transient = 0.0, .duration = 4000.0};
+  options.cost_duration = 0.0;
+  return options;
+}
+
+TEST(Validate, GivesATableRowForEveryNumberOfModesAndBasis) {
+  const ValidationReport report = validate(study().full, study().candidates, study().start, quick());
+  ASSERT_EQ(report.candidates.size(), 2u);
+  EXPECT_EQ(report.full.period.motion, Motion::kAperiodic);
+  EXPECT_EQ(report.chosen, 6);  // 99 % of the energy, as in S4 table 3.1
+  for (const CandidateReport& candidate : report.candidates) {
+    ASSERT_EQ(candidate.shares.size(), 10u);
+    for (std::size_t i = 0; i < 10; ++i) {
+      const ShareRow& row = candidate.shares[i];
+      EXPECT_EQ(row.modes, static_cast<Eigen::Index>(i + 1));
+      EXPECT_EQ(row.failure, "");
+      EXPECT_TRUE(row.attractor.has_value());
+      if (i == 0) continue;
+      EXPECT_GT(row.energy, candidate.shares[i - 1].energy);
+      EXPECT_LE(row.start_error, candidate.shares[i - 1].start_error * (1.0 + 1e-12));
+    }
+  }
+  // POMs are the optimal basis for the ensemble's displacements, whatever L.
+  for (std::size_t i = 0; i < 10; ++i) {
+    EXPECT_GE(report.candidates[0].shares[i].energy, report.candidates[1].shares[i].energy - 1e-9);
+  }
+}
+
+TEST(Validate, AllModesAreTheFullModel) {
+  ValidationOptions options = quick();
+  options.modes = {10};
+  options.orbit_speeds = {0.45};
+  const ValidationReport report = validate(study().full, study().candidates, study().start, options);
+  for (const CandidateReport& candidate : report.candidates) {
+    const ShareRow& row = candidate.shares.front();
+    EXPECT_NEAR(row.energy, 100.0, 1e-9);
+    EXPECT_LT(row.start_error, 1e-10);
+    // Up to the horizon of 100 units, 1.4 e-folds of the chaotic growth.
+    EXPECT_LT(row.horizon.dX, 1e-5);
+    EXPECT_LT(row.horizon.dE, 1e-5);
+    EXPECT_TRUE(row.is_chaotic());
+    ASSERT_EQ(candidate.orbits.size(), 1u);
+    ASSERT_TRUE(candidate.orbits[0].comparison.has_value()) << candidate.orbits[0].failure;
+    EXPECT_TRUE(candidate.orbits[0].comparison->same_period);
+    EXPECT_LT(candidate.orbits[0].comparison->deviation.dX, 1e-4);  // orbits settled to 1e-8
+    EXPECT_NEAR(candidate.orbits[0].comparison->reduced.T, 45.10211, 1e-5);
+  }
+}
+
+TEST(Validate, ChaosIsLostBelowSixModesAndKeptAbove) {
+  // Origin: two fixed-step programs found chaos in the reduced models from six modes on; see docs/theory.
+  ValidationOptions options = quick();
+  options.modes = {3, 6, 8};
+  options.settle.limit = 40000.0;
+  options.lyapunov = {.transient = 0.0, .duration = 20000.0};
+  const ValidationReport report = validate(study().full, study().candidates, study().start, options);
+  ASSERT_TRUE(report.lyapunov.has_value());
+  EXPECT_GT(report.lyapunov->nats, 4.0 * report.lyapunov->error);
+  for (const CandidateReport& candidate : report.candidates) {
+    EXPECT_FALSE(candidate.shares[0].is_chaotic()) << candidate.name;
+    EXPECT_TRUE(candidate.shares[1].is_chaotic()) << candidate.name;
+    EXPECT_TRUE(candidate.shares[2].is_chaotic()) << candidate.name;
+  }
+}
+
+TEST(Validate, TriesOtherStartsWhereTheGivenOneLeadsToChaos) {
+  // At 0.39 chaos and four orbits coexist; from steady sliding the motion stays chaotic.
+  ValidationOptions options = quick();
+  options.modes = {10};
+  options.orbit_speeds = {0.39};
+  options.settle.limit = 30000.0;
+  const dynamics::State start = sliding_equilibrium(tests::chain10(0.39));
+  options.orbit_starts = 1;
+  ValidationReport report = validate(study().full, study().candidates, start, options);
+  EXPECT_NE(report.candidates[0].orbits[0].failure.find("aperiodic"), std::string::npos);
+  options.orbit_starts = 12;
+  report = validate(study().full, study().candidates, start, options);
+  ASSERT_TRUE(report.candidates[0].orbits[0].comparison.has_value()) << report.candidates[0].orbits[0].failure;
+  EXPECT_TRUE(report.candidates[0].orbits[0].comparison->same_period);
+}
+
+TEST(Validate, ComparesSweepsAndCostAtTheChosenNumberOfModes) {
+  ValidationOptions options = quick();
+  options.modes = {10};
+  options.chosen = 10;
+  options.sweep_values = {0.45, 0.44, 0.43};
+  options.cost_duration = 200.0;
+  options.cost_repeats = 1;
+  std::size_t last = 0, total = 0;
+  options.parallel.progress = [&](std::size_t done, std::size_t of) {
+    last = done;
+    total = of;
+  };
+  const ValidationReport report = validate(study().full, study().candidates, study().start, options);
+  EXPECT_FALSE(report.interrupted);
+  EXPECT_EQ(last, total);
+  ASSERT_TRUE(report.bifurcation.has_value());
+  EXPECT_EQ(report.bifurcation->values, 3u);
+  EXPECT_EQ(report.bifurcation->same_motion, 1.0);
+  ASSERT_TRUE(report.cost.has_value());
+  EXPECT_GT(report.cost->full_wall, 0.0);
+}
+
+TEST(Validate, GivesTheSameBytesForAnyNumberOfThreads) {
+  ValidationOptions options = quick();
+  options.modes = {4, 6};
+  options.parallel.threads = 1;
+  const ValidationReport one = validate(study().full, study().candidates, study().start, options);
+  options.parallel.threads = 3;
+  const ValidationReport three = validate(study().full, study().candidates, study().start, options);
+  EXPECT_EQ(one.noise.wasserstein, three.noise.wasserstein);
+  for (std::size_t c = 0; c < 2; ++c) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      const ShareRow& a = one.candidates[c].shares[i];
+      const ShareRow& b = three.candidates[c].shares[i];
+      EXPECT_EQ(a.horizon.dX, b.horizon.dX);
+      EXPECT_EQ(a.distance.wasserstein, b.distance.wasserstein);
+      EXPECT_EQ(a.attractor->mean_energy, b.attractor->mean_energy);
+      EXPECT_EQ(a.lyapunov.has_value(), b.lyapunov.has_value());
+    }
+  }
+}
+
+TEST(Validate, ABasisTheContactCannotSeeFillsItsRowWithTheReason) {
+  Candidate blind{.name = "blind", .basis = study().candidates[0].basis, .captured = Eigen::VectorXd::Ones(1)};
+  blind.basis.vectors = Eigen::MatrixXd::Identity(10, 1);  // the first mass alone; the contact is on the tenth
+  ValidationOptions options = quick();
+  options.modes = {1};
+  options.chosen = 1;
+  const ValidationReport report = validate(study().full, {study().candidates[0], blind}, study().start, options);
+  EXPECT_EQ(report.candidates[0].shares[0].failure, "");
+  EXPECT_NE(report.candidates[1].shares[0].failure, "");
+  EXPECT_FALSE(report.candidates[1].shares[0].attractor.has_value());
+}
+
+TEST(Validate, RefusesWhatItCannotTryAndReportsAnInterrupt) {
+  const auto run = [](const std::vector<Candidate>& candidates, const ValidationOptions& options) {
+    return validate(study().full, candidates, study().start, options);
+  };
+  ValidationOptions options = quick();
+  EXPECT_THROW((void)run({}, options), InvalidInput);
+  options.modes = {11};
+  EXPECT_THROW((void)run(study().candidates, options), InvalidInput);
+  options = quick();
+  options.horizon = 0.0;
+  EXPECT_THROW((void)run(study().candidates, options), InvalidInput);
+  options = quick();
+  options.orbit_starts = 0;
+  EXPECT_THROW((void)run(study().candidates, options), InvalidInput);
+  std::vector<Candidate> small = {{"small", rom::lnm_basis(fem::chain({.masses = 3}), 2), Eigen::VectorXd::Ones(2)}};
+  EXPECT_THROW((void)run(small, quick()), InvalidInput);
+  options = quick();
+  const StopFlag stop = true;
+  options.parallel.stop = &stop;
+  EXPECT_TRUE(run(study().candidates, options).interrupted);
+}
+
+TEST(ModesForShare, IsTheSmallestNumberThatReachesIt) {
+  const Eigen::Vector3d captured(0.6, 0.9, 1.0);
+  EXPECT_EQ(modes_for_share(captured, 0.5), 1);
+  EXPECT_EQ(modes_for_share(captured, 0.9), 2);
+  EXPECT_EQ(modes_for_share(captured, 0.91), 3);
+  EXPECT_EQ(modes_for_share(captured, 1.1), 3);
+}
+
+}  // namespace
+}  // namespace slipmode::diagnostics
