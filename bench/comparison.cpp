@@ -2,16 +2,11 @@
 
 #include "bench/chain_system.hpp"
 #include "bench/clock.hpp"
-#include "bench/cvode_peer.hpp"
-#include "bench/odeint_peer.hpp"
+#include "bench/methods.hpp"
 #include "core/errors.hpp"
-#include "fixtures/scenes.hpp"
-#include "fixtures/taylor_reference.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -24,83 +19,6 @@ using dynamics::State;
 constexpr double kPeerTolerance = 1e-9;
 constexpr double kTanhTolerance = 1e-7;
 constexpr double kTanhStretch = 20.0;
-
-/// Where a stretch begins and where it ends in truth.
-struct Truth {
-  State start;
-  PeerRun end;
-};
-
-std::vector<double> plain(const Eigen::VectorXd& values) { return {values.begin(), values.end()}; }
-
-/// The independent reference: Taylor series of order 30 in extended precision, without modal coordinates.
-std::vector<Truth> true_stretches(const HybridSystem& system, const State& first, double stretch, int count) {
-  fixtures::TaylorReference<long double> reference(fixtures::reference_of(system));
-  std::vector<Truth> result;
-  for (const State& start : starts_on_attractor(system, first, stretch, count)) {
-    const fixtures::ReferenceRun run = reference.run(start.q, start.v, 0.0, stretch);
-    PeerRun end{plain(run.q), plain(run.v), {}, 0};
-    for (const auto& event : run.events) end.event_times.push_back(event.time);
-    result.push_back({start, std::move(end)});
-  }
-  return result;
-}
-
-using Method = std::function<PeerRun(const State& start, double duration)>;
-
-/// Errors of a method on all stretches; event_time_error is infinite where an event is missing or extra.
-MethodFigures errors_of(const Method& method, const std::vector<Truth>& truth, double stretch) {
-  MethodFigures figures;
-  std::vector<double> errors;
-  for (const Truth& t : truth) {
-    const PeerRun run = method(t.start, stretch);
-    figures.events += static_cast<long>(run.event_times.size());
-    double error = 0.0;
-    for (std::size_t i = 0; i < run.q.size(); ++i) {
-      error = std::max({error, std::abs(run.q[i] - t.end.q[i]), std::abs(run.v[i] - t.end.v[i])});
-    }
-    errors.push_back(error);
-    if (run.event_times.size() != t.end.event_times.size()) {
-      figures.event_time_error = std::numeric_limits<double>::infinity();
-      continue;
-    }
-    for (std::size_t i = 0; i < run.event_times.size(); ++i) {
-      figures.event_time_error =
-          std::max(figures.event_time_error, std::abs(run.event_times[i] - t.end.event_times[i]));
-    }
-  }
-  figures.error = median(errors);
-  figures.worst_error = *std::max_element(errors.begin(), errors.end());
-  return figures;
-}
-
-dynamics::Trajectory run_slipmode(const HybridSystem& system, const State& start, double duration, double tolerance,
-                                  bool audit) {
-  return dynamics::simulate(system, start, {.duration = duration, .flow = {.tolerance = tolerance, .audit = audit}});
-}
-
-Method slipmode_method(const HybridSystem& system, double tolerance) {
-  return [&system, tolerance](const State& start, double duration) {
-    const auto run = run_slipmode(system, start, duration, tolerance, false);
-    PeerRun result{plain(run.final_state.q), plain(run.final_state.v), {}, 0};
-    for (const auto& event : run.events) {
-      if (event.before != event.after) result.event_times.push_back(event.time);
-    }
-    return result;
-  };
-}
-
-Method cvode_method(const ChainProblem& problem) {
-  return [&problem](const State& start, double duration) {
-    return run_cvode_adams(problem, plain(start.q), plain(start.v), duration, kPeerTolerance, kPeerTolerance);
-  };
-}
-
-Method odeint_method(const ChainProblem& problem) {
-  return [&problem](const State& start, double duration) {
-    return run_odeint_dopri5(problem, plain(start.q), plain(start.v), duration, kPeerTolerance, kPeerTolerance);
-  };
-}
 
 /// The loosest tolerance at which every event is found and no error is larger than a peer's.
 MethodFigures tolerable(const HybridSystem& system, const std::vector<Truth>& truth, double stretch,
@@ -166,7 +84,8 @@ void time_all(Comparison& row, const HybridSystem& system, const State& start) {
   const double tolerance = row.slipmode.tolerance;
   const Method own = slipmode_method(system, tolerance);
   const Method audited = [&](const State& from, double duration) {
-    row.audit_residual = run_slipmode(system, from, duration, tolerance, true).audit.residual();
+    row.audit_residual =
+        dynamics::simulate(system, from, {.duration = duration, .flow = {.tolerance = tolerance}}).audit.residual();
     return PeerRun{};
   };
   Stopwatch slipmode, with_audit, cvode, odeint;
@@ -175,8 +94,8 @@ void time_all(Comparison& row, const HybridSystem& system, const State& start) {
     slipmode.run(own, start, setting.duration);
     with_audit.run(audited, start, setting.duration);
     if (i % 3 != 0) continue;
-    cvode.run(cvode_method(setting.problem), start, setting.peer_duration);
-    odeint.run(odeint_method(setting.problem), start, setting.peer_duration);
+    cvode.run(cvode_method(setting.problem, kPeerTolerance, kPeerTolerance), start, setting.peer_duration);
+    odeint.run(odeint_method(setting.problem, kPeerTolerance, kPeerTolerance), start, setting.peer_duration);
   }
   slipmode.report(row.slipmode);
   cvode.report(row.cvode);
@@ -205,8 +124,8 @@ Comparison compare(const ComparisonCase& setting) {
   const std::vector<Truth> truth = true_stretches(system, start, setting.stretch, setting.stretches);
   for (const Truth& t : truth) row.reference_events += static_cast<long>(t.end.event_times.size());
 
-  row.cvode = errors_of(cvode_method(setting.problem), truth, setting.stretch);
-  row.odeint = errors_of(odeint_method(setting.problem), truth, setting.stretch);
+  row.cvode = errors_of(cvode_method(setting.problem, kPeerTolerance, kPeerTolerance), truth, setting.stretch);
+  row.odeint = errors_of(odeint_method(setting.problem, kPeerTolerance, kPeerTolerance), truth, setting.stretch);
   row.cvode.tolerance = row.odeint.tolerance = kPeerTolerance;
   row.slipmode = tolerable(system, truth, setting.stretch, row.cvode, row.odeint);
 
@@ -222,12 +141,10 @@ EventAgreement check_events(const ChainProblem& problem) {
   constexpr int kStretches = 40;
   const HybridSystem system = system_of(problem);
   const auto truth = true_stretches(system, start_on_attractor(system, 2000.0), kStretch, kStretches);
-  const Method cvode = [&](const State& start, double duration) {
-    return run_cvode_adams(problem, plain(start.q), plain(start.v), duration, kTight, kTightAbsolute);
-  };
+  const Method own_method = slipmode_method(system, kTight), cvode = cvode_method(problem, kTight, kTightAbsolute);
   EventAgreement result{.name = problem.name};
   for (const Truth& t : truth) {
-    const PeerRun own = slipmode_method(system, kTight)(t.start, kStretch), peer = cvode(t.start, kStretch);
+    const PeerRun own = own_method(t.start, kStretch), peer = cvode(t.start, kStretch);
     result.events += static_cast<long>(own.event_times.size());
     result.same_number = result.same_number && own.event_times.size() == peer.event_times.size();
     const std::size_t common = std::min(own.event_times.size(), peer.event_times.size());
@@ -235,7 +152,7 @@ EventAgreement check_events(const ChainProblem& problem) {
       result.difference = std::max(result.difference, std::abs(own.event_times[i] - peer.event_times[i]));
     }
   }
-  result.error_slipmode = errors_of(slipmode_method(system, kTight), truth, kStretch).event_time_error;
+  result.error_slipmode = errors_of(own_method, truth, kStretch).event_time_error;
   result.error_cvode = errors_of(cvode, truth, kStretch).event_time_error;
   return result;
 }
@@ -244,10 +161,7 @@ TanhFigures measure_tanh(const Comparison& exact, double epsilon) {
   const ComparisonCase& setting = exact.setting;
   const HybridSystem system = system_of(setting.problem);
   const State start = start_on_attractor(system, setting.transient);
-  const Method method = [&](const State& from, double duration) {
-    return run_cvode_bdf_tanh(setting.problem, epsilon, plain(from.q), plain(from.v), duration, kTanhTolerance,
-                              1e-2 * kTanhTolerance);
-  };
+  const Method method = tanh_method(setting.problem, epsilon, kTanhTolerance, 1e-2 * kTanhTolerance);
   TanhFigures row{.setting = setting, .epsilon = epsilon, .tolerance = kTanhTolerance, .stretch = kTanhStretch};
   const auto truth = true_stretches(system, start, kTanhStretch, setting.stretches);
   row.error = errors_of(method, truth, kTanhStretch).error;
