@@ -151,7 +151,7 @@ Report summary(const Arguments& arguments, const Subject& swept, const Over& ove
   report.text = fmt::format("{}: {} values of {}\n{}Sweep: {}\n", swept.title, points.size(), over.key, table.str(),
                             arguments.output);
   if (!failures.empty()) {
-    report.text += fmt::format("{} values failed, first at {}: {}\n", failures.size(),
+    report.text += fmt::format("{} values failed, first at {:g}: {}\n", failures.size(),
                                failures.front()["value"].get<double>(), failures.front()["reason"].get<std::string>());
     if (failures.size() == points.size()) report.exit_code = kNumericalFailure;
   }

@@ -40,6 +40,14 @@ BifurcationPanel thinned(const BifurcationPanel& panel, const Range& x, const Ra
   return {panel.title, panel.parameter(kept), panel.value(kept), panel.colour};
 }
 
+/// Dots a little wider than the distance of the values, so that a chaotic band is closed and a short sweep is visible.
+/// In gnuplot's unit, which is about 12 pixels here.
+double dot_size(const Eigen::VectorXd& parameter) {
+  const std::set<double> values(parameter.begin(), parameter.end());
+  const double spacing = 1050.0 / static_cast<double>(std::max<std::size_t>(values.size(), 1));
+  return std::clamp(1.3 * spacing / 12.0, 0.16, 0.6);
+}
+
 }  // namespace
 
 Figure bifurcation_diagram(const std::vector<BifurcationPanel>& panels, const BifurcationLabels& labels) {
@@ -54,22 +62,22 @@ Figure bifurcation_diagram(const std::vector<BifurcationPanel>& panels, const Bi
     y.include(panel.value);
   }
   const double bottom = 90.0 / figure.height(), top = 1.0 - 40.0 / figure.height();
-  figure.command(fmt::format("set multiplot layout {},1 margins 0.08,0.975,{:.4f},{:.4f} spacing 0,{:.4f}", count,
+  figure.command(fmt::format("set multiplot layout {},1 margins 0.1,0.975,{:.4f},{:.4f} spacing 0,{:.4f}", count,
                              bottom, top, 45.0 / figure.height()));
   figure.command("unset key");
   figure.command("set xrange " + padded_range(x.low, x.high, 0.012));
   figure.command("set yrange " + padded_range(y.low, y.high));
   for (int i = 0; i < count; ++i) {
     const bool last = i + 1 == count;
-    const BifurcationPanel points = thinned(panels[i], x, y, 1100.0, 0.75 * panel_height);
+    const BifurcationPanel points = thinned(panels[i], x, y, 1100.0, 0.5 * panel_height);
     const std::string block = figure.data({points.parameter, points.value});
     figure.command(fmt::format("set title \"{}\" offset 0,-0.6", literal(panels[i].title)));
     figure.command(fmt::format("set ylabel \"{}\"", axis_label(labels.value, labels.value_unit)));
     figure.command(last ? fmt::format("set xlabel \"{}\"", axis_label(labels.parameter, labels.parameter_unit))
                         : std::string("unset xlabel"));
     figure.command(last ? "set format x '%g'" : "set format x ''");
-    figure.command(fmt::format("plot {} using 1:2 with points pointtype 7 pointsize 0.16 linecolor rgb '{}'", block,
-                               points.colour));
+    figure.command(fmt::format("plot {} using 1:2 with points pointtype 7 pointsize {:.3f} linecolor rgb '{}'", block,
+                               dot_size(panels[i].parameter), points.colour));
   }
   figure.command("unset multiplot");
   return figure;

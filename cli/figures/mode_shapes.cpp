@@ -49,7 +49,7 @@ Figure mode_shapes(const ModeShapes& shapes) {
     const Eigen::VectorXd pom = normalised(shapes.poms.col(i));
     const bool with_lnm = i < shapes.lnms.cols();
     const std::string share =
-        i < shapes.shares.size() ? fmt::format(", energy {:.3g} %", 100.0 * shapes.shares[i]) : std::string();
+        i < shapes.shares.size() ? fmt::format(": {:.3g} %", 100.0 * shapes.shares[i]) : std::string();
     figure.command(fmt::format("set title \"mode {}{}\" offset 0,-0.7", i + 1, share));
     figure.command(i % columns == 0 ? "set ylabel \"shape [–]\"; set format y '%g'" : "unset ylabel; set format y ''");
     figure.command(i + columns >= count ? "set xlabel \"mass number\"; set format x '%g'"

@@ -11,7 +11,7 @@ struct ModeShapes {
 };
 
 /// Shapes against the number of the mass, one panel per mode (at most twelve), each scaled to a largest component of
-/// one in magnitude; an LNM is turned to the sign of its POM.
+/// one in magnitude, its share of the energy in the title; an LNM is turned to the sign of its POM.
 [[nodiscard]] Figure mode_shapes(const ModeShapes& shapes);
 
 }  // namespace slipmode::figures

@@ -15,7 +15,7 @@ inline constexpr std::string_view kSecondColour = "#009E73";
 inline constexpr std::string_view kStickShade = "#C9DDEE";
 
 /// Legend at the top right of the whole figure, clear of all data; needs 75 pixels above the first row of panels.
-inline constexpr std::string_view kLegendAbove = "set key at screen 0.985,0.995 right top horizontal";
+inline constexpr std::string_view kLegendAbove = "set key at screen 0.985,0.995 right top horizontal maxrows 1";
 
 /// "displacement x_{10} [m]"; a dimensionless quantity (unit "", "1", "-") gets "[–]".
 [[nodiscard]] std::string axis_label(std::string_view quantity, std::string_view unit);

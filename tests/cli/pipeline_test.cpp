@@ -1,0 +1,88 @@
+#include "cli/slipmode_process.hpp"
+#include "cli/small_scenes.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace {
+
+using namespace slipmode::tests;
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+/// What must not depend on the number of threads: everything but times.
+nlohmann::json without_times(nlohmann::json summary) {
+  for (const char* key : {"seconds", "folder"}) summary.erase(key);
+  summary["validation"].erase("cost");
+  return summary;
+}
+
+TEST(Run, LeavesTablesDataAndFiguresInTheFolder) {
+  const TemporaryFolder folder;
+  write_file(folder.path() / "free.toml", kFreeEnds);
+  const Outcome outcome = slipmode_in(folder, {"run", "free.toml", "-o", "out/free"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const char* said : {"modes", "ΔX", "ΔE", "motion", "Belt-speed sweep", "speed-up", "out/free"}) {
+    EXPECT_THAT(outcome.out, HasSubstr(said));
+  }
+  const auto summary = nlohmann::json::parse(bytes_of(folder.path() / "out/free/summary.json"));
+  for (const std::string name : summary["files"]) EXPECT_TRUE(fs::exists(folder.path() / "out/free" / name)) << name;
+  EXPECT_GE(summary["figures"].size(), 14U);
+  for (const std::string name : summary["figures"]) EXPECT_TRUE(is_figure(folder.path() / "out/free" / name)) << name;
+  EXPECT_FALSE(fs::exists(folder.path() / "out/free.partial"));
+}
+
+TEST(Run, GivesTheSameForAnyNumberOfThreads) {
+  const TemporaryFolder folder;
+  write_file(folder.path() / "free.toml", kFreeEnds);
+  const Outcome one = slipmode_in(folder, {"run", "free.toml", "-o", "one", "--threads", "1", "--json"});
+  const Outcome two = slipmode_in(folder, {"run", "free.toml", "-o", "two", "--threads", "2", "--json"});
+  ASSERT_EQ(one.exit_code, 0) << one.err;
+  ASSERT_EQ(two.exit_code, 0) << two.err;
+  EXPECT_EQ(without_times(one.json()), without_times(two.json()));
+  for (const char* name : {"trajectory.h5", "ensemble.h5", "pod.h5", "reduced_pom.h5", "reduced_lnm.h5"}) {
+    EXPECT_EQ(bytes_of(folder.path() / "one" / name), bytes_of(folder.path() / "two" / name)) << name;
+  }
+}
+
+TEST(Run, DoesOnlyWhatTheSceneAsksFor) {
+  const TemporaryFolder folder;
+  write_file(folder.path() / "two.toml", kTwoContacts);
+  const Outcome outcome = slipmode_in(folder, {"run", "two.toml", "-o", "out", "--json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.json()["files"], nlohmann::json({"trajectory.h5"}));
+  EXPECT_FALSE(outcome.json().contains("validation"));
+}
+
+TEST(Run, KeepsAndMarksWhatWasFinishedBeforeANumericalFailure) {
+  const TemporaryFolder folder;
+  write_file(folder.path() / "free.toml", kFreeEnds);
+  // The window is longer than the excerpt of 210 time units that is run first, and holds fewer events than the members'
+  // 3000 units of stick-slip have (about one event per two units): so the ensemble fails, not the trajectory.
+  const Outcome outcome =
+      slipmode_in(folder, {"run", "free.toml", "-o", "out", "--json", "--set", "time.duration=3000.0", "--set",
+                           "time.transient=10.0", "--set", "flow.max_events_per_window=600", "--set",
+                           "flow.zeno_window=5000.0"});
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_EQ(outcome.json()["status"], "failed");
+  EXPECT_THAT(outcome.err, HasSubstr("Zeno"));
+  EXPECT_FALSE(fs::exists(folder.path() / "out"));
+  EXPECT_TRUE(fs::exists(folder.path() / "out.partial/trajectory.h5"));
+  EXPECT_THAT(bytes_of(folder.path() / "out.partial/INCOMPLETE.txt"), HasSubstr("Zeno"));
+}
+
+TEST(Simulate, KeepsAndMarksThePartBeforeANumericalFailure) {
+  const TemporaryFolder folder;
+  write_file(folder.path() / "two.toml", kTwoContacts);
+  const Outcome outcome =
+      slipmode_in(folder, {"simulate", "two.toml", "-o", "run.h5", "--json", "--set", "flow.max_events_per_window=20",
+                           "--set", "flow.zeno_window=1000.0", "--set", "time.transient=0.0"});
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_EQ(outcome.json()["incomplete"], true);
+  // 20 events are let through, the next one is the failure.
+  EXPECT_GT(outcome.json()["events"], 10);
+  EXPECT_LE(outcome.json()["events"], 20);
+  EXPECT_THAT(slipmode_in(folder, {"info", "run.h5"}).out, HasSubstr("the run stopped early"));
+}
+
+}  // namespace

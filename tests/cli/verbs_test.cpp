@@ -1,0 +1,148 @@
+#include "cli/slipmode_process.hpp"
+#include "cli/small_scenes.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <cmath>
+#include <numbers>
+
+namespace {
+
+using namespace slipmode::tests;
+using testing::HasSubstr;
+
+/// A folder with both scenes in it.
+class Verbs : public testing::Test {
+ protected:
+  void SetUp() override {
+    write_file(folder.path() / "two.toml", kTwoContacts);
+    write_file(folder.path() / "free.toml", kFreeEnds);
+  }
+  Outcome call(const std::vector<std::string>& arguments) const { return slipmode_in(folder, arguments); }
+  /// The call must end well; its JSON.
+  nlohmann::json json_of(std::vector<std::string> arguments) const {
+    arguments.emplace_back("--json");
+    const Outcome outcome = call(arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return outcome.json();
+  }
+  std::string bytes(const std::string& name) const { return bytes_of(folder.path() / name); }
+
+  TemporaryFolder folder;
+};
+
+TEST_F(Verbs, EachHasHelpWithAnExample) {
+  for (const std::string verb : {"run", "modes", "simulate", "pod", "reduce", "validate", "sweep", "plot", "info"}) {
+    const Outcome outcome = call({verb, "--help"});
+    EXPECT_EQ(outcome.exit_code, 0) << verb;
+    EXPECT_THAT(outcome.out, HasSubstr("Example:\n  slipmode " + verb)) << verb;
+    for (const char* option : {"--json", "--set", "--threads", "--seed", "--quiet"}) {
+      EXPECT_THAT(outcome.out, HasSubstr(option)) << verb;
+    }
+  }
+}
+
+TEST_F(Verbs, ModesAreThoseOfAChainBetweenWalls) {
+  const auto found = json_of({"modes", "two.toml"});
+  // Uniform chain of n masses between walls: ω_k = 2 sqrt(k/m) sin(kπ / (2(n + 1))). With masses 2 and 4 stuck, masses
+  // 1 and 3 each swing alone between two fixed points: ω = sqrt(2k/m), twice.
+  for (int k = 1; k <= 4; ++k) {
+    EXPECT_NEAR(found["slipping"]["omega"][k - 1], 2.0 * 5.0 * std::sin(k * std::numbers::pi / 10.0), 1e-12);
+  }
+  ASSERT_EQ(found["sticking"]["omega"].size(), 2U);
+  for (const double omega : found["sticking"]["omega"]) EXPECT_NEAR(omega, std::sqrt(50.0), 1e-12);
+}
+
+TEST_F(Verbs, SetOverridesAnyKey) {
+  // One more of everything: 9 masses; ω_1 = 2 sqrt(k/m) sin(π / 20) with k/m = 200/2.
+  const auto found =
+      json_of({"modes", "two.toml", "--set", "structure.masses=9", "--set", "structure.stiffness=200.0"});
+  EXPECT_NEAR(found["slipping"]["omega"][0], 20.0 * std::sin(std::numbers::pi / 20.0), 1e-12);
+}
+
+TEST_F(Verbs, QuietSaysNothing) {
+  const Outcome outcome = call({"simulate", "two.toml", "-o", "run.h5", "--quiet"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(outcome.err, "");
+}
+
+TEST_F(Verbs, ATrajectoryClosesItsEnergyBalance) {
+  const auto found = json_of({"simulate", "two.toml", "-o", "run.h5"});
+  EXPECT_EQ(found["kind"], "trajectory");
+  // (duration − transient) / sample + 1
+  EXPECT_EQ(found["samples"], 601);
+  EXPECT_GT(found["events"], 10);
+  EXPECT_LT(std::abs(found["audit_residual"].get<double>()), 1e-9);
+  for (const double share : found["stick_fraction"]) {
+    EXPECT_GE(share, 0.0);
+    EXPECT_LE(share, 1.0);
+  }
+}
+
+TEST_F(Verbs, TheChainOfVerbsEndsInAValidation) {
+  const auto ensemble = json_of({"simulate", "free.toml", "-o", "ensemble.h5"});
+  EXPECT_EQ(ensemble["members"], 3);
+  EXPECT_EQ(ensemble["snapshots"], 3 * 401);  // (300 − 100) / 0.5 + 1 each
+
+  const auto pod = json_of({"pod", "ensemble.h5", "-o", "pod.h5"});
+  double sum = 0.0;
+  for (const double share : pod["shares"]) sum += share;
+  EXPECT_NEAR(sum, 1.0, 1e-14);
+
+  // All modes kept: a change of coordinates, so the frequencies are the same to rounding.
+  const auto reduced = json_of({"reduce", "free.toml", "pod.h5", "--modes", "3", "-o", "rom.h5"});
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_NEAR(reduced["omega_reduced"][k], reduced["omega_full"][k].get<double>(), 1e-12);
+  }
+
+  const auto validation = json_of({"validate", "free.toml", "pod.h5", "-o", "validation.h5"})["validation"];
+  for (const char* basis : {"POM", "LNM"}) {
+    const auto& shares = validation["bases"][basis]["shares"];
+    ASSERT_EQ(shares.size(), 3U);
+    EXPECT_NEAR(shares[2]["energy"], 100.0, 1e-9);
+    EXPECT_LT(shares[2]["horizon"]["dX"].get<double>(), 1e-5) << "all modes kept: full and reduced are the same";
+    EXPECT_GT(shares[0]["horizon"]["dX"].get<double>(), 1e-3) << "one mode of three cannot be exact";
+  }
+  // No basis of one vector holds more of the ensemble's energy than the first POM.
+  EXPECT_GE(validation["bases"]["POM"]["shares"][0]["energy"], validation["bases"]["LNM"]["shares"][0]["energy"]);
+  EXPECT_EQ(validation["bifurcation"]["values"], 5);
+}
+
+TEST_F(Verbs, InfoListsWhatAFileHolds) {
+  json_of({"modes", "two.toml", "-o", "modes.h5"});
+  const Outcome text = call({"info", "modes.h5"});
+  EXPECT_THAT(text.out, HasSubstr("[rad/s]"));
+  const auto found = json_of({"info", "modes.h5"});
+  bool shapes = false;
+  for (const auto& entry : found["contents"]) {
+    if (entry["name"] == "modes/slipping/shapes") shapes = entry["shape"] == nlohmann::json({4, 4});
+  }
+  EXPECT_TRUE(shapes);
+}
+
+TEST_F(Verbs, PlotDrawsEveryFigureAFileCanGive) {
+  json_of({"simulate", "two.toml", "-o", "run.h5"});
+  json_of({"simulate", "free.toml", "-o", "ensemble.h5"});
+  json_of({"pod", "ensemble.h5", "-o", "pod.h5"});
+  json_of({"validate", "free.toml", "pod.h5", "-o", "validation.h5"});
+  for (const std::string file : {"run.h5", "pod.h5", "validation.h5"}) {
+    auto names = json_of({"plot", file, "-o", "first.svg"})["others"];
+    EXPECT_TRUE(is_figure(folder.path() / "first.svg")) << file;
+    EXPECT_FALSE(names.empty()) << file;
+    for (const std::string name : names) {
+      json_of({"plot", file, "--figure", name, "-o", name + ".png"});
+      EXPECT_TRUE(is_figure(folder.path() / (name + ".png"))) << file << ' ' << name;
+    }
+  }
+}
+
+TEST_F(Verbs, TheSeedDecidesTheEnsembleAndThreadsDoNot) {
+  json_of({"simulate", "free.toml", "-o", "a.h5", "--threads", "1"});
+  json_of({"simulate", "free.toml", "-o", "b.h5", "--threads", "2"});
+  json_of({"simulate", "free.toml", "-o", "c.h5", "--seed", "8"});
+  EXPECT_EQ(bytes("a.h5"), bytes("b.h5"));
+  EXPECT_NE(bytes("a.h5"), bytes("c.h5"));
+}
+
+}  // namespace
