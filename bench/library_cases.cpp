@@ -111,7 +111,7 @@ Row measure_reduction(bool quick) {
   const double simulated = wall_seconds();
   const pod::PodResult modes = pod::pod(ensemble, {.choice = {.modes = 6}});
   const double end = wall_seconds();
-  const double duration = quick ? 500.0 : 2000.0;
+  const double duration = quick ? 500.0 : 1e4;
   const auto cost = diagnostics::measure_cost(system, modes.basis, start_on_attractor(system, 500.0), duration, 5,
                                               {.tolerance = 1e-7, .audit = false});
   const double share = modes.basis.energy.sum();
