@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 
 namespace slipmode::cli {
 namespace {
@@ -82,21 +83,27 @@ std::vector<SpeedOrbits> orbits_by_speed(const ValidationReport& report) {
   return out;
 }
 
-/// Why there is no orbit, each reason once with how often it was met.
+/// A reason without its numbers, which differ from case to case.
+std::string kind_of(std::string reason) {
+  std::erase_if(reason, [](char c) { return c >= '0' && c <= '9'; });
+  return reason;
+}
+
+/// Why there is no orbit: one example of each kind of reason, with how often it was met.
 std::string orbit_failures(const ValidationReport& report) {
-  constexpr std::size_t kShown = 4;
-  std::map<std::string, int> reasons;
+  std::map<std::string, std::pair<std::string, int>> kinds;
   for (const CandidateReport& candidate : report.candidates) {
     for (const OrbitRow& row : candidate.orbits) {
-      if (!row.failure.empty()) ++reasons[fmt::format("V = {:g}: {}", row.speed, row.failure)];
+      if (row.failure.empty()) continue;
+      auto& [example, times] = kinds[kind_of(row.failure)];
+      if (times++ == 0)
+        example = fmt::format("{} {}s at V = {:g}: {}", row.modes, candidate.name, row.speed, row.failure);
     }
   }
   std::string out;
-  std::size_t shown = 0;
-  for (const auto& [reason, times] : reasons) {
-    if (shown++ < kShown) out += fmt::format("  none ({} times) at {}\n", times, reason);
+  for (const auto& entry : kinds) {
+    out += fmt::format("  none, {} times: e.g. {}\n", entry.second.second, entry.second.first);
   }
-  if (reasons.size() > kShown) out += fmt::format("  and {} other reasons, all in the file\n", reasons.size() - kShown);
   return out;
 }
 
@@ -146,7 +153,10 @@ std::string sweep_text(const ValidationReport& report) {
 
 std::string summary_text(const ValidationReport& report) {
   std::string out = fmt::format("Full model at V = {:g}: {}", report.speed, motion_text(report.full.period));
-  if (report.lyapunov) out += fmt::format(", largest exponent {:.4f} bit per unit of time", report.lyapunov->bits);
+  if (report.lyapunov) {
+    const double error_bits = report.lyapunov->error / std::numbers::ln2;
+    out += fmt::format(", largest exponent {:.4f} ± {:.4f} bit per unit of time", report.lyapunov->bits, error_bits);
+  }
   out += fmt::format(
       ", sticks {:.1f} % of the time\n"
       "Reduced models at that speed: ΔX, ΔE over the horizon from shared starts; W: distance of the slip states of\n"

@@ -45,7 +45,7 @@ BifurcationPanel thinned(const BifurcationPanel& panel, const Range& x, const Ra
 double dot_size(const Eigen::VectorXd& parameter) {
   const std::set<double> values(parameter.begin(), parameter.end());
   const double spacing = 1050.0 / static_cast<double>(std::max<std::size_t>(values.size(), 1));
-  return std::clamp(1.3 * spacing / 12.0, 0.16, 0.6);
+  return std::clamp(1.5 * spacing / 12.0, 0.16, 0.6);
 }
 
 }  // namespace

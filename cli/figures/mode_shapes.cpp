@@ -41,6 +41,12 @@ Figure mode_shapes(const ModeShapes& shapes) {
   figure.command(fmt::format("set multiplot layout {},{} margins 0.085,0.985,{:.4f},{:.4f} spacing 0.025,{:.4f}", rows,
                              columns, 90.0 / height, 1.0 - 75.0 / height, 50.0 / height));
   figure.command(fmt::format("set xrange [0.5:{}]", static_cast<double>(n) + 0.5));
+  figure.command("unset key");
+  if (shapes.lnms.cols() > 0) {
+    const double y = 1.0 - 22.0 / height;
+    figure.command(fmt::format("set label 1 'POM: solid' at screen 0.8,{:.4f} textcolor rgb '{}'", y, kPomColour));
+    figure.command(fmt::format("set label 2 'LNM: dashed' at screen 0.89,{:.4f} textcolor rgb '{}'", y, kLnmColour));
+  }
   figure.command("set yrange [-1.15:1.15]; set ytics 0.5");
   if (n <= 20) figure.command(columns <= 3 || n <= 5 ? "set xtics 1" : "set xtics 2");
   figure.command("set xzeroaxis linecolor rgb '#999999' linewidth 0.8 linetype 1");
@@ -54,7 +60,6 @@ Figure mode_shapes(const ModeShapes& shapes) {
     figure.command(i % columns == 0 ? "set ylabel \"shape [–]\"; set format y '%g'" : "unset ylabel; set format y ''");
     figure.command(i + columns >= count ? "set xlabel \"mass number\"; set format x '%g'"
                                         : "unset xlabel; set format x ''");
-    figure.command(i == 0 && with_lnm ? kLegendAbove : "unset key");
     std::string plot = fmt::format("plot {} using 1:2 with {} linewidth 1.6 linecolor rgb '{}' title 'POM'",
                                    figure.data({number, pom}), marker, kPomColour);
     if (with_lnm) {
@@ -63,6 +68,7 @@ Figure mode_shapes(const ModeShapes& shapes) {
                           figure.data({number, lnm}), kLnmColour);
     }
     figure.command(plot);
+    figure.command("unset label");
   }
   figure.command("unset multiplot");
   return figure;
