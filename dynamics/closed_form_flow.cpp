@@ -17,12 +17,39 @@ constexpr double kTouching = 1e-12;
 constexpr double kWorthwhile = 0.05;
 /// The part of a proved interval that is used, to leave room for the rounding of its end.
 constexpr double kUsed = 1.0 - 1e-5;
-/// A window this many times longer than the bracket of an event resolves it.
-constexpr double kBracketRoom = 4.0;
 /// Phase below which the energy audit uses one short rule.
 constexpr double kShortRest = 0.25;
-constexpr int kPolishes = 20;
+constexpr int kNewtonSteps = 20;
+/// The next window is longer when the least value of every guard is this many times what was left out.
+constexpr double kSpareToGrow = 32.0;
 constexpr int kLargestGrowth = 4;
+constexpr int kHalvings = 3;
+
+/// De Casteljau's halving of degree-7 Bernstein coefficients as two matrices.
+struct Halving {
+  Eigen::Matrix<double, 8, 8> left = Eigen::Matrix<double, 8, 8>::Zero(), right = left;
+  Halving() {
+    for (int k = 0; k < kNodes; ++k) {
+      double binomial = std::pow(0.5, k);
+      for (int j = 0; j <= k; ++j) {
+        left(k, j) = right(7 - k, 7 - j) = binomial;
+        binomial *= static_cast<double>(k - j) / (j + 1);
+      }
+    }
+  }
+};
+
+/// Whether the polynomial stays above `bound` on [0, 1], by its convex hull on up to 2^halvings parts. A false says
+/// nothing.
+bool stays_above(const V8& coefficients, double bound, int halvings) {
+  static const Halving half;
+  if (min8(coefficients) > bound) return true;
+  if (halvings == 0 || coefficients[0] <= bound || coefficients[7] <= bound) return false;
+  alignas(64) double lanes[kNodes];
+  store8(lanes, coefficients);
+  return stays_above(matrix8_times(half.left.data(), lanes), bound, halvings - 1) &&
+         stays_above(matrix8_times(half.right.data(), lanes), bound, halvings - 1);
+}
 
 }  // namespace
 
@@ -125,38 +152,25 @@ void ClosedFormFlow::foresee_starts() {
 
 void ClosedFormFlow::judge(const BernsteinPolynomial& guard, double remainder, double tolerance, int contact,
                            Search& found) const {
-  double least = guard.coefficient[0];
-  for (int k = 1; k < kNodes; ++k) least = std::min(least, guard.coefficient[static_cast<std::size_t>(k)]);
-  if (least > remainder) {
-    found.spare = std::min(found.spare, least / std::max(remainder, 1e-300));
-    return;
-  }
-  const auto shifted = [&](double by) {
-    BernsteinPolynomial p = guard;
-    for (int k = 0; k < kNodes; ++k) p.coefficient[static_cast<std::size_t>(k)] += by;
-    return p;
-  };
-  const auto low = first_root(shifted(-remainder));
   found.spare = std::min(found.spare, 1.0);
-  if (!low) return;
-  const bool resolved = remainder <= tolerance;
   Search here;
   here.contact = contact;
   here.spare = found.spare;
-  here.clear = low->at;
-  if (resolved) {
-    const auto root = first_root(guard);
-    here.resolved = true;
-    here.touching = !root || root->touching;
-    here.root = root ? root->at : low->at;
-    here.bracket = here.root;
-  } else {
-    const auto high = first_root(shifted(remainder));
-    here.bracket = high ? high->at : 1.0;
+  here.resolved = remainder <= tolerance;
+  std::optional<FirstRoot> root;
+  if (here.resolved) root = first_root(guard);
+  if (!root || root->touching) {
+    BernsteinPolynomial low = guard;
+    for (int k = 0; k < kNodes; ++k) low.coefficient[static_cast<std::size_t>(k)] -= remainder;
+    root = first_root(low);
+    if (!root) return;
+    here.touching = here.resolved;
   }
-  const double at = here.resolved ? here.root : here.clear;
-  const double known = found.resolved ? found.root : found.clear;
-  if (found.contact < 0 || at < known) found = here;
+  here.at = root->at;
+  if (!here.resolved) here.refinement = 1 + std::min(8, static_cast<int>(std::log2(remainder / tolerance) / 8.0));
+  here.alone = found.contact < 0;
+  if (found.contact < 0 || here.at < found.at) found = here;
+  found.alone = here.alone;
 }
 
 ClosedFormFlow::Search ClosedFormFlow::search(int level) const {
@@ -176,8 +190,9 @@ ClosedFormFlow::Search ClosedFormFlow::search(int level) const {
     guard.degree = kNodes - 1;
     alignas(64) double lanes[kNodes];
     const auto consider = [&](const V8& values, double tolerance) {
-      if (min8(values) > remainder && min8(values) > 256.0 * remainder) {
-        found.spare = std::min(found.spare, min8(values) / std::max(remainder, 1e-300));
+      const double least = min8(values);
+      if (least > remainder || stays_above(values, remainder, kHalvings)) {
+        found.spare = std::min(found.spare, std::max(least, 0.0) / std::max(remainder, 1e-300));
         return;
       }
       store8(lanes, values);
@@ -199,40 +214,37 @@ ClosedFormFlow::Search ClosedFormFlow::search(int level) const {
   return found;
 }
 
-double ClosedFormFlow::guard_value(int c, double sign, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs) const {
-  const Regime& r = tables_->regime();
-  const double output = dot_padded(r.row.col(c).data(), x.data(), x.size()) + r.coefficient.col(c).dot(inputs);
-  const auto i = static_cast<std::size_t>(c);
-  return r.stuck[i] ? resolver_.laws()[i].static_limit - sign * output : sign * (inputs(r.speed_input()) - output);
-}
-
-void ClosedFormFlow::polish(int c, double& tau, Eigen::VectorXd& x, Eigen::VectorXd& inputs) const {
-  // Newton on the exact guard; states come from the beginning of the step, so that shifts do not accumulate.
+bool ClosedFormFlow::approach(int c, double& tau) {
+  // Newton on the exact guard, from a time at which it is not yet reached.
   const Regime& r = tables_->regime();
   const auto i = static_cast<std::size_t>(c);
-  const double output = dot_padded(r.row.col(c).data(), x.data(), x.size()) + r.coefficient.col(c).dot(inputs);
-  const double sign = r.stuck[i] ? (output > 0 ? 1.0 : -1.0) : sign_of(point_.modes[i]);
-  double previous = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < kPolishes; ++k) {
-    const double value = guard_value(c, sign, x, inputs);
-    const double belt_rate = r.stuck[i] ? 0.0 : inputs(r.speed_input() + 1);
-    const double slope =
-        sign * (belt_rate - dot_padded(r.row1.col(c).data(), x.data(), x.size()) - r.coefficient1.col(c).dot(inputs));
+  const auto output = [&] {
+    return dot_padded(r.row.col(c).data(), x_.data(), x_.size()) + r.coefficient.col(c).dot(inputs_);
+  };
+  const double sign = r.stuck[i] ? (output() > 0 ? 1.0 : -1.0) : sign_of(point_.modes[i]);
+  const double belt_rate = r.stuck[i] ? 0.0 : inputs_(r.speed_input() + 1);
+  const double from = tau;
+  double slope = 0.0;
+  for (int k = 0; k < kNewtonSteps; ++k) {
+    const double value =
+        r.stuck[i] ? resolver_.laws()[i].static_limit - sign * output() : sign * (inputs_(r.speed_input()) - output());
+    slope = sign *
+            (belt_rate - dot_padded(r.row1.col(c).data(), x_.data(), x_.size()) - r.coefficient1.col(c).dot(inputs_));
     const double shift = -value / slope;
-    if (!(std::abs(shift) < 0.5 * previous) || tau + shift < 0.0) return;
-    previous = std::abs(shift);
+    if (!(slope < 0.0) || !(std::abs(shift) * r.rate < 2.0) || tau + shift < 0.0) return false;
     tau += shift;
-    if (previous * r.rate < 1e-15) return;
-    x = x_begin_;
-    inputs = inputs_begin_;
-    advance(*tables_, tau, x, inputs);
+    advance(*tables_, shift, x_, inputs_);
+    // Newton squares its error, with a factor of about the guard's curvature by its slope.
+    if (std::abs(shift) * r.rate < 1e-15 || shift * shift * curvature(c) < 1e-15 / r.rate * std::abs(slope)) break;
   }
+  // The guard falls all the way from `from`: it vanishes here for the first time.
+  return tau <= from || (tau - from) * curvature(c) < std::abs(slope);
 }
 
-void ClosedFormFlow::move(double tau) {
-  x_begin_ = x_;
-  inputs_begin_ = inputs_;
-  advance(*tables_, tau, x_, inputs_);
+double ClosedFormFlow::curvature(int c) const {
+  const Regime& r = tables_->regime();
+  return r.weight2.col(c).dot(amplitude_) + std::abs(r.polynomial2.col(c).dot(inputs_begin_)) +
+         std::abs(r.polynomial3.col(c).dot(inputs_begin_)) * tables_->length(level_);
 }
 
 bool ClosedFormFlow::step(double t_limit) {
@@ -259,27 +271,37 @@ bool ClosedFormFlow::step(double t_limit) {
     h = tables_->length(level_);
     found = search(level_);
     const bool finest = level_ + 1 >= RegimeTables::kLevels || !(begin_ + h > begin_);
-    if (found.contact < 0 || found.clear * h >= remaining || (found.resolved && found.root * h >= remaining)) {
+    if (found.contact < 0 || found.at * h >= remaining) {
       found.contact = -1;
       tau = std::min(h, remaining);
       break;
     }
-    if (found.resolved || finest) {
-      tau = (found.resolved ? found.root : found.clear) * h;
-      break;
-    }
-    if (found.clear > kWorthwhile) {
-      tau = found.clear * kUsed * h;
-      level_ = std::max(level_ + 1, tables_->level_covering(kBracketRoom * (found.bracket - found.clear) * h));
-      found.contact = -1;
-      found.spare = 1.0;
-      break;
-    }
-    ++level_;
+    tau = found.at * h;
+    found.resolved |= finest;
+    if (found.resolved || found.at > kWorthwhile) break;
+    level_ = std::min(level_ + found.refinement, RegimeTables::kLevels - 1);
     ++statistics_.rejected;
   }
-  move(tau);
-  if (found.contact >= 0 && !found.touching) polish(found.contact, tau, x_, inputs_);
+  x_begin_ = x_;
+  inputs_begin_ = inputs_;
+  if (found.contact >= 0 && !found.touching) {
+    // Up to the part that is proved clear; from there Newton, which may prove itself.
+    if (!found.resolved) tau *= kUsed;
+    advance(*tables_, tau, x_, inputs_);
+    double root = tau;
+    const bool proved = approach(found.contact, root);
+    if (proved ? root <= std::min(h, remaining) && (found.alone || found.resolved) : found.resolved) {
+      tau = root;
+    } else {
+      x_ = x_begin_;
+      inputs_ = inputs_begin_;
+      advance(*tables_, tau, x_, inputs_);
+      found.contact = -1;
+      level_ = std::min(level_ + found.refinement, RegimeTables::kLevels - 1);
+    }
+  } else {
+    advance(*tables_, tau, x_, inputs_);
+  }
   point_.time = tau == remaining ? end : begin_ + tau;
   ++statistics_.steps;
   if ((x_.size() > 0 && !std::isfinite(x_(0))) || !std::isfinite(point_.time))
@@ -290,8 +312,8 @@ bool ClosedFormFlow::step(double t_limit) {
   if (options_.audit) account(tau);
 
   if (found.contact >= 0) return settle(found.contact, found.touching);
-  if (found.spare > 256.0) {
-    const int growth = std::min(kLargestGrowth, static_cast<int>(std::log2(found.spare) / 8.0));
+  if (found.spare > kSpareToGrow) {
+    const int growth = std::clamp(std::ilogb(found.spare) / 8, 1, kLargestGrowth);
     level_ = std::max(0, level_ - growth);
   }
   if (point_.time < limit) return false;

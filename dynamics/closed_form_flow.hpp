@@ -36,13 +36,13 @@ class ClosedFormFlow {
  private:
   /// What a search of one window found.
   struct Search {
-    double clear = 1.0;     ///< no guard vanishes on [0, clear) of the window
-    int contact = -1;       ///< whose guard may vanish next; −1: none in this window
-    double bracket = 1.0;   ///< it has vanished before this fraction, if it does
-    bool resolved = false;  ///< nothing is left out that matters: `root` is the event
+    int contact = -1;       ///< whose guard may vanish first; −1: none in this window
+    double at = 1.0;        ///< fraction of the window before which no guard vanishes
+    bool resolved = false;  ///< nothing is left out that matters: `at` is the event
     bool touching = false;  ///< resolved: the guard comes within tolerance of zero and goes back
-    double root = 1.0;
-    double spare = 1e300;  ///< smallest ratio of a guard's least value to its remainder
+    bool alone = true;      ///< no other guard may vanish in this window
+    int refinement = 1;     ///< not resolved: levels to go down until it is
+    double spare = 1e300;   ///< smallest ratio of a guard's least value to its remainder
   };
 
   void enter_regime();
@@ -51,9 +51,10 @@ class ClosedFormFlow {
   void foresee_starts();
   [[nodiscard]] Search search(int level) const;
   void judge(const BernsteinPolynomial& guard, double remainder, double tolerance, int contact, Search& found) const;
-  [[nodiscard]] double guard_value(int c, double sign, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs) const;
-  void polish(int contact, double& tau, Eigen::VectorXd& x, Eigen::VectorXd& inputs) const;
-  void move(double tau);
+  /// Takes the state on to where the guard vanishes; tau follows. True if that is proved to be the first time.
+  [[nodiscard]] bool approach(int contact, double& tau);
+  /// Bound on the second derivative of an output over the window.
+  [[nodiscard]] double curvature(int contact) const;
   void account(double tau);
   /// State of the slipping model and contact forces.
   void lift(const Regime& regime, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs, Eigen::VectorXd& out_x,

@@ -22,6 +22,10 @@ constexpr double kLargestGrowth = 1.2;
 constexpr double kNegligibleShift = 1e-15;
 /// A stick force starts at its limit when it is this close (relative).
 constexpr double kAtLimit = 1e-10;
+/// Right after sliding has begun, a guard that vanishes within this share of a step is an error of interpolation.
+constexpr double kEarly = 1.0 / 64.0;
+/// Speeds below this share of the velocities at play are rounding.
+constexpr double kUnmoved = 1e-14;
 constexpr int kRefinements = 20;
 
 /// How many times to halve a step whose eighth-order error is too large by this factor: at least once.
@@ -90,6 +94,7 @@ CollocationFlow::Guarded CollocationFlow::first_guard() const {
     alignas(64) double speed[kNodes];
     store8(speed, sign * (load8(belt_nodes_.data() + kNodes * c) - load8(velocity_.data() + kNodes * c)));
     const int multiplicity = point_.multiplicity[i];
+    if (multiplicity > 0 && unmoved(c)) continue;
     const double start =
         multiplicity > 0
             ? 0.0
@@ -101,6 +106,18 @@ CollocationFlow::Guarded CollocationFlow::first_guard() const {
     consider(b, start, kNodes, c, multiplicity);
   }
   return first;
+}
+
+bool CollocationFlow::unmoved(int c) const {
+  // So soon after its start that sliding has no speed beyond rounding, and its sign means nothing.
+  const V8 speed = load8(belt_nodes_.data() + kNodes * c) - load8(velocity_.data() + kNodes * c);
+  const double scale =
+      std::abs(belt().velocity(begin_)) + model_.velocity_row.col(c).cwiseAbs().dot(x_begin_.cwiseAbs());
+  return std::max(max8(speed), -min8(speed)) <= kUnmoved * scale;
+}
+
+bool CollocationFlow::too_early(const Guarded& guard) const {
+  return guard.contact >= 0 && point_.multiplicity[static_cast<std::size_t>(guard.contact)] > 0 && guard.theta < kEarly;
 }
 
 double CollocationFlow::deepest_overshoot() const {
@@ -160,6 +177,10 @@ bool CollocationFlow::step(double t_limit) {
     tolerance = options_.tolerance * (tau < h ? 1.0 : 1.0 / kEndNodeGain);
     if (!(error <= tolerance) && !smallest) {
       level += halvings(error / tolerance);
+      continue;
+    }
+    if (too_early(guard) && !smallest) {
+      ++level;
       continue;
     }
     if (guard.contact >= 0 && deepest_overshoot() > kLargestOvershoot) {

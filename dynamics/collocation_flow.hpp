@@ -56,6 +56,8 @@ class CollocationFlow {
   bool solve_coupled(const Collocation& table);
   [[nodiscard]] double force_error() const;
   [[nodiscard]] Guarded first_guard() const;
+  [[nodiscard]] bool unmoved(int c) const;
+  [[nodiscard]] bool too_early(const Guarded& guard) const;
   [[nodiscard]] double deepest_overshoot() const;
   void refine_event(const Guarded& guard, double& tau, Eigen::VectorXd& x) const;
   [[nodiscard]] double stick_force(int c, const Eigen::VectorXd& x, double tau,

@@ -96,7 +96,7 @@ class RegimeTables {
   ~RegimeTables();
 
   [[nodiscard]] const Regime& regime() const { return regime_; }
-  [[nodiscard]] double length(int level) const { return top_ / static_cast<double>(std::int64_t{1} << level); }
+  [[nodiscard]] double length(int level) const { return length_[static_cast<std::size_t>(level)]; }
   /// The finest level whose window is at least this long.
   [[nodiscard]] int level_covering(double length) const;
   [[nodiscard]] const RegimeStep& step(int level) const { return get(steps_[static_cast<std::size_t>(level)], level); }
@@ -123,14 +123,15 @@ class RegimeTables {
   void step_of(double h, RegimeStep& out) const;
 
   Regime regime_;
-  double top_;
+  std::array<double, kLevels> length_{};
   mutable std::mutex building_;
   mutable std::array<Slot<RegimeStep>, kLevels> steps_{};
   mutable std::array<Slot<RegimeWindow>, kLevels> windows_{};
   mutable std::array<Slot<RegimeAudit>, kLevels> audits_{};
 };
 
-/// State after any time t ≥ 0 from (x, inputs): tabulated steps, then a short Taylor series. In place.
+/// State after a time t from (x, inputs): tabulated steps, then a short Taylor series. In place. A negative t may be no
+/// longer than that series reaches (a quarter of the fastest radian).
 void advance(const RegimeTables& tables, double t, Eigen::VectorXd& x, Eigen::VectorXd& inputs);
 
 }  // namespace slipmode::dynamics

@@ -76,7 +76,10 @@ LobattoTables build_lobatto() {
 }  // namespace
 
 RegimeTables::RegimeTables(const HybridSystem& system, const ModalModel& slipping, const std::vector<bool>& stuck)
-    : regime_(system, slipping, stuck), top_(kTopPhase / regime_.rate) {}
+    : regime_(system, slipping, stuck) {
+  for (int level = 0; level < kLevels; ++level)
+    length_[static_cast<std::size_t>(level)] = std::ldexp(kTopPhase / regime_.rate, -level);
+}
 
 RegimeTables::~RegimeTables() {
   for (auto& slot : steps_) delete slot.load();
@@ -85,9 +88,7 @@ RegimeTables::~RegimeTables() {
 }
 
 int RegimeTables::level_covering(double wanted) const {
-  int level = 0;
-  while (level + 1 < kLevels && length(level + 1) >= wanted) ++level;
-  return level;
+  return std::clamp(std::ilogb(length_[0] / wanted), 0, kLevels - 1);
 }
 
 template <class T>
@@ -132,7 +133,7 @@ void RegimeTables::make(RegimeStep& out, int level) const { step_of(length(level
 
 void RegimeTables::make(RegimeAudit& out, int level) const {
   const double h = length(level);
-  out.rule = gauss_rule(8 + static_cast<int>(std::ceil(1.5 * regime_.rate * h)));
+  out.rule = gauss_rule(8 + static_cast<int>(std::ceil(0.75 * regime_.rate * h)));
   out.point.resize(static_cast<std::size_t>(out.rule.node.size()));
   for (std::size_t j = 0; j < out.point.size(); ++j)
     step_of(out.rule.node(static_cast<Eigen::Index>(j)) * h, out.point[j]);
@@ -145,10 +146,31 @@ void RegimeTables::make(RegimeWindow& out, int level) const {
   const double h = length(level);
   out.from_state = Eigen::MatrixXd::Zero(8, 2 * np * nc);
   out.from_inputs = Eigen::MatrixXd::Zero(8, ni * nc);
+  // |f − p| ≤ max|f⁽⁸⁾| (h/2)⁸ / (2⁶ 8!) on these points. A pair too fast for that is left out instead: of its free
+  // motion all that matters is how large it can be.
+  const auto interpolation_share = [&](Eigen::Index i) {
+    return std::pow(r.pair_rate(i) * h / 2.0, 8) / (64.0 * kFactorial8);
+  };
+  const auto interpolated = [&](Eigen::Index i) {
+    return interpolation_share(i) < 1.0 || r.scale1(i) == 0.0 || r.scale2(i) == 0.0;
+  };
   RegimeStep step;
   for (int j = 0; j < 8; ++j) {
     const double t = lobatto.point(j) * h;
     step_of(t, step);
+    for (Eigen::Index i = 0; i < r.pairs.n; ++i) {
+      if (interpolated(i)) continue;
+      step.e11(i) = step.e12(i) = step.e21(i) = step.e22(i) = 0.0;
+      for (const Eigen::Index k : {i, np + i}) {
+        Eigen::RowVectorXd follows = r.particular.row(k);
+        double held = 0.0;
+        for (std::size_t d = 0; d < r.stuck.size(); ++d)
+          if (r.stuck[d]) held += r.particular(k, static_cast<Eigen::Index>(d));
+        follows(V) += held * t;
+        follows(V + 1) += held * t * t / 2.0 + r.particular(k, V) * t;
+        step.response.row(k) = follows;
+      }
+    }
     for (Eigen::Index c = 0; c < nc; ++c) {
       const auto first = r.row.col(c).head(np), second = r.row.col(c).tail(np);
       out.from_state.row(j).segment(2 * np * c, np) =
@@ -167,19 +189,19 @@ void RegimeTables::make(RegimeWindow& out, int level) const {
   out.from_state = (lobatto.bernstein * out.from_state).eval();
   out.from_inputs = (lobatto.bernstein * out.from_inputs).eval();
 
-  // |f − p| ≤ max|f⁽⁸⁾| (h/2)⁸ / (2⁶ 8!) on these points, and never more than the gain times max|f|.
   out.remainder = Eigen::MatrixXd::Zero(np, nc);
-  for (Eigen::Index i = 0; i < r.pairs.n; ++i) {
-    const double share = std::min(kInterpolationGain, std::pow(r.pair_rate(i) * h / 2.0, 8) / (64.0 * kFactorial8));
-    out.remainder.row(i) = share * r.weight.row(i);
-  }
+  for (Eigen::Index i = 0; i < r.pairs.n; ++i)
+    out.remainder.row(i) =
+        (interpolated(i) ? std::min(kInterpolationGain, interpolation_share(i)) : 1.0) * r.weight.row(i);
 }
 
 void advance(const RegimeTables& tables, double t, Eigen::VectorXd& x, Eigen::VectorXd& inputs) {
   const Regime& r = tables.regime();
   const ModalModel& m = r.pairs;
   const auto np = m.np, ni = r.inputs(), V = r.speed_input();
-  for (int level = 0; level < RegimeTables::kLevels && r.rate * t > kTaylorPhase;) {
+  const bool tabulated = r.rate * t > kTaylorPhase;
+  for (int level = tabulated ? tables.level_covering(t) : 0;
+       level < RegimeTables::kLevels && r.rate * t > kTaylorPhase;) {
     const double h = tables.length(level);
     if (h > t) {
       ++level;
@@ -201,7 +223,7 @@ void advance(const RegimeTables& tables, double t, Eigen::VectorXd& x, Eigen::Ve
     r.advance_inputs(inputs, h);
     t -= h;
   }
-  if (t <= 0.0) return;
+  if (t == 0.0) return;
   // x⁽ᵏ⁾ tᵏ/k!, with f = B ι, ḟ = B_stuck V + B_V a, f̈ = B_stuck a.
   const double speed = inputs(V), acceleration = inputs(V + 1);
   for (Eigen::Index i = 0; i < np; i += kLanes) {
