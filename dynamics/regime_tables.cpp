@@ -11,9 +11,8 @@ namespace {
 
 /// The longest window, in radians of the fastest pair: 2^12.
 constexpr double kTopPhase = 4096.0;
-/// Below this phase a Taylor series of kTaylorOrder terms is exact to rounding.
+/// Below this phase a short Taylor series is exact to rounding.
 constexpr double kTaylorPhase = 0.25;
-constexpr int kTaylorOrder = 13;
 /// Quadrature over this many radians at once.
 constexpr double kQuadraturePhase = 4.0;
 /// 1 + the Lebesgue constant of eight Chebyshev-Lobatto points (2.2), rounded up.
@@ -226,11 +225,13 @@ void advance(const RegimeTables& tables, double t, Eigen::VectorXd& x, Eigen::Ve
   if (t == 0.0) return;
   // x⁽ᵏ⁾ tᵏ/k!, with f = B ι, ḟ = B_stuck V + B_V a, f̈ = B_stuck a.
   const double speed = inputs(V), acceleration = inputs(V + 1);
+  int terms = 3;
+  for (double size = std::pow(r.rate * std::abs(t), 3) / 6.0; size > 1e-17;) size *= r.rate * std::abs(t) / ++terms;
   for (Eigen::Index i = 0; i < np; i += kLanes) {
     const V8 g11 = load8(m.g11.data() + i), g12 = load8(m.g12.data() + i);
     const V8 g21 = load8(m.g21.data() + i), g22 = load8(m.g22.data() + i);
     V8 y1 = load8(x.data() + i), y2 = load8(x.data() + np + i), sum1 = y1, sum2 = y2;
-    for (int k = 0; k < kTaylorOrder; ++k) {
+    for (int k = 0; k < terms; ++k) {
       V8 next1 = g11 * y1 + g12 * y2, next2 = g21 * y1 + g22 * y2;
       const double* held = r.B_stuck.data() + i;
       const double* moving = r.B.data() + 2 * np * V + i;

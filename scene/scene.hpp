@@ -131,6 +131,9 @@ struct Scene {
 /// Where a run starts (see InitialSpec), at time 0.
 /// @throws InvalidInput  "static" for a structure that is free to move as a whole
 [[nodiscard]] dynamics::State initial_state(const Scene& scene, const dynamics::HybridSystem& system);
+/// Starts of the ensemble's members: initial_state with `spread` times a standard normal number added to each
+/// displacement, then to each velocity; member k draws from Random::stream(seed, k). All equal when spread = 0.
+[[nodiscard]] std::vector<dynamics::State> ensemble_states(const Scene& scene, const dynamics::HybridSystem& system);
 /// Durations and flow options of [time] and [flow].
 [[nodiscard]] dynamics::SimulateOptions simulate_options(const Scene& scene);
 

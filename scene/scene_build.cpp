@@ -1,4 +1,5 @@
 #include "core/errors.hpp"
+#include "core/random.hpp"
 #include "diagnostics/sweep.hpp"
 #include "scene/scene.hpp"
 
@@ -73,6 +74,16 @@ dynamics::State initial_state(const Scene& scene, const dynamics::HybridSystem& 
       break;
   }
   return state;
+}
+
+std::vector<dynamics::State> ensemble_states(const Scene& scene, const dynamics::HybridSystem& system) {
+  std::vector<dynamics::State> states(static_cast<std::size_t>(scene.ensemble.members), initial_state(scene, system));
+  for (std::size_t k = 0; k < states.size(); ++k) {
+    Random random = Random::stream(scene.ensemble.seed, k);
+    for (double& x : states[k].q) x += scene.ensemble.spread * random.normal();
+    for (double& x : states[k].v) x += scene.ensemble.spread * random.normal();
+  }
+  return states;
 }
 
 dynamics::SimulateOptions simulate_options(const Scene& scene) {
