@@ -162,7 +162,7 @@ std::vector<double> largest_exponent(const Case& c) {
 }
 
 std::vector<double> slip_rate(const Case& c) {
-  constexpr double kLength = 200000.0;
+  constexpr double kLength = 100000.0;
   return mean_over_members(by_member(c, [&](const dynamics::State& start) -> Eigen::VectorXd {
     const dynamics::Trajectory run = dynamics::simulate(c.system, start, record(c, kLength, 0.0));
     const auto slips = std::ranges::count(run.events, dynamics::EventKind::kRelease, &dynamics::Event::kind);
