@@ -10,27 +10,6 @@
 #include <limits>
 
 namespace slipmode::cli {
-namespace {
-
-std::vector<dynamics::State> ensemble_starts(const scene::Scene& scene, const dynamics::HybridSystem& system) {
-  const dynamics::State centre = scene::initial_state(scene, system);
-  if (scene.ensemble.spread == 0.0) {
-    return std::vector<dynamics::State>(static_cast<std::size_t>(scene.ensemble.members), centre);
-  }
-  std::vector<dynamics::State> starts =
-      diagnostics::random_states(system, {.count = scene.ensemble.members,
-                                          .spread = scene.ensemble.spread,
-                                          .seed = scene.ensemble.seed,
-                                          .centre = diagnostics::RandomStateOptions::Centre::kRest});
-  for (dynamics::State& start : starts) {
-    start.q += centre.q;
-    start.v += centre.v;
-  }
-  return starts;
-}
-
-}  // namespace
-
 diagnostics::Model scene_model(const scene::Scene& scene, const dynamics::HybridSystem& system) {
   if (scene.drive.is_constant()) return diagnostics::belt_model(system);
   return {.system = [system](double) { return system; }};
@@ -41,7 +20,7 @@ diagnostics::EnsembleRun run_scene_ensemble(const Session& session, const scene:
   std::vector<double> speeds = scene.ensemble.speeds;
   if (speeds.empty()) speeds.push_back(scene.drive.velocity(0.0));
   ProgressLine line("ensemble", session.progress_mode());
-  return diagnostics::run_ensemble(scene_model(scene, system), speeds, ensemble_starts(scene, system),
+  return diagnostics::run_ensemble(scene_model(scene, system), speeds, scene::ensemble_states(scene, system),
                                    {.duration = scene.time.duration,
                                     .transient = scene.time.transient,
                                     .sample = scene.time.sample,

@@ -59,10 +59,9 @@ TEST(Run, KeepsAndMarksWhatWasFinishedBeforeANumericalFailure) {
   write_file(folder.path() / "free.toml", kFreeEnds);
   // The window is longer than the excerpt of 210 time units that is run first, and holds fewer events than the members'
   // 3000 units of stick-slip have (about one event per two units): so the ensemble fails, not the trajectory.
-  const Outcome outcome =
-      slipmode_in(folder, {"run", "free.toml", "-o", "out", "--json", "--set", "time.duration=3000.0", "--set",
-                           "time.transient=10.0", "--set", "flow.max_events_per_window=600", "--set",
-                           "flow.zeno_window=5000.0"});
+  const Outcome outcome = slipmode_in(
+      folder, {"run", "free.toml", "-o", "out", "--json", "--set", "time.duration=3000.0", "--set",
+               "time.transient=10.0", "--set", "flow.max_events_per_window=600", "--set", "flow.zeno_window=5000.0"});
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_EQ(outcome.json()["status"], "failed");
   EXPECT_THAT(outcome.err, HasSubstr("Zeno"));
