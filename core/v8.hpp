@@ -16,6 +16,8 @@ inline constexpr int kLanes = 8;
 [[gnu::always_inline]] inline void store8(double* aligned, const V8& value) { *reinterpret_cast<V8*>(aligned) = value; }
 [[gnu::always_inline]] inline V8 broadcast8(double value) { return V8{} + value; }
 
+/// |a| lane by lane.
+[[gnu::always_inline]] inline V8 abs8(const V8& a) { return a < 0.0 ? -a : a; }
 /// Largest lane.
 [[gnu::always_inline]] inline double max8(const V8& a) {
   return Eigen::Map<const Eigen::Array<double, 8, 1>, Eigen::Aligned64>(reinterpret_cast<const double*>(&a)).maxCoeff();

@@ -47,6 +47,7 @@ CollocationFlow::CollocationFlow(const HybridSystem& system, const StepTables& t
       begin_(start.time),
       point_(std::move(start)),
       x_begin_(point_.x),
+      newton_change_(std::min(1e-3, std::sqrt(kNewtonShare * options.tolerance))),
       start_level_(static_cast<std::size_t>(nc_) + 1, 3) {
   for (auto* v : {&free_, &velocity_, &forces_, &belt_nodes_, &slope_}) *v = Eigen::VectorXd::Zero(kNodes * nc_);
   statistics_.stick_time.assign(static_cast<std::size_t>(nc_), 0.0);
@@ -213,7 +214,13 @@ bool CollocationFlow::step(double t_limit) {
 
   level_ = error < tolerance * kGrowth && level > 0 ? level - 1 : level;
   solved_ = tau == h;
-  if (fresh_) start_level_[stuck_count()] = level_;
+  if (fresh_) {
+    start_level_[stuck_count()] = level_;
+    if (nc_ == 1 && point_.modes[0] != ContactMode::kStick && point_.force(0) != 0.0) {
+      first_level_ = level;
+      first_shape_ = forces_ / point_.force(0);
+    }
+  }
   fresh_ = false;
   std::fill(point_.multiplicity.begin(), point_.multiplicity.end(), 0);
   const auto& last = nodes_.lagrange(tau / h);

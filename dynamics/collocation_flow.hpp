@@ -39,6 +39,9 @@ class CollocationFlow {
   [[nodiscard]] const Eigen::MatrixXd& tangents() const { return tangents_; }
 
  private:
+  /// Newton's next change is about the square of this one (in units of the law's velocity scale), and is left out when
+  /// that is below this share of the tolerance.
+  static constexpr double kNewtonShare = 0.03;
   /// A trial step may follow the law past zero relative velocity this far (in units of 1/α): beyond, e^{−αv} runs away.
   static constexpr double kLargestOvershoot = 0.7;
 
@@ -87,8 +90,11 @@ class CollocationFlow {
   Eigen::VectorXd x_begin_;
   std::vector<ContactMode> step_modes_;
   int level_ = 3, step_level_ = 0;
-  bool solved_ = false;           ///< forces_ hold a solution of the step of step_level_ that began at begin_
-  bool fresh_ = true;             ///< no step taken since the last event
+  bool solved_ = false;   ///< forces_ hold a solution of the step of step_level_ that began at begin_
+  bool fresh_ = true;     ///< no step taken since the last event
+  double newton_change_;  ///< see kNewtonShare
+  int first_level_ = 0;   ///< of the last first step of a slip (one contact), with its
+  RadauTables::Vector8 first_shape_ = RadauTables::Vector8::Ones();  ///< forces by the force at its start
   std::vector<int> start_level_;  ///< remembered first step size after an event, by number of sticking contacts
 
   // One step's scalars, contact after contact, eight nodes each.

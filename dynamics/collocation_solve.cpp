@@ -10,8 +10,6 @@ namespace slipmode::dynamics {
 namespace {
 
 constexpr int kNewtonLimit = 12;
-/// Newton stops at a change of this size (in units of the law's velocity scale): the next one would be its square.
-constexpr double kNewtonChange = 2e-6;
 
 }  // namespace
 
@@ -26,16 +24,34 @@ void CollocationFlow::free_velocities(const Collocation& table) {
 }
 
 void CollocationFlow::guess_forces(int level, bool retry) {
-  // The last solution continued; a rejected step's own solution; or the force at the start.
+  // A rejected step's own solution; the last solution continued; the way the last slip began; or the force at the
+  // start.
   const RadauTables& t = nodes_;
+  const int finer = level - step_level_;
   for (int c = 0; c < nc_; ++c) {
     double* forces = forces_.data() + kNodes * c;
-    const RadauTables::Matrix8* matrix = nullptr;
-    const int finer = level - step_level_ + 1;
-    if (solved_ && retry && finer == 2) matrix = &t.left_half;
-    if (solved_ && !retry && finer >= 0 && finer < static_cast<int>(t.following.size()))
-      matrix = &t.following[static_cast<std::size_t>(finer)];
-    store8(forces, matrix ? matrix8_times(matrix->data(), forces) : broadcast8(point_.force(c)));
+    if (solved_ && retry) {
+      for (int halving = 0; halving < finer; ++halving) store8(forces, matrix8_times(t.left_half.data(), forces));
+    } else if (solved_ && finer >= -1 && finer + 1 < static_cast<int>(t.following.size())) {
+      const double* ahead = t.following[static_cast<std::size_t>(finer + 1)].data();
+      const auto i = static_cast<std::size_t>(c);
+      if (laws()[i].kind == ContactForces::Kind::kStribeck && point_.modes[i] != ContactMode::kStick) {
+        // Sliding speed is smoother than the force, and continues better.
+        const double sign = sign_of(point_.modes[i]);
+        const double* velocity = velocity_.data() + kNodes * c;
+        const V8 speed = sign * (load8(belt_nodes_.data() + kNodes * c) - matrix8_times(ahead, velocity));
+        store8(forces,
+               sign * (laws()[i].kinetic + laws()[i].drop * exp8(-laws()[i].alpha * (speed > 0.0 ? speed : V8{}))));
+      } else {
+        store8(forces, matrix8_times(ahead, forces));
+      }
+    } else if (fresh_ && !retry && nc_ == 1) {
+      store8(forces, point_.force(0) * load8(first_shape_.data()));
+      for (int halving = first_level_; halving < level; ++halving)
+        store8(forces, matrix8_times(t.left_half.data(), forces));
+    } else {
+      store8(forces, broadcast8(point_.force(c)));
+    }
   }
 }
 
@@ -118,11 +134,11 @@ bool CollocationFlow::solve_single_slip(const Collocation& table) {
     store8(force, lambda);
     const V8 residual = free + matrix8_times(table.kernel.data(), force) - v;
     V8 delta;
-    if (!solve_newton(table.kernel.data(), slope, residual, delta)) return false;
+    if (!solve_newton(table.kernel.data(), table.kernel_norm, slope, residual, delta)) return false;
     v += delta;
-    const double change = std::max(max8(delta), -min8(delta));
+    const double change = max8(abs8(delta));
     if (!(change < 1e12)) return false;
-    if (change < kNewtonChange * velocity_scale || change < 1e-14) {
+    if (change < newton_change_ * velocity_scale || change < 1e-14) {
       store8(forces_.data(), lambda + slope * delta);
       store8(velocity_.data(), v);
       return true;
@@ -204,7 +220,7 @@ bool CollocationFlow::solve_coupled(const Collocation& table) {
           curvature = std::max(curvature, rate * block(dv, c).cwiseAbs().maxCoeff());
       }
     }
-    if (!any_nonlinear || curvature < kNewtonChange) return true;
+    if (!any_nonlinear || curvature < newton_change_) return true;
   }
   return false;
 }

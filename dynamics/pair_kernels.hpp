@@ -43,15 +43,10 @@ namespace slipmode::dynamics {
 
 /// Solves (I − A diag(d)) δ = r by Gauss-Jordan elimination over the lanes, or by a short Neumann series where A
 /// diag(d) is small. False when a pivot vanishes.
-[[gnu::always_inline]] inline bool solve_newton(const double* A, const V8& d, const V8& r, V8& out_delta) {
+/// @param norm  largest row sum of |A|
+[[gnu::always_inline]] inline bool solve_newton(const double* A, double norm, const V8& d, const V8& r, V8& out_delta) {
   alignas(64) double scaled[kNodes];
-  const double largest = std::max(max8(d), -min8(d));
-  V8 row_sum{};
-  for (int j = 0; j < kNodes; ++j) {
-    const V8 a = load8(A + kNodes * j);
-    row_sum += a < 0.0 ? -a : a;
-  }
-  if (largest * max8(row_sum) < 0.05) {
+  if (max8(abs8(d)) * norm < 0.05) {
     // δ = r + B(r + B(r + B r)), B = A diag(d): error below 1e-5 of δ, which Newton's next step squares away.
     V8 delta = r;
     for (int term = 0; term < 4; ++term) {

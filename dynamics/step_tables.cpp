@@ -159,6 +159,7 @@ void StepTables::make(Collocation& out, int level) const {
       }
     }
   }
+  if (nc > 0) out.kernel_norm = out.kernel.cwiseAbs().rowwise().sum().maxCoeff();
   out.kernel_inverse = out.kernel.inverse();
 }
 

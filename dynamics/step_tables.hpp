@@ -26,6 +26,7 @@ struct Collocation {
   Eigen::MatrixXd free;    ///< rows are nodes: g_cᵀ e^{G c_j h}; contact c in columns [2np c, 2np (c+1)) [8 x 2np nc]
   Eigen::MatrixXd load;    ///< [8 x nc]
   Eigen::MatrixXd kernel;  ///< [8nc x 8nc]
+  double kernel_norm = 0.0;        ///< largest row sum of |kernel|
   Eigen::MatrixXd kernel_inverse;  ///< used when every contact sticks [8nc x 8nc]
 };
 
