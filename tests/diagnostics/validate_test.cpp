@@ -75,6 +75,7 @@ TEST(Validate, AllModesAreTheFullModel) {
   ValidationOptions options = quick();
   options.modes = {10};
   options.orbit_speeds = {0.45};
+  options.settle.limit = 40000.0;
   options.lyapunov.duration = 20000.0;
   const ValidationReport report = validate(study().full, study().candidates, study().start, options);
   for (const CandidateReport& candidate : report.candidates) {
