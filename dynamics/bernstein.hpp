@@ -1,5 +1,7 @@
 #pragma once
 
+#include "core/v8.hpp"
+
 #include <array>
 #include <optional>
 
@@ -28,5 +30,9 @@ struct FirstRoot {
 /// The first root in (0, 1] of a polynomial that is positive just after 0. A root at 0 itself is
 /// dropped by setting the leading coefficients that vanish there to exactly zero.
 [[nodiscard]] std::optional<FirstRoot> first_root(const BernsteinPolynomial& p);
+
+/// Whether a polynomial of degree 7 stays above `bound` on [0, 1], by its convex hull on up to 2^halvings parts. A
+/// false says nothing.
+[[nodiscard]] bool stays_above(const V8& coefficients, double bound, int halvings);
 
 }  // namespace slipmode::dynamics

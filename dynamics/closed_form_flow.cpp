@@ -25,32 +25,6 @@ constexpr double kSpareToGrow = 32.0;
 constexpr int kLargestGrowth = 4;
 constexpr int kHalvings = 3;
 
-/// De Casteljau's halving of degree-7 Bernstein coefficients as two matrices.
-struct Halving {
-  Eigen::Matrix<double, 8, 8> left = Eigen::Matrix<double, 8, 8>::Zero(), right = left;
-  Halving() {
-    for (int k = 0; k < kNodes; ++k) {
-      double binomial = std::pow(0.5, k);
-      for (int j = 0; j <= k; ++j) {
-        left(k, j) = right(7 - k, 7 - j) = binomial;
-        binomial *= static_cast<double>(k - j) / (j + 1);
-      }
-    }
-  }
-};
-
-/// Whether the polynomial stays above `bound` on [0, 1], by its convex hull on up to 2^halvings parts. A false says
-/// nothing.
-bool stays_above(const V8& coefficients, double bound, int halvings) {
-  static const Halving half;
-  if (min8(coefficients) > bound) return true;
-  if (halvings == 0 || coefficients[0] <= bound || coefficients[7] <= bound) return false;
-  alignas(64) double lanes[kNodes];
-  store8(lanes, coefficients);
-  return stays_above(matrix8_times(half.left.data(), lanes), bound, halvings - 1) &&
-         stays_above(matrix8_times(half.right.data(), lanes), bound, halvings - 1);
-}
-
 }  // namespace
 
 ClosedFormFlow::ClosedFormFlow(const HybridSystem& system, HybridPoint start, const FlowOptions& options)

@@ -13,7 +13,7 @@ namespace slipmode::dynamics {
 namespace {
 
 /// A step that ends at its last node gains from the Radau nodes' superconvergence; one that ends inside does not.
-constexpr double kEndNodeGain = 1e-3;
+constexpr double kEndNodeGain = 3e-2;
 /// The step is doubled when the error of the doubled one, eighth order, is foreseen to pass with this margin.
 constexpr double kGrowth = 1.0 / (256.0 * 8.0);
 /// Largest product of the law's slope, the mobility and the step that is tried.
@@ -26,6 +26,10 @@ constexpr double kAtLimit = 1e-10;
 constexpr double kEarly = 1.0 / 64.0;
 /// Speeds below this share of the velocities at play are rounding.
 constexpr double kUnmoved = 1e-14;
+/// Halvings tried to show that a stick force stays below its limit.
+constexpr int kHalvings = 2;
+/// Shifts below this share of the step are made by two terms of Taylor's series.
+constexpr double kShortShift = 1e-7;
 constexpr int kRefinements = 20;
 
 /// How many times to halve a step whose eighth-order error is too large by this factor: at least once.
@@ -87,7 +91,7 @@ CollocationFlow::Guarded CollocationFlow::first_guard() const {
       for (const double sign : {1.0, -1.0}) {
         V8 margin = law.static_limit - sign * b;
         if (std::abs(margin[0]) <= kAtLimit * law.static_limit) margin[0] = 0.0;  // on the guard: where to, shows next
-        if (!(min8(margin) > 0.0)) consider(margin, 0.0, kNodes - 1, c, 0);
+        if (!stays_above(margin, 0.0, kHalvings)) consider(margin, 0.0, kNodes - 1, c, 0);
       }
       continue;
     }
@@ -269,11 +273,35 @@ void CollocationFlow::refine_event(const Guarded& guard, double& tau, Eigen::Vec
     if (!(std::abs(shift) < 1e-2 * h) || tau + shift <= 0.0) return;
     tau += shift;
     if (std::abs(shift) <= kNegligibleShift * h) return;
-    advance_within(tables_, x_begin_.data(), forces_.data(), step_level_, tau, x.data());
+    if (std::abs(shift) < kShortShift * h)
+      nudge(basis, shift, x);
+    else
+      advance_within(tables_, x_begin_.data(), forces_.data(), step_level_, tau, x.data());
     // Newton squares its error; the factor shows in two shifts, and before that is bounded by a usual curvature.
     const double factor = previous > 0.0 ? std::abs(shift) / (previous * previous) : std::abs(usual_rate / rate) / h;
     if (factor * shift * shift <= kNegligibleShift * h) return;
     previous = std::abs(shift);
+  }
+}
+
+void CollocationFlow::nudge(const RadauTables::Vector8& basis, double shift, Eigen::VectorXd& x) const {
+  // Two terms of Taylor's series: the third is below rounding for so short a shift.
+  const ModalModel& m = model_;
+  const auto np = m.np;
+  for (Eigen::Index i = 0; i < np; i += kLanes) {
+    const V8 g11 = load8(m.g11.data() + i), g12 = load8(m.g12.data() + i);
+    const V8 g21 = load8(m.g21.data() + i), g22 = load8(m.g22.data() + i);
+    const V8 x1 = load8(x.data() + i), x2 = load8(x.data() + np + i);
+    V8 rate1 = g11 * x1 + g12 * x2 + load8(m.load.data() + i);
+    V8 rate2 = g21 * x1 + g22 * x2 + load8(m.load.data() + np + i);
+    for (int c = 0; c < nc_; ++c) {
+      const double force = forces_.segment<kNodes>(kNodes * c).dot(basis);
+      rate1 += load8(m.input.col(c).data() + i) * force;
+      rate2 += load8(m.input.col(c).data() + np + i) * force;
+    }
+    const double half = shift * shift / 2.0;
+    store8(x.data() + i, x1 + rate1 * shift + (g11 * rate1 + g12 * rate2) * half);
+    store8(x.data() + np + i, x2 + rate2 * shift + (g21 * rate1 + g22 * rate2) * half);
   }
 }
 

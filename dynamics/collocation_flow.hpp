@@ -63,6 +63,7 @@ class CollocationFlow {
   [[nodiscard]] bool too_early(const Guarded& guard) const;
   [[nodiscard]] double deepest_overshoot() const;
   void refine_event(const Guarded& guard, double& tau, Eigen::VectorXd& x) const;
+  void nudge(const RadauTables::Vector8& basis, double shift, Eigen::VectorXd& x) const;
   [[nodiscard]] double stick_force(int c, const Eigen::VectorXd& x, double tau,
                                    const RadauTables::Vector8& basis) const;
   void account(int level, double tau);
