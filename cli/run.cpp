@@ -42,6 +42,7 @@ Report interrupted(const WorkFolder& folder) {
 
 Report run(const Session& session, const Arguments& arguments) {
   const scene::Scene scene = session.load(arguments.scene);
+  figures::require_gnuplot();
   WorkFolder folder(arguments.output);
   std::filesystem::remove(folder.path() / "INCOMPLETE.txt");
   try {
@@ -59,6 +60,11 @@ Report run(const Session& session, const Arguments& arguments) {
   } catch (const Interrupted&) {
     folder.keep();
     return interrupted(folder);
+  } catch (const InvalidInput&) {
+    throw;
+  } catch (const std::exception&) {
+    folder.keep();  // a defect of ours must not cost the user what was computed
+    throw;
   }
 }
 

@@ -169,8 +169,8 @@ std::string summary_text(const ValidationReport& report) {
   if (report.sweep && report.bifurcation) {
     out += fmt::format("\nBelt-speed sweep: {} values, full model and {} {}s\n{}", report.sweep->full.size(),
                        report.chosen, report.candidates.front().name, sweep_text(report));
-    out += fmt::format("  same period at {:.1f} % of the values, median distance of slip states {:.3g}\n",
-                       100.0 * report.bifurcation->same_period, report.bifurcation->median_wasserstein);
+    out += fmt::format("  same period at {:.1f} % of the values, median distance of slip states {}\n",
+                       100.0 * report.bifurcation->same_period, fixed(report.bifurcation->median_wasserstein, 3));
   }
   if (report.cost) {
     const auto& cost = *report.cost;

@@ -134,7 +134,7 @@ bool CollocationFlow::solve_single_slip(const Collocation& table) {
     store8(force, lambda);
     const V8 residual = free + matrix8_times(table.kernel.data(), force) - v;
     V8 delta;
-    if (!solve_newton(table.kernel.data(), table.kernel_norm, slope, residual, delta)) return false;
+    if (!solve_newton(table.kernel.data(), table.kernel_norm, newton_change_, slope, residual, delta)) return false;
     v += delta;
     const double change = max8(abs8(delta));
     if (!(change < 1e12)) return false;

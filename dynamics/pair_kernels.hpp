@@ -41,15 +41,21 @@ namespace slipmode::dynamics {
   return (a + b) + (c + d);
 }
 
+/// Below this ratio a Neumann series is shorter than elimination.
+inline constexpr double kSmallRatio = 0.15;
+
 /// Solves (I − A diag(d)) δ = r by Gauss-Jordan elimination over the lanes, or by a short Neumann series where A
 /// diag(d) is small. False when a pivot vanishes.
-/// @param norm  largest row sum of |A|
-[[gnu::always_inline]] inline bool solve_newton(const double* A, double norm, const V8& d, const V8& r, V8& out_delta) {
+/// @param norm      largest row sum of |A|
+/// @param accuracy  relative error of δ that is allowed
+[[gnu::always_inline]] inline bool solve_newton(const double* A, double norm, double accuracy, const V8& d, const V8& r,
+                                                V8& out_delta) {
   alignas(64) double scaled[kNodes];
-  if (max8(abs8(d)) * norm < 0.05) {
-    // δ = r + B(r + B(r + B r)), B = A diag(d): error below 1e-5 of δ, which Newton's next step squares away.
+  const double ratio = max8(abs8(d)) * norm;
+  if (ratio < kSmallRatio) {
+    // δ = r + B(r + B(r + …)), B = A diag(d).
     V8 delta = r;
-    for (int term = 0; term < 4; ++term) {
+    for (double left = ratio; left > accuracy; left *= ratio) {
       store8(scaled, d * delta);
       delta = r + matrix8_times(A, scaled);
     }

@@ -171,6 +171,8 @@ void Figure::command(std::string_view line) {
   commands_ += '\n';
 }
 
+void require_gnuplot() { run_gnuplot(""); }
+
 void require_figure_extension(const fs::path& path) {
   const std::string extension = path.extension().string();
   if (extension == ".svg" || extension == ".png" || extension == ".pdf") return;

@@ -40,6 +40,10 @@ class Figure {
 /// @throws InvalidInput  naming the path and the three choices
 void require_figure_extension(const std::filesystem::path& path);
 
+/// Throws unless gnuplot can be started: to be called before any work that would be lost.
+/// @throws InvalidInput  saying how to install it
+void require_gnuplot();
+
 /// Draws the figure into each path; the extension picks the format. One gnuplot process, started without a shell, draws
 /// all of them; each file is written under a temporary name and renamed, so that no half-written figure is left.
 /// @throws InvalidInput  for an unknown extension, a folder that can't be written, or when gnuplot is not installed

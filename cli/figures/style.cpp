@@ -1,6 +1,7 @@
 #include "cli/figures/style.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <cmath>
 
 namespace slipmode::figures {
@@ -20,8 +21,12 @@ void common_style(Figure& figure) {
 }
 
 std::string padded_range(double low, double high, double margin) {
+  if (!std::isfinite(low) || !std::isfinite(high)) return "[0:1]";
+  constexpr double kRounding = 1e-6;  // narrower than this, a curve is a constant with noise, and labels would be equal
+  const double largest = std::max(std::abs(low), std::abs(high));
+  const double scale = largest > 0.0 ? largest : 1.0;
   double width = high - low;
-  if (!(width > 0.0)) width = std::max(std::abs(low), 1.0) * 0.1;
+  if (!(width > kRounding * scale)) width = 0.1 * scale / margin;
   return fmt::format("[{:.8g}:{:.8g}]", low - margin * width, high + margin * width);
 }
 

@@ -23,7 +23,8 @@ inline constexpr std::string_view kLegendAbove = "set key at screen 0.985,0.995 
 /// Borders left and below, light grid, ticks outside: the frame that all figures share.
 void common_style(Figure& figure);
 
-/// A range a little wider than the data, never empty: "[low:high]".
+/// A range a little wider than the data: "[low:high]". Never empty: a constant stands in the middle, and without data
+/// (infinite bounds) it is "[0:1]".
 [[nodiscard]] std::string padded_range(double low, double high, double margin = 0.04);
 
 }  // namespace slipmode::figures

@@ -137,6 +137,17 @@ TEST_F(Verbs, PlotDrawsEveryFigureAFileCanGive) {
   }
 }
 
+TEST_F(Verbs, PlotDrawsAContactThatNeverSlips) {
+  // μ_s N of 500 against springs of 50 that are stretched by less than 4 in 40 units of time at speed 0.1.
+  json_of({"simulate", "two.toml", "-o", "stuck.h5", "--set", "contact.0.normal_load=1000.0", "--set",
+           "contact.1.normal_load=1000.0", "--set", "initial.displacement=[0.0,0.0,0.0,0.0]", "--set",
+           "initial.velocity=[0.1,0.1,0.1,0.1]"});
+  for (const char* figure : {"history", "portrait"}) {
+    json_of({"plot", "stuck.h5", "--figure", figure, "-o", "stuck.png"});
+    EXPECT_TRUE(is_figure(folder.path() / "stuck.png")) << figure;
+  }
+}
+
 TEST_F(Verbs, TheSeedDecidesTheEnsembleAndThreadsDoNot) {
   json_of({"simulate", "free.toml", "-o", "a.h5", "--threads", "1"});
   json_of({"simulate", "free.toml", "-o", "b.h5", "--threads", "2"});
