@@ -72,7 +72,10 @@ Deviation deviation(const fem::Structure& structure, const Record& full, const R
   const Eigen::MatrixXd x_full = full.q.colwise() - origin;
   const Eigen::MatrixXd x_reduced = reduced.q.colwise() - origin;
   const double size = x_full.squaredNorm() + full.v.squaredNorm();
-  if (!(size > 0.0)) throw InvalidInput("deviation: expected a full record that moves, found one at rest");
+  const double rounding = 1e-12 * origin.norm();
+  if (!(size > rounding * rounding * static_cast<double>(full.q.cols()))) {
+    throw InvalidInput("deviation: expected a full record that moves, found one at rest to rounding");
+  }
   const Eigen::VectorXd E_full = energies(structure, x_full, full.v);
   const Eigen::VectorXd E_reduced = energies(structure, x_reduced, reduced.v);
 

@@ -206,17 +206,6 @@ class Validation {
     row.start_error = distance_to(reduction.basis);
     if (!reduction.model) return row;
     try {
-      Record full;
-      Record reduced;
-      for (const dynamics::State& state : attractor_starts_) {
-        const SharedRun run =
-            run_shared(full_model_, *reduction.model, options_.speed, on_subspace(reduction.basis, state),
-                       options_.horizon, options_.sample, options_.settle.flow);
-        full = appended(std::move(full), run.full);
-        reduced = appended(std::move(reduced), run.reduced);
-      }
-      row.horizon = deviation(full_.structure(), full, reduced);
-
       const dynamics::HybridSystem system = reduction.model->system(options_.speed);
       const dynamics::State start = on_subspace(reduction.basis, report_.full.end);
       row.attractor = settle(system, start, attractor_settling());
@@ -225,10 +214,27 @@ class Validation {
       if (row.attractor->period.motion == Motion::kAperiodic) {
         row.lyapunov = largest_exponent(system, row.attractor->end, options_.lyapunov);
       }
+      row.horizon = up_to_horizon(reduction);
+    } catch (const InvalidInput& no_motion) {
+      row.failure = no_motion.what();
     } catch (const NumericalFailure& failure) {
       row.failure = failure.what();
     }
     return row;
+  }
+
+  /// Over the records of all shared starts. @throws InvalidInput  if the full model does not move
+  [[nodiscard]] Deviation up_to_horizon(const Reduction& reduction) const {
+    Record full;
+    Record reduced;
+    for (const dynamics::State& state : attractor_starts_) {
+      const SharedRun run =
+          run_shared(full_model_, *reduction.model, options_.speed, on_subspace(reduction.basis, state),
+                     options_.horizon, options_.sample, options_.settle.flow);
+      full = appended(std::move(full), run.full);
+      reduced = appended(std::move(reduced), run.reduced);
+    }
+    return deviation(full_.structure(), full, reduced);
   }
 
   /// Root mean square distance of the attractor's states to the basis, of their size about their mean [%].

@@ -52,7 +52,7 @@ struct ShareRow {
   Eigen::Index modes = 0;
   double energy = 0.0;                    ///< cumulative share of the ensemble [%]
   double start_error = 0.0;               ///< rms distance of the attractor to the basis, of its rms size (as dX) [%]
-  Deviation horizon = {};                 ///< over the records of all shared starts together
+  Deviation horizon = {};                 ///< over the records of all shared starts; zero if the full model is at rest
   std::optional<Settled> attractor = {};  ///< what the reduced model settles to; empty where it failed
   AttractorDistance distance = {};        ///< to the full model's attractor
   /// Of the reduced model; empty when its motion is not aperiodic or it failed.

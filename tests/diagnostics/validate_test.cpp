@@ -118,20 +118,28 @@ TEST(Validate, ChaosIsLostBelowSixModesAndKeptAbove) {
   }
 }
 
-TEST(Validate, TriesOtherStartsWhereTheGivenOneLeadsToChaos) {
-  // At 0.39 chaos and four orbits coexist; from steady sliding the motion stays chaotic.
+TEST(Validate, TriesOtherStartsWhereTheGivenOneLeadsToNoOrbit) {
+  // One undamped mass, Coulomb friction: at the sliding equilibrium it stays for ever, starts further than V/ω from it
+  // end on the stick-slip cycle (fixtures/belt_oscillator.hpp).
+  const fixtures::BeltOscillator o;
+  const dynamics::HybridSystem full = tests::system_of(o);
+  const std::vector<Candidate> all = {
+      {"all", rom::user_basis(Eigen::MatrixXd::Identity(1, 1)), Eigen::VectorXd::Ones(1)}};
   ValidationOptions options = quick();
-  options.modes = {10};
-  options.orbit_speeds = {0.39};
-  options.settle.limit = 30000.0;
-  const dynamics::State start = sliding_equilibrium(tests::chain10(0.39));
+  options.speed = o.belt;
+  options.orbit_speeds = {o.belt};
   options.orbit_starts = 1;
-  ValidationReport report = validate(study().full, study().candidates, start, options);
-  EXPECT_NE(report.candidates[0].orbits[0].failure.find("aperiodic"), std::string::npos);
+  ValidationReport report = validate(full, all, sliding_equilibrium(full), options);
+  EXPECT_NE(report.candidates[0].orbits[0].failure.find("sliding"), std::string::npos);
+  EXPECT_EQ(report.full.period.motion, Motion::kSliding);
+  EXPECT_EQ(report.candidates[0].shares[0].attractor->period.motion, Motion::kSliding);
+  EXPECT_NE(report.candidates[0].shares[0].failure.find("moves"), std::string::npos);  // ΔX of a model at rest
+
   options.orbit_starts = 12;
-  report = validate(study().full, study().candidates, start, options);
+  report = validate(full, all, sliding_equilibrium(full), options);
   ASSERT_TRUE(report.candidates[0].orbits[0].comparison.has_value()) << report.candidates[0].orbits[0].failure;
   EXPECT_TRUE(report.candidates[0].orbits[0].comparison->same_period);
+  EXPECT_NEAR(report.candidates[0].orbits[0].comparison->full.T, o.period(), 1e-9);
 }
 
 TEST(Validate, ComparesSweepsAndCostAtTheChosenNumberOfModes) {
