@@ -91,8 +91,7 @@ TEST(SampleOrbit, GivesTheClosedFormCycleWithoutItsEnd) {
 
 /// All ten POMs of a short run: a reduced model equal to the full one in other coordinates.
 pod::Basis all_modes(const dynamics::HybridSystem& system) {
-  const dynamics::Trajectory run =
-      dynamics::simulate(system, sliding_equilibrium(system), {.duration = 3000.0, .sample = 0.5});
+  const dynamics::Trajectory run = dynamics::simulate(system, system.rest(), {.duration = 3000.0, .sample = 0.5});
   return pod::pod({.snapshots = run.q}).basis;
 }
 

@@ -68,8 +68,7 @@ TEST(LargestExponent, OfALinearStructureIsItsSlowestDecay) {
 TEST(LargestExponent, OfAPeriodicOrbitIsZero) {
   // A shift along the orbit neither grows nor shrinks: the sum of logs stays bounded, so the mean falls like 1/T.
   const dynamics::HybridSystem system = tests::chain10(0.45);
-  const LyapunovExponent found =
-      largest_exponent(system, sliding_equilibrium(system), {.transient = 20000.0, .duration = 20000.0});
+  const LyapunovExponent found = largest_exponent(system, system.rest(), {.transient = 20000.0, .duration = 20000.0});
   EXPECT_NEAR(found.nats, 0.0, 2e-4);
 }
 
@@ -78,7 +77,7 @@ TEST(LargestExponent, OfTheChaoticChainIsThatOfItsTangentFlow) {
   const dynamics::HybridSystem system = tests::chain10(0.2);
   const dynamics::FlowOptions flow{.audit = false};
   const dynamics::State start =
-      continued(system, dynamics::simulate(system, sliding_equilibrium(system), {.duration = 5000.0}).final_state);
+      continued(system, dynamics::simulate(system, system.rest(), {.duration = 5000.0}).final_state);
   constexpr double kStep = 20.0;
   constexpr int kSteps = 40;  // 800 units: rounding grows to 1e-10 on the way, so both follow one trajectory
   const Eigen::Index n = system.size();

@@ -63,11 +63,10 @@ TEST(SweepValues, RunFromOneEndToTheOther) {
 TEST(Sweep, FollowsEachEndStateToTheNextValue) {
   const dynamics::HybridSystem system = tests::chain10(0.2);
   const Model model = belt_model(system);
-  const SweepResult found =
-      sweep(model, kSpeeds, sliding_equilibrium(system), {.mode = SweepMode::kFollow, .settle = quick()});
+  const SweepResult found = sweep(model, kSpeeds, system.rest(), {.mode = SweepMode::kFollow, .settle = quick()});
   ASSERT_EQ(found.points.size(), kSpeeds.size());
   EXPECT_FALSE(found.interrupted);
-  dynamics::State start = restarted(sliding_equilibrium(system));
+  dynamics::State start = restarted(system.rest());
   for (std::size_t i = 0; i < kSpeeds.size(); ++i) {
     const Settled by_hand = settle(model.system(kSpeeds[i]), start, quick());
     EXPECT_TRUE(same_bytes(by_hand.end.q, found.points[i].settled.end.q)) << "speed " << kSpeeds[i];
@@ -78,7 +77,7 @@ TEST(Sweep, FollowsEachEndStateToTheNextValue) {
 TEST(Sweep, SegmentsAreChainsOfTheirOwn) {
   const dynamics::HybridSystem system = tests::chain10(0.2);
   const Model model = belt_model(system);
-  const dynamics::State start = sliding_equilibrium(system);
+  const dynamics::State start = system.rest();
   const SweepResult whole =
       sweep(model, kSpeeds, start, {.mode = SweepMode::kFollow, .segments = 2, .settle = quick()});
   const std::vector<double> second(kSpeeds.begin() + 3, kSpeeds.end());
@@ -90,7 +89,7 @@ TEST(Sweep, SegmentsAreChainsOfTheirOwn) {
 
 TEST(Sweep, GivesTheSameBytesForAnyNumberOfThreads) {
   const dynamics::HybridSystem system = tests::chain10(0.2);
-  const dynamics::State start = sliding_equilibrium(system);
+  const dynamics::State start = system.rest();
   for (const SweepMode mode : {SweepMode::kIndependent, SweepMode::kFollow}) {
     SweepOptions options{.mode = mode, .segments = mode == SweepMode::kFollow ? 3u : 1u, .settle = quick()};
     options.parallel.threads = 1;
@@ -129,7 +128,7 @@ struct Journal {
 TEST(Sweep, ResumesAfterAnInterruptWithTheSameBytes) {
   const dynamics::HybridSystem system = tests::chain10(0.2);
   const Model model = belt_model(system);
-  const dynamics::State start = sliding_equilibrium(system);
+  const dynamics::State start = system.rest();
   const SweepOptions plain{.mode = SweepMode::kFollow, .settle = quick()};
   const SweepResult whole = sweep(model, kSpeeds, start, plain);
 
@@ -167,8 +166,7 @@ TEST(Sweep, RecordsAValueThatFailsAndGoesOnFromItsStart) {
     if (speed == 0.35) throw NumericalFailure("made to fail at 0.35", 12.0, {}, 0.0);
     return sound(speed);
   };
-  const SweepResult found =
-      sweep(model, kSpeeds, sliding_equilibrium(system), {.mode = SweepMode::kFollow, .settle = quick()});
+  const SweepResult found = sweep(model, kSpeeds, system.rest(), {.mode = SweepMode::kFollow, .settle = quick()});
   ASSERT_EQ(found.points.size(), kSpeeds.size());
   EXPECT_FALSE(found.interrupted);
   EXPECT_EQ(found.points[2].failure, "made to fail at 0.35");
@@ -187,12 +185,11 @@ TEST(Sweep, EndsOnWhatTheUserMustMend) {
 
 TEST(PairedSweep, StartsBothModelsFromTheReducedEndState) {
   const dynamics::HybridSystem system = tests::chain10(0.2);
-  const dynamics::Trajectory run =
-      dynamics::simulate(system, sliding_equilibrium(system), {.duration = 2000.0, .sample = 0.5});
+  const dynamics::Trajectory run = dynamics::simulate(system, system.rest(), {.duration = 2000.0, .sample = 0.5});
   const pod::Basis basis = pod::pod({.snapshots = run.q}, {.choice = {.modes = 6}}).basis;
   const Model full = belt_model(system);
   const Model reduced = reduced_belt_model(system, basis);
-  const dynamics::State start = restarted(rom::restrict_state(system.structure(), basis, sliding_equilibrium(system)));
+  const dynamics::State start = restarted(rom::restrict_state(system.structure(), basis, system.rest()));
 
   SweepOptions options{.mode = SweepMode::kFollow, .settle = quick(), .parallel = {.threads = 2}};
   const PairedSweep found = paired_sweep(full, reduced, kSpeeds, start, options);
