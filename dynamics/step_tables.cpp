@@ -99,7 +99,7 @@ void StepTables::make(Propagator& out, int level) const { propagate_to(1.0, step
 
 void StepTables::make(NodeStates& out, int level) const {
   const double h = step(level);
-  out.rule = gauss_rule(8 + static_cast<int>(std::ceil(1.5 * model_.fastest * h)));
+  out.rule = gauss_rule(8 + static_cast<int>(std::ceil(0.75 * model_.fastest * h)));
   out.node.resize(static_cast<std::size_t>(out.rule.node.size()));
   for (std::size_t j = 0; j < out.node.size(); ++j)
     propagate_to(out.rule.node(static_cast<Eigen::Index>(j)), h, out.node[j]);
