@@ -13,7 +13,8 @@ namespace slipmode::scene {
 
 /// slipmode's version, for example "0.1.0".
 [[nodiscard]] std::string version();
-/// Commit the library was built from, with "-dirty" when tracked files differed; "unknown" outside a git checkout.
+/// Commit the library was built from, with "-dirty" when tracked files differed; "v" and the version when it was built
+/// from sources that do not know their commit.
 [[nodiscard]] std::string git_commit();
 /// Compiler and its version, for example "GNU 12.2.0".
 [[nodiscard]] std::string compiler();

@@ -13,10 +13,16 @@ if(NOT CMAKE_SCRIPT_MODE_FILE)
   return()
 endif()
 
-set(SLIPMODE_GIT_COMMIT "unknown")
+# Without git: the commit that `git archive` wrote here (see .gitattributes), else the version.
+set(SLIPMODE_GIT_COMMIT "$Format:%h$")
+if(SLIPMODE_GIT_COMMIT MATCHES "Format")
+  set(SLIPMODE_GIT_COMMIT "v${SLIPMODE_VERSION}")
+endif()
 find_program(git git)
 if(git AND EXISTS ${SOURCE_DIR}/.git)
-  execute_process(COMMAND ${CMAKE_COMMAND} -E env GIT_OPTIONAL_LOCKS=0 ${git} -C ${SOURCE_DIR} describe --always --dirty --abbrev=12 --match=
+  # A checkout of another user's (built with sudo) is as good as one's own to read from.
+  execute_process(COMMAND ${CMAKE_COMMAND} -E env GIT_OPTIONAL_LOCKS=0 ${git} -c safe.directory=* -C ${SOURCE_DIR}
+      describe --always --dirty --abbrev=12 --match=
     OUTPUT_VARIABLE described OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
   if(NOT failed)
     set(SLIPMODE_GIT_COMMIT ${described})
