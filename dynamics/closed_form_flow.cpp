@@ -330,7 +330,6 @@ void ClosedFormFlow::evaluate(double t, Eigen::VectorXd& out_x, Eigen::VectorXd&
 void ClosedFormFlow::account(double tau) {
   const RegimeTables& tables = *tables_;
   const Regime& r = tables.regime();
-  const auto np = r.pairs.np;
   double contact = 0.0, drive = 0.0, viscous = 0.0;
   const auto add = [&](double weight, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs) {
     const double V = inputs(r.speed_input());
@@ -345,9 +344,7 @@ void ClosedFormFlow::account(double tau) {
   };
   const auto move_to = [&](const RegimeStep& s, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs,
                            Eigen::VectorXd& out_x, Eigen::VectorXd& out_inputs) {
-    out_x.noalias() = s.response * inputs;
-    out_x.head(np) += s.e11.cwiseProduct(x.head(np)) + s.e12.cwiseProduct(x.tail(np));
-    out_x.tail(np) += s.e21.cwiseProduct(x.head(np)) + s.e22.cwiseProduct(x.tail(np));
+    apply(s, x.data(), inputs, out_x.data());
     out_inputs = inputs;
     r.advance_inputs(out_inputs, s.h);
   };

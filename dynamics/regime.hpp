@@ -130,6 +130,9 @@ class RegimeTables {
   mutable std::array<Slot<RegimeAudit>, kLevels> audits_{};
 };
 
+/// x(h); `out_x` may be `x` itself. `inputs` stay as they are.
+void apply(const RegimeStep& step, const double* x, const Eigen::VectorXd& inputs, double* out_x);
+
 /// State after a time t from (x, inputs): tabulated steps, then a short Taylor series. In place. A negative t may be no
 /// longer than that series reaches (a quarter of the fastest radian).
 void advance(const RegimeTables& tables, double t, Eigen::VectorXd& x, Eigen::VectorXd& inputs);

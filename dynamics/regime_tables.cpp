@@ -194,6 +194,22 @@ void RegimeTables::make(RegimeWindow& out, int level) const {
         (interpolated(i) ? std::min(kInterpolationGain, interpolation_share(i)) : 1.0) * r.weight.row(i);
 }
 
+void apply(const RegimeStep& s, const double* x, const Eigen::VectorXd& inputs, double* out_x) {
+  const auto np = s.e11.size(), ni = inputs.size();
+  for (Eigen::Index i = 0; i < np; i += kLanes) {
+    const V8 x1 = load8(x + i), x2 = load8(x + np + i);
+    V8 y1 = load8(s.e11.data() + i) * x1 + load8(s.e12.data() + i) * x2;
+    V8 y2 = load8(s.e21.data() + i) * x1 + load8(s.e22.data() + i) * x2;
+    const double* response = s.response.data() + i;
+    for (Eigen::Index k = 0; k < ni; ++k, response += 2 * np) {
+      y1 += load8(response) * inputs(k);
+      y2 += load8(response + np) * inputs(k);
+    }
+    store8(out_x + i, y1);
+    store8(out_x + np + i, y2);
+  }
+}
+
 void advance(const RegimeTables& tables, double t, Eigen::VectorXd& x, Eigen::VectorXd& inputs) {
   const Regime& r = tables.regime();
   const ModalModel& m = r.pairs;
@@ -206,19 +222,7 @@ void advance(const RegimeTables& tables, double t, Eigen::VectorXd& x, Eigen::Ve
       ++level;
       continue;
     }
-    const RegimeStep& s = tables.step(level);
-    for (Eigen::Index i = 0; i < np; i += kLanes) {
-      const V8 x1 = load8(x.data() + i), x2 = load8(x.data() + np + i);
-      V8 y1 = load8(s.e11.data() + i) * x1 + load8(s.e12.data() + i) * x2;
-      V8 y2 = load8(s.e21.data() + i) * x1 + load8(s.e22.data() + i) * x2;
-      const double* response = s.response.data() + i;
-      for (Eigen::Index k = 0; k < ni; ++k, response += 2 * np) {
-        y1 += load8(response) * inputs(k);
-        y2 += load8(response + np) * inputs(k);
-      }
-      store8(x.data() + i, y1);
-      store8(x.data() + np + i, y2);
-    }
+    apply(tables.step(level), x.data(), inputs, x.data());
     r.advance_inputs(inputs, h);
     t -= h;
   }
