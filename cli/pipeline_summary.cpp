@@ -53,6 +53,7 @@ Json to_json(const PipelineResult& result, const scene::Scene& scene) {
     }
   }
   for (const auto& stage : result.stages) out["seconds"][stage.name] = stage.wall;
+  if (result.validation) out["seconds"]["validate_sweep"] = result.validation->sweep_wall;  // part of validate
   out["files"] = result.files;
   out["figures"] = result.figures;
   return out;

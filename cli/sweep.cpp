@@ -176,7 +176,7 @@ Report run(const Session& session, const Arguments& arguments) {
       swept.model, over.values, swept.start,
       {.mode = arguments.follow ? diagnostics::SweepMode::kFollow : diagnostics::SweepMode::kIndependent,
        .segments = arguments.segments,
-       .settle = settle_options(scene),
+       .settle = sweep_settle_options(scene),
        .parallel = session.parallel(line),
        .sink = journal_sink(journal)});
   if (result.interrupted) return interrupted(arguments, over, result.points.size());
@@ -207,7 +207,7 @@ Verb add_sweep(CLI::App& app) {
       ->check(CLI::PositiveNumber);
   command->add_option("--model", arguments->model, "full, or rom:FILE with a result of 'slipmode reduce'");
   command->footer(
-      "Time simulated at each value: [validation] transient, block, limit.\n"
+      "Time simulated at each value: [validation] transient, block, sweep_limit.\n"
       "Example:\n  slipmode sweep datasets/chain10/scene.toml --over drive.speed=0.5:0.001:0.001 --follow "
       "-o sweep.h5");
   return {command, [arguments](const Session& session) { return run(session, *arguments); }};

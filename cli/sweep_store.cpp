@@ -59,8 +59,7 @@ scene::JournalRecord to_record(const SweepPoint& point) {
                                 settled.mean_energy,
                                 settled.slip_rate,
                                 settled.time,
-                                static_cast<double>(settled.events),
-                                settled.audit_residual};
+                                static_cast<double>(settled.events)};
   values.push_back(static_cast<double>(settled.slips.size()));
   for (const SlipState& slip : settled.slips) {
     values.insert(values.end(), {slip.time, static_cast<double>(slip.contact), slip.displacement});
@@ -91,7 +90,6 @@ SweepPoint from_record(const scene::JournalRecord& record) {
   settled.slip_rate = cursor.next();
   settled.time = cursor.next();
   settled.events = static_cast<std::int64_t>(cursor.next());
-  settled.audit_residual = cursor.next();
   settled.slips.resize(static_cast<std::size_t>(cursor.next()));
   for (SlipState& slip : settled.slips) {
     slip.time = cursor.next();
@@ -129,7 +127,7 @@ SweepAxis sweep_axis(const std::string& key, const Units& units) {
 void store_sweep(scene::StoreWriter& writer, const std::string& group, const std::string& title, const SweepAxis& axis,
                  const Units& units, const std::vector<SweepPoint>& points) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  std::vector<double> parameter, period, T, stick, energy, rate, time, events, residual;
+  std::vector<double> parameter, period, T, stick, energy, rate, time, events;
   std::vector<std::string> motion, failure;
   std::vector<double> slip_parameter, slip_contact, slip_displacement;
   for (const SweepPoint& point : points) {
@@ -144,7 +142,6 @@ void store_sweep(scene::StoreWriter& writer, const std::string& group, const std
     rate.push_back(ok ? settled.slip_rate : kNone);
     time.push_back(ok ? settled.time : kNone);
     events.push_back(ok ? static_cast<double>(settled.events) : kNone);
-    residual.push_back(ok ? settled.audit_residual : kNone);
     failure.push_back(point.failure);
     if (!ok) continue;
     for (const SlipState& slip : settled.slips) {
@@ -168,7 +165,6 @@ void store_sweep(scene::StoreWriter& writer, const std::string& group, const std
                             {"slip_rate", {units.rate, "slips of all contacts per unit of time"}, rate},
                             {"time", {units.time, "simulated in all"}, time},
                             {"events", {"", "events located"}, events},
-                            {"audit_residual", {"1", "energy balance relative to the energy exchanged"}, residual},
                             {"failure", {"", "why the value failed; empty: it did not"}, failure}}});
   scene::save(writer, group + "/slips",
               scene::Table{"one row per slip state: where a contact was when it began to slip",

@@ -41,6 +41,14 @@ diagnostics::SettleOptions settle_options(const scene::Scene& scene) {
           .flow = scene.flow};
 }
 
+diagnostics::SettleOptions sweep_settle_options(const scene::Scene& scene) {
+  diagnostics::SettleOptions options = settle_options(scene);
+  options.limit = scene.validation.sweep_limit;
+  options.block = std::min(options.block, options.limit);
+  options.flow.audit = false;
+  return options;
+}
+
 std::vector<diagnostics::Candidate> pom_and_lnm(const scene::Scene& scene, const fem::Structure& structure,
                                                 const pod::PodResult& result) {
   pod::Basis lnm = rom::lnm_basis(structure, structure.size());
@@ -96,6 +104,7 @@ diagnostics::ValidationOptions validation_options(const scene::Scene& scene,
   options.sweep_values = spec.speeds.values();
   options.sweep_segments = static_cast<std::size_t>(spec.segments);
   options.settle = settle_options(scene);
+  options.sweep_settle = sweep_settle_options(scene);
   options.lyapunov.duration = spec.lyapunov_duration;
   options.lyapunov.seed = scene.ensemble.seed;
   options.lyapunov.flow = scene.flow;

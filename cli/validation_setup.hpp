@@ -9,8 +9,11 @@
 
 namespace slipmode::cli {
 
-/// Settling times and period detection of [validation].
+/// Settling times and period detection of [validation], for attractors and orbits.
 [[nodiscard]] diagnostics::SettleOptions settle_options(const scene::Scene& scene);
+
+/// The same at each value of a sweep: waits no longer than `sweep_limit`, and audits nothing.
+[[nodiscard]] diagnostics::SettleOptions sweep_settle_options(const scene::Scene& scene);
 
 /// POMs and LNMs of the same ensemble, the kind that [reduction] names first.
 ///

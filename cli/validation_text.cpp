@@ -167,8 +167,9 @@ std::string summary_text(const ValidationReport& report) {
     out += "\nPeriodic orbits: deviation over one period where the periods are the same\n" + orbits_text(report);
   }
   if (report.sweep && report.bifurcation) {
-    out += fmt::format("\nBelt-speed sweep: {} values, full model and {} {}s\n{}", report.sweep->full.size(),
-                       report.chosen, report.candidates.front().name, sweep_text(report));
+    out +=
+        fmt::format("\nBelt-speed sweep: {} values, full model and {} {}s, in {:.2f} s\n{}", report.sweep->full.size(),
+                    report.chosen, report.candidates.front().name, report.sweep_wall, sweep_text(report));
     out += fmt::format("  same period at {:.1f} % of the values, median distance of slip states {}\n",
                        100.0 * report.bifurcation->same_period, fixed(report.bifurcation->median_wasserstein, 3));
   }

@@ -18,10 +18,9 @@ void check(const SettleOptions& options) {
     throw InvalidInput(fmt::format("settle: expected block > 0, transient >= 0, limit >= block, found {}, {}, {}",
                                    options.block, options.transient, options.limit));
   }
-  if (options.max_slips < 1 || options.energy_samples < 0 || !(options.energy_time > 0.0)) {
-    throw InvalidInput(
-        fmt::format("settle: expected max_slips >= 1, energy_samples >= 0 and energy_time > 0, found {}, {}, {}",
-                    options.max_slips, options.energy_samples, options.energy_time));
+  if (options.max_slips < 1 || options.energy_samples < 0) {
+    throw InvalidInput(fmt::format("settle: expected max_slips >= 1 and energy_samples >= 0, found {}, {}",
+                                   options.max_slips, options.energy_samples));
   }
 }
 
@@ -56,13 +55,16 @@ class Reach {
   std::vector<double> low_, high_;
 };
 
-double mean_energy(const dynamics::HybridSystem& system, const Eigen::MatrixXd& q, const Eigen::MatrixXd& v) {
-  if (q.cols() == 0) return std::numeric_limits<double>::quiet_NaN();
+/// Over the first `samples` samples of a run, or as many as there are.
+double mean_energy(const dynamics::HybridSystem& system, const dynamics::Trajectory& run, Eigen::Index samples) {
+  const Eigen::Index columns = std::min(samples, run.q.cols());
+  if (columns == 0) return std::numeric_limits<double>::quiet_NaN();
+  const auto q = run.q.leftCols(columns), v = run.v.leftCols(columns);
   const fem::Structure& structure = system.structure();
   double sum = 0.5 * v.cwiseProduct(fem::multiply(structure.M(), v)).sum() +
                0.5 * q.cwiseProduct(fem::multiply(structure.K(), q)).sum();
   if (system.load().size() > 0) sum -= (system.load().transpose() * q).sum();
-  return sum / static_cast<double>(q.cols());
+  return sum / static_cast<double>(columns);
 }
 
 /// Energy of a state about steady sliding, which falls while a motion without events dies out.
@@ -91,7 +93,10 @@ class Settling {
       : system_(system), options_(options), reach_(system.contacts().size()) {
     out_.end = start;
     out_.mean_energy = std::numeric_limits<double>::quiet_NaN();
-    if (options_.period.long_stretch == 0.0) options_.period.long_stretch = options_.block;
+    if (!options_.flow.audit) out_.audit_residual = std::numeric_limits<double>::quiet_NaN();
+    if (options_.period.long_stretch == 0.0) {
+      options_.period.long_stretch = std::min(options_.block, 0.5 * options_.limit);
+    }
     if (options_.transient > 0.0) run({.duration = options_.transient, .keep_events = false});
   }
 
@@ -102,7 +107,7 @@ class Settling {
       check_stop(options_);
       const double length = std::min(options_.block, options_.limit - waited);
       const dynamics::State begin = out_.end;
-      const dynamics::Trajectory block = run_block(length);
+      const dynamics::Trajectory block = run_block(length, waited + length >= options_.limit);
       waited += length;
       if (own_scale) options_.period.scale = reach_.scale();
       out_.period = detect_period(slips_, options_.period);
@@ -122,7 +127,11 @@ class Settling {
       out_.period.motion = Motion::kSticking;
     }
     keep_slips();
-    measure_energy();
+    if (out_.period.motion == Motion::kPeriodic) {
+      measure_energy(out_.period.T);
+    } else if (waited < options_.limit) {
+      measure_energy(options_.block);
+    }
     return std::move(out_);
   }
 
@@ -139,8 +148,11 @@ class Settling {
     return part;
   }
 
-  dynamics::Trajectory run_block(double length) {
-    dynamics::Trajectory block = run({.duration = length});
+  /// Only the block known to be the last is sampled: the other blocks' mean energy nobody needs.
+  dynamics::Trajectory run_block(double length, bool last) {
+    const double sample = last && options_.energy_samples > 0 ? length / options_.energy_samples : 0.0;
+    dynamics::Trajectory block = run({.duration = length, .sample = sample});
+    if (last) out_.mean_energy = mean_energy(system_, block, options_.energy_samples);
     reach_.add(block.events);
     const std::vector<SlipState> slips = slip_states(block.events);
     slips_.insert(slips_.end(), slips.begin(), slips.end());
@@ -163,18 +175,15 @@ class Settling {
     }
   }
 
-  /// Samples are taken in a run of their own: they would only slow down the long one.
-  void measure_energy() {
+  /// In a run of its own, of one period or, where it was not known which block is the last, of another one.
+  void measure_energy(double time) {
     if (options_.energy_samples == 0) return;
-    const bool periodic = out_.period.motion == Motion::kPeriodic;
-    const double time = periodic ? out_.period.T : options_.energy_time;
     const double sample = time / options_.energy_samples;
     dynamics::FlowOptions flow = options_.flow;
     flow.audit = false;
     const dynamics::Trajectory run =
         dynamics::simulate(system_, out_.end, {.duration = time, .sample = sample, .keep_events = false, .flow = flow});
-    const Eigen::Index columns = std::min<Eigen::Index>(options_.energy_samples, run.q.cols());
-    out_.mean_energy = mean_energy(system_, run.q.leftCols(columns), run.v.leftCols(columns));
+    out_.mean_energy = mean_energy(system_, run, options_.energy_samples);
   }
 
   /// Stuck to a belt that does not move: nothing will ever happen again.
@@ -217,7 +226,10 @@ Settled settle(const dynamics::HybridSystem& system, const dynamics::State& star
 }
 
 Orbit settle_to_orbit(const dynamics::HybridSystem& system, const dynamics::State& start,
-                      const SettleOptions& options) {
+                      const SettleOptions& settling) {
+  SettleOptions options = settling;
+  options.flow.audit = false;
+  options.energy_samples = 0;
   const Settled settled = settle(system, start, options);
   if (settled.period.motion != Motion::kPeriodic) {
     throw NumericalFailure(fmt::format("orbit: expected periodic motion within {} time units (tolerance {}), found {} "

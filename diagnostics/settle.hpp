@@ -14,10 +14,8 @@ struct SettleOptions {
   double block = 5000.0;      ///< then runs of this length, each judged [s]
   double limit = 100000.0;    ///< until the motion is periodic or so much time has passed, transient not counted [s]
   PeriodOptions period = {};
-  int max_slips = 1000;  ///< slip states reported when the motion is not periodic: the last ones
-  /// The mean energy is taken afterwards over one period of a periodic motion, else over this time [s].
-  double energy_time = 1000.0;
-  int energy_samples = 512;  ///< equally spaced, for the mean energy; 0: none is taken
+  int max_slips = 1000;      ///< slip states reported when the motion is not periodic: the last ones
+  int energy_samples = 512;  ///< equally spaced, over a period or the last block; 0: no mean energy is taken
   dynamics::FlowOptions flow = {};
   const StopFlag* stop = nullptr;  ///< polled between blocks
 };
@@ -27,12 +25,14 @@ struct Settled {
   PeriodResult period;
   std::vector<SlipState> slips;  ///< the last p ones of a periodic motion, else the last max_slips
   double stick_fraction = 0.0;   ///< share of the last block in stick, mean over contacts
-  double mean_energy = 0.0;      ///< of HybridSystem::energy; NaN without samples [J]
-  double slip_rate = 0.0;        ///< slips of all contacts per unit of time in the last block [1/s]
-  double time = 0.0;             ///< simulated in all, transient included [s]
-  std::int64_t events = 0;       ///< in all
-  double audit_residual = 0.0;   ///< largest energy residual of the blocks
-  dynamics::State end;           ///< state at the end of the last block
+  /// Of HybridSystem::energy, over one period of a periodic motion, else over the last block (over one more where the
+  /// waiting ended before the limit); NaN without samples [J].
+  double mean_energy = 0.0;
+  double slip_rate = 0.0;       ///< slips of all contacts per unit of time in the last block [1/s]
+  double time = 0.0;            ///< simulated in all, transient included [s]
+  std::int64_t events = 0;      ///< in all
+  double audit_residual = 0.0;  ///< largest energy residual of the blocks; NaN where flow.audit is off
+  dynamics::State end;          ///< state at the end of the last block
 };
 
 /// Runs `start` until it is seen to be periodic, stuck or sliding for a whole block, or the limit is reached.
@@ -53,9 +53,10 @@ struct Orbit {
   double mismatch = 0.0;                     ///< largest |state after T − state| over the period's slips, relative
 };
 
-/// Runs until periodic with options.period.tolerance (choose a tight one, 1e-9) and takes one period's slip states.
+/// Runs until periodic with settling.period.tolerance (choose a tight one, 1e-9) and takes one period's slip states.
+/// No energy is audited or averaged: an orbit has room for neither.
 /// @throws NumericalFailure  if the motion is not periodic within the limit, saying what it was instead
 [[nodiscard]] Orbit settle_to_orbit(const dynamics::HybridSystem& system, const dynamics::State& start,
-                                    const SettleOptions& options);
+                                    const SettleOptions& settling);
 
 }  // namespace slipmode::diagnostics

@@ -2,12 +2,13 @@
 
 #include "core/errors.hpp"
 #include "diagnostics/ensemble_run.hpp"
+#include "diagnostics/shared_starts.hpp"
 #include "diagnostics/validation_checks.hpp"
-#include "rom/reduce.hpp"
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
+#include <chrono>
 #include <utility>
 
 namespace slipmode::diagnostics {
@@ -29,16 +30,6 @@ struct FullOrbit {
   std::string failure = {};
 };
 
-Record appended(Record record, const Record& next) {
-  if (record.q.cols() == 0) return next;
-  const Eigen::Index columns = record.q.cols();
-  record.q.conservativeResize(Eigen::NoChange, columns + next.q.cols());
-  record.v.conservativeResize(Eigen::NoChange, columns + next.v.cols());
-  record.q.rightCols(next.q.cols()) = next.q;
-  record.v.rightCols(next.v.cols()) = next.v;
-  return record;
-}
-
 /// The work of one validation, part after part; each part runs its items in parallel.
 class Validation {
  public:
@@ -49,8 +40,10 @@ class Validation {
         start_(restarted(start)),
         options_(options),
         full_model_(belt_model(full)),
+        run_flow_(options.settle.flow),
         full_orbits_(options.orbit_speeds.size()) {
     options_.settle.stop = options.parallel.stop;
+    run_flow_.audit = false;
     options_.lyapunov.stop = options.parallel.stop;
     report_.speed = options.speed;
     report_.chosen = options.chosen > 0 ? options.chosen : modes_for_share(candidates.front().captured, 0.99);
@@ -103,35 +96,34 @@ class Validation {
     done_ += count;
   }
 
-  [[nodiscard]] dynamics::State on_subspace(const pod::Basis& basis, const dynamics::State& state) const {
-    return restarted(rom::restrict_state(full_.structure(), basis, state));
+  [[nodiscard]] dynamics::State projected(const pod::Basis& basis, const dynamics::State& state) const {
+    return on_subspace(full_.structure(), basis, state);
   }
 
-  // The full model alone: its attractor, itself again from elsewhere, its exponent, its orbits.
+  // The full model alone: its attractor, itself again from elsewhere, its orbits.
 
   void run_full() {
     Settled again;
-    LyapunovExponent exponent;
-    run_items(3 + full_orbits_.size(), [&](std::size_t i) {
+    run_items(2 + full_orbits_.size(), [&](std::size_t i) {
       const dynamics::HybridSystem system = full_model_.system(options_.speed);
       if (i == 0) settle_full(system);
       if (i == 1) again = settle(system, starts_about(1).back(), attractor_settling());
-      if (i == 2) exponent = largest_exponent(system, start_, options_.lyapunov);
-      if (i > 2) full_orbits_[i - 3] = find_orbit(options_.orbit_speeds[i - 3]);
+      if (i > 1) full_orbits_[i - 2] = find_orbit(options_.orbit_speeds[i - 2]);
     });
     report_.noise = attractor_distance(report_.full, again);
-    if (report_.full.period.motion == Motion::kAperiodic) report_.lyapunov = exponent;
   }
 
   void settle_full(const dynamics::HybridSystem& system) {
     report_.full = settle(system, start_, attractor_settling());
-    dynamics::State state = report_.full.end;
-    for (int k = 0; k < options_.horizon_starts; ++k) {
-      attractor_starts_.push_back(state);
-      const dynamics::SimulateOptions gap{
-          .duration = options_.horizon_gap, .keep_events = false, .flow = options_.settle.flow};
-      state = continued(system, dynamics::simulate(system, state, gap).final_state);
-    }
+    attractor_starts_ =
+        states_along(system, report_.full.end, options_.horizon_starts, options_.horizon_gap, run_flow_);
+  }
+
+  /// From the attractor's end: a start elsewhere may take thousands of units to get there, and count as motion on it.
+  [[nodiscard]] std::optional<LyapunovExponent> exponent(const dynamics::HybridSystem& system,
+                                                         const Settled& attractor) const {
+    if (attractor.period.motion != Motion::kAperiodic) return std::nullopt;
+    return largest_exponent(system, attractor.end, options_.lyapunov);
   }
 
   /// The given start and `count` random ones about it, so that runs from two of them share nothing but the attractor.
@@ -149,7 +141,6 @@ class Validation {
   [[nodiscard]] SettleOptions attractor_settling() const {
     SettleOptions settling = options_.settle;
     settling.block = std::max(settling.block, 0.2 * settling.limit);
-    settling.energy_time = std::max(settling.energy_time, settling.block);
     settling.energy_samples = std::max(settling.energy_samples, 16384);
     settling.max_slips = std::max(settling.max_slips, 4000);
     return settling;
@@ -158,7 +149,6 @@ class Validation {
   [[nodiscard]] SettleOptions orbit_settling() const {
     SettleOptions settling = options_.settle;
     settling.period.tolerance = options_.orbit_tolerance;
-    settling.energy_samples = 0;
     return settling;
   }
 
@@ -174,15 +164,20 @@ class Validation {
     return found;
   }
 
-  // Every reduced model: its row of the energy-share table, its cells of the orbit table.
+  // Every reduced model: its row of the energy-share table, its cells of the orbit table. Beside them, as it takes one
+  // thread about as long as a row, the full model's exponent.
 
   void run_reduced() {
     const std::size_t per_reduction = 1 + full_orbits_.size();
     std::vector<ShareRow> shares(reductions_.size());
     std::vector<OrbitRow> orbits(reductions_.size() * full_orbits_.size());
-    run_items(reductions_.size() * per_reduction, [&](std::size_t i) {
-      const std::size_t r = i / per_reduction;
-      const std::size_t part = i % per_reduction;
+    run_items(1 + reductions_.size() * per_reduction, [&](std::size_t i) {
+      if (i == 0) {
+        report_.lyapunov = exponent(full_model_.system(options_.speed), report_.full);
+        return;
+      }
+      const std::size_t r = (i - 1) / per_reduction;
+      const std::size_t part = (i - 1) % per_reduction;
       if (part == 0) {
         shares[r] = share_row(reductions_[r]);
       } else {
@@ -203,52 +198,23 @@ class Validation {
   [[nodiscard]] ShareRow share_row(const Reduction& reduction) const {
     ShareRow row{.modes = reduction.modes, .failure = reduction.failure};
     row.energy = 100.0 * candidates_[reduction.candidate].captured(reduction.modes - 1);
-    row.start_error = distance_to(reduction.basis);
+    row.start_error = distance_to_basis(full_.structure(), reduction.basis, attractor_starts_);
     if (!reduction.model) return row;
     try {
       const dynamics::HybridSystem system = reduction.model->system(options_.speed);
-      const dynamics::State start = on_subspace(reduction.basis, report_.full.end);
+      const dynamics::State start = projected(reduction.basis, report_.full.end);
       row.attractor = settle(system, start, attractor_settling());
       row.attractor->mean_energy += reduction.model->energy_offset;
       row.distance = attractor_distance(report_.full, *row.attractor);
-      if (row.attractor->period.motion == Motion::kAperiodic) {
-        row.lyapunov = largest_exponent(system, row.attractor->end, options_.lyapunov);
-      }
-      row.horizon = up_to_horizon(reduction);
+      row.lyapunov = exponent(system, *row.attractor);
+      row.horizon = deviation_up_to_horizon(full_.structure(), full_model_, *reduction.model, options_.speed,
+                                            attractor_starts_, options_.horizon, options_.sample, run_flow_);
     } catch (const InvalidInput& no_motion) {
       row.failure = no_motion.what();
     } catch (const NumericalFailure& failure) {
       row.failure = failure.what();
     }
     return row;
-  }
-
-  /// Over the records of all shared starts. @throws InvalidInput  if the full model does not move
-  [[nodiscard]] Deviation up_to_horizon(const Reduction& reduction) const {
-    Record full;
-    Record reduced;
-    for (const dynamics::State& state : attractor_starts_) {
-      const SharedRun run =
-          run_shared(full_model_, *reduction.model, options_.speed, on_subspace(reduction.basis, state),
-                     options_.horizon, options_.sample, options_.settle.flow);
-      full = appended(std::move(full), run.full);
-      reduced = appended(std::move(reduced), run.reduced);
-    }
-    return deviation(full_.structure(), full, reduced);
-  }
-
-  /// Root mean square distance of the attractor's states to the basis, of their size about their mean [%].
-  [[nodiscard]] double distance_to(const pod::Basis& basis) const {
-    Eigen::VectorXd mean = Eigen::VectorXd::Zero(full_.size());
-    for (const dynamics::State& state : attractor_starts_) mean += state.q / double(attractor_starts_.size());
-    double lost = 0.0;
-    double size = 0.0;
-    for (const dynamics::State& state : attractor_starts_) {
-      const dynamics::State back = rom::lift(basis, on_subspace(basis, state));
-      lost += (state.q - back.q).squaredNorm() + (state.v - back.v).squaredNorm();
-      size += (state.q - mean).squaredNorm() + state.v.squaredNorm();
-    }
-    return size > 0.0 ? 100.0 * std::sqrt(lost / size) : 0.0;
   }
 
   [[nodiscard]] OrbitRow orbit_row(const Reduction& reduction, std::size_t index) const {
@@ -258,9 +224,9 @@ class Validation {
     if (!full.orbit || !reduction.model) return row;
     try {
       const Orbit orbit = settle_to_orbit(reduction.model->system(row.speed),
-                                          on_subspace(reduction.basis, full.orbit->states.front()), orbit_settling());
+                                          projected(reduction.basis, full.orbit->states.front()), orbit_settling());
       row.comparison = compare_orbits(full_.structure(), full_model_, *reduction.model, row.speed, *full.orbit, orbit,
-                                      options_.orbit_samples, options_.settle.flow);
+                                      options_.orbit_samples, run_flow_);
     } catch (const NumericalFailure& failure) {
       row.failure = failure.what();
     }
@@ -274,13 +240,15 @@ class Validation {
   void run_sweep() {
     if (options_.sweep_values.empty()) return;
     const pod::Basis basis = chosen_basis();
+    const auto begin = std::chrono::steady_clock::now();
     report_.sweep =
-        paired_sweep(full_model_, reduced_belt_model(full_, basis), options_.sweep_values, on_subspace(basis, start_),
+        paired_sweep(full_model_, reduced_belt_model(full_, basis), options_.sweep_values, projected(basis, start_),
                      {.mode = options_.sweep_mode,
                       .segments = options_.sweep_segments,
-                      .settle = options_.settle,
+                      .settle = options_.sweep_settle,
                       .parallel = batch(),
                       .sink = options_.sink});
+    report_.sweep_wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     done_ += 2 * options_.sweep_values.size();
     if (report_.sweep->interrupted) throw Interrupted();
     report_.bifurcation = compare_sweeps(report_.sweep->full, report_.sweep->reduced);
@@ -291,8 +259,8 @@ class Validation {
     ParallelOptions alone = batch();
     alone.threads = 1;
     rethrow_first(parallel_for(1, alone, [this](std::size_t) {
-      report_.cost = measure_cost(full_model_.system(options_.speed), chosen_basis(), start_, options_.cost_duration,
-                                  options_.cost_repeats, options_.settle.flow);
+      report_.cost = measure_cost(full_model_.system(options_.speed), chosen_basis(), report_.full.end,
+                                  options_.cost_duration, options_.cost_repeats, run_flow_);
     }));
   }
 
@@ -301,6 +269,7 @@ class Validation {
   dynamics::State start_;
   ValidationOptions options_;
   Model full_model_;
+  dynamics::FlowOptions run_flow_;  ///< of runs whose energy balance nobody reads
   std::vector<FullOrbit> full_orbits_;
   std::vector<Reduction> reductions_;
   std::vector<dynamics::State> attractor_starts_;

@@ -37,9 +37,11 @@ struct ValidationOptions {
   std::vector<double> sweep_values = {};      ///< belt speeds; empty: no bifurcation diagram [m/s]
   SweepMode sweep_mode = SweepMode::kFollow;  ///< kFollow: shared initial states as in S4
   std::size_t sweep_segments = 1;
-  /// For orbits and the sweep; for attractors with blocks of at least a fifth of the limit, over which their mean
-  /// energy, stick fraction and slip rate are then taken.
+  /// For orbits; for attractors with blocks of at least a fifth of the limit, over which their mean energy, stick
+  /// fraction and slip rate are then taken.
   SettleOptions settle = {};
+  /// For each value of the sweep: one block of recorded motion, not audited.
+  SettleOptions sweep_settle = {.limit = 5000.0, .flow = {.audit = false}};
   LyapunovOptions lyapunov = {};
   double cost_duration = 10000.0;  ///< simulated time of a timed run; 0: no timing [s]
   int cost_repeats = 5;
@@ -88,6 +90,7 @@ struct ValidationReport {
   Eigen::Index chosen = 0;
   std::optional<PairedSweep> sweep = {};  ///< first candidate at `chosen` modes
   std::optional<BifurcationComparison> bifurcation = {};
+  double sweep_wall = 0.0;        ///< both models' sweep; values recalled from an earlier run take no time [s of clock]
   std::optional<Cost> cost = {};  ///< first candidate at `chosen` modes
   bool interrupted = false;       ///< then later parts are missing
 };
@@ -97,8 +100,8 @@ struct ValidationReport {
 /// Energy-share table at `speed`: the full model settles from `start`; each reduced model settles from the projection
 /// of that end state, and both run from `horizon_starts` states of the full attractor, projected (so the initial state
 /// is shared). Periodic-orbit table: the full model settles to an orbit at each speed, each reduced model from that
-/// orbit's projection, so that of several attractors the like one is met. Same bytes for any number of threads, times
-/// excepted.
+/// orbit's projection, so that of several attractors the like one is met. Exponents are measured from the attractors'
+/// ends. Energies are audited on the attractors only. Same bytes for any number of threads, times excepted.
 /// @param full   the full model; its belt speed is replaced by each speed in turn
 /// @param start  initial state of the full model
 /// @throws InvalidInput      for no candidates, L beyond a basis or below 1, shares missing, and what the parts refuse

@@ -69,7 +69,8 @@ struct ValidationSpec {
   int segments = 1;                    ///< chains the sweep is cut into; each starts anew
   double transient = 1000.0;           ///< run first at each speed, nothing kept [s]
   double block = 5000.0;               ///< then blocks of this length, each judged [s]
-  double limit = 100000.0;             ///< until periodic or so long, ≥ block [s]
+  double limit = 100000.0;             ///< until periodic or so long, ≥ block: attractors and orbits [s]
+  double sweep_limit = 5000.0;         ///< the same at each value of a sweep, > 0 [s]
   double period_tolerance = 1e-5;      ///< slip states closer than this, relative to their range, count as the same
   int max_period = 64;                 ///< longest period looked for, in slips
   double horizon = 100.0;              ///< full against reduced from shared starts, on the scene's own drive [s]

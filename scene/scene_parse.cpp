@@ -153,6 +153,7 @@ ValidationSpec read_validation(TomlReader in, int masses) {
   spec.block = in.number_or("block", spec.block, kPositive);
   spec.limit = in.number_or("limit", std::max(spec.limit, spec.block), kPositive);
   if (spec.limit < spec.block) in.fail("limit", "shorter than one block", fmt::format(">= block = {}", spec.block));
+  spec.sweep_limit = in.number_or("sweep_limit", spec.sweep_limit, kPositive);
   spec.period_tolerance = in.number_or("period_tolerance", spec.period_tolerance, kPositive);
   spec.max_period = static_cast<int>(in.integer_or("max_period", spec.max_period, 1, kMostCount));
   spec.horizon = in.number_or("horizon", spec.horizon, kPositive);

@@ -91,8 +91,8 @@ std::string validation_toml(const ValidationSpec& spec) {
   std::string out = "\n[validation]\n";
   out += fmt::format("speeds = {{ from = {}, to = {}, step = {} }}\nsegments = {}\n", number(spec.speeds.from),
                      number(spec.speeds.to), number(spec.speeds.step), spec.segments);
-  out += fmt::format("transient = {}\nblock = {}\nlimit = {}\n", number(spec.transient), number(spec.block),
-                     number(spec.limit));
+  out += fmt::format("transient = {}\nblock = {}\nlimit = {}\nsweep_limit = {}\n", number(spec.transient),
+                     number(spec.block), number(spec.limit), number(spec.sweep_limit));
   out += fmt::format("period_tolerance = {}\nmax_period = {}\n", number(spec.period_tolerance), spec.max_period);
   out += fmt::format("horizon = {}\nhorizon_starts = {}\n", number(spec.horizon), spec.horizon_starts);
   out += fmt::format("orbits = {}\norbit_tolerance = {}\n", numbers(spec.orbits), number(spec.orbit_tolerance));

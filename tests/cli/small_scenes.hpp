@@ -73,6 +73,7 @@ speeds = { from = 0.4, to = 0.2, step = 0.05 }
 transient = 100.0
 block = 400.0
 limit = 800.0
+sweep_limit = 800.0
 horizon = 10.0
 horizon_starts = 2
 orbits = [0.3]

@@ -164,6 +164,29 @@ TEST(Validate, ComparesSweepsAndCostAtTheChosenNumberOfModes) {
   EXPECT_GT(report.cost->full_wall, 0.0);
 }
 
+TEST(Validate, SweepsWaitForTheirOwnLimitAndAuditNothing) {
+  ValidationOptions options = quick();
+  options.modes = {6};
+  options.sweep_values = {0.2};  // chaos: no limit is ever cut short by a period
+  options.sweep_settle = {.transient = 300.0, .block = 700.0, .limit = 700.0, .flow = {.audit = false}};
+  const ValidationReport report = validate(study().full, study().candidates, study().start, options);
+  for (const auto& points : {report.sweep->full, report.sweep->reduced}) {
+    ASSERT_EQ(points.size(), 1u);
+    EXPECT_EQ(points[0].settled.time, 1000.0);
+    EXPECT_TRUE(std::isnan(points[0].settled.audit_residual));
+  }
+  EXPECT_EQ(report.full.time, 11000.0);
+  EXPECT_LT(report.full.audit_residual, 1e-9);
+}
+
+TEST(Validate, MeasuresEveryExponentFromTheEndOfItsAttractor) {
+  ValidationOptions options = quick();
+  options.modes = {10};
+  const ValidationReport report = validate(study().full, study().candidates, study().full.rest(), options);
+  ASSERT_TRUE(report.lyapunov.has_value());
+  EXPECT_EQ(report.lyapunov->nats, largest_exponent(study().full, report.full.end, options.lyapunov).nats);
+}
+
 TEST(Validate, GivesTheSameBytesForAnyNumberOfThreads) {
   ValidationOptions options = quick();
   options.modes = {4, 6};

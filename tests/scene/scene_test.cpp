@@ -131,6 +131,7 @@ modes = 2
 speeds = { from = 0.1, to = 0.2, step = 0.05 }
 orbits = [0.45]
 modes = [1, 3]
+sweep_limit = 700.0
 [flow]
 method = "closed-form"
 tolerance = 1e-11
@@ -147,6 +148,8 @@ tolerance = 1e-11
   EXPECT_EQ(s.ensemble.seed, 9223372036854775807ULL);
   EXPECT_EQ(s.reduction.basis, pod::BasisKind::kLnm);
   EXPECT_EQ(s.validation.modes, (std::vector<int>{1, 3}));
+  EXPECT_EQ(s.validation.sweep_limit, 700.0);
+  EXPECT_EQ(s.validation.limit, 100000.0);
   EXPECT_EQ(s.flow.method, dynamics::FlowMethod::kClosedForm);
 }
 
@@ -236,6 +239,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadValue{"kind = \"belt\"", "kind = \"shaker\"", {"drive.kind = \"shaker\"", "valid: \"belt\""}},
         BadValue{
             "duration = 100.0", "duration = 100.0\ntransient = 100.0", {"time.transient = 100:", "nothing is left"}},
+        BadValue{"[time]", "[validation]\nsweep_limit = 0\n[time]", {"validation.sweep_limit = 0:", "a number > 0"}},
         BadValue{"[time]", "[reduction]\nmodes = 11\n[time]", {"reduction.modes = 11", "an integer from 1 to 10"}},
         BadValue{"[time]", "[reduction]\nenergy = 1.5\n[time]", {"reduction.energy = 1.5", "<= 1"}},
         BadValue{"[time]", "[reduction]\nenergy = 0.9\nmodes = 2\n[time]", {"either modes or energy"}},
