@@ -68,7 +68,7 @@ void Regime::eliminate(const HybridSystem& system, const ModalModel& slipping) {
   const Eigen::MatrixXd C = scaled(fem::to_dense(system.structure().C()));
   Eigen::MatrixXd W(n, nc);
   for (Eigen::Index c = 0; c < nc; ++c) W.col(c) = system.contacts()[static_cast<std::size_t>(c)].direction;
-  W = L.triangularView<Eigen::Lower>().solve(W);
+  if (nc > 0) W = L.triangularView<Eigen::Lower>().solve(W);
   Eigen::VectorXd load = Eigen::VectorXd::Zero(n);
   if (system.load().size() > 0) load = L.triangularView<Eigen::Lower>().solve(system.load());
 
