@@ -70,15 +70,19 @@ inline constexpr double kSmallRatio = 0.15;
     column[j][j] += 1.0;
   }
   column[kNodes] = r;
-#pragma GCC unroll 8
-  for (int k = 0; k < kNodes; ++k) {
-    const double pivot = column[k][k];
-    if (!(std::abs(pivot) > 1e-12)) return false;
-    V8 multiplier = column[k];
-    multiplier[k] -= 1.0;
-    multiplier *= 1.0 / pivot;
+  // Two pivots at a time: the elimination is bound by the latency from one reciprocal to the next.
+#pragma GCC unroll 4
+  for (int k = 0; k < kNodes; k += 2) {
+    V8 a = column[k], b = column[k + 1];
+    const double a0 = a[k], a1 = a[k + 1], b0 = b[k], b1 = b[k + 1];
+    const double determinant = a0 * b1 - a1 * b0;
+    if (!(std::abs(determinant) > 1e-14)) return false;
+    const double inverse = 1.0 / determinant;
+    a[k] -= 1.0;
+    b[k + 1] -= 1.0;
+    const V8 first = (a * b1 - b * a1) * inverse, second = (b * a0 - a * b0) * inverse;
 #pragma GCC unroll 9
-    for (int j = k + 1; j <= kNodes; ++j) column[j] -= multiplier * column[j][k];
+    for (int j = k + 2; j <= kNodes; ++j) column[j] -= first * column[j][k] + second * column[j][k + 1];
   }
   out_delta = column[kNodes];
   return true;
