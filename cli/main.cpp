@@ -83,6 +83,12 @@ int run_verb(const Session& session, const Verb& verb) {
   }
 }
 
+std::string names_of(const std::vector<Verb>& verbs) {
+  std::string names;
+  for (const Verb& verb : verbs) names += (names.empty() ? "" : ", ") + verb.command->get_name();
+  return names;
+}
+
 int run_main(int argc, char** argv) {
   Session session;
   session.stop = &watch_for_interrupt();
@@ -106,6 +112,9 @@ int run_main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
     for (int i = 1; i < argc; ++i) session.json = session.json || std::string_view(argv[i]) == "--json";
+    if (argc > 1 && argv[1][0] != '-' && app.get_subcommands().empty()) {
+      return fail(session, kBadInput, fmt::format("{}: no such verb; valid: {}", argv[1], names_of(verbs)));
+    }
     return fail(session, kBadInput, fmt::format("{}\nRun 'slipmode --help' or 'slipmode VERB --help'.", error.what()));
   }
   for (const Verb& verb : verbs) {

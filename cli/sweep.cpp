@@ -148,8 +148,8 @@ Report summary(const Arguments& arguments, const Subject& swept, const Over& ove
   }
   report.data = {{"verb", "sweep"},         {"file", arguments.output}, {"model", swept.title}, {"key", over.key},
                  {"values", points.size()}, {"motions", motions},       {"failures", failures}};
-  report.text = fmt::format("{}: {} values of {}\n{}Sweep: {}\n", swept.title, points.size(), over.key, table.str(),
-                            arguments.output);
+  report.text = fmt::format("{}: {} values of {}\n{}{}Sweep: {}\n", swept.title, points.size(), over.key, table.str(),
+                            undecided_note(points), arguments.output);
   if (!failures.empty()) {
     report.text += fmt::format("{} values failed, first at {:g}: {}\n", failures.size(),
                                failures.front()["value"].get<double>(), failures.front()["reason"].get<std::string>());

@@ -3,6 +3,7 @@
 #include "core/errors.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -192,6 +193,21 @@ std::vector<MotionCount> count_motions(const std::vector<SweepPoint>& points) {
   std::vector<MotionCount> out;
   for (const auto& entry : counts) out.push_back(entry.second);
   return out;
+}
+
+std::string undecided_note(const std::vector<SweepPoint>& points) {
+  double waited = 0.0;
+  bool any = false;
+  for (const SweepPoint& point : points) {
+    if (!point.ok() || point.settled.period.motion != Motion::kUndecided) continue;
+    waited = std::max(waited, point.settled.time);
+    any = true;
+  }
+  if (!any) return {};
+  return fmt::format(
+      "  undecided: still settling, or too few slips to tell, after {:g} time units; to wait longer:\n"
+      "  --set validation.sweep_limit=100000.0\n",
+      waited);
 }
 
 }  // namespace slipmode::cli

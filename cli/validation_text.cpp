@@ -146,7 +146,8 @@ std::string sweep_text(const ValidationReport& report) {
   for (const MotionCount& count : count_motions(report.sweep->reduced)) {
     if (reduced.contains(count.motion)) table.add({count.motion, "0", fmt::format("{}", count.values)});
   }
-  return table.str();
+  const std::string note = undecided_note(report.sweep->full);
+  return table.str() + (note.empty() ? undecided_note(report.sweep->reduced) : note);
 }
 
 }  // namespace

@@ -40,6 +40,7 @@ friction::Law read_law(TomlReader& in) {
   if (mu_s < mu_k) in.fail("mu_s", fmt::format("less than mu_k = {}", mu_k), fmt::format("mu_s >= {}", mu_k));
   switch (kLaws[law].law) {
     case LawWord::kCoulomb:
+      if (in.has("alpha")) in.fail("alpha", "law \"coulomb\" does not depend on the sliding speed", "no alpha");
       return friction::Coulomb{mu_s, mu_k};
     case LawWord::kStribeck:
       return friction::Stribeck{mu_s, mu_k, in.number("alpha", kNonNegative)};

@@ -121,7 +121,7 @@ const BadCall kCalls[] = {
     {"FigureOfNoFormat", {"plot", "pod.h5", "-o", "o.jpg"}, {"o.jpg", ".svg, .png or .pdf"}},
     {"FigureOfAnotherFile", {"plot", "pod.h5", "--figure", "orbits", "-o", "o.png"}, {"orbits", "shapes, energy"}},
     {"NoVerb", {}, {"--help"}},
-    {"UnknownVerb", {"simulat", "good.toml"}, {"--help"}},
+    {"UnknownVerb", {"simulat", "good.toml"}, {"simulat: no such verb", "run, modes, simulate"}},
     {"NoOutput", {"run", "good.toml"}, {"output", "--help"}},
     {"NegativeThreads", {"modes", "good.toml", "--threads", "-1"}, {"--threads", "-1"}},
 };

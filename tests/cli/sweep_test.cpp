@@ -93,6 +93,7 @@ TEST_F(Sweep, SimulatesNoLongerAtAValueThanItsOwnLimit) {
   const slipmode::scene::StoreReader store(folder.path() / "sweep.h5");
   const slipmode::scene::Table values = slipmode::scene::load_table(store, "sweep/full/values");
   EXPECT_THAT(values.numbers("time"), testing::Each(150.0));  // transient 100, then less than a block
+  EXPECT_THAT(outcome.out, HasSubstr("after 150 time units")) << "too few slips for a verdict, and what to do about it";
 }
 
 TEST_F(Sweep, RefusesTheJournalOfAnotherTaskAndLeavesItAlone) {

@@ -235,7 +235,9 @@ INSTANTIATE_TEST_SUITE_P(
                  "units = \"si\"",
                  {"s.toml:2: units = \"si\": unknown word, did you mean \"SI\"?", "\"dimensionless\", \"SI\""}},
         BadValue{"law = \"stribeck\"", "law = \"stribek\"", {"did you mean \"stribeck\"", "\"coulomb\""}},
-        BadValue{"law = \"stribeck\"", "law = \"coulomb\"", {"s.toml:12: contact.0.alpha = 8: unknown key"}},
+        BadValue{"law = \"stribeck\"",
+                 "law = \"coulomb\"",
+                 {"s.toml:12: contact.0.alpha = 8: law \"coulomb\" does not depend", "no alpha"}},
         BadValue{"kind = \"belt\"", "kind = \"shaker\"", {"drive.kind = \"shaker\"", "valid: \"belt\""}},
         BadValue{
             "duration = 100.0", "duration = 100.0\ntransient = 100.0", {"time.transient = 100:", "nothing is left"}},
