@@ -14,9 +14,11 @@ if(NOT CMAKE_SCRIPT_MODE_FILE)
 endif()
 
 # Without git: the commit that `git archive` wrote here (see .gitattributes), else the version.
-set(SLIPMODE_GIT_COMMIT "$Format:%h$")
+set(SLIPMODE_GIT_COMMIT "$Format:%H$")
 if(SLIPMODE_GIT_COMMIT MATCHES "Format")
   set(SLIPMODE_GIT_COMMIT "v${SLIPMODE_VERSION}")
+else()
+  string(SUBSTRING ${SLIPMODE_GIT_COMMIT} 0 12 SLIPMODE_GIT_COMMIT)
 endif()
 find_program(git git)
 if(git AND EXISTS ${SOURCE_DIR}/.git)
