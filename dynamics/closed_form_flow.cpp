@@ -141,7 +141,7 @@ void ClosedFormFlow::judge(const BernsteinPolynomial& guard, double remainder, d
     here.touching = here.resolved;
   }
   here.at = root->at;
-  if (!here.resolved) here.refinement = 1 + std::min(8, static_cast<int>(std::log2(remainder / tolerance) / 8.0));
+  if (!here.resolved) here.refinement = 1 + std::min(8, std::ilogb(remainder / tolerance) / 8);
   here.alone = found.contact < 0;
   if (found.contact < 0 || here.at < found.at) found = here;
   found.alone = here.alone;

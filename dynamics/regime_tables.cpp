@@ -229,8 +229,9 @@ void advance(const RegimeTables& tables, double t, Eigen::VectorXd& x, Eigen::Ve
   if (t == 0.0) return;
   // x⁽ᵏ⁾ tᵏ/k!, with f = B ι, ḟ = B_stuck V + B_V a, f̈ = B_stuck a.
   const double speed = inputs(V), acceleration = inputs(V + 1);
+  const double phase = r.rate * std::abs(t);
   int terms = 3;
-  for (double size = std::pow(r.rate * std::abs(t), 3) / 6.0; size > 1e-17;) size *= r.rate * std::abs(t) / ++terms;
+  for (double size = phase * phase * phase / 6.0; size > 1e-17;) size *= phase / ++terms;
   for (Eigen::Index i = 0; i < np; i += kLanes) {
     const V8 g11 = load8(m.g11.data() + i), g12 = load8(m.g12.data() + i);
     const V8 g21 = load8(m.g21.data() + i), g22 = load8(m.g22.data() + i);
