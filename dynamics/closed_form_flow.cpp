@@ -278,9 +278,11 @@ bool ClosedFormFlow::step(double t_limit) {
   }
   point_.time = tau == remaining ? end : begin_ + tau;
   ++statistics_.steps;
-  if ((x_.size() > 0 && !std::isfinite(x_(0))) || !std::isfinite(point_.time))
-    throw NumericalFailure("the state is no longer finite at t = " + std::to_string(begin_), begin_, x_begin_,
+  if ((x_.size() > 0 && !std::isfinite(x_(0))) || !std::isfinite(point_.time)) {
+    lift(tables_->regime(), x_begin_, inputs_begin_, point_.x, point_.force);
+    throw NumericalFailure("the state is no longer finite at t = " + std::to_string(begin_), begin_, point_.x,
                            std::numeric_limits<double>::quiet_NaN());
+  }
   for (std::size_t c = 0; c < point_.modes.size(); ++c)
     if (point_.modes[c] == ContactMode::kStick) statistics_.stick_time[c] += tau;
   if (options_.audit) account(tau);

@@ -179,6 +179,21 @@ class Recorder {
   Eigen::MatrixXd block_;
 };
 
+/// One step of a flow; a failure is reported with the state in the structure's own degrees of freedom, (q, q̇).
+template <class AnyFlow>
+bool step(AnyFlow& flow, const ModalModel& m, double end) {
+  try {
+    return flow.step(end);
+  } catch (const NumericalFailure& failure) {
+    Eigen::VectorXd state;
+    if (m.has_shapes() && failure.state.size() == 2 * m.np) {
+      state.resize(2 * m.n);
+      state << m.to_q * failure.state, m.to_v * failure.state;
+    }
+    throw NumericalFailure(failure.what(), failure.time, std::move(state), failure.residual);
+  }
+}
+
 /// Runs one flow, whichever it is, to the end.
 template <class AnyFlow>
 void run(AnyFlow& flow, const HybridSystem& system, const ModalModel& m, const State& start,
@@ -191,7 +206,7 @@ void run(AnyFlow& flow, const HybridSystem& system, const ModalModel& m, const S
   std::vector<Eigen::VectorXd> event_q, event_v;
   bool going = true;
   while (going && flow.point().time < end) {
-    const bool event = flow.step(end);
+    const bool event = step(flow, m, end);
     while (recorder.next_time() <= flow.point().time) {
       const double t = recorder.next_time();
       flow.evaluate(t, x, force);
@@ -272,7 +287,7 @@ TangentResult tangent_flow(const HybridSystem& system, const State& start, doubl
   TangentResult out;
   const double end = start.time + duration;
   while (flow.point().time < end)
-    if (flow.step(end)) out.events.insert(out.events.end(), flow.events().begin(), flow.events().end());
+    if (step(flow, m, end)) out.events.insert(out.events.end(), flow.events().begin(), flow.events().end());
   out.end = physical(m, flow.point());
   out.monodromy.resize(2 * m.n, 2 * m.n);
   out.monodromy << m.to_q * flow.tangents(), m.to_v * flow.tangents();

@@ -99,7 +99,7 @@ struct Trajectory {
 /// Advances `start` by options.duration.
 /// @throws InvalidInput      for sizes, negative durations, a start that violates its own modes, kClosedForm with a law
 ///                           that is not piecewise linear
-/// @throws NumericalFailure  with time and state: Zeno, no convergence of the collocation, values not finite
+/// @throws NumericalFailure  with time and state (q, q̇): Zeno, no convergence of the collocation, values not finite
 [[nodiscard]] Trajectory simulate(const HybridSystem& system, const State& start, const SimulateOptions& options);
 
 /// Fundamental matrix of the flow over [start, start + duration] with saltation at every event.
