@@ -1,13 +1,11 @@
 #pragma once
 
+#include "dynamics/lazy_levels.hpp"
 #include "dynamics/modal_model.hpp"
 #include "dynamics/nodes.hpp"
 
 #include <Eigen/Core>
 #include <array>
-#include <atomic>
-#include <memory>
-#include <mutex>
 #include <vector>
 
 namespace slipmode::dynamics {
@@ -93,30 +91,22 @@ class RegimeTables {
   static constexpr int kAuditLevel = 8;
 
   RegimeTables(const HybridSystem& system, const ModalModel& slipping, const std::vector<bool>& stuck);
-  ~RegimeTables();
 
   [[nodiscard]] const Regime& regime() const { return regime_; }
   [[nodiscard]] double length(int level) const { return length_[static_cast<std::size_t>(level)]; }
   /// The finest level whose window is at least this long.
   [[nodiscard]] int level_covering(double length) const;
-  [[nodiscard]] const RegimeStep& step(int level) const { return get(steps_[static_cast<std::size_t>(level)], level); }
+  [[nodiscard]] const RegimeStep& step(int level) const {
+    return steps_.get(level, [&](RegimeStep& out) { make(out, level); });
+  }
   [[nodiscard]] const RegimeWindow& window(int level) const {
-    return get(windows_[static_cast<std::size_t>(level)], level);
+    return windows_.get(level, [&](RegimeWindow& out) { make(out, level); });
   }
   [[nodiscard]] const RegimeAudit& audit(int level) const {
-    return get(audits_[static_cast<std::size_t>(level)], level);
+    return audits_.get(level, [&](RegimeAudit& out) { make(out, level); });
   }
 
  private:
-  template <class T>
-  using Slot = std::atomic<const T*>;
-  template <class T>
-  const T& get(Slot<T>& slot, int level) const {
-    const T* table = slot.load(std::memory_order_acquire);
-    return table ? *table : build(slot, level);
-  }
-  template <class T>
-  const T& build(Slot<T>& slot, int level) const;
   void make(RegimeStep& out, int level) const;
   void make(RegimeWindow& out, int level) const;
   void make(RegimeAudit& out, int level) const;
@@ -124,10 +114,9 @@ class RegimeTables {
 
   Regime regime_;
   std::array<double, kLevels> length_{};
-  mutable std::mutex building_;
-  mutable std::array<Slot<RegimeStep>, kLevels> steps_{};
-  mutable std::array<Slot<RegimeWindow>, kLevels> windows_{};
-  mutable std::array<Slot<RegimeAudit>, kLevels> audits_{};
+  LazyLevels<RegimeStep, kLevels> steps_;
+  LazyLevels<RegimeWindow, kLevels> windows_;
+  LazyLevels<RegimeAudit, kLevels> audits_;
 };
 
 /// x(h); `out_x` may be `x` itself. `inputs` stay as they are.

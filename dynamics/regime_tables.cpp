@@ -80,28 +80,9 @@ RegimeTables::RegimeTables(const HybridSystem& system, const ModalModel& slippin
     length_[static_cast<std::size_t>(level)] = std::ldexp(kTopPhase / regime_.rate, -level);
 }
 
-RegimeTables::~RegimeTables() {
-  for (auto& slot : steps_) delete slot.load();
-  for (auto& slot : windows_) delete slot.load();
-  for (auto& slot : audits_) delete slot.load();
-}
-
 int RegimeTables::level_covering(double wanted) const {
   return std::clamp(std::ilogb(length_[0] / wanted), 0, kLevels - 1);
 }
-
-template <class T>
-const T& RegimeTables::build(Slot<T>& slot, int level) const {
-  const std::lock_guard lock(building_);
-  if (const T* table = slot.load(std::memory_order_acquire)) return *table;
-  auto table = std::make_unique<T>();
-  make(*table, level);
-  slot.store(table.get(), std::memory_order_release);
-  return *table.release();
-}
-template const RegimeStep& RegimeTables::build(Slot<RegimeStep>&, int) const;
-template const RegimeWindow& RegimeTables::build(Slot<RegimeWindow>&, int) const;
-template const RegimeAudit& RegimeTables::build(Slot<RegimeAudit>&, int) const;
 
 void RegimeTables::step_of(double h, RegimeStep& out) const {
   const ModalModel& pairs = regime_.pairs;

@@ -38,25 +38,6 @@ int gauss_points(double phase) { return 16 + static_cast<int>(std::ceil(phase));
 StepTables::StepTables(const ModalModel& model)
     : model_(model), top_(kTopPhase / (model.fastest > 0 ? model.fastest : 1.0)) {}
 
-StepTables::~StepTables() {
-  for (auto& slot : propagators_) delete slot.load();
-  for (auto& slot : collocations_) delete slot.load();
-  for (auto& slot : node_states_) delete slot.load();
-}
-
-template <class T>
-const T& StepTables::build(Slot<T>& slot, int level) const {
-  const std::lock_guard lock(building_);
-  if (const T* table = slot.load(std::memory_order_acquire)) return *table;
-  auto table = std::make_unique<T>();
-  make(*table, level);
-  slot.store(table.get(), std::memory_order_release);
-  return *table.release();
-}
-template const Propagator& StepTables::build(Slot<Propagator>&, int) const;
-template const Collocation& StepTables::build(Slot<Collocation>&, int) const;
-template const NodeStates& StepTables::build(Slot<NodeStates>&, int) const;
-
 void StepTables::propagate_to(double end, double h, Propagator& out) const {
   const auto& m = model_;
   const auto np = m.np;

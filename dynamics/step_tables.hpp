@@ -1,13 +1,11 @@
 #pragma once
 
+#include "dynamics/lazy_levels.hpp"
 #include "dynamics/modal_model.hpp"
 #include "dynamics/nodes.hpp"
 
 #include <Eigen/Core>
-#include <array>
-#include <atomic>
-#include <memory>
-#include <mutex>
+#include <cstdint>
 #include <vector>
 
 namespace slipmode::dynamics {
@@ -42,26 +40,20 @@ class StepTables {
   static constexpr int kLevels = 48;
 
   explicit StepTables(const ModalModel& model);
-  ~StepTables();
 
   [[nodiscard]] double step(int level) const { return top_ / static_cast<double>(std::int64_t{1} << level); }
-  [[nodiscard]] const Propagator& propagator(int level) const { return get(propagators_[index(level)], level); }
-  [[nodiscard]] const Collocation& collocation(int level) const { return get(collocations_[index(level)], level); }
-  [[nodiscard]] const NodeStates& node_states(int level) const { return get(node_states_[index(level)], level); }
+  [[nodiscard]] const Propagator& propagator(int level) const {
+    return propagators_.get(level, [&](Propagator& out) { make(out, level); });
+  }
+  [[nodiscard]] const Collocation& collocation(int level) const {
+    return collocations_.get(level, [&](Collocation& out) { make(out, level); });
+  }
+  [[nodiscard]] const NodeStates& node_states(int level) const {
+    return node_states_.get(level, [&](NodeStates& out) { make(out, level); });
+  }
   [[nodiscard]] const ModalModel& model() const { return model_; }
 
  private:
-  template <class T>
-  using Slot = std::atomic<const T*>;
-
-  static std::size_t index(int level) { return static_cast<std::size_t>(level); }
-  template <class T>
-  const T& get(Slot<T>& slot, int level) const {
-    const T* table = slot.load(std::memory_order_acquire);
-    return table ? *table : build(slot, level);
-  }
-  template <class T>
-  const T& build(Slot<T>& slot, int level) const;
   void make(Propagator& out, int level) const;
   void make(Collocation& out, int level) const;
   void make(NodeStates& out, int level) const;
@@ -70,10 +62,9 @@ class StepTables {
 
   const ModalModel& model_;
   double top_;
-  mutable std::mutex building_;
-  mutable std::array<Slot<Propagator>, kLevels> propagators_{};
-  mutable std::array<Slot<Collocation>, kLevels> collocations_{};
-  mutable std::array<Slot<NodeStates>, kLevels> node_states_{};
+  LazyLevels<Propagator, kLevels> propagators_;
+  LazyLevels<Collocation, kLevels> collocations_;
+  LazyLevels<NodeStates, kLevels> node_states_;
 };
 
 }  // namespace slipmode::dynamics
