@@ -192,16 +192,13 @@ bool ClosedFormFlow::approach(int c, double& tau) {
   // Newton on the exact guard, from a time at which it is not yet reached.
   const Regime& r = tables_->regime();
   const auto i = static_cast<std::size_t>(c);
-  const auto output = [&] {
-    return dot_padded(r.row.col(c).data(), x_.data(), x_.size()) + r.coefficient.col(c).dot(inputs_);
-  };
-  const double sign = r.stuck[i] ? (output() > 0 ? 1.0 : -1.0) : sign_of(point_.modes[i]);
+  const double sign = r.stuck[i] ? (r.output(c, x_, inputs_) > 0 ? 1.0 : -1.0) : sign_of(point_.modes[i]);
   const double belt_rate = r.stuck[i] ? 0.0 : inputs_(r.speed_input() + 1);
   const double from = tau;
   double slope = 0.0;
   for (int k = 0; k < kNewtonSteps; ++k) {
-    const double value =
-        r.stuck[i] ? resolver_.laws()[i].static_limit - sign * output() : sign * (inputs_(r.speed_input()) - output());
+    const double value = r.stuck[i] ? resolver_.laws()[i].static_limit - sign * r.output(c, x_, inputs_)
+                                    : sign * (inputs_(r.speed_input()) - r.output(c, x_, inputs_));
     slope = sign *
             (belt_rate - dot_padded(r.row1.col(c).data(), x_.data(), x_.size()) - r.coefficient1.col(c).dot(inputs_));
     const double shift = -value / slope;
@@ -317,9 +314,7 @@ void ClosedFormFlow::lift(const Regime& r, const Eigen::VectorXd& x, const Eigen
   out_x.noalias() += r.inputs_slipping * inputs;
   out_force.resize(nc_);
   for (int c = 0; c < nc_; ++c)
-    out_force(c) = r.stuck[static_cast<std::size_t>(c)]
-                       ? dot_padded(r.row.col(c).data(), x.data(), x.size()) + r.coefficient.col(c).dot(inputs)
-                       : inputs(c);
+    out_force(c) = r.stuck[static_cast<std::size_t>(c)] ? r.output(c, x, inputs) : inputs(c);
 }
 
 void ClosedFormFlow::evaluate(double t, Eigen::VectorXd& out_x, Eigen::VectorXd& out_force) const {
@@ -336,7 +331,7 @@ void ClosedFormFlow::account(double tau) {
   const auto add = [&](double weight, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs) {
     const double V = inputs(r.speed_input());
     for (int c = 0; c < nc_; ++c) {
-      const double output = dot_padded(r.row.col(c).data(), x.data(), x.size()) + r.coefficient.col(c).dot(inputs);
+      const double output = r.output(c, x, inputs);
       const bool held = r.stuck[static_cast<std::size_t>(c)];
       const double force = held ? output : inputs(c);
       contact += weight * force * (held ? V : output);

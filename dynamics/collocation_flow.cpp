@@ -53,7 +53,7 @@ CollocationFlow::CollocationFlow(const HybridSystem& system, const StepTables& t
       x_begin_(point_.x),
       newton_change_(std::min(1e-3, std::sqrt(kNewtonShare * options.tolerance))),
       start_level_(static_cast<std::size_t>(nc_) + 1, 3) {
-  for (auto* v : {&free_, &velocity_, &forces_, &belt_nodes_, &slope_}) *v = Eigen::VectorXd::Zero(kNodes * nc_);
+  for (auto* v : {&free_, &velocity_, &forces_, &belt_nodes_}) *v = Eigen::VectorXd::Zero(kNodes * nc_);
   statistics_.stick_time.assign(static_cast<std::size_t>(nc_), 0.0);
   for (std::size_t c = 0; c < laws().size(); ++c) {
     const auto i = static_cast<Eigen::Index>(c);

@@ -99,7 +99,7 @@ class CollocationFlow {
   std::vector<int> start_level_;  ///< remembered first step size after an event, by number of sticking contacts
 
   // One step's scalars, contact after contact, eight nodes each.
-  Eigen::VectorXd free_, velocity_, forces_, belt_nodes_, slope_;
+  Eigen::VectorXd free_, velocity_, forces_, belt_nodes_;
 
   WorkSums work_;
   FlowStatistics statistics_;

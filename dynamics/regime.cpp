@@ -1,5 +1,7 @@
 #include "dynamics/regime.hpp"
 
+#include "dynamics/pair_kernels.hpp"
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -193,6 +195,10 @@ void Regime::advance_inputs(Eigen::VectorXd& inputs, double t) const {
   for (std::size_t c = 0; c < stuck.size(); ++c)
     if (stuck[c]) inputs(static_cast<Eigen::Index>(c)) += way;
   inputs(V) += t * inputs(V + 1);
+}
+
+double Regime::output(int c, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs) const {
+  return dot_padded(row.col(c).data(), x.data(), x.size()) + coefficient.col(c).dot(inputs);
 }
 
 void Regime::differentiate(Eigen::VectorXd& r, Eigen::VectorXd& k) const {

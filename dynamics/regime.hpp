@@ -27,6 +27,8 @@ struct Regime {
   [[nodiscard]] Eigen::Index speed_input() const { return static_cast<Eigen::Index>(stuck.size()); }
   /// ι after a time t.
   void advance_inputs(Eigen::VectorXd& inputs, double t) const;
+  /// Output of contact c: its force if it sticks, its velocity if it slides.
+  [[nodiscard]] double output(int c, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs) const;
   /// Time derivative of an output (row, coefficients): again of that form.
   void differentiate(Eigen::VectorXd& row, Eigen::VectorXd& coefficient) const;
   /// q̇ᵀCq̇ of a state [W].

@@ -25,11 +25,6 @@ void expect_close(const HybridSystem& system, const State& start, double duratio
   EXPECT_GE(gap.events, least_events);
 }
 
-State swinging(int n, std::uint64_t seed, double size) {
-  Random random(seed);
-  return state(random.vector(n, size), random.vector(n, size));
-}
-
 TEST(EventTimes, StribeckChainAgreesWithTheReference) {
   const HybridSystem chain = belt_chain(Stribeck{0.4, 0.2, 8.0}, Belt::constant(0.2));
   expect_close(chain, chain.rest(), 150.0, kTight, 4);

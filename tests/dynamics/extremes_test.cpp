@@ -17,11 +17,6 @@ using friction::Stribeck;
 constexpr FlowOptions kTight{.method = FlowMethod::kCollocation, .tolerance = 1e-13};
 constexpr FlowOptions kExact{.method = FlowMethod::kClosedForm};
 
-State swinging(int n, std::uint64_t seed, double size) {
-  Random random(seed);
-  return state(random.vector(n, size), random.vector(n, size));
-}
-
 TEST(Extremes, OnABeltAtRestTheChainSettlesAndStaysStuck) {
   for (const friction::Law law : {friction::Law(Coulomb{0.4, 0.2}), friction::Law(Stribeck{0.4, 0.2, 8.0})}) {
     const HybridSystem chain = belt_chain(law, Belt::constant(0.0), 10, 0.5);

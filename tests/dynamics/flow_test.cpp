@@ -13,11 +13,6 @@ using friction::Belt;
 using friction::Coulomb;
 using friction::Stribeck;
 
-State swinging(int n, std::uint64_t seed, double size) {
-  Random random(seed);
-  return state(random.vector(n, size), random.vector(n, size));
-}
-
 bool same_bytes(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return a.rows() == b.rows() && a.cols() == b.cols() &&
          std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;

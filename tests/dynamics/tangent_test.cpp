@@ -15,11 +15,6 @@ using friction::Belt;
 using friction::Coulomb;
 using friction::Stribeck;
 
-State swinging(int n, std::uint64_t seed, double size) {
-  Random random(seed);
-  return state(random.vector(n, size), random.vector(n, size));
-}
-
 FlowOptions flow_of(FlowMethod method) { return {.method = method, .tolerance = 1e-13}; }
 
 Eigen::VectorXd stacked(const State& s) {
