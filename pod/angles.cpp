@@ -1,14 +1,12 @@
 #include "core/errors.hpp"
+#include "pod/mass_metric.hpp"
 #include "pod/pod.hpp"
 
 #include <fmt/format.h>
-#include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <Eigen/SVD>
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
-#include <variant>
 
 namespace slipmode::pod {
 
@@ -34,22 +32,6 @@ Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& A, const char* name) {
   return qr.householderQ() * Eigen::MatrixXd::Identity(A.rows(), A.cols());
 }
 
-/// Lᵀ x for a factor W = L Lᵀ, so that Euclidean geometry of the result is that of W.
-Eigen::MatrixXd weigh(const Eigen::MatrixXd& x, const fem::Matrix& W) {
-  if (const auto* dense = std::get_if<Eigen::MatrixXd>(&W)) {
-    const Eigen::LLT<Eigen::MatrixXd> llt(*dense);
-    if (llt.info() == Eigen::Success) return llt.matrixU() * x;
-  } else {
-    const Eigen::SimplicialLLT<fem::SparseMatrix> llt(std::get<fem::SparseMatrix>(W));
-    if (llt.info() == Eigen::Success) return llt.matrixU() * (llt.permutationP() * x).eval();
-  }
-  throw InvalidInput("subspace angles: the weight is not positive definite");
-}
-
-Eigen::Index order(const fem::Matrix& W) {
-  return std::visit([](const auto& matrix) -> Eigen::Index { return matrix.rows(); }, W);
-}
-
 void check_rows(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
   if (A.rows() != B.rows()) {
     throw InvalidInput(fmt::format("subspace angles: A has {} rows, B {}; expected the same", A.rows(), B.rows()));
@@ -72,10 +54,8 @@ Eigen::VectorXd subspace_angles(const Eigen::MatrixXd& A, const Eigen::MatrixXd&
 
 Eigen::VectorXd subspace_angles(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B, const fem::Matrix& W) {
   check_rows(A, B);
-  if (order(W) != A.rows()) {
-    throw InvalidInput(fmt::format("subspace angles: the weight is {0} x {0}; expected {1} x {1}", order(W), A.rows()));
-  }
-  return subspace_angles(weigh(A, W), weigh(B, W));
+  const MassMetric metric(W, A.rows(), "subspace angles");
+  return subspace_angles(metric.whiten(A), metric.whiten(B));
 }
 
 }  // namespace slipmode::pod

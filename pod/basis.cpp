@@ -6,6 +6,22 @@
 
 namespace slipmode::pod {
 
+std::string_view to_string(BasisKind kind) {
+  switch (kind) {
+    case BasisKind::kPom:
+      return "pom";
+    case BasisKind::kLnm:
+      return "lnm";
+    case BasisKind::kPomf:
+      return "pomf";
+    case BasisKind::kLnmStatic:
+      return "lnm_static";
+    case BasisKind::kUser:
+      break;
+  }
+  return "user";
+}
+
 Basis Basis::truncated(Eigen::Index L) const {
   if (L < 1 || L > modes()) {
     throw InvalidInput(

@@ -4,16 +4,27 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <string_view>
 
 namespace slipmode::pod {
 
-enum class BasisKind { kPom, kLnm, kUser };
+enum class BasisKind {
+  kPom,        ///< proper orthogonal modes of snapshots (pod.hpp, mass_pod.hpp)
+  kLnm,        ///< linear natural modes of the slipping structure
+  kUser,       ///< supplied
+  kPomf,       ///< proper orthogonal modal functions: sensor POMs made continuous (pomf.hpp)
+  kLnmStatic,  ///< one static mode per contact, then linear natural modes (rom/reduce.hpp)
+};
+
+/// "pom", "lnm", "user", "pomf" or "lnm_static": the word for files and tables.
+[[nodiscard]] std::string_view to_string(BasisKind kind);
 
 /// An affine basis q ≈ mean + Φ a.
 struct Basis {
-  Eigen::MatrixXd vectors;  ///< Φ, n x L. POMs are orthonormal (ΦᵀΦ = I), LNMs mass-orthonormal (ΦᵀMΦ = I)
+  Eigen::MatrixXd vectors;  ///< Φ, n x L. POMs of pod() have ΦᵀΦ = I; those of mass_pod() and the others ΦᵀMΦ = I
   Eigen::VectorXd mean;     ///< q̄ [n]; zero for LNMs
-  Eigen::VectorXd energy;   ///< share of each kept vector in the ensemble's energy [L]; empty if unknown
+  /// Share of each kept vector in the ensemble's energy [L]; empty if unknown. For a POMF that of the POM it came from.
+  Eigen::VectorXd energy;
   BasisKind kind = BasisKind::kUser;
   std::string provenance;  ///< how it was made, in words
 

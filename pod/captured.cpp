@@ -1,6 +1,7 @@
 #include "core/errors.hpp"
 #include "pod/assemble.hpp"
 #include "pod/centred.hpp"
+#include "pod/mass_metric.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/QR>
@@ -38,6 +39,19 @@ Eigen::VectorXd captured_energy(const Ensemble& ensemble, const Basis& basis) {
   if (is_constant(total, centred.mean(), centred.cols())) fail_constant(centred.cols(), total, true);
   for (Eigen::Index j = 1; j < L; ++j) captured[j] += captured[j - 1];
   return captured / total;
+}
+
+Eigen::VectorXd captured_energy(const Ensemble& ensemble, const Basis& basis, const fem::Matrix& M) {
+  validate(ensemble);
+  const Eigen::Index n = ensemble.snapshots.rows();
+  const MassMetric metric(M, n, "captured energy");
+  if (basis.vectors.rows() != n) {
+    throw InvalidInput(fmt::format("captured energy: basis is {} x {}, snapshots have {} rows; expected {} rows",
+                                   basis.vectors.rows(), basis.modes(), n, n));
+  }
+  Basis whitened;
+  whitened.vectors = metric.whiten(basis.vectors);
+  return captured_energy({metric.whiten(ensemble.snapshots), ensemble.run_begin}, whitened);
 }
 
 }  // namespace slipmode::pod

@@ -42,6 +42,17 @@ struct PodResult {
 /// Source: S4 section 2.2 and 3.4.1, without forming its covariance matrix.
 [[nodiscard]] PodResult pod(const Ensemble& ensemble, const PodOptions& options = {});
 
+/// Proper orthogonal modes in the mass metric: of all bases of L vectors they leave the least mean of xᵀMx, x the part
+/// of q − q̄ outside their span.
+///
+/// With M = L Lᵀ the modes of LᵀX are mapped back, Φ = L⁻ᵀΦ̃, so ΦᵀMΦ = I. Displacements and rotations are weighed by
+/// the mass they move: the measure for dofs of different units, and the best case that modes from sensors can reach.
+/// Singular values have the unit of √M·q [kg^½ m], mean_square is the mean of (q − q̄)ᵀM(q − q̄). One more copy of the
+/// snapshots is made; otherwise as pod().
+/// @param M  n x n, symmetric positive definite: the structure's mass matrix
+/// @throws InvalidInput, NumericalFailure  as pod(), and for M of other size or not positive definite
+[[nodiscard]] PodResult mass_pod(const Ensemble& ensemble, const fem::Matrix& M, const PodOptions& options = {});
+
 /// Principal angles between the column spaces of A and B, ascending [rad]; min(columns of A, columns of B) of them.
 /// Small and near-right angles alike are good to rounding: sines and cosines are both computed.
 /// @throws InvalidInput  for different numbers of rows, no columns, dependent columns, values not finite
@@ -60,5 +71,9 @@ void fix_signs(Eigen::MatrixXd& vectors);
 /// element L−1 belongs to the first L vectors. Lets LNMs be compared with POMs. Cost 2 n T L.
 /// @throws InvalidInput  for a basis of other size, dependent columns, constant snapshots
 [[nodiscard]] Eigen::VectorXd captured_energy(const Ensemble& ensemble, const Basis& basis);
+
+/// The same in the mass metric: share of the mean of (q − q̄)ᵀM(q − q̄), M the structure's mass matrix.
+/// @throws InvalidInput  as above, and for M of other size or not positive definite
+[[nodiscard]] Eigen::VectorXd captured_energy(const Ensemble& ensemble, const Basis& basis, const fem::Matrix& M);
 
 }  // namespace slipmode::pod
