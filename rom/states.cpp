@@ -22,11 +22,9 @@ void check_state(const dynamics::State& state, Eigen::Index n, std::string_view 
 
 dynamics::State lift(const pod::Basis& basis, const dynamics::State& reduced) {
   check_state(reduced, basis.modes(), "lift");
-  dynamics::State full;
-  full.time = reduced.time;
+  dynamics::State full = reduced;  // time, contact modes and contacts' own states are the same
   full.q = mean_or_zero(basis) + basis.vectors * reduced.q;
   full.v = basis.vectors * reduced.v;
-  full.modes = reduced.modes;
   return full;
 }
 
@@ -41,12 +39,11 @@ dynamics::State restrict_state(const fem::Structure& structure, const pod::Basis
   const Eigen::LLT<Eigen::MatrixXd> gram(Q.transpose() * MQ);
   const auto R = qr.matrixQR().topRows(basis.modes()).triangularView<Eigen::Upper>();
 
-  dynamics::State reduced;
-  reduced.time = full.time;
+  dynamics::State reduced = full;
   reduced.q = R.solve(gram.solve(MQ.transpose() * (full.q - mean_or_zero(basis))));
   reduced.v = R.solve(gram.solve(MQ.transpose() * full.v));
   const double lost = (full.v - basis.vectors * reduced.v).norm();
-  if (lost <= kNothingLost * full.v.norm()) reduced.modes = full.modes;
+  if (!(lost <= kNothingLost * full.v.norm())) reduced.modes.clear();
   return reduced;
 }
 
