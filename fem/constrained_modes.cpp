@@ -118,7 +118,8 @@ Modes constrained_modes(const Structure& structure, const Eigen::MatrixXd& const
   const Eigen::Index wanted = count == 0 ? free : count;
   if (const auto dofs = dofs_left_free(W)) return modes_of_free_dofs(structure, *dofs, wanted);
   if (free < kDenseLimit || 5 * wanted >= free) return modes_by_projection(structure, W, wanted);
-  return detail::conventional_modes(structure, detail::solve_spectra(structure, W, wanted));
+  const detail::Holds rigid{W, Eigen::VectorXd::Zero(W.cols())};
+  return detail::conventional_modes(structure, detail::solve_spectra(structure, rigid, wanted));
 }
 
 }  // namespace slipmode::fem

@@ -72,7 +72,7 @@ void iterate(const ShiftInvert& inverse, int n, int count, Workspace& work) {
 EigenPairs solve_arpack(const Structure& structure, Eigen::Index count_wanted) {
   const int n = static_cast<int>(structure.size());
   const int count = static_cast<int>(count_wanted);
-  const ShiftInvert inverse(structure, Eigen::MatrixXd(n, 0));
+  const ShiftInvert inverse(structure, no_holds(n));
   Workspace work(n, count);
   iterate(inverse, n, count, work);
 

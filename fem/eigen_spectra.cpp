@@ -19,10 +19,15 @@ constexpr Eigen::Index kMaxRestarts = 1000;
 
 // One step of inverse iteration, then the best pairs within its range. A rigid-body mode's eigenvalue dominates the
 // inverse, so Lanczos finds the others with an error relative to that one; this step makes it relative to their own.
-EigenPairs polish(const Structure& structure, const ShiftInvert& inverse, const Eigen::MatrixXd& vectors) {
+EigenPairs polish(const Structure& structure, const Holds& holds, const ShiftInvert& inverse,
+                  const Eigen::MatrixXd& vectors) {
   Eigen::MatrixXd basis = inverse.solve(inverse.mass() * vectors);
   basis.colwise().normalize();
-  const Eigen::MatrixXd stiffness = basis.transpose() * multiply(structure.K(), basis);
+  Eigen::MatrixXd stiffness = basis.transpose() * multiply(structure.K(), basis);
+  const Eigen::MatrixXd stretch = holds.directions.transpose() * basis;
+  for (Eigen::Index c = 0; c < stretch.rows(); ++c) {
+    if (holds.compliance(c) > 0.0) stiffness += stretch.row(c).transpose() * stretch.row(c) / holds.compliance(c);
+  }
   const Eigen::MatrixXd mass = basis.transpose() * (inverse.mass() * basis);
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(stiffness, mass);
   return {solver.eigenvalues(), basis * solver.eigenvectors()};
@@ -30,10 +35,10 @@ EigenPairs polish(const Structure& structure, const ShiftInvert& inverse, const 
 
 }  // namespace
 
-EigenPairs solve_spectra(const Structure& structure, const Eigen::MatrixXd& constraints, Eigen::Index count) {
-  ShiftInvert inverse(structure, constraints);
+EigenPairs solve_spectra(const Structure& structure, const Holds& holds, Eigen::Index count) {
+  ShiftInvert inverse(structure, holds);
   Spectra::SparseSymMatProd<double> mass(inverse.mass());
-  const Eigen::Index free_dofs = structure.size() - constraints.cols();
+  const Eigen::Index free_dofs = structure.size() - (holds.compliance.array() == 0.0).count();
   const Eigen::Index subspace = std::min(free_dofs, 2 * count + 20);
   Spectra::SymGEigsShiftSolver<ShiftInvert, Spectra::SparseSymMatProd<double>, Spectra::GEigsMode::ShiftInvert> solver(
       inverse, mass, count, subspace, inverse.shift());
@@ -46,7 +51,7 @@ EigenPairs solve_spectra(const Structure& structure, const Eigen::MatrixXd& cons
                                        converged, count, solver.num_iterations()),
                            std::nan(""), {}, std::nan(""));
   }
-  return polish(structure, inverse, solver.eigenvectors());
+  return polish(structure, holds, inverse, solver.eigenvectors());
 }
 
 }  // namespace slipmode::fem::detail

@@ -19,12 +19,6 @@ double stiffness_to_mass(const Structure& structure) {
   return (std::visit(diagonal, structure.K()).array() / std::visit(diagonal, structure.M()).array()).maxCoeff();
 }
 
-double rounding_of_quotient(const Matrix& K, const Eigen::VectorXd& shape) {
-  const Eigen::VectorXd magnitude = shape.cwiseAbs();
-  const double sum = std::visit([&magnitude](const auto& m) { return magnitude.dot(m.cwiseAbs() * magnitude); }, K);
-  return 16.0 * std::numeric_limits<double>::epsilon() * sum;
-}
-
 // λ of a shape whose computed λ is so small that the eigensolver's own rounding may hide it.
 double reconsider(const Structure& structure, double lambda, const Eigen::VectorXd& shape) {
   const double quotient = shape.dot(multiply(structure.K(), shape).col(0));
@@ -40,6 +34,12 @@ double reconsider(const Structure& structure, double lambda, const Eigen::Vector
 }
 
 }  // namespace
+
+double rounding_of_quotient(const Matrix& K, const Eigen::VectorXd& shape) {
+  const Eigen::VectorXd squares = shape.cwiseAbs2();
+  const double sum = std::visit([&squares](const auto& m) { return squares.dot(m.cwiseAbs2() * squares); }, K);
+  return 16.0 * std::numeric_limits<double>::epsilon() * std::sqrt(sum);
+}
 
 void fix_signs(Eigen::MatrixXd& shapes) {
   for (auto shape : shapes.colwise()) {

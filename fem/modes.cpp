@@ -42,7 +42,7 @@ detail::EigenPairs solve(const Structure& structure, Eigen::Index count, EigenMe
     case EigenMethod::kTridiagonal:
       return detail::solve_tridiagonal(structure, count);
     case EigenMethod::kSpectra:
-      return detail::solve_spectra(structure, Eigen::MatrixXd(structure.size(), 0), count);
+      return detail::solve_spectra(structure, detail::no_holds(structure.size()), count);
     case EigenMethod::kArpack:
       return detail::solve_arpack(structure, count);
     default:

@@ -7,7 +7,7 @@ namespace slipmode::fem {
 /// Natural modes K φ = ω² M φ, mass-normalised (φᵀMφ = 1), ascending.
 struct Modes {
   /// Circular frequencies [rad/s], k values. Rigid-body modes are exactly 0: ω² counts as zero within the rounding
-  /// error of φᵀKφ, 16 ε |φ|ᵀ|K||φ|.
+  /// error of φᵀKφ, 16 ε √(Σ_ij (φ_i K_ij φ_j)²).
   Eigen::VectorXd omega;
   /// n x k. Each column's largest component in magnitude is positive; of several equal within 1e-9 the first counts.
   Eigen::MatrixXd shapes;
@@ -41,6 +41,19 @@ enum class EigenMethod {
 /// @throws InvalidInput  if a size is wrong, the constraints are linearly dependent or m ≥ n
 [[nodiscard]] Modes constrained_modes(const Structure& structure, const Eigen::MatrixXd& constraints,
                                       Eigen::Index count = 0);
+
+/// The lowest `count` modes with springs from contacts to the ground, K + Σ k_c w_c w_cᵀ: the structure stuck to
+/// compliant contacts. Tends to constrained_modes as 1/k_c (S4 section 6.3.1's contact stiffness K_c).
+///
+/// Below 500 dofs or when at least a fifth of the modes is asked: singular values of the stacked factors of K and of
+/// the springs, O(n³); else shift-invert Lanczos with the contact forces solved along. Neither loses digits of the low
+/// modes to a stiff spring as the sum would: the error is ε ω_max in ω, with ω_max of the sprung structure.
+/// @param directions   w_c as columns [n x m]
+/// @param stiffnesses  k_c > 0 [m, N/m]
+/// @param count        0 (all) to n
+/// @throws InvalidInput  if a size is wrong, a value is not finite or a stiffness is not positive
+[[nodiscard]] Modes compliant_modes(const Structure& structure, const Eigen::MatrixXd& directions,
+                                    const Eigen::VectorXd& stiffnesses, Eigen::Index count = 0);
 
 /// Circular frequencies of all modes and the modal rows rowᵀΦ of a few vectors, without forming Φ.
 struct ModalRows {

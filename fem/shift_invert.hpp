@@ -7,18 +7,28 @@
 
 namespace slipmode::fem::detail {
 
-/// x ↦ y with (K − σM) y + W μ = x, Wᵀy = 0: the inverse that shift-invert Lanczos needs, on the subspace Wᵀy = 0.
+/// Contacts that hold a structure: column w of `directions` keeps wᵀq = 0 (compliance 0), or pulls back with the force
+/// wᵀq / compliance (a spring to the ground).
+struct Holds {
+  Eigen::MatrixXd directions;  ///< W, n x m; rigid ones independent; m = 0 for none
+  Eigen::VectorXd compliance;  ///< D [m], ≥ 0, m/N
+};
+
+[[nodiscard]] inline Holds no_holds(Eigen::Index n) { return {Eigen::MatrixXd(n, 0), Eigen::VectorXd(0)}; }
+
+/// x ↦ y with (K − σM) y + W μ = x, Wᵀy = D μ: the inverse that shift-invert Lanczos needs, for rigid holds on the
+/// subspace Wᵀy = 0. Springs of any stiffness cost no digits: K + W D⁻¹ Wᵀ is never formed.
 ///
 /// σ is negative, so K − σM is positive definite even when K has rigid-body modes, and a Cholesky factor serves. It is
-/// small against the highest eigenvalue, so that the low modes stand apart, and large against rounding.
-/// The interface is the one Spectra asks of an operator.
+/// small against the highest eigenvalue, so that the low modes stand apart, and large against rounding. Where the
+/// lowest eigenvalue is smaller still and not zero to rounding (a beam of many elements), σ is moved to about minus
+/// that. The interface is the one Spectra asks of an operator.
 class ShiftInvert {
  public:
   using Scalar = double;
 
-  /// @param constraints  W, n x m, independent columns; m = 0 for none
   /// @throws NumericalFailure  if K − σM is not positive definite to rounding
-  ShiftInvert(const Structure& structure, const Eigen::MatrixXd& constraints);
+  ShiftInvert(const Structure& structure, const Holds& holds);
 
   [[nodiscard]] Eigen::Index rows() const { return mass_.rows(); }
   [[nodiscard]] Eigen::Index cols() const { return mass_.cols(); }
@@ -32,12 +42,15 @@ class ShiftInvert {
   [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& x) const;
 
  private:
+  bool factor(const SparseMatrix& stiffness, double shift);
+  void approach_lowest(const SparseMatrix& stiffness);
+
   SparseMatrix mass_;
   double shift_;
   Eigen::SimplicialLLT<SparseMatrix> factor_;
-  Eigen::MatrixXd constraints_;           // W
-  Eigen::MatrixXd compliance_;            // (K − σM)⁻¹ W
-  Eigen::LLT<Eigen::MatrixXd> reaction_;  // of Wᵀ (K − σM)⁻¹ W
+  Eigen::MatrixXd directions_;            // W
+  Eigen::MatrixXd flexibility_;           // (K − σM)⁻¹ W
+  Eigen::LLT<Eigen::MatrixXd> reaction_;  // of D + Wᵀ (K − σM)⁻¹ W
 };
 
 }  // namespace slipmode::fem::detail
