@@ -13,7 +13,7 @@ namespace {
 constexpr double kClearSlip = 0.02;
 
 double slip_speed(const dynamics::HybridSystem& system, const dynamics::State& state) {
-  return std::abs(system.drive().speed - system.contacts().front().direction.dot(state.v));
+  return std::abs(system.drive().velocity(state.time) - system.contacts().front().direction.dot(state.v));
 }
 
 dynamics::State onwards(const dynamics::HybridSystem& system, const dynamics::State& state, double duration) {

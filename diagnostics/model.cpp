@@ -83,7 +83,7 @@ dynamics::State sliding_equilibrium(const dynamics::HybridSystem& system) {
   Eigen::VectorXd force = system.load().size() > 0 ? system.load() : Eigen::VectorXd::Zero(system.size());
   for (const friction::Contact& contact : system.contacts()) {
     if (speed == 0.0) continue;
-    const double lambda = contact.normal_load * sliding_coefficient(contact.law, std::abs(speed));
+    const double lambda = contact.normal_load.constant * sliding_coefficient(contact.law, std::abs(speed));
     force += contact.direction * std::copysign(lambda, speed);
   }
   dynamics::State state = system.rest();

@@ -60,8 +60,8 @@ void ClosedFormFlow::enter_regime() {
     inputs_(c) = r.stuck[static_cast<std::size_t>(c)]
                      ? dot_padded(slipping_.displacement_row.col(c).data(), point_.x.data(), 2 * slipping_.np)
                      : point_.force(c);
-  inputs_(r.speed_input()) = resolver_.belt().velocity(point_.time);
-  inputs_(r.speed_input() + 1) = resolver_.belt().acceleration(point_.time);
+  inputs_(r.speed_input()) = resolver_.drive().velocity(point_.time);
+  inputs_(r.speed_input() + 1) = resolver_.drive().acceleration(point_.time);
   inputs_(r.speed_input() + 2) = 1.0;
   amplitude_.resize(r.pairs.np);
   measure_amplitudes();
@@ -224,8 +224,8 @@ bool ClosedFormFlow::step(double t_limit) {
   step_tables_ = tables_;
   double limit = t_limit;
   bool corner = false;
-  if (!resolver_.belt().is_constant()) {
-    if (const auto t = resolver_.belt().next_corner(begin_); t && *t <= limit) {
+  if (!resolver_.drive().is_constant()) {
+    if (const auto t = resolver_.drive().next_corner(begin_); t && *t <= limit) {
       limit = *t;
       corner = true;
     }

@@ -103,7 +103,7 @@ CollocationFlow::Guarded CollocationFlow::first_guard() const {
     const double start =
         multiplicity > 0
             ? 0.0
-            : std::max(0.0, sign * (belt().velocity(begin_) - resolver_.contact_velocity(c, x_begin_.data())));
+            : std::max(0.0, sign * (drive().velocity(begin_) - resolver_.contact_velocity(c, x_begin_.data())));
     V8 b = matrix8_times(t.bernstein8.data(), speed) + start * load8(t.bernstein8_start.data());
     if (multiplicity == 2)
       b[0] = std::numeric_limits<double>::max();  // zero by the order of contact, whatever rounding says
@@ -117,7 +117,7 @@ bool CollocationFlow::unmoved(int c) const {
   // So soon after its start that sliding has no speed beyond rounding, and its sign means nothing.
   const V8 speed = load8(belt_nodes_.data() + kNodes * c) - load8(velocity_.data() + kNodes * c);
   const double scale =
-      std::abs(belt().velocity(begin_)) + model_.velocity_row.col(c).cwiseAbs().dot(x_begin_.cwiseAbs());
+      std::abs(drive().velocity(begin_)) + model_.velocity_row.col(c).cwiseAbs().dot(x_begin_.cwiseAbs());
   return std::max(max8(speed), -min8(speed)) <= kUnmoved * scale;
 }
 
@@ -144,8 +144,8 @@ bool CollocationFlow::step(double t_limit) {
   step_modes_ = point_.modes;
   double limit = t_limit;
   bool corner = false;
-  if (!belt().is_constant()) {
-    if (const auto t = belt().next_corner(begin_); t && *t <= limit) {
+  if (!drive().is_constant()) {
+    if (const auto t = drive().next_corner(begin_); t && *t <= limit) {
       limit = *t;
       corner = true;
     }
@@ -251,7 +251,7 @@ void CollocationFlow::refine_event(const Guarded& guard, double& tau, Eigen::Vec
   const auto i = static_cast<std::size_t>(c);
   double previous = 0.0;
   for (int iteration = 0; iteration < kRefinements; ++iteration) {
-    const double a = belt().acceleration(begin_), V = belt().velocity(begin_) + a * tau;
+    const double a = drive().acceleration(begin_), V = drive().velocity(begin_) + a * tau;
     const RadauTables::Vector8 basis = nodes_.lagrange(tau / h);
     double value, rate, usual_rate;
     if (point_.modes[i] == ContactMode::kStick) {
@@ -307,7 +307,7 @@ void CollocationFlow::nudge(const RadauTables::Vector8& basis, double shift, Eig
 
 double CollocationFlow::stick_force(int c, const Eigen::VectorXd& x, double tau,
                                     const RadauTables::Vector8& basis) const {
-  const double a = belt().acceleration(begin_);
+  const double a = drive().acceleration(begin_);
   if (nc_ == 1)
     return (a - dot_padded(model_.acceleration_row.data(), x.data(), 2 * model_.np) - model_.load_acceleration(0)) /
            model_.mobility(0, 0);
@@ -317,7 +317,7 @@ double CollocationFlow::stick_force(int c, const Eigen::VectorXd& x, double tau,
     stuck[static_cast<std::size_t>(d)] = point_.modes[static_cast<std::size_t>(d)] == ContactMode::kStick;
     force(d) = forces_.segment<kNodes>(kNodes * d).dot(basis);
   }
-  stick_forces({model_, laws(), x.data(), begin_ + tau, belt().velocity(begin_) + a * tau, a}, stuck, force);
+  stick_forces({model_, laws(), x.data(), begin_ + tau, drive().velocity(begin_) + a * tau, a}, stuck, force);
   return force(c);
 }
 
@@ -344,22 +344,22 @@ void CollocationFlow::account(int level, double tau) {
 
 void CollocationFlow::account_whole(int level, const double* x, const double* forces, const double* velocities,
                                     double begin) {
-  const double length = tables_.step(level), V = belt().velocity(begin), a = belt().acceleration(begin);
-  double contact = 0.0, drive = 0.0;
+  const double length = tables_.step(level), V = drive().velocity(begin), a = drive().acceleration(begin);
+  double contact = 0.0, driven = 0.0;
   for (int c = 0; c < nc_; ++c) {
     const Eigen::Map<const RadauTables::Vector8> force(forces + kNodes * c), speed(velocities + kNodes * c);
     const RadauTables::Vector8 weighted = length * nodes_.weight.cwiseProduct(force);
     contact += weighted.dot(speed);
-    drive += V * weighted.sum() + a * length * weighted.dot(nodes_.node);
+    driven += V * weighted.sum() + a * length * weighted.dot(nodes_.node);
   }
-  work_.add(contact, drive, viscous_loss(tables_, level, x, forces));
+  work_.add(contact, driven, viscous_loss(tables_, level, x, forces));
 }
 
 void CollocationFlow::account_rest(int level, const double* x, const double* forces, double begin, double rest) {
   // Five points suffice for what a Taylor series covers.
   static const GaussRule rule = gauss_rule(5);
   Eigen::VectorXd at(x_begin_.size());
-  double contact = 0.0, drive = 0.0, viscous = 0.0;
+  double contact = 0.0, driven = 0.0, viscous = 0.0;
   for (Eigen::Index k = 0; k < rule.node.size(); ++k) {
     const double tau = rule.node(k) * rest, weight = rule.weight(k) * rest, t = begin + tau;
     advance_within(tables_, x, forces, level, tau, at.data());
@@ -367,11 +367,11 @@ void CollocationFlow::account_rest(int level, const double* x, const double* for
     for (int c = 0; c < nc_; ++c) {
       const double force = Eigen::Map<const RadauTables::Vector8>(forces + kNodes * c).dot(basis);
       contact += weight * force * resolver_.contact_velocity(c, at.data());
-      drive += weight * force * belt().velocity(t);
+      driven += weight * force * drive().velocity(t);
     }
     viscous += weight * model_.viscous_power(at);
   }
-  work_.add(contact, drive, viscous);
+  work_.add(contact, driven, viscous);
 }
 
 void CollocationFlow::restart_steps() {

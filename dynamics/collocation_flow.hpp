@@ -76,7 +76,7 @@ class CollocationFlow {
 
   [[nodiscard]] std::size_t stuck_count() const;
   [[nodiscard]] const std::vector<ContactForces>& laws() const { return resolver_.laws(); }
-  [[nodiscard]] const friction::Belt& belt() const { return resolver_.belt(); }
+  [[nodiscard]] const friction::Drive& drive() const { return resolver_.drive(); }
 
   const StepTables& tables_;
   const RadauTables& nodes_ = radau();

@@ -81,7 +81,7 @@ int CollocationFlow::foreseen_level(int level) const {
 }
 
 bool CollocationFlow::solve_forces(const Collocation& table, double h) {
-  const double V = belt().velocity(begin_), a = belt().acceleration(begin_);
+  const double V = drive().velocity(begin_), a = drive().acceleration(begin_);
   const V8 node = load8(nodes_.node.data());
   const V8 belt = broadcast8(V) + broadcast8(a * h) * node;
   for (int c = 0; c < nc_; ++c) store8(belt_nodes_.data() + kNodes * c, belt);

@@ -62,7 +62,7 @@ void CollocationFlow::salt_tangents(const Eigen::VectorXd& force_before, int con
   // δx⁺ = δx + (f⁺ − f⁻) (∇g δx) / ġ⁻ for the guard g that was reached; f⁺ − f⁻ = Σ b_c Δλ_c.
   if (contact < 0) return;
   const Eigen::VectorXd jump = model_.input * (point_.force - force_before);
-  const double a = belt().acceleration(begin_), V = belt().velocity(point_.time);
+  const double a = drive().acceleration(begin_), V = drive().velocity(point_.time);
   Eigen::RowVectorXd gradient;
   double rate;
   if (step_modes_[static_cast<std::size_t>(contact)] != ContactMode::kStick) {

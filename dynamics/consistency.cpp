@@ -103,7 +103,7 @@ double ContactForces::sliding(ContactMode mode, double v) const {
 
 ContactForces contact_forces(const friction::Contact& contact) {
   ContactForces f;
-  const double N = contact.normal_load;
+  const double N = contact.normal_load.constant;
   f.static_limit = friction::static_coefficient(contact.law) * N;
   if (const auto* coulomb = std::get_if<friction::Coulomb>(&contact.law)) {
     f.kinetic = coulomb->mu_k * N;
@@ -117,13 +117,12 @@ ContactForces contact_forces(const friction::Contact& contact) {
     } else {
       f.kind = ContactForces::Kind::kStribeck;
     }
-  } else {
-    const auto& tanh = std::get<friction::TanhRegularised>(contact.law);
+  } else if (const auto* tanh = std::get_if<friction::TanhRegularised>(&contact.law)) {
     f.kind = ContactForces::Kind::kSmooth;
-    f.kinetic = tanh.mu_k * N;
-    f.drop = (tanh.mu_s - tanh.mu_k) * N;
-    f.alpha = tanh.alpha;
-    f.epsilon = tanh.epsilon;
+    f.kinetic = tanh->mu_k * N;
+    f.drop = (tanh->mu_s - tanh->mu_k) * N;
+    f.alpha = tanh->alpha;
+    f.epsilon = tanh->epsilon;
   }
   if (f.static_limit == 0.0) f.kind = ContactForces::Kind::kFree;
   return f;

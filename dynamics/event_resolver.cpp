@@ -31,14 +31,14 @@ void WorkSums::add(double contact, double drive, double viscous) {
 
 EventResolver::EventResolver(const HybridSystem& system, const ModalModel& model, const FlowOptions& options)
     : model_(model),
-      belt_(system.drive()),
+      drive_(system.drive()),
       max_events_per_window_(options.max_events_per_window),
       zeno_window_(options.zeno_window) {
   for (const auto& contact : system.contacts()) laws_.push_back(contact_forces(contact));
 }
 
 Instant EventResolver::instant(double time, const double* x) const {
-  return {model_, laws_, x, time, belt_.velocity(time), belt_.acceleration(time)};
+  return {model_, laws_, x, time, drive_.velocity(time), drive_.acceleration(time)};
 }
 
 double EventResolver::contact_velocity(int c, const double* x) const {
@@ -46,7 +46,7 @@ double EventResolver::contact_velocity(int c, const double* x) const {
 }
 
 bool EventResolver::at_belt_speed(double time, int c, const double* x) const {
-  const double V = belt_.velocity(time);
+  const double V = drive_.velocity(time);
   const Eigen::Map<const Eigen::VectorXd> state(x, 2 * model_.np);
   const double scale = model_.velocity_row.col(c).cwiseAbs().dot(state.cwiseAbs()) + std::abs(V);
   return std::abs(V - contact_velocity(c, x)) <= kAtRest * scale;
@@ -79,7 +79,7 @@ void EventResolver::hold(double time, const std::vector<ContactMode>& modes, dou
 
 void EventResolver::hold(double time, const std::vector<Eigen::Index>& contacts, double* x) const {
   if (contacts.empty()) return;
-  const double V = belt_.velocity(time);
+  const double V = drive_.velocity(time);
   Eigen::VectorXd gap(static_cast<Eigen::Index>(contacts.size()));
   for (Eigen::Index k = 0; k < gap.size(); ++k)
     gap(k) = V - contact_velocity(static_cast<int>(contacts[static_cast<std::size_t>(k)]), x);
@@ -95,7 +95,7 @@ Eigen::VectorXd EventResolver::forces(double time, const std::vector<ContactMode
     const auto i = static_cast<Eigen::Index>(c);
     stuck[c] = modes[c] == ContactMode::kStick;
     if (!stuck[c])
-      force(i) = laws_[c].sliding(modes[c], belt_.velocity(time) - contact_velocity(static_cast<int>(c), x));
+      force(i) = laws_[c].sliding(modes[c], drive_.velocity(time) - contact_velocity(static_cast<int>(c), x));
   }
   stick_forces(instant(time, x), stuck, force);
   return force;
@@ -136,7 +136,7 @@ void EventResolver::settle(HybridPoint& point, int contact, bool touching) {
 
 void EventResolver::settle_single(HybridPoint& point) {
   const ContactMode before = point.modes[0];
-  const double force_before = point.force(0), gap = belt_.velocity(point.time) - contact_velocity(0, point.x.data());
+  const double force_before = point.force(0), gap = drive_.velocity(point.time) - contact_velocity(0, point.x.data());
   const double impulse = gap / model_.mobility(0, 0);
   const double* input = model_.input.data();
   for (Eigen::Index i = 0; i < 2 * model_.np; i += kLanes)

@@ -15,6 +15,7 @@ struct HybridPoint {
   std::vector<ContactMode> modes;
   std::vector<int> multiplicity;  ///< order of the zero of each sliding speed right at `time`: 0, 1 or 2
   Eigen::VectorXd force;          ///< λ at `time`, right limit [nc]
+  Eigen::VectorXd internal = {};  ///< contacts' own states, as State::internal
 };
 
 /// Running sums of the energy balance (see EnergyAudit).
@@ -31,7 +32,7 @@ class EventResolver {
   EventResolver(const HybridSystem& system, const ModalModel& model, const FlowOptions& options);
 
   [[nodiscard]] const std::vector<ContactForces>& laws() const { return laws_; }
-  [[nodiscard]] const friction::Belt& belt() const { return belt_; }
+  [[nodiscard]] const friction::Drive& drive() const { return drive_; }
   [[nodiscard]] Instant instant(double time, const double* x) const;
   /// wᵀq̇ of contact c.
   [[nodiscard]] double contact_velocity(int c, const double* x) const;
@@ -65,7 +66,7 @@ class EventResolver {
   void guard_against_zeno(const HybridPoint& point);
 
   const ModalModel& model_;
-  friction::Belt belt_;
+  friction::Drive drive_;
   std::vector<ContactForces> laws_;
   int max_events_per_window_;
   double zeno_window_;

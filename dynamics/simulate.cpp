@@ -23,6 +23,10 @@ void check_start(const HybridSystem& system, const State& start) {
               " velocities; the system has " + std::to_string(system.size()) + " degrees of freedom");
   require(start.q.allFinite() && start.v.allFinite() && std::isfinite(start.time),
           "start state holds values that are not finite");
+  require(start.internal.size() == 0 || start.internal.size() == system.internal_size(),
+          "start state has " + std::to_string(start.internal.size()) + " contact states; the contacts have " +
+              std::to_string(system.internal_size()));
+  require(start.internal.allFinite(), "start state holds contact states that are not finite");
   require(start.modes.empty() || start.modes.size() == system.contacts().size(),
           "start state names the modes of " + std::to_string(start.modes.size()) + " contacts; the system has " +
               std::to_string(system.contacts().size()));
@@ -91,14 +95,18 @@ Prepared prepare(const HybridSystem& system, const State& start, FlowOptions opt
   if (!at_origin) x = m.from_q * start.q + m.from_v * start.v;
   if (options.zeno_window == 0.0) options.zeno_window = 0.01 * 2.0 * std::numbers::pi / std::max(m.fastest, 1e-300);
   const auto nc = static_cast<Eigen::Index>(system.contacts().size());
-  HybridPoint point{start.time, std::move(x), start_modes(system, start),
-                    std::vector<int>(static_cast<std::size_t>(nc), 0), Eigen::VectorXd::Zero(nc)};
+  HybridPoint point{start.time,
+                    std::move(x),
+                    start_modes(system, start),
+                    std::vector<int>(static_cast<std::size_t>(nc), 0),
+                    Eigen::VectorXd::Zero(nc),
+                    start.internal};
   return {tables, std::move(point), options};
 }
 
 State physical(const ModalModel& m, const HybridPoint& point) {
-  if (!m.has_shapes()) return {point.time, {}, {}, point.modes};
-  return {point.time, m.to_q * point.x, m.to_v * point.x, point.modes};
+  if (!m.has_shapes()) return {point.time, {}, {}, point.modes, point.internal};
+  return {point.time, m.to_q * point.x, m.to_v * point.x, point.modes, point.internal};
 }
 
 /// Energy from the modal coordinates where they decouple it, else from the state.

@@ -47,7 +47,15 @@ HybridSystem HybridSystem::with_drive(friction::Drive drive) const {
   return copy;
 }
 
-State HybridSystem::rest() const { return {0.0, Eigen::VectorXd::Zero(size()), Eigen::VectorXd::Zero(size()), {}}; }
+Eigen::Index HybridSystem::internal_begin(int c) const {
+  Eigen::Index begin = 0;
+  for (int d = 0; d < c; ++d) begin += friction::internal_states(contacts_[static_cast<std::size_t>(d)]);
+  return begin;
+}
+
+Eigen::Index HybridSystem::internal_size() const { return internal_begin(static_cast<int>(contacts_.size())); }
+
+State HybridSystem::rest() const { return {0.0, Eigen::VectorXd::Zero(size()), Eigen::VectorXd::Zero(size()), {}, {}}; }
 
 double HybridSystem::energy(const State& state) const {
   const double energy = structure_.energy(state.q, state.v);

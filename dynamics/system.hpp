@@ -11,8 +11,10 @@
 
 namespace slipmode::dynamics {
 
-/// What one contact is doing. The sign of a slip is the sign of v_rel = v_drive − wᵀq̇.
-enum class ContactMode : std::int8_t { kSlipNegative = -1, kStick = 0, kSlipPositive = 1, kSmooth = 2 };
+/// What one contact is doing. The sign of a slip is the sign of v_rel = v_drive − wᵀq̇ (behind a contact spring: of the
+/// velocity at which the contact point slides). kSmooth: a law without stick. kSeparated: the normal load is negative
+/// and contact is lost.
+enum class ContactMode : std::int8_t { kSlipNegative = -1, kStick = 0, kSlipPositive = 1, kSmooth = 2, kSeparated = 3 };
 
 /// A point of the hybrid state space, in the structure's own degrees of freedom.
 struct State {
@@ -21,11 +23,14 @@ struct State {
   Eigen::VectorXd v;  ///< velocity [n]
   /// One per contact; empty: derived from q, v by consistency (Filippov) when the flow starts.
   std::vector<ContactMode> modes = {};
+  /// Contacts' own states, contact after contact (friction::internal_states). Empty: bristles and springs relaxed,
+  /// normal oscillators at rest where y holds them.
+  Eigen::VectorXd internal = {};
 };
 
 class SystemCache;  // modal data and regimes, built when first needed
 
-/// M q̈ + C q̇ + K q = p + Σ_c w_c λ_c with friction contacts and a belt: a full model or a reduced one alike.
+/// M q̈ + C q̇ + K q = p + Σ_c w_c λ_c with friction contacts and a drive: a full model or a reduced one alike.
 ///
 /// Immutable; copies share the lazily built modal data, which is safe to use from several threads.
 class HybridSystem {
@@ -41,14 +46,19 @@ class HybridSystem {
   [[nodiscard]] const Eigen::VectorXd& load() const { return load_; }
   [[nodiscard]] Eigen::Index size() const { return structure_.size(); }
 
-  /// The same structure and contacts under another drive: modal data and regimes are shared, so a sweep over the belt
-  /// speed pays for them once.
+  /// The same structure and contacts under another drive: modal data and regimes are shared, so a sweep over belt
+  /// speeds or shaker frequencies pays for them once.
   [[nodiscard]] HybridSystem with_drive(friction::Drive drive) const;
 
   /// q = 0, v = 0 at time 0.
   [[nodiscard]] State rest() const;
 
-  /// ½ vᵀMv + ½ qᵀKq − pᵀq [J].
+  /// Number of contacts' own states, of all contacts.
+  [[nodiscard]] Eigen::Index internal_size() const;
+  /// Index of contact c's first own state in State::internal.
+  [[nodiscard]] Eigen::Index internal_begin(int c) const;
+
+  /// ½ vᵀMv + ½ qᵀKq − pᵀq [J]; without what contact springs and bristles store.
   [[nodiscard]] double energy(const State& state) const;
 
   [[nodiscard]] SystemCache& cache() const { return *cache_; }

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <cmath>
+#include <numbers>
 
 namespace slipmode::friction {
 
@@ -30,6 +31,40 @@ struct Checker {
     }
   }
 
+  void positive(const char* key, double value) const {
+    if (!(value > 0.0) || !std::isfinite(value)) fail(fmt::format("{} = {}", key, value), "a finite value > 0");
+  }
+
+  void finite(const char* key, double value) const {
+    if (!std::isfinite(value)) fail(fmt::format("{} = {}", key, value), "a finite value");
+  }
+
+  void load(const NormalLoad& load) const {
+    non_negative("normal_load", load.constant);
+    finite("normal_load slope", load.slope);
+    if (!load.oscillator) return;
+    if (load.slope != 0.0)
+      fail(fmt::format("normal_load has a slope of {} and an oscillator", load.slope),
+           "one of them (the oscillator has its own slope)");
+    const NormalOscillator& own = *load.oscillator;
+    positive("oscillator mass", own.mass);
+    non_negative("oscillator support_stiffness", own.support_stiffness);
+    non_negative("oscillator support_damping", own.support_damping);
+    non_negative("oscillator spring_stiffness", own.spring_stiffness);
+    non_negative("oscillator spring_damping", own.spring_damping);
+    positive("oscillator support_stiffness + spring_stiffness", own.support_stiffness + own.spring_stiffness);
+    finite("oscillator slope", own.slope);
+  }
+
+  void tilted(double mu) const {
+    for (const double direction : {-1.0, 1.0}) {
+      if (std::cos(contact.tilt) - direction * mu * std::sin(contact.tilt) <= 0.0)
+        fail(fmt::format("tilt = {} rad with mu = {} jams the slider", contact.tilt, mu), "mu tan|tilt| < 1");
+      if (effective_coefficient(mu, contact.tilt, direction) < 0.0)
+        fail(fmt::format("tilt = {} rad with mu = {} slides by itself", contact.tilt, mu), "tan|tilt| <= mu");
+    }
+  }
+
   void coefficients(double mu_s, double mu_k) const {
     non_negative("mu_k", mu_k);
     non_negative("mu_s", mu_s);
@@ -49,7 +84,7 @@ void validate(const Contact& contact) {
   if ((contact.direction.array() == 0.0).all()) {
     check.fail("direction is zero", "a direction that moves the contact");
   }
-  check.non_negative("normal_load", contact.normal_load);
+  check.load(contact.normal_load);
   if (!std::isfinite(contact.offset)) {
     check.fail(fmt::format("offset = {}", contact.offset), "a finite value");
   }
@@ -64,8 +99,38 @@ void validate(const Contact& contact) {
                           if (!(law.epsilon > 0.0) || !std::isfinite(law.epsilon)) {
                             check.fail(fmt::format("epsilon = {}", law.epsilon), "a finite value > 0");
                           }
+                        },
+                        [&](const CompliantCoulomb& law) {
+                          check.coefficients(law.mu_s, law.mu_k);
+                          check.positive("stiffness", law.stiffness);
+                        },
+                        [&](const Dahl& law) {
+                          check.positive("mu", law.mu);
+                          check.positive("stiffness", law.stiffness);
+                        },
+                        [&](const LuGre& law) {
+                          check.coefficients(law.mu_s, law.mu_k);
+                          check.positive("mu_k", law.mu_k);
+                          check.positive("stribeck_speed", law.stribeck_speed);
+                          check.positive("stiffness", law.stiffness);
+                          check.non_negative("damping", law.damping);
+                          check.non_negative("viscous", law.viscous);
                         }},
              contact.law);
+  check.finite("tilt", contact.tilt);
+  if (!is_piecewise_linear(contact.law)) {
+    if (contact.tilt != 0.0)
+      check.fail(fmt::format("tilt = {} rad with a law that is not Coulomb", contact.tilt),
+                 "a Coulomb law, rigid or compliant, or no tilt");
+    if (!contact.normal_load.is_constant())
+      check.fail("a normal load that varies, with a law that is not Coulomb",
+                 "a Coulomb law, rigid or compliant, or a constant load");
+  } else if (contact.tilt != 0.0) {
+    if (std::abs(contact.tilt) >= std::numbers::pi / 2.0)
+      check.fail(fmt::format("tilt = {} rad", contact.tilt), "an angle below pi/2");
+    check.tilted(kinetic_coefficient(contact.law, 0.0));
+    check.tilted(static_coefficient(contact.law));
+  }
 }
 
 double kinetic_coefficient(const Law& law, double speed) {
@@ -73,6 +138,12 @@ double kinetic_coefficient(const Law& law, double speed) {
                                [speed](const Stribeck& stribeck) {
                                  return stribeck.mu_k +
                                         (stribeck.mu_s - stribeck.mu_k) * std::exp(-stribeck.alpha * speed);
+                               },
+                               [](const CompliantCoulomb& compliant) { return compliant.mu_k; },
+                               [](const Dahl& dahl) { return dahl.mu; },
+                               [speed](const LuGre& lugre) {
+                                 const double share = speed / lugre.stribeck_speed;
+                                 return lugre.mu_k + (lugre.mu_s - lugre.mu_k) * std::exp(-share * share);
                                },
                                [](const TanhRegularised&) -> double {
                                  throw InvalidInput(
@@ -82,16 +153,34 @@ double kinetic_coefficient(const Law& law, double speed) {
                     law);
 }
 
+double limit_coefficient(const Law& law) {
+  return std::visit(Overloaded{[](const Dahl& dahl) { return dahl.mu; }, [](const auto& any) { return any.mu_k; }},
+                    law);
+}
+
 double static_coefficient(const Law& law) {
-  return std::visit([](const auto& any) { return any.mu_s; }, law);
+  return std::visit(Overloaded{[](const Dahl& dahl) { return dahl.mu; }, [](const auto& any) { return any.mu_s; }},
+                    law);
 }
 
 bool is_piecewise_linear(const Law& law) {
   return std::visit(
       Overloaded{[](const Coulomb&) { return true; },
                  [](const Stribeck& stribeck) { return stribeck.alpha == 0.0 || stribeck.mu_s == stribeck.mu_k; },
-                 [](const TanhRegularised&) { return false; }},
+                 [](const CompliantCoulomb&) { return true; }, [](const auto&) { return false; }},
       law);
+}
+
+double effective_coefficient(double mu, double tilt, double direction) {
+  const double cosine = std::cos(tilt), sine = direction * std::sin(tilt);
+  return (mu * cosine + sine) / (cosine - mu * sine);
+}
+
+int internal_states(const Contact& contact) {
+  const int own = std::visit(Overloaded{[](const CompliantCoulomb&) { return 1; }, [](const Dahl&) { return 1; },
+                                        [](const LuGre&) { return 1; }, [](const auto&) { return 0; }},
+                             contact.law);
+  return own + (contact.normal_load.oscillator ? 2 : 0);
 }
 
 }  // namespace slipmode::friction

@@ -3,7 +3,9 @@
 #include "core/errors.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace slipmode::friction {
 
@@ -24,18 +26,67 @@ std::optional<double> Belt::next_corner(double t) const {
   return t < ramp_begin ? ramp_begin : ramp_end;
 }
 
+double Shaker::omega() const { return 2.0 * std::numbers::pi * frequency_hz; }
+
+double Shaker::period() const { return 1.0 / frequency_hz; }
+
+double Shaker::displacement(double t) const { return amplitude * std::sin(omega() * t + phase); }
+
+double Shaker::velocity(double t) const { return amplitude * omega() * std::cos(omega() * t + phase); }
+
+double Shaker::acceleration(double t) const { return -omega() * omega() * displacement(t); }
+
+double Shaker::next_upward_zero(double t) const {
+  // cos(ω t + φ) rises through zero at ω t + φ = −π/2 + 2πk.
+  const double turns = t * frequency_hz + phase / (2.0 * std::numbers::pi) + 0.25;
+  const double k = std::floor(turns) + 1.0;
+  return (k - 0.25 - phase / (2.0 * std::numbers::pi)) / frequency_hz;
+}
+
+double Drive::way(double t0, double t1) const {
+  if (shaker()) return shaker()->displacement(t1) - shaker()->displacement(t0);
+  const Belt& b = *belt();
+  double way = 0.0;
+  for (double t = t0; t < t1;) {
+    const double until = std::min(t1, b.next_corner(t).value_or(t1));
+    way += (until - t) * (b.velocity(t) + 0.5 * (until - t) * b.acceleration(t));
+    t = until;
+  }
+  return way;
+}
+
+namespace {
+
+void check_finite(const char* drive, const char* key, double value) {
+  if (!std::isfinite(value)) throw InvalidInput(fmt::format("{}: {} = {}; expected a finite value", drive, key, value));
+}
+
 void validate(const Belt& belt) {
-  const auto check_finite = [](const char* key, double value) {
-    if (!std::isfinite(value)) throw InvalidInput(fmt::format("belt: {} = {}; expected a finite value", key, value));
-  };
-  check_finite("speed", belt.speed);
-  check_finite("end_speed", belt.end_speed);
-  check_finite("ramp_begin", belt.ramp_begin);
-  check_finite("ramp_end", belt.ramp_end);
+  check_finite("belt", "speed", belt.speed);
+  check_finite("belt", "end_speed", belt.end_speed);
+  check_finite("belt", "ramp_begin", belt.ramp_begin);
+  check_finite("belt", "ramp_end", belt.ramp_end);
   if (belt.ramp_end < belt.ramp_begin) {
     throw InvalidInput(fmt::format("belt: ramp_end = {} is before ramp_begin = {}; expected ramp_end >= ramp_begin",
                                    belt.ramp_end, belt.ramp_begin));
   }
+}
+
+void validate(const Shaker& shaker) {
+  check_finite("shaker", "amplitude", shaker.amplitude);
+  check_finite("shaker", "frequency_hz", shaker.frequency_hz);
+  check_finite("shaker", "phase", shaker.phase);
+  if (shaker.amplitude < 0.0)
+    throw InvalidInput(fmt::format("shaker: amplitude = {}; expected >= 0", shaker.amplitude));
+  if (!(shaker.frequency_hz > 0.0))
+    throw InvalidInput(fmt::format("shaker: frequency_hz = {}; expected > 0", shaker.frequency_hz));
+}
+
+}  // namespace
+
+void validate(const Drive& drive) {
+  if (drive.belt()) validate(*drive.belt());
+  if (drive.shaker()) validate(*drive.shaker());
 }
 
 }  // namespace slipmode::friction

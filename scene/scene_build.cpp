@@ -12,7 +12,7 @@ namespace slipmode::scene {
 namespace {
 
 double kinetic_friction(const ContactSpec& contact) {
-  return contact.normal_load * std::visit([](const auto& law) { return law.mu_k; }, contact.law);
+  return contact.normal_load * friction::limit_coefficient(contact.law);
 }
 
 bool is_anchored(const fem::ChainOptions& chain) {

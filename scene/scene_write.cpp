@@ -52,9 +52,8 @@ std::string contact_toml(const ContactSpec& contact) {
   std::string out =
       fmt::format("\n[[contact]]\nname = {}\nat = {}\nlaw = \"{}\"\nnormal_load = {}\n", quoted(contact.name),
                   contact.at, kLaws[contact.law.index()].word, number(contact.normal_load));
-  out += std::visit(
-      [](const auto& law) { return fmt::format("mu_s = {}\nmu_k = {}\n", number(law.mu_s), number(law.mu_k)); },
-      contact.law);
+  out += fmt::format("mu_s = {}\nmu_k = {}\n", number(friction::static_coefficient(contact.law)),
+                     number(friction::limit_coefficient(contact.law)));
   if (const auto* law = std::get_if<friction::Stribeck>(&contact.law)) {
     out += fmt::format("alpha = {}\n", number(law->alpha));
   }
@@ -64,7 +63,8 @@ std::string contact_toml(const ContactSpec& contact) {
   return out;
 }
 
-std::string drive_toml(const friction::Belt& belt) {
+std::string drive_toml(const friction::Drive& drive) {
+  const friction::Belt& belt = *drive.belt();
   const bool ramp = belt.ramp_end > belt.ramp_begin;
   const std::string speed = ramp ? fmt::format("{{ from = {}, to = {}, begin = {}, end = {} }}", number(belt.speed),
                                                number(belt.end_speed), number(belt.ramp_begin), number(belt.ramp_end))

@@ -81,10 +81,11 @@ void save_contacts(StoreWriter& store, const std::string& group, const dynamics:
     const friction::Contact& contact = contacts[c];
     names.push_back(contact.name);
     laws.emplace_back(kLaws[contact.law.index()]);
-    std::visit([&](const auto& law) { mu_s.push_back(law.mu_s), mu_k.push_back(law.mu_k); }, contact.law);
+    mu_s.push_back(friction::static_coefficient(contact.law));
+    mu_k.push_back(friction::limit_coefficient(contact.law));
     alpha.push_back(alpha_of(contact.law));
     epsilon.push_back(epsilon_of(contact.law));
-    load.push_back(contact.normal_load);
+    load.push_back(contact.normal_load.constant);
     offset.push_back(contact.offset);
     direction.col(static_cast<Eigen::Index>(c)) = contact.direction;
   }
@@ -143,8 +144,8 @@ void save_drive(StoreWriter& store, const std::string& group, const friction::Be
 friction::Drive load_drive(const StoreReader& store, const std::string& group) {
   const std::string kind = store.text(group + "/kind");
   if (kind != "belt") store.fail(group + "/kind", fmt::format("'{}'; expected belt", kind));
-  return {store.number(group + "/speed"), store.number(group + "/end_speed"), store.number(group + "/ramp_begin"),
-          store.number(group + "/ramp_end")};
+  return friction::Belt{store.number(group + "/speed"), store.number(group + "/end_speed"),
+                        store.number(group + "/ramp_begin"), store.number(group + "/ramp_end")};
 }
 
 fem::Structure load_structure(const StoreReader& store, const std::string& group) {
@@ -179,7 +180,7 @@ void save(StoreWriter& store, const std::string& group, const dynamics::HybridSy
   }
   store.write(group + "/load", system.load(), {"N", "constant load on each dof; empty: none"});
   save_contacts(store, group + "/contacts", system);
-  save_drive(store, group + "/drive", system.drive());
+  save_drive(store, group + "/drive", *system.drive().belt());
 }
 
 dynamics::HybridSystem load_system(const StoreReader& store, const std::string& group) {

@@ -193,7 +193,7 @@ void expect_same(const dynamics::HybridSystem& a, const dynamics::HybridSystem& 
   for (std::size_t c = 0; c < a.contacts().size(); ++c) {
     EXPECT_EQ(a.contacts()[c].direction, b.contacts()[c].direction);
     EXPECT_EQ(a.contacts()[c].law.index(), b.contacts()[c].law.index());
-    EXPECT_EQ(a.contacts()[c].normal_load, b.contacts()[c].normal_load);
+    EXPECT_EQ(a.contacts()[c].normal_load.constant, b.contacts()[c].normal_load.constant);
     EXPECT_EQ(a.contacts()[c].offset, b.contacts()[c].offset);
     EXPECT_EQ(a.contacts()[c].name, b.contacts()[c].name);
   }
