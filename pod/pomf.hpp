@@ -23,8 +23,8 @@ struct PomfResult {
   Basis basis;
   PodResult discrete;          ///< POMs at the sensors [ns x L], with their own energies
   Eigen::MatrixXd continuous;  ///< the fits of the POMs before Gram-Schmidt [n x L]
-  /// Share of POMF i in the fitted ensemble's mass-metric mean square; the sum over as many POMFs as the rank is 1. (S4
-  /// section 5.4 leaves open how POMFs get an energy of their own; this is it.)
+  /// Share of POMF i in the fitted ensemble's mass-metric mean square; the sum is 1 when as many are kept as the fitted
+  /// ensemble has rank. (S4 section 5.4 leaves open how POMFs get an energy of their own; this is it.)
   Eigen::VectorXd mass_shares;
   double condition = 0.0;  ///< of the fit
   double misfit = 0.0;  ///< largest |S ψ_i − p_i| of a kept POM p_i, |p_i| = 1; 0 when there are as many functions as

@@ -12,7 +12,8 @@ namespace slipmode::pod {
 
 namespace {
 
-constexpr double kSamePlace = 1e-9;  // of the beam's reach
+constexpr double kSamePlace = 1e-9;   // of the beam's reach
+constexpr double kEnd = 1.0 + 1e-12;  // positions computed by arithmetic miss the ends by rounding
 
 std::string label(const Sensor& sensor, std::size_t index) {
   return fmt::format("sensor {} (from 1), {} at x = {} m", index + 1,
@@ -21,12 +22,12 @@ std::string label(const Sensor& sensor, std::size_t index) {
 
 void check_place(const fem::Beam& beam, const Sensor& sensor, std::size_t index) {
   if (sensor.kind == SensorKind::kDisplacement) {
-    if (sensor.x > 0.0 && sensor.x <= beam.reach()) return;
+    if (sensor.x > 0.0 && sensor.x <= kEnd * beam.reach()) return;
     throw InvalidInput(fmt::format("{}: off the beam; expected 0 < x <= {} m (the clamp at 0 does not move)",
                                    label(sensor, index), beam.reach()));
   }
-  if (sensor.x >= 0.0 && sensor.x <= beam.length()) return;
-  if (sensor.x > beam.length() && sensor.x <= beam.reach()) {
+  if (sensor.x >= 0.0 && sensor.x <= kEnd * beam.length()) return;
+  if (sensor.x > beam.length() && sensor.x <= kEnd * beam.reach()) {
     throw InvalidInput(fmt::format(
         "{}: on the rigid extension, which does not bend; expected 0 <= x <= {} m, or a displacement sensor",
         label(sensor, index), beam.length()));
