@@ -45,7 +45,8 @@ Structure assemble(const BeamOptions& options, const std::vector<BeamElement>& e
 double checked_position(const char* row, double x, double end, const char* end_name) {
   const double slack = kEndTolerance * end;
   if (!(x >= -slack && x <= end + slack)) {
-    throw InvalidInput(fmt::format("beam: {} at x = {} m; expected 0 <= x <= {} m ({})", row, x, end, end_name));
+    throw InvalidInput(
+        fmt::format("beam: {} at x = {:.12g} m; expected 0 <= x <= {:.12g} m ({})", row, x, end, end_name));
   }
   return std::clamp(x, 0.0, end);
 }
