@@ -30,7 +30,7 @@ inline dynamics::HybridSystem random_system(Random& random, Eigen::Index n) {
   Eigen::MatrixXd C = Eigen::MatrixXd::Zero(n, n);
   if (kind < 0.4) C = 0.01 * M + 0.02 * K;
   if (kind > 0.6) C = random_definite(random, n, (n + 1) / 2, 0.0);
-  friction::Contact contact{normal_matrix(random, n, 1), friction::Stribeck{0.4, 0.2, 8.0}, 3.0, 0.7, "pad"};
+  friction::Contact contact{normal_matrix(random, n, 1), friction::Stribeck{0.4, 0.2, 8.0}, 3.0, 0.7, 0.0, "pad"};
   return {fem::Structure(M, fem::Matrix(C), K), {contact}, friction::Belt::constant(0.2), normal_matrix(random, n, 1)};
 }
 

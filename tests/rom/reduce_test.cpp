@@ -36,7 +36,7 @@ TEST(Reduce, MatchesAProjectionDoneByHand) {
   // M = diag(1, 2, 3), unit springs, wall on the left; φ1 = (1, 2, 3), φ2 = (1, 0, −1), q̄ = (1, 1, 2). By hand:
   // Kφ1 = (0, 0, 1), Kφ2 = (2, 0, −1), Kq̄ = (1, −1, 1).
   const fem::Structure structure = fem::chain({.masses = 3, .mass = {1.0, 2.0, 3.0}, .damping = 0.5});
-  const friction::Contact contact{Eigen::Vector3d::Unit(2), friction::Coulomb{0.4, 0.2}, 3.0, 0.5, "pad"};
+  const friction::Contact contact{Eigen::Vector3d::Unit(2), friction::Coulomb{0.4, 0.2}, 3.0, 0.5, 0.0, "pad"};
   const HybridSystem full(structure, {contact}, friction::Belt::constant(0.2), Eigen::Vector3d(0.5, 0.0, 0.25));
   const Eigen::MatrixXd Phi = (Eigen::MatrixXd(3, 2) << 1, 1, 2, 0, 3, -1).finished();
   const HybridSystem reduced = reduce(full, user_basis(Phi, Eigen::Vector3d(1.0, 1.0, 2.0)));
