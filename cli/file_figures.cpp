@@ -35,7 +35,7 @@ Eigen::VectorXd to_vector(const std::vector<double>& values) {
 
 /// "x_{10}": the displacement of the scene's first contact as the figures call it.
 std::string contact_symbol(const scene::Scene& scene, const std::string& letter) {
-  return fmt::format("{}_{{{}}}", letter, scene.contacts.front().at);
+  return fmt::format("{}_{{{}}}", letter, scene::to_string(scene.contacts.front().at));
 }
 
 Figure bifurcation(const StoreReader& store) {

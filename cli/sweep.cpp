@@ -113,7 +113,7 @@ Subject subject(const scene::Scene& scene, const std::string& key, const std::st
 void check_values(const scene::Scene& scene, const Over& over, Eigen::Index size) {
   for (const double value : over.values) {
     const scene::Scene changed = scene::set_key(scene, over.key, value);
-    if (changed.structure.masses == scene.structure.masses) continue;
+    if (changed.size() == scene.size()) continue;
     throw InvalidInput(
         fmt::format("--over {}: the number of degrees of freedom must stay at {} along a sweep, value {} "
                     "changes it; run one sweep per size with --set",

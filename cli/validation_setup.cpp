@@ -56,7 +56,7 @@ std::vector<diagnostics::Candidate> pom_and_lnm(const scene::Scene& scene, const
   std::vector<diagnostics::Candidate> candidates;
   candidates.push_back({.name = "POM", .basis = result.basis, .captured = cumulative(result.shares)});
   candidates.push_back({.name = "LNM", .basis = lnm, .captured = pod::captured_energy(moments(result), lnm)});
-  if (scene.reduction.basis == pod::BasisKind::kLnm) std::swap(candidates[0], candidates[1]);
+  if (scene.reduction.basis == scene::BasisChoice::kLnm) std::swap(candidates[0], candidates[1]);
   return candidates;
 }
 

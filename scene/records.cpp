@@ -10,7 +10,11 @@ namespace slipmode::scene {
 namespace {
 
 constexpr std::int64_t kLastEventKind = static_cast<std::int64_t>(dynamics::EventKind::kDriveCorner);
-constexpr std::array<const char*, 3> kBasisKinds = {"pom", "lnm", "user"};  // in the order of pod::BasisKind
+constexpr std::array kBasisKinds = {pod::BasisKind::kPom, pod::BasisKind::kLnm, pod::BasisKind::kUser,
+                                    pod::BasisKind::kPomf, pod::BasisKind::kLnmStatic};
+constexpr const char* kBasisWords = "pom, lnm, user, pomf or lnm_static";
+constexpr const char* kModeWords = "-1 slip-, 0 stick, 1 slip+, 2 smooth, 3 contact lost";
+constexpr std::int64_t kLastMode = static_cast<std::int64_t>(dynamics::ContactMode::kSeparated);
 
 template <class Values>
 void require_finite(const StoreReader& store, const std::string& name, const Values& values) {
@@ -47,9 +51,9 @@ std::vector<std::int64_t> codes(const StoreReader& store, const std::string& nam
 
 pod::BasisKind load_kind(const StoreReader& store, const std::string& name) {
   const std::string kind = store.text(name);
-  const auto found = std::ranges::find(kBasisKinds, kind);
-  if (found == kBasisKinds.end()) store.fail(name, fmt::format("'{}'; expected pom, lnm or user", kind));
-  return static_cast<pod::BasisKind>(found - kBasisKinds.begin());
+  const auto found = std::ranges::find(kBasisKinds, kind, [](pod::BasisKind known) { return pod::to_string(known); });
+  if (found == kBasisKinds.end()) store.fail(name, fmt::format("'{}'; expected {}", kind, kBasisWords));
+  return *found;
 }
 
 template <class Get>
@@ -69,7 +73,6 @@ std::vector<std::int64_t> gather_codes(const std::vector<dynamics::Event>& event
 
 void save_events(StoreWriter& store, const std::string& group, const std::vector<dynamics::Event>& events) {
   using dynamics::Event;
-  const char* modes = "-1 slip-, 0 stick, 1 slip+, 2 smooth";
   store.describe_group(group, "events in time order, one entry of each dataset per event");
   store.write(group + "/time", gather(events, [](const Event& e) { return e.time; }), {"s", "time of the event"});
   store.write(group + "/contact", gather_codes(events, [](const Event& e) { return e.contact; }),
@@ -77,9 +80,9 @@ void save_events(StoreWriter& store, const std::string& group, const std::vector
   store.write(group + "/kind", gather_codes(events, [](const Event& e) { return e.kind; }),
               {"", "0 stick, 1 release, 2 reversal, 3 grazing, 4 drive corner"});
   store.write(group + "/before", gather_codes(events, [](const Event& e) { return e.before; }),
-              {"", std::string("mode before: ") + modes});
+              {"", std::string("mode before: ") + kModeWords});
   store.write(group + "/after", gather_codes(events, [](const Event& e) { return e.after; }),
-              {"", std::string("mode after: ") + modes});
+              {"", std::string("mode after: ") + kModeWords});
   store.write(group + "/displacement", gather(events, [](const Event& e) { return e.displacement; }),
               {"m", "contact displacement at the event"});
   store.write(group + "/velocity", gather(events, [](const Event& e) { return e.velocity; }),
@@ -93,8 +96,8 @@ std::vector<dynamics::Event> load_events(const StoreReader& store, const std::st
   const Eigen::Index count = time.size();
   const auto contact = codes(store, group + "/contact", count, -1, std::numeric_limits<int>::max());
   const auto kind = codes(store, group + "/kind", count, 0, kLastEventKind);
-  const auto before = codes(store, group + "/before", count, -1, 2);
-  const auto after = codes(store, group + "/after", count, -1, 2);
+  const auto before = codes(store, group + "/before", count, -1, kLastMode);
+  const auto after = codes(store, group + "/after", count, -1, kLastMode);
   const Eigen::VectorXd displacement = finite_vector(store, group + "/displacement", count);
   const Eigen::VectorXd velocity = finite_vector(store, group + "/velocity", count);
   const Eigen::VectorXd force = finite_vector(store, group + "/force", count);
@@ -166,7 +169,11 @@ void save(StoreWriter& store, const std::string& group, const dynamics::State& s
   store.write(group + "/v", state.v, {"m/s", "velocity of each dof"});
   std::vector<std::int64_t> modes;
   for (const dynamics::ContactMode mode : state.modes) modes.push_back(static_cast<std::int64_t>(mode));
-  store.write(group + "/modes", modes, {"", "per contact: -1 slip-, 0 stick, 1 slip+, 2 smooth; empty: to be derived"});
+  store.write(group + "/modes", modes, {"", fmt::format("per contact: {}; empty: to be derived", kModeWords)});
+  store.write(group + "/internal", state.internal,
+              {"",
+               "contacts' own states, contact after contact: spring stretch or bristle deflection [m], normal "
+               "oscillator displacement [m] and velocity [m/s]; empty: none, or to be derived"});
 }
 
 dynamics::State load_state(const StoreReader& store, const std::string& group) {
@@ -174,9 +181,11 @@ dynamics::State load_state(const StoreReader& store, const std::string& group) {
   state.time = store.number(group + "/time");
   state.q = finite_vector(store, group + "/q");
   state.v = finite_vector(store, group + "/v", state.q.size());
-  for (const std::int64_t mode : codes(store, group + "/modes", StoreReader::kAny, -1, 2)) {
+  for (const std::int64_t mode : codes(store, group + "/modes", StoreReader::kAny, -1, kLastMode)) {
     state.modes.push_back(static_cast<dynamics::ContactMode>(mode));
   }
+  const std::string internal = group + "/internal";
+  if (store.has(internal)) state.internal = finite_vector(store, internal);  // files of earlier versions have none
   return state;
 }
 
@@ -244,8 +253,7 @@ void save(StoreWriter& store, const std::string& group, const pod::Basis& basis)
   store.write(group + "/vectors", basis.vectors, {"1", "basis vectors, dof x mode"});
   store.write(group + "/mean", basis.mean, {"m", "mean displacement of each dof"});
   store.write(group + "/energy", basis.energy, {"1", "share of the ensemble's energy in each mode; empty: unknown"});
-  store.write(group + "/kind", std::string(kBasisKinds[static_cast<std::size_t>(basis.kind)]),
-              {"", "pom, lnm or user"});
+  store.write(group + "/kind", std::string(pod::to_string(basis.kind)), {"", kBasisWords});
   store.write(group + "/provenance", basis.provenance, {"", "how the basis was made"});
 }
 

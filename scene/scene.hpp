@@ -2,10 +2,11 @@
 
 #include "dynamics/simulate.hpp"
 #include "dynamics/system.hpp"
+#include "fem/beam.hpp"
 #include "fem/chain.hpp"
-#include "friction/contact.hpp"
+#include "friction/amplitude_curve.hpp"
 #include "friction/drive.hpp"
-#include "pod/basis.hpp"
+#include "scene/specs.hpp"
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -14,74 +15,6 @@
 #include <vector>
 
 namespace slipmode::scene {
-
-/// A friction contact on one mass of the chain ([[contact]]).
-struct ContactSpec {
-  int at = 1;                ///< mass number, 1..N
-  friction::Law law;         ///< law, mu_s, mu_k, alpha, epsilon
-  double normal_load = 1.0;  ///< N > 0 [N]
-  std::string name;          ///< default "contact 1", "contact 2", ...
-};
-
-/// How long a run is and what is kept ([time]).
-struct TimeSpec {
-  double duration = 0.0;   ///< of the whole run, > transient [s]
-  double transient = 0.0;  ///< not kept, ≥ 0 [s]
-  double sample = 0.5;     ///< sampling interval, > 0 [s]
-};
-
-/// Where a run starts ([initial]); default rest.
-struct InitialSpec {
-  enum class At {
-    kRest,    ///< q = 0, v = 0
-    kStatic,  ///< K q = Σ w μ_k N sign(belt speed at time 0), v = 0
-    kGiven,   ///< the arrays below
-  } at = At::kRest;
-  std::vector<double> displacement;  ///< N values (kGiven) [m]
-  std::vector<double> velocity;      ///< N values (kGiven) [m/s]
-};
-
-/// Runs that feed the basis ([ensemble]); without it one run, unperturbed.
-struct EnsembleSpec {
-  int members = 1;             ///< runs per speed, ≥ 1
-  std::uint64_t seed = 1;      ///< of the perturbations
-  double spread = 0.0;         ///< standard deviation of each start's displacements and velocities, ≥ 0 [m], [m/s]
-  std::vector<double> speeds;  ///< belt speeds to run at; empty: the drive's own [m/s]
-};
-
-/// What the reduced model is made of ([reduction]).
-struct ReductionSpec {
-  pod::BasisKind basis = pod::BasisKind::kPom;            ///< pom | lnm
-  pod::ModeChoice choice = {.modes = 0, .energy = 0.99};  ///< energy, or modes
-};
-
-/// A grid of values from, from ± step, ... up to `to`.
-struct Range {
-  double from = 0.0, to = 0.0, step = 1.0;  ///< step > 0; the direction follows from `from` and `to`
-
-  /// The values, as diagnostics::sweep_values gives them.
-  [[nodiscard]] std::vector<double> values() const;
-};
-
-/// How full and reduced models are compared ([validation]).
-struct ValidationSpec {
-  Range speeds = {0.5, 0.001, 0.001};  ///< belt speeds of the bifurcation diagram [m/s]
-  int segments = 1;                    ///< chains the sweep is cut into; each starts anew
-  double transient = 1000.0;           ///< run first at each speed, nothing kept [s]
-  double block = 5000.0;               ///< then blocks of this length, each judged [s]
-  double limit = 100000.0;             ///< until periodic or so long, ≥ block: attractors and orbits [s]
-  double sweep_limit = 5000.0;         ///< the same at each value of a sweep, > 0 [s]
-  double period_tolerance = 1e-5;      ///< slip states closer than this, relative to their range, count as the same
-  int max_period = 64;                 ///< longest period looked for, in slips
-  double horizon = 100.0;              ///< full against reduced from shared starts, on the scene's own drive [s]
-  int horizon_starts = 16;             ///< how many shared starts are averaged
-  std::vector<double> orbits;          ///< belt speeds at which periodic orbits are compared [m/s]
-  double orbit_tolerance = 1e-8;       ///< to which such an orbit must repeat
-  std::vector<int> modes;              ///< sizes of the reduced models compared; empty: 1..N
-  double lyapunov_duration = 20000.0;  ///< over which the largest exponent is measured [s]
-  double cost_duration = 10000.0;      ///< simulated by the timed runs; 0: no timing [s]
-  int cost_repeats = 5;                ///< cost is the median of this many runs
-};
 
 /// Where a scene came from; kept for provenance.
 struct SceneSource {
@@ -94,16 +27,26 @@ struct SceneSource {
 struct Scene {
   std::string title;
   std::string units = "dimensionless";  ///< "dimensionless" or "SI"
-  fem::ChainOptions structure;
+  std::variant<fem::ChainOptions, fem::BeamOptions> structure;
   std::vector<ContactSpec> contacts;
-  friction::Drive drive;
+  friction::Drive drive;               ///< a shaker has the amplitude of its curve at its frequency
+  friction::AmplitudeCurve amplitude;  ///< of a shaker, over frequency
   TimeSpec time;
   InitialSpec initial;
   EnsembleSpec ensemble;
+  std::optional<SensorSpec> sensors;
   ReductionSpec reduction;
-  ValidationSpec validation;
-  dynamics::FlowOptions flow;  ///< method and tolerance from [flow]
+  ValidationSpec validation;    ///< for a belt
+  ShakenValidationSpec shaken;  ///< for a shaker
+  dynamics::FlowOptions flow;   ///< method and tolerance from [flow]
   SceneSource source;
+
+  /// The chain, or null.
+  [[nodiscard]] const fem::ChainOptions* chain() const { return std::get_if<fem::ChainOptions>(&structure); }
+  /// The beam, or null.
+  [[nodiscard]] const fem::BeamOptions* beam() const { return std::get_if<fem::BeamOptions>(&structure); }
+  /// Degrees of freedom of the full model.
+  [[nodiscard]] Eigen::Index size() const;
 };
 
 /// Reads and checks a scene.
@@ -127,15 +70,42 @@ struct Scene {
 /// Value of any numeric key, defaults included. @throws InvalidInput if there is none of that name or it is no number
 [[nodiscard]] double get_key(const Scene& scene, const std::string& path);
 
-/// The full model: chain, contacts, drive.
+/// The finite-element beam of a beam scene: rows of displacement, slope and strain, the structure of the full model.
+/// @throws InvalidInput  for a chain; for damping that cannot be met
+[[nodiscard]] fem::Beam build_beam(const Scene& scene);
+/// The full model: chain or beam, contacts, drive.
 [[nodiscard]] dynamics::HybridSystem build_system(const Scene& scene);
-/// Where a run starts (see InitialSpec), at time 0.
-/// @throws InvalidInput  "static" for a structure that is free to move as a whole
+/// The same on a beam that was built already.
+[[nodiscard]] dynamics::HybridSystem build_system(const Scene& scene, const fem::Beam& beam);
+
+/// The drive at another belt speed [m/s] or, with the amplitude its curve has there, shaker frequency [Hz].
+/// @throws InvalidInput  for a frequency the amplitude curve does not cover
+[[nodiscard]] friction::Drive drive_at(const Scene& scene, double speed_or_frequency);
+/// The parameter of drive_at the scene itself is at: the belt's speed at time 0, or the shaker's frequency.
+[[nodiscard]] double drive_parameter(const Scene& scene);
+/// [time] at another shaker frequency: a time in cycles is another one in seconds there.
+[[nodiscard]] TimeSpec time_at(const Scene& scene, double frequency_hz);
+
+/// Where a run starts (see InitialSpec), at time 0. In "static" contact springs and bristles carry the sliding force
+/// and normal oscillators are at rest; elsewhere contacts' own states are left to the flow (dynamics::State::internal).
+/// @throws InvalidInput  "static" for a structure that is free to move as a whole, or when contact is lost there
 [[nodiscard]] dynamics::State initial_state(const Scene& scene, const dynamics::HybridSystem& system);
-/// Starts of the ensemble's members: initial_state with `spread` times a standard normal number added to each
-/// displacement, then to each velocity; member k draws from Random::stream(seed, k). All equal when spread = 0.
+/// Starts of the ensemble's members. All equal when spread = 0; member k draws from Random::stream(seed, k).
+///
+/// On a chain initial_state with `spread` times a standard normal number added to each displacement, then to each
+/// velocity. Such noise on each degree of freedom of a beam would be all curvature: there the same number of times each
+/// of the six lowest natural modes is added, scaled to a largest nodal displacement of 1, to the displacements, then to
+/// the velocities.
 [[nodiscard]] std::vector<dynamics::State> ensemble_states(const Scene& scene, const dynamics::HybridSystem& system);
 /// Durations and flow options of [time] and [flow].
 [[nodiscard]] dynamics::SimulateOptions simulate_options(const Scene& scene);
+
+/// The scene's sensors. @throws InvalidInput  if it has none
+[[nodiscard]] pod::SensorArray sensor_array(const Scene& scene, const fem::Beam& beam);
+/// Their noise. @throws InvalidInput  if it has none
+[[nodiscard]] pod::Noise sensor_noise(const Scene& scene);
+/// Where the strain of Poincaré sections is read: validation.gauge, by default an eighth of the beam from the clamp
+/// (S4: 0.05 m of 0.4) [m]. @throws InvalidInput  for a chain
+[[nodiscard]] double gauge_position(const Scene& scene);
 
 }  // namespace slipmode::scene

@@ -1,89 +1,85 @@
 #include "core/errors.hpp"
-#include "core/random.hpp"
-#include "diagnostics/sweep.hpp"
-#include "scene/scene.hpp"
+#include "scene/scene_parts.hpp"
 
 #include <fmt/format.h>
-#include <Eigen/SparseCholesky>
-#include <algorithm>
+#include <numbers>
 
 namespace slipmode::scene {
 
 namespace {
 
-double kinetic_friction(const ContactSpec& contact) {
-  return contact.normal_load * friction::limit_coefficient(contact.law);
+const fem::BeamOptions& beam_of(const Scene& scene, const char* what) {
+  if (scene.beam() != nullptr) return *scene.beam();
+  throw InvalidInput(fmt::format("{}: structure.kind = \"chain\": {} is for beams; valid: a scene with kind = \"beam\"",
+                                 scene.source.path, what));
 }
 
-bool is_anchored(const fem::ChainOptions& chain) {
-  return chain.left_fixed || chain.right_fixed ||
-         std::ranges::any_of(chain.ground_stiffness, [](double stiffness) { return stiffness > 0.0; });
+const SensorSpec& sensors_of(const Scene& scene) {
+  if (scene.sensors) return *scene.sensors;
+  throw InvalidInput(fmt::format("{}: sensors: missing table; add [sensors] with kind and x", scene.source.path));
 }
 
-Eigen::VectorXd static_deflection(const Scene& scene, const dynamics::HybridSystem& system) {
-  if (!is_anchored(scene.structure)) {
-    throw InvalidInput(
-        fmt::format("{}: initial.at = \"static\": the chain is held by nothing, so there is no equilibrium; valid: "
-                    "\"rest\", or fix "
-                    "an end (structure.ends) or give ground_stiffness",
-                    scene.source.path));
-  }
-  const double speed = scene.drive.velocity(0.0);
-  Eigen::VectorXd force = Eigen::VectorXd::Zero(system.size());
-  for (const ContactSpec& contact : scene.contacts) {
-    if (speed != 0.0) force(contact.at - 1) += std::copysign(kinetic_friction(contact), speed);
-  }
-  const Eigen::SimplicialLDLT<fem::SparseMatrix> factors(fem::to_sparse(system.structure().K()));
-  if (factors.info() != Eigen::Success) {
-    throw InvalidInput(
-        fmt::format("{}: initial.at = \"static\": the stiffness matrix is singular to rounding; valid: \"rest\"",
-                    scene.source.path));
-  }
-  return factors.solve(force);
+/// Row over the degrees of freedom that gives the contact's displacement.
+Eigen::VectorXd direction(const ContactPlace& place, const fem::Structure& structure, const fem::Beam* beam) {
+  if (const int* mass = std::get_if<int>(&place)) return Eigen::VectorXd::Unit(structure.size(), *mass - 1);
+  const double* x = std::get_if<double>(&place);
+  return beam->displacement_row(x != nullptr ? *x : beam->reach());
 }
 
-}  // namespace
-
-std::vector<double> Range::values() const { return diagnostics::sweep_values(from, to, step); }
-
-dynamics::HybridSystem build_system(const Scene& scene) {
-  fem::Structure structure = fem::chain(scene.structure);
+dynamics::HybridSystem assemble(const Scene& scene, fem::Structure structure, const fem::Beam* beam) {
   std::vector<friction::Contact> contacts;
   for (const ContactSpec& spec : scene.contacts) {
     friction::Contact contact;
-    contact.direction = Eigen::VectorXd::Unit(structure.size(), spec.at - 1);
+    contact.direction = direction(spec.at, structure, beam);
     contact.law = spec.law;
     contact.normal_load = spec.normal_load;
+    contact.tilt = spec.tilt_deg * std::numbers::pi / 180.0;
     contact.name = spec.name;
     contacts.push_back(std::move(contact));
   }
   return {std::move(structure), std::move(contacts), scene.drive};
 }
 
-dynamics::State initial_state(const Scene& scene, const dynamics::HybridSystem& system) {
-  dynamics::State state{.q = Eigen::VectorXd::Zero(system.size()), .v = Eigen::VectorXd::Zero(system.size())};
-  switch (scene.initial.at) {
-    case InitialSpec::At::kRest:
-      break;
-    case InitialSpec::At::kStatic:
-      state.q = static_deflection(scene, system);
-      break;
-    case InitialSpec::At::kGiven:
-      state.q = Eigen::Map<const Eigen::VectorXd>(scene.initial.displacement.data(), system.size());
-      state.v = Eigen::Map<const Eigen::VectorXd>(scene.initial.velocity.data(), system.size());
-      break;
-  }
-  return state;
+}  // namespace
+
+Eigen::Index Scene::size() const {
+  if (chain() != nullptr) return chain()->masses;
+  Eigen::Index nodes = 0;  // the clamped one has no freedom
+  for (const fem::BeamSpan& span : beam()->spans) nodes += span.elements;
+  return 2 * nodes;
 }
 
-std::vector<dynamics::State> ensemble_states(const Scene& scene, const dynamics::HybridSystem& system) {
-  std::vector<dynamics::State> states(static_cast<std::size_t>(scene.ensemble.members), initial_state(scene, system));
-  for (std::size_t k = 0; k < states.size(); ++k) {
-    Random random = Random::stream(scene.ensemble.seed, k);
-    for (double& x : states[k].q) x += scene.ensemble.spread * random.normal();
-    for (double& x : states[k].v) x += scene.ensemble.spread * random.normal();
-  }
-  return states;
+fem::Beam build_beam(const Scene& scene) { return fem::Beam(beam_of(scene, "a finite-element beam")); }
+
+dynamics::HybridSystem build_system(const Scene& scene) {
+  if (scene.chain() != nullptr) return assemble(scene, fem::chain(*scene.chain()), nullptr);
+  return build_system(scene, build_beam(scene));
+}
+
+dynamics::HybridSystem build_system(const Scene& scene, const fem::Beam& beam) {
+  return assemble(scene, beam.structure(), &beam);
+}
+
+friction::Drive drive_at(const Scene& scene, double speed_or_frequency) {
+  const friction::Shaker* shaker = scene.drive.shaker();
+  if (shaker == nullptr) return friction::Belt::constant(speed_or_frequency);
+  return friction::Shaker{scene.amplitude.at(speed_or_frequency), speed_or_frequency, shaker->phase};
+}
+
+double drive_parameter(const Scene& scene) {
+  const friction::Shaker* shaker = scene.drive.shaker();
+  return shaker != nullptr ? shaker->frequency_hz : scene.drive.velocity(0.0);
+}
+
+TimeSpec in_seconds(const TimeSpec::Cycles& cycles, double frequency_hz) {
+  return {.duration = cycles.cycles / frequency_hz,
+          .transient = cycles.transient_cycles / frequency_hz,
+          .sample = 1.0 / (frequency_hz * static_cast<double>(cycles.samples)),
+          .cycles = cycles};
+}
+
+TimeSpec time_at(const Scene& scene, double frequency_hz) {
+  return scene.time.cycles ? in_seconds(*scene.time.cycles, frequency_hz) : scene.time;
 }
 
 dynamics::SimulateOptions simulate_options(const Scene& scene) {
@@ -93,6 +89,20 @@ dynamics::SimulateOptions simulate_options(const Scene& scene) {
   options.sample = scene.time.sample;
   options.flow = scene.flow;
   return options;
+}
+
+pod::SensorArray sensor_array(const Scene& scene, const fem::Beam& beam) {
+  const SensorSpec& sensors = sensors_of(scene);
+  return {beam, pod::sensors_at(sensors.kind, sensors.x)};
+}
+
+pod::Noise sensor_noise(const Scene& scene) {
+  const SensorSpec& sensors = sensors_of(scene);
+  return {.deviation = sensors.noise, .scale = pod::NoiseScale::kRelativeRms, .seed = sensors.seed};
+}
+
+double gauge_position(const Scene& scene) {
+  return scene.shaken.gauge.value_or(beam_length(beam_of(scene, "a gauge")) / 8.0);
 }
 
 }  // namespace slipmode::scene

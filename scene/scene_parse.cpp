@@ -1,9 +1,10 @@
 #include "core/errors.hpp"
-#include "scene/scene.hpp"
+#include "scene/scene_parts.hpp"
 #include "scene/scene_words.hpp"
-#include "scene/toml_reader.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
+#include <array>
 #include <fstream>
 #include <limits>
 #include <sstream>
@@ -12,87 +13,28 @@ namespace slipmode::scene {
 
 namespace {
 
-constexpr int kMostMasses = 10'000'000;
-constexpr int kMostCount = std::numeric_limits<int>::max();
-
-fem::ChainOptions read_structure(TomlReader in, const std::string& units) {
-  fem::ChainOptions chain;
-  chain.units = units;
-  (void)in.choice("kind", {"chain"});
-  chain.masses = static_cast<int>(in.integer("masses", 1, kMostMasses));
-  const Ends& ends = kEnds[in.choice_or("ends", 0, words_of(kEnds))];
-  chain.left_fixed = ends.left_fixed;
-  chain.right_fixed = ends.right_fixed;
-  const int springs = chain.masses - 1 + static_cast<int>(chain.left_fixed) + static_cast<int>(chain.right_fixed);
-  chain.mass = in.per_item_or("mass", chain.mass, chain.masses, kPositive);
-  chain.stiffness = in.per_item_or("stiffness", chain.stiffness, springs, kPositive);
-  chain.ground_stiffness = in.per_item_or("ground_stiffness", {}, chain.masses, kNonNegative);
-  chain.damping = in.number_or("damping", chain.damping, kNonNegative);
-  chain.mass_damping = in.number_or("mass_damping", chain.mass_damping, kNonNegative);
-  in.finish();
-  return chain;
-}
-
-friction::Law read_law(TomlReader& in) {
-  const std::size_t law = in.choice("law", words_of(kLaws));
-  const double mu_k = in.number("mu_k", kNonNegative);
-  const double mu_s = in.number("mu_s", kNonNegative);
-  if (mu_s < mu_k) in.fail("mu_s", fmt::format("less than mu_k = {}", mu_k), fmt::format("mu_s >= {}", mu_k));
-  switch (kLaws[law].law) {
-    case LawWord::kCoulomb:
-      if (in.has("alpha")) in.fail("alpha", "law \"coulomb\" does not depend on the sliding speed", "no alpha");
-      return friction::Coulomb{mu_s, mu_k};
-    case LawWord::kStribeck:
-      return friction::Stribeck{mu_s, mu_k, in.number("alpha", kNonNegative)};
-    case LawWord::kTanh:
-      break;
+TimeSpec read_cycles(TomlReader& in, const friction::Shaker& shaker) {
+  for (const char* key : {"duration", "transient", "sample"}) {
+    in.refuse(key, "the time is given in cycles too", "either cycles or seconds");
   }
-  friction::TanhRegularised tanh{mu_s, mu_k};
-  tanh.alpha = in.number_or("alpha", tanh.alpha, kNonNegative);
-  tanh.epsilon = in.number_or("epsilon", tanh.epsilon, kPositive);
-  return tanh;
-}
-
-std::vector<ContactSpec> read_contacts(TomlReader& scene, int masses) {
-  std::vector<ContactSpec> contacts;
-  for (TomlReader& in : scene.tables("contact")) {
-    ContactSpec contact;
-    contact.at = static_cast<int>(in.integer("at", 1, masses));
-    for (std::size_t other = 0; other < contacts.size(); ++other) {
-      if (contacts[other].at == contact.at) {
-        in.fail("at", fmt::format("contact.{} is on this mass already", other), "one contact per mass");
-      }
-    }
-    contact.normal_load = in.number("normal_load", kPositive);
-    contact.name = in.text_or("name", fmt::format("contact {}", contacts.size() + 1));
-    contact.law = read_law(in);
-    in.finish();
-    contacts.push_back(std::move(contact));
+  TimeSpec::Cycles cycles;
+  cycles.cycles = in.number("cycles", kPositive);
+  cycles.transient_cycles = in.number_or("transient_cycles", cycles.transient_cycles, kNonNegative);
+  cycles.samples = in.integer_or("samples_per_cycle", cycles.samples, 1, kMostCount);
+  if (cycles.transient_cycles >= cycles.cycles) {
+    in.fail("transient_cycles", "nothing is left to keep", fmt::format("less than cycles = {}", cycles.cycles));
   }
-  return contacts;
-}
-
-friction::Drive read_drive(TomlReader in) {
-  (void)in.choice("kind", {"belt"});
-  friction::Belt belt;
-  if (in.is_table("speed")) {
-    TomlReader ramp = in.table("speed");
-    belt = friction::Belt::ramp(ramp.number("from", kFinite), ramp.number("to", kFinite),
-                                ramp.number("begin", kNonNegative), ramp.number("end", kNonNegative));
-    if (belt.ramp_end <= belt.ramp_begin) ramp.fail("end", "not after begin", fmt::format("> {}", belt.ramp_begin));
-    ramp.finish();
-  } else {
-    belt = friction::Belt::constant(in.number("speed", kFinite));
+  if ((cycles.cycles - cycles.transient_cycles) * static_cast<double>(cycles.samples) < 1.0) {
+    in.fail("cycles", "no sample fits", "at least one sample after transient_cycles");
   }
-  in.finish();
-  return belt;
+  return in_seconds(cycles, shaker.frequency_hz);
 }
 
-TimeSpec read_time(TomlReader in) {
+TimeSpec read_seconds(TomlReader& in, bool shaken) {
   TimeSpec time;
   time.duration = in.number("duration", kPositive);
   time.transient = in.number_or("transient", time.transient, kNonNegative);
-  time.sample = in.number_or("sample", time.sample, kPositive);
+  time.sample = shaken ? in.number("sample", kPositive) : in.number_or("sample", time.sample, kPositive);
   if (time.transient >= time.duration) {
     in.fail("transient", "nothing is left to keep", fmt::format("less than duration = {}", time.duration));
   }
@@ -100,73 +42,65 @@ TimeSpec read_time(TomlReader in) {
     in.fail("sample", "no sample fits",
             fmt::format("at most duration - transient = {}", time.duration - time.transient));
   }
+  return time;
+}
+
+TimeSpec read_time(TomlReader in, const friction::Drive& drive) {
+  constexpr std::array kCycleKeys = {"cycles", "transient_cycles", "samples_per_cycle"};
+  TimeSpec time;
+  if (const friction::Shaker* shaker = drive.shaker()) {
+    const bool counted = std::ranges::any_of(kCycleKeys, [&in](const char* key) { return in.has(key); });
+    time = counted ? read_cycles(in, *shaker) : read_seconds(in, true);
+  } else {
+    for (const char* key : kCycleKeys) in.refuse(key, "counts a shaker's cycles, the drive is a belt", "duration");
+    time = read_seconds(in, false);
+  }
   in.finish();
   return time;
 }
 
-InitialSpec read_initial(TomlReader in, int masses) {
+InitialSpec read_initial(TomlReader in, const Scene& scene) {
   InitialSpec initial;
   const bool given = in.has("displacement") || in.has("velocity");
   if (given && in.has("at")) in.fail("at", "displacement or velocity is given too", "either at, or arrays");
   initial.at = kStarts[in.choice_or("at", 0, words_of(kStarts))].at;
+  if (initial.at == InitialSpec::At::kStatic && scene.drive.shaker() != nullptr) {
+    in.fail("at", "a shaker has no steady sliding to be in equilibrium with", "\"rest\", or displacement and velocity");
+  }
   if (given) {
-    const std::vector<double> zero(static_cast<std::size_t>(masses), 0.0);
+    const std::vector<double> zero(static_cast<std::size_t>(scene.size()), 0.0);
     initial.at = InitialSpec::At::kGiven;
-    initial.displacement = in.numbers_or("displacement", zero, kFinite, masses);
-    initial.velocity = in.numbers_or("velocity", zero, kFinite, masses);
+    initial.displacement = in.numbers_or("displacement", zero, kFinite, scene.size());
+    initial.velocity = in.numbers_or("velocity", zero, kFinite, scene.size());
   }
   in.finish();
   return initial;
 }
 
-EnsembleSpec read_ensemble(TomlReader in) {
+std::vector<double> read_frequencies(TomlReader& in, const friction::AmplitudeCurve& amplitude) {
+  const std::vector<double> frequencies = in.numbers_or("frequencies", {}, kPositive);
+  for (const double frequency : frequencies) {
+    if (amplitude.covers(frequency, frequency)) continue;
+    in.fail("frequencies", fmt::format("the amplitude curve has no value >= 0 at {} Hz", frequency),
+            "frequencies the curve of drive.amplitude covers");
+  }
+  return frequencies;
+}
+
+EnsembleSpec read_ensemble(TomlReader in, const Scene& scene) {
   EnsembleSpec ensemble;
   ensemble.members = static_cast<int>(in.integer_or("members", ensemble.members, 1, kMostCount));
   ensemble.seed = static_cast<std::uint64_t>(in.integer_or("seed", 1, 0, std::numeric_limits<std::int64_t>::max()));
   ensemble.spread = in.number_or("spread", ensemble.spread, kNonNegative);
-  ensemble.speeds = in.numbers_or("speeds", {}, kFinite);
+  if (scene.drive.shaker() != nullptr) {
+    in.refuse("speeds", "belongs to a belt, the drive is a shaker", "frequencies");
+    ensemble.frequencies = read_frequencies(in, scene.amplitude);
+  } else {
+    in.refuse("frequencies", "belongs to a shaker, the drive is a belt", "speeds");
+    ensemble.speeds = in.numbers_or("speeds", {}, kFinite);
+  }
   in.finish();
   return ensemble;
-}
-
-ReductionSpec read_reduction(TomlReader in, int masses) {
-  ReductionSpec reduction;
-  reduction.basis = kBases[in.choice_or("basis", 0, words_of(kBases))].kind;
-  if (in.has("modes") && in.has("energy")) in.fail("modes", "energy is given too", "either modes or energy");
-  reduction.choice.modes = in.integer_or("modes", 0, 1, masses);
-  reduction.choice.energy = in.number_or("energy", reduction.choice.energy,
-                                         {.low = 0.0, .high = 1.0, .above = true, .text = "a share > 0 and <= 1"});
-  in.finish();
-  return reduction;
-}
-
-Range read_range(TomlReader in) {
-  const Range range{in.number("from", kFinite), in.number("to", kFinite), in.number("step", kPositive)};
-  in.finish();
-  return range;
-}
-
-ValidationSpec read_validation(TomlReader in, int masses) {
-  ValidationSpec spec;
-  if (in.has("speeds")) spec.speeds = read_range(in.table("speeds"));
-  spec.segments = static_cast<int>(in.integer_or("segments", spec.segments, 1, kMostCount));
-  spec.transient = in.number_or("transient", spec.transient, kNonNegative);
-  spec.block = in.number_or("block", spec.block, kPositive);
-  spec.limit = in.number_or("limit", std::max(spec.limit, spec.block), kPositive);
-  if (spec.limit < spec.block) in.fail("limit", "shorter than one block", fmt::format(">= block = {}", spec.block));
-  spec.sweep_limit = in.number_or("sweep_limit", spec.sweep_limit, kPositive);
-  spec.period_tolerance = in.number_or("period_tolerance", spec.period_tolerance, kPositive);
-  spec.max_period = static_cast<int>(in.integer_or("max_period", spec.max_period, 1, kMostCount));
-  spec.horizon = in.number_or("horizon", spec.horizon, kPositive);
-  spec.horizon_starts = static_cast<int>(in.integer_or("horizon_starts", spec.horizon_starts, 1, kMostCount));
-  spec.orbits = in.numbers_or("orbits", {}, kFinite);
-  spec.orbit_tolerance = in.number_or("orbit_tolerance", spec.orbit_tolerance, kPositive);
-  spec.modes = in.integers_or("modes", {}, 1, masses);
-  spec.lyapunov_duration = in.number_or("lyapunov_duration", spec.lyapunov_duration, kPositive);
-  spec.cost_duration = in.number_or("cost_duration", spec.cost_duration, kNonNegative);
-  spec.cost_repeats = static_cast<int>(in.integer_or("cost_repeats", spec.cost_repeats, 1, kMostCount));
-  in.finish();
-  return spec;
 }
 
 dynamics::FlowOptions read_flow(TomlReader in) {
@@ -206,14 +140,22 @@ Scene parse_scene(const std::string& text, const std::vector<std::string>& overr
   scene.title = in.text_or("title", "");
   scene.units = kUnits[in.choice("units", kUnits)];
   scene.structure = read_structure(in.table("structure"), scene.units);
-  const int masses = scene.structure.masses;
-  scene.contacts = read_contacts(in, masses);
-  scene.drive = read_drive(in.table("drive"));
-  scene.time = read_time(in.table("time"));
-  scene.initial = read_initial(in.table_or_empty("initial"), masses);
-  scene.ensemble = read_ensemble(in.table_or_empty("ensemble"));
-  scene.reduction = read_reduction(in.table_or_empty("reduction"), masses);
-  scene.validation = read_validation(in.table_or_empty("validation"), masses);
+  scene.contacts = read_contacts(in, scene);
+  read_drive(in.table("drive"), scene);
+  scene.time = read_time(in.table("time"), scene.drive);
+  scene.initial = read_initial(in.table_or_empty("initial"), scene);
+  scene.ensemble = read_ensemble(in.table_or_empty("ensemble"), scene);
+  if (scene.chain() != nullptr) {
+    in.refuse("sensors", "sensors are for beams, the structure is a chain", "structure.kind = \"beam\" with it");
+  } else if (in.has("sensors")) {
+    scene.sensors = read_sensors(in.table("sensors"), scene);
+  }
+  scene.reduction = read_reduction(in.table_or_empty("reduction"), scene);
+  if (scene.drive.shaker() != nullptr) {
+    scene.shaken = read_shaken_validation(in.table_or_empty("validation"), scene);
+  } else {
+    scene.validation = read_validation(in.table_or_empty("validation"), scene);
+  }
   scene.flow = read_flow(in.table_or_empty("flow"));
   in.finish();
   return scene;

@@ -23,13 +23,36 @@ inline constexpr std::array<Ends, 4> kEnds = {{{"fixed-free", true, false},
                                                {"free-free", false, false}}};
 
 /// In the order of friction::Law's alternatives.
-struct LawWord {
-  enum Law { kCoulomb, kStribeck, kTanh };
+inline const std::vector<std::string> kLaws = {"coulomb", "stribeck", "tanh", "compliant", "dahl", "lugre"};
+
+struct TheoryWord {
   const char* word;
-  Law law;
+  fem::BeamTheory theory;
 };
-inline constexpr std::array<LawWord, 3> kLaws = {
-    {{"coulomb", LawWord::kCoulomb}, {"stribeck", LawWord::kStribeck}, {"tanh", LawWord::kTanh}}};
+inline constexpr std::array<TheoryWord, 2> kTheories = {
+    {{"euler-bernoulli", fem::BeamTheory::kEulerBernoulli}, {"timoshenko", fem::BeamTheory::kTimoshenko}}};
+
+struct SensorWord {
+  const char* word;
+  pod::SensorKind kind;
+};
+inline constexpr std::array<SensorWord, 2> kSensors = {
+    {{"strain", pod::SensorKind::kStrain}, {"displacement", pod::SensorKind::kDisplacement}}};
+
+struct FitWord {
+  const char* word;
+  pod::FitFamily family;
+};
+inline constexpr std::array<FitWord, 2> kFits = {
+    {{"modes", pod::FitFamily::kNaturalModes}, {"polynomial", pod::FitFamily::kPolynomials}}};
+
+struct FollowWord {
+  const char* word;
+  ShakenValidationSpec::Follow follow;
+};
+inline constexpr std::array<FollowWord, 3> kFollows = {{{"none", ShakenValidationSpec::Follow::kNone},
+                                                        {"forward", ShakenValidationSpec::Follow::kForward},
+                                                        {"both", ShakenValidationSpec::Follow::kBoth}}};
 
 struct StartWord {
   const char* word;
@@ -38,11 +61,9 @@ struct StartWord {
 inline constexpr std::array<StartWord, 2> kStarts = {
     {{"rest", InitialSpec::At::kRest}, {"static", InitialSpec::At::kStatic}}};
 
-struct BasisWord {
-  const char* word;
-  pod::BasisKind kind;
-};
-inline constexpr std::array<BasisWord, 2> kBases = {{{"pom", pod::BasisKind::kPom}, {"lnm", pod::BasisKind::kLnm}}};
+/// In the order of BasisChoice; the first two are a chain's.
+inline const std::vector<std::string> kBases = {"pom", "lnm", "pomf", "mass-pom", "lnm+static"};
+inline constexpr std::size_t kChainBases = 2;
 
 struct MethodWord {
   const char* word;

@@ -1,7 +1,7 @@
-#include "core/errors.hpp"
-#include "scene/scene.hpp"
 #include "scene/scene_words.hpp"
-#include "scene/toml_reader.hpp"
+#include "scene/toml_text.hpp"
+
+#include <toml++/toml.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,148 +11,120 @@ namespace slipmode::scene {
 
 namespace {
 
-/// Shortest text that reads back to the same double, always seen by TOML as a float.
-std::string number(double value) {
+std::string time_toml(const TimeSpec& time) {
+  if (time.cycles) {
+    return fmt::format("\n[time]\ncycles = {}\ntransient_cycles = {}\nsamples_per_cycle = {}\n",
+                       number_text(time.cycles->cycles), number_text(time.cycles->transient_cycles),
+                       time.cycles->samples);
+  }
+  return fmt::format("\n[time]\nduration = {}\ntransient = {}\nsample = {}\n", number_text(time.duration),
+                     number_text(time.transient), number_text(time.sample));
+}
+
+std::string initial_toml(const InitialSpec& initial) {
+  if (initial.at == InitialSpec::At::kGiven) {
+    return fmt::format("\n[initial]\ndisplacement = {}\nvelocity = {}\n", numbers_text(initial.displacement),
+                       numbers_text(initial.velocity));
+  }
+  return fmt::format("\n[initial]\nat = \"{}\"\n", std::ranges::find(kStarts, initial.at, &StartWord::at)->word);
+}
+
+std::string ensemble_toml(const EnsembleSpec& ensemble, bool shaken) {
+  return fmt::format("\n[ensemble]\nmembers = {}\nseed = {}\nspread = {}\n{} = {}\n", ensemble.members, ensemble.seed,
+                     number_text(ensemble.spread), shaken ? "frequencies" : "speeds",
+                     numbers_text(shaken ? ensemble.frequencies : ensemble.speeds));
+}
+
+std::string sensors_toml(const SensorSpec& sensors) {
+  return fmt::format("\n[sensors]\nkind = \"{}\"\nx = {}\nnoise = {}\nseed = {}\n",
+                     std::ranges::find(kSensors, sensors.kind, &SensorWord::kind)->word, numbers_text(sensors.x),
+                     number_text(sensors.noise), sensors.seed);
+}
+
+std::string reduction_toml(const ReductionSpec& reduction, bool sensors) {
+  const std::string choice = reduction.choice.modes > 0
+                                 ? fmt::format("modes = {}", reduction.choice.modes)
+                                 : fmt::format("energy = {}", number_text(reduction.choice.energy));
+  std::string out = fmt::format("\n[reduction]\nbasis = \"{}\"\n{}\n", to_string(reduction.basis), choice);
+  if (!sensors) return out;
+  out += fmt::format("fit = \"{}\"\n", std::ranges::find(kFits, reduction.fit, &FitWord::family)->word);
+  if (reduction.functions > 0) out += fmt::format("functions = {}\n", reduction.functions);
+  return out;
+}
+
+std::string range_text(const Range& range) {
+  return fmt::format("{{ from = {}, to = {}, step = {} }}", number_text(range.from), number_text(range.to),
+                     number_text(range.step));
+}
+
+std::string validation_toml(const ValidationSpec& spec) {
+  std::string out = "\n[validation]\n";
+  out += fmt::format("speeds = {}\nsegments = {}\n", range_text(spec.speeds), spec.segments);
+  out += fmt::format("transient = {}\nblock = {}\nlimit = {}\nsweep_limit = {}\n", number_text(spec.transient),
+                     number_text(spec.block), number_text(spec.limit), number_text(spec.sweep_limit));
+  out += fmt::format("period_tolerance = {}\nmax_period = {}\n", number_text(spec.period_tolerance), spec.max_period);
+  out += fmt::format("horizon = {}\nhorizon_starts = {}\n", number_text(spec.horizon), spec.horizon_starts);
+  out +=
+      fmt::format("orbits = {}\norbit_tolerance = {}\n", numbers_text(spec.orbits), number_text(spec.orbit_tolerance));
+  out += fmt::format("modes = [{}]\nlyapunov_duration = {}\n", fmt::join(spec.modes, ", "),
+                     number_text(spec.lyapunov_duration));
+  return out +
+         fmt::format("cost_duration = {}\ncost_repeats = {}\n", number_text(spec.cost_duration), spec.cost_repeats);
+}
+
+std::string shaken_toml(const ShakenValidationSpec& spec) {
+  std::vector<std::string> bases;
+  for (const BasisChoice basis : spec.bases) bases.push_back(fmt::format("\"{}\"", to_string(basis)));
+  std::string out = "\n[validation]\n";
+  if (spec.frequencies) out += fmt::format("frequencies = {}\n", range_text(*spec.frequencies));
+  out += fmt::format("cycles = {}\nkept = {}\n", number_text(spec.cycles), number_text(spec.kept));
+  if (spec.gauge) out += fmt::format("gauge = {}\n", number_text(*spec.gauge));
+  out += fmt::format("modes = [{}]\nbases = [{}]\nfollow = \"{}\"\n", fmt::join(spec.modes, ", "),
+                     fmt::join(bases, ", "), std::ranges::find(kFollows, spec.follow, &FollowWord::follow)->word);
+  out += fmt::format("period_tolerance = {}\nmax_period = {}\n", number_text(spec.period_tolerance), spec.max_period);
+  return out + fmt::format("cost_cycles = {}\ncost_repeats = {}\n", number_text(spec.cost_cycles), spec.cost_repeats);
+}
+
+std::string flow_toml(const dynamics::FlowOptions& flow) {
+  return fmt::format("\n[flow]\nmethod = \"{}\"\ntolerance = {}\nmax_events_per_window = {}\nzeno_window = {}\n",
+                     std::ranges::find(kMethods, flow.method, &MethodWord::method)->word, number_text(flow.tolerance),
+                     flow.max_events_per_window, number_text(flow.zeno_window));
+}
+
+}  // namespace
+
+std::string number_text(double value) {
   std::string text = fmt::format("{}", value);
   if (text.find_first_of(".en") == std::string::npos) text += ".0";
   return text;
 }
 
-std::string numbers(const std::vector<double>& values) {
+std::string numbers_text(const std::vector<double>& values) {
   std::vector<std::string> texts;
-  for (const double value : values) texts.push_back(number(value));
+  for (const double value : values) texts.push_back(number_text(value));
   return fmt::format("[{}]", fmt::join(texts, ", "));
 }
 
-std::string one_or_many(const std::vector<double>& values) {
-  return values.size() == 1 ? number(values.front()) : numbers(values);
+std::string one_or_many_text(const std::vector<double>& values) {
+  return values.size() == 1 ? number_text(values.front()) : numbers_text(values);
 }
 
-std::string quoted(const std::string& text) {
+std::string quoted_text(const std::string& text) {
   std::ostringstream out;
   out << toml::value<std::string>(text);
   return out.str();
 }
 
-std::string structure_toml(const Scene& scene) {
-  const fem::ChainOptions& chain = scene.structure;
-  const auto ends = std::ranges::find_if(kEnds, [&](const Ends& entry) {
-    return entry.left_fixed == chain.left_fixed && entry.right_fixed == chain.right_fixed;
-  });
-  std::string out =
-      fmt::format("\n[structure]\nkind = \"chain\"\nmasses = {}\nends = \"{}\"\nmass = {}\nstiffness = {}\n",
-                  chain.masses, ends->word, one_or_many(chain.mass), one_or_many(chain.stiffness));
-  if (!chain.ground_stiffness.empty()) {
-    out += fmt::format("ground_stiffness = {}\n", one_or_many(chain.ground_stiffness));
-  }
-  return out + fmt::format("damping = {}\nmass_damping = {}\n", number(chain.damping), number(chain.mass_damping));
-}
-
-std::string contact_toml(const ContactSpec& contact) {
-  std::string out =
-      fmt::format("\n[[contact]]\nname = {}\nat = {}\nlaw = \"{}\"\nnormal_load = {}\n", quoted(contact.name),
-                  contact.at, kLaws[contact.law.index()].word, number(contact.normal_load));
-  out += fmt::format("mu_s = {}\nmu_k = {}\n", number(friction::static_coefficient(contact.law)),
-                     number(friction::limit_coefficient(contact.law)));
-  if (const auto* law = std::get_if<friction::Stribeck>(&contact.law)) {
-    out += fmt::format("alpha = {}\n", number(law->alpha));
-  }
-  if (const auto* law = std::get_if<friction::TanhRegularised>(&contact.law)) {
-    out += fmt::format("alpha = {}\nepsilon = {}\n", number(law->alpha), number(law->epsilon));
-  }
-  return out;
-}
-
-std::string drive_toml(const friction::Drive& drive) {
-  const friction::Belt& belt = *drive.belt();
-  const bool ramp = belt.ramp_end > belt.ramp_begin;
-  const std::string speed = ramp ? fmt::format("{{ from = {}, to = {}, begin = {}, end = {} }}", number(belt.speed),
-                                               number(belt.end_speed), number(belt.ramp_begin), number(belt.ramp_end))
-                                 : number(belt.speed);
-  return fmt::format("\n[drive]\nkind = \"belt\"\nspeed = {}\n", speed);
-}
-
-std::string initial_toml(const InitialSpec& initial) {
-  if (initial.at == InitialSpec::At::kGiven) {
-    return fmt::format("\n[initial]\ndisplacement = {}\nvelocity = {}\n", numbers(initial.displacement),
-                       numbers(initial.velocity));
-  }
-  return fmt::format("\n[initial]\nat = \"{}\"\n", std::ranges::find(kStarts, initial.at, &StartWord::at)->word);
-}
-
-std::string reduction_toml(const ReductionSpec& reduction) {
-  const std::string choice = reduction.choice.modes > 0 ? fmt::format("modes = {}", reduction.choice.modes)
-                                                        : fmt::format("energy = {}", number(reduction.choice.energy));
-  return fmt::format("\n[reduction]\nbasis = \"{}\"\n{}\n",
-                     std::ranges::find(kBases, reduction.basis, &BasisWord::kind)->word, choice);
-}
-
-std::string validation_toml(const ValidationSpec& spec) {
-  std::string out = "\n[validation]\n";
-  out += fmt::format("speeds = {{ from = {}, to = {}, step = {} }}\nsegments = {}\n", number(spec.speeds.from),
-                     number(spec.speeds.to), number(spec.speeds.step), spec.segments);
-  out += fmt::format("transient = {}\nblock = {}\nlimit = {}\nsweep_limit = {}\n", number(spec.transient),
-                     number(spec.block), number(spec.limit), number(spec.sweep_limit));
-  out += fmt::format("period_tolerance = {}\nmax_period = {}\n", number(spec.period_tolerance), spec.max_period);
-  out += fmt::format("horizon = {}\nhorizon_starts = {}\n", number(spec.horizon), spec.horizon_starts);
-  out += fmt::format("orbits = {}\norbit_tolerance = {}\n", numbers(spec.orbits), number(spec.orbit_tolerance));
-  out += fmt::format("modes = [{}]\nlyapunov_duration = {}\n", fmt::join(spec.modes, ", "),
-                     number(spec.lyapunov_duration));
-  return out + fmt::format("cost_duration = {}\ncost_repeats = {}\n", number(spec.cost_duration), spec.cost_repeats);
-}
-
-std::string flow_toml(const dynamics::FlowOptions& flow) {
-  return fmt::format("\n[flow]\nmethod = \"{}\"\ntolerance = {}\nmax_events_per_window = {}\nzeno_window = {}\n",
-                     std::ranges::find(kMethods, flow.method, &MethodWord::method)->word, number(flow.tolerance),
-                     flow.max_events_per_window, number(flow.zeno_window));
-}
-
-}  // namespace
-
 std::string scene_to_toml(const Scene& scene) {
-  std::string out = fmt::format("title = {}\nunits = \"{}\"\n", quoted(scene.title), scene.units);
+  const bool shaken = scene.drive.shaker() != nullptr;
+  std::string out = fmt::format("title = {}\nunits = \"{}\"\n", quoted_text(scene.title), scene.units);
   out += structure_toml(scene);
-  for (const ContactSpec& contact : scene.contacts) out += contact_toml(contact);
-  out += drive_toml(scene.drive);
-  out += fmt::format("\n[time]\nduration = {}\ntransient = {}\nsample = {}\n", number(scene.time.duration),
-                     number(scene.time.transient), number(scene.time.sample));
-  out += initial_toml(scene.initial);
-  out += fmt::format("\n[ensemble]\nmembers = {}\nseed = {}\nspread = {}\nspeeds = {}\n", scene.ensemble.members,
-                     scene.ensemble.seed, number(scene.ensemble.spread), numbers(scene.ensemble.speeds));
-  return out + reduction_toml(scene.reduction) + validation_toml(scene.validation) + flow_toml(scene.flow);
-}
-
-Scene set_key(const Scene& scene, const std::string& path, double value) {
-  const std::string change = fmt::format("{}={}", path, value);
-  Scene changed = parse_scene(scene_to_toml(scene), {change}, scene.source.path);
-  changed.source = scene.source;
-  changed.source.overrides.push_back(change);
-  return changed;
-}
-
-double get_key(const Scene& scene, const std::string& path) {
-  const TomlDocument document(scene_to_toml(scene), scene.source.path, {});
-  const toml::node* node = &document.root();
-  std::istringstream parts(path);
-  for (std::string part; node != nullptr && std::getline(parts, part, '.');) {
-    if (const toml::table* table = node->as_table()) {
-      node = table->get(part);
-    } else if (const toml::array* array = node->as_array()) {
-      const bool digits = !part.empty() && part.size() < 9 && part.find_first_not_of("0123456789") == std::string::npos;
-      node = digits ? array->get(std::stoul(part)) : nullptr;
-    } else {
-      node = nullptr;
-    }
-  }
-  if (node == nullptr) {
-    throw InvalidInput(fmt::format("{}: {}: no such key; valid are those of the scene file, for example drive.speed",
-                                   scene.source.path, path));
-  }
-  if (!node->is_number()) {
-    throw InvalidInput(
-        fmt::format("{}: {} = {}: not a number; choose a numeric key", scene.source.path, path, value_text(*node)));
-  }
-  return node->value<double>().value();
+  for (const ContactSpec& contact : scene.contacts) out += contact_toml(contact, scene);
+  out += drive_toml(scene) + time_toml(scene.time) + initial_toml(scene.initial);
+  out += ensemble_toml(scene.ensemble, shaken);
+  if (scene.sensors) out += sensors_toml(*scene.sensors);
+  out += reduction_toml(scene.reduction, scene.sensors.has_value());
+  return out + (shaken ? shaken_toml(scene.shaken) : validation_toml(scene.validation)) + flow_toml(scene.flow);
 }
 
 }  // namespace slipmode::scene

@@ -32,6 +32,16 @@ bool TomlReader::is_table(const std::string& key) {
   return node != nullptr && node->is_table();
 }
 
+bool TomlReader::is_text(const std::string& key) {
+  const toml::node* node = find(key);
+  return node != nullptr && node->is_string();
+}
+
+bool TomlReader::is_array(const std::string& key) {
+  const toml::node* node = find(key);
+  return node != nullptr && node->is_array();
+}
+
 const toml::node& TomlReader::need(const std::string& key) {
   if (const toml::node* node = find(key)) return *node;
   std::vector<std::string> strangers;
@@ -51,6 +61,10 @@ void TomlReader::fail(const std::string& key, const std::string& what, const std
   throw InvalidInput(fmt::format("{}: {}{}: {}; valid: {}",
                                  document_->place(dotted(key), node != nullptr ? node : table_), dotted(key), value,
                                  what, valid));
+}
+
+void TomlReader::refuse(const std::string& key, const std::string& why, const std::string& valid) {
+  if (table_ != nullptr && table_->contains(key)) fail(key, why, valid);
 }
 
 void TomlReader::finish() {
@@ -110,8 +124,8 @@ std::string TomlReader::text_or(const std::string& key, const std::string& other
   return node->as_string()->get();
 }
 
-std::size_t TomlReader::choice(const std::string& key, const std::vector<std::string>& words) {
-  const toml::node& node = need(key);
+std::size_t TomlReader::checked_word(const std::string& key, const toml::node& node,
+                                     const std::vector<std::string>& words) {
   const std::string valid = fmt::format("\"{}\"", fmt::join(words, "\", \""));
   if (!node.is_string()) fail(key, "wrong type", valid);
   const std::string& word = node.as_string()->get();
@@ -119,6 +133,24 @@ std::size_t TomlReader::choice(const std::string& key, const std::vector<std::st
   if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
   const auto meant = nearest(word, words);
   fail(key, meant ? fmt::format("unknown word, did you mean \"{}\"?", *meant) : "unknown word", valid);
+}
+
+std::size_t TomlReader::choice(const std::string& key, const std::vector<std::string>& words) {
+  return checked_word(key, need(key), words);
+}
+
+std::vector<std::size_t> TomlReader::choices(const std::string& key, const std::vector<std::string>& words) {
+  const toml::node& node = need(key);
+  const std::string valid = fmt::format("an array of one or more of \"{}\", none twice", fmt::join(words, "\", \""));
+  if (!node.is_array()) fail(key, "wrong type", valid);
+  if (node.as_array()->empty()) fail(key, "empty", valid);
+  std::vector<std::size_t> found;
+  for (const toml::node& item : *node.as_array()) {
+    const std::size_t index = checked_word(key, item, words);
+    if (std::ranges::find(found, index) != found.end()) fail(key, fmt::format("\"{}\" twice", words[index]), valid);
+    found.push_back(index);
+  }
+  return found;
 }
 
 std::size_t TomlReader::choice_or(const std::string& key, std::size_t otherwise,
@@ -157,6 +189,20 @@ std::vector<int> TomlReader::integers_or(const std::string& key, std::vector<int
   std::vector<int> values;
   for (const toml::node& item : *node->as_array()) {
     values.push_back(static_cast<int>(checked_integer(key, item, low, high)));
+  }
+  return values;
+}
+
+std::vector<std::pair<double, double>> TomlReader::pairs(const std::string& key, const Limits& first,
+                                                         const Limits& second) {
+  const toml::node& node = need(key);
+  const std::string valid = fmt::format("[[{}, {}], ...]", first.text, second.text);
+  if (!node.is_array()) fail(key, "wrong type", valid);
+  std::vector<std::pair<double, double>> values;
+  for (const toml::node& item : *node.as_array()) {
+    const toml::array* pair = item.as_array();
+    if (pair == nullptr || pair->size() != 2) fail(key, fmt::format("{} is no pair", value_text(item)), valid);
+    values.emplace_back(checked_number(key, *pair->get(0), first), checked_number(key, *pair->get(1), second));
   }
   return values;
 }

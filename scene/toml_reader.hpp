@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace slipmode::scene {
@@ -80,9 +81,16 @@ class TomlReader {
   [[nodiscard]] std::vector<double> numbers_or(const std::string& key, std::vector<double> otherwise,
                                                const Limits& limits, std::int64_t count = -1);
   [[nodiscard]] std::vector<int> integers_or(const std::string& key, std::vector<int> otherwise, int low, int high);
+  /// An array of pairs of numbers, [[first, second], ...].
+  [[nodiscard]] std::vector<std::pair<double, double>> pairs(const std::string& key, const Limits& first,
+                                                             const Limits& second);
+  /// Indices of the words of an array among `words`, at least one, none twice.
+  [[nodiscard]] std::vector<std::size_t> choices(const std::string& key, const std::vector<std::string>& words);
 
-  /// True when the key is there and holds a table.
+  /// True when the key is there and holds a table (a string, an array).
   [[nodiscard]] bool is_table(const std::string& key);
+  [[nodiscard]] bool is_text(const std::string& key);
+  [[nodiscard]] bool is_array(const std::string& key);
   [[nodiscard]] TomlReader table(const std::string& key);
   [[nodiscard]] TomlReader table_or_empty(const std::string& key);
   /// The entries of [[key]], at least one.
@@ -90,6 +98,8 @@ class TomlReader {
 
   /// Reports the value of `key` as wrong.
   [[noreturn]] void fail(const std::string& key, const std::string& what, const std::string& valid);
+  /// Reports a key that is known elsewhere but has no place here, if it is there.
+  void refuse(const std::string& key, const std::string& why, const std::string& valid);
   /// Reports the first key that nobody asked for.
   void finish();
 
@@ -101,6 +111,8 @@ class TomlReader {
   [[nodiscard]] const toml::node* find(const std::string& key);
   [[nodiscard]] const toml::node& need(const std::string& key);
   [[nodiscard]] double checked_number(const std::string& key, const toml::node& node, const Limits& limits);
+  [[nodiscard]] std::size_t checked_word(const std::string& key, const toml::node& node,
+                                         const std::vector<std::string>& words);
   [[nodiscard]] std::int64_t checked_integer(const std::string& key, const toml::node& node, std::int64_t low,
                                              std::int64_t high);
 

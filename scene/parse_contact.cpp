@@ -1,0 +1,178 @@
+#include "core/errors.hpp"
+#include "scene/scene_parts.hpp"
+#include "scene/scene_words.hpp"
+
+#include <fmt/format.h>
+#include <cmath>
+#include <numbers>
+
+namespace slipmode::scene {
+
+namespace {
+
+struct Coefficients {
+  double mu_s, mu_k;
+};
+
+Coefficients read_coefficients(TomlReader& in) {
+  const double mu_k = in.number("mu_k", kNonNegative);
+  const double mu_s = in.number("mu_s", kNonNegative);
+  if (mu_s < mu_k) in.fail("mu_s", fmt::format("less than mu_k = {}", mu_k), fmt::format("mu_s >= {}", mu_k));
+  return {mu_s, mu_k};
+}
+
+friction::Law read_coulomb(TomlReader& in) {
+  const auto [mu_s, mu_k] = read_coefficients(in);
+  in.refuse("alpha", "law \"coulomb\" does not depend on the sliding speed", "no alpha");
+  in.refuse("stiffness", "law \"coulomb\" is rigid", "no stiffness, or law = \"compliant\"");
+  return friction::Coulomb{mu_s, mu_k};
+}
+
+friction::Law read_stribeck(TomlReader& in) {
+  const auto [mu_s, mu_k] = read_coefficients(in);
+  return friction::Stribeck{mu_s, mu_k, in.number("alpha", kNonNegative)};
+}
+
+friction::Law read_tanh(TomlReader& in) {
+  const auto [mu_s, mu_k] = read_coefficients(in);
+  friction::TanhRegularised tanh{mu_s, mu_k};
+  tanh.alpha = in.number_or("alpha", tanh.alpha, kNonNegative);
+  tanh.epsilon = in.number_or("epsilon", tanh.epsilon, kPositive);
+  return tanh;
+}
+
+friction::Law read_compliant(TomlReader& in) {
+  const auto [mu_s, mu_k] = read_coefficients(in);
+  return friction::CompliantCoulomb{mu_s, mu_k, in.number("stiffness", kPositive)};
+}
+
+friction::Law read_dahl(TomlReader& in) {
+  for (const char* key : {"mu_s", "mu_k"}) {
+    in.refuse(key, "law \"dahl\" does not tell static from sliding friction", "mu");
+  }
+  const double mu = in.number("mu", kPositive);
+  return friction::Dahl{mu, in.number("stiffness", kPositive)};
+}
+
+friction::Law read_lugre(TomlReader& in) {
+  const auto [mu_s, mu_k] = read_coefficients(in);
+  if (mu_k == 0.0) in.fail("mu_k", "impossible value with law \"lugre\"", "a number > 0");
+  friction::LuGre lugre{mu_s, mu_k};
+  lugre.stribeck_speed = in.number("stribeck_speed", kPositive);
+  lugre.stiffness = in.number("stiffness", kPositive);
+  lugre.damping = in.number_or("damping", lugre.damping, kNonNegative);
+  lugre.viscous = in.number_or("viscous", lugre.viscous, kNonNegative);
+  return lugre;
+}
+
+friction::Law read_law(TomlReader& in) {
+  using Read = friction::Law (*)(TomlReader&);
+  constexpr std::array<Read, 6> kRead = {read_coulomb,   read_stribeck, read_tanh,
+                                         read_compliant, read_dahl,     read_lugre};  // in the order of kLaws
+  return kRead[in.choice("law", kLaws)](in);
+}
+
+friction::NormalOscillator read_oscillator(TomlReader in) {
+  friction::NormalOscillator own;
+  own.mass = in.number("mass", kPositive);
+  own.support_stiffness = in.number("support_stiffness", kNonNegative);
+  own.support_damping = in.number_or("support_damping", 0.0, kNonNegative);
+  own.spring_stiffness = in.number("spring_stiffness", kPositive);
+  own.spring_damping = in.number_or("spring_damping", 0.0, kNonNegative);
+  own.slope = in.number("slope", kFinite);
+  in.finish();
+  return own;
+}
+
+friction::NormalLoad read_load(TomlReader& contact) {
+  const char* key = "normal_load";
+  if (!contact.is_table(key)) return {contact.number(key, kPositive)};
+  TomlReader in = contact.table(key);
+  const double constant = in.number("constant", kPositive);
+  if (!in.has("oscillator")) {
+    const double slope = in.number("slope", kFinite);
+    in.finish();
+    return {constant, slope};
+  }
+  in.refuse("slope", "an oscillator is given too", "oscillator.slope, or a slope and no oscillator");
+  const friction::NormalOscillator own = read_oscillator(in.table("oscillator"));
+  in.finish();
+  return {constant, own};
+}
+
+double read_tilt(TomlReader& in) {
+  constexpr double kRight = 90.0;
+  const double tilt = in.number_or("tilt_deg", 0.0, kFinite);
+  if (std::abs(tilt) >= kRight) in.fail("tilt_deg", "impossible value", "an angle between -90 and 90 degrees");
+  return tilt;
+}
+
+/// What a law does not go with: a tilt, a varying load.
+void check_combination(TomlReader& in, const ContactSpec& spec) {
+  if (!friction::is_piecewise_linear(spec.law)) {
+    constexpr const char* kValid = "law = \"coulomb\" or \"compliant\"";
+    const std::string what = fmt::format("does not go with law \"{}\"", kLaws[spec.law.index()]);
+    if (spec.tilt_deg != 0.0) in.fail("tilt_deg", what, fmt::format("0, or {}", kValid));
+    if (!spec.normal_load.is_constant()) in.fail("normal_load", what, fmt::format("a number, or {}", kValid));
+    return;
+  }
+  friction::Contact contact{.direction = Eigen::VectorXd::Ones(1), .law = spec.law};
+  contact.tilt = spec.tilt_deg * std::numbers::pi / 180.0;
+  contact.name = spec.name;
+  try {
+    friction::validate(contact);
+  } catch (const InvalidInput& error) {
+    in.fail("tilt_deg", error.what(), "mu tan|tilt| < 1 and tan|tilt| <= mu, for mu_s and mu_k");
+  }
+}
+
+ContactPlace read_place(TomlReader& in, const Scene& scene) {
+  if (scene.chain() != nullptr) return static_cast<int>(in.integer("at", 1, scene.chain()->masses));
+  if (in.is_text("at")) {
+    (void)in.choice("at", {"tip"});
+    return AtTip{};
+  }
+  const double reach = beam_reach(*scene.beam());
+  const std::string valid = fmt::format("\"tip\", or x > 0 and <= {} (the end of the extension)", reach);
+  return in.number("at", {.low = 0.0, .high = reach * (1.0 + kEndSlack), .above = true, .text = valid.c_str()});
+}
+
+/// A number that is the same for contacts at the same place.
+double position(const ContactPlace& place, const Scene& scene) {
+  if (const int* mass = std::get_if<int>(&place)) return *mass;
+  const double* x = std::get_if<double>(&place);
+  return x != nullptr ? *x : beam_reach(*scene.beam());
+}
+
+void check_alone(TomlReader& in, const ContactPlace& place, const std::vector<ContactSpec>& others,
+                 const Scene& scene) {
+  constexpr double kClosest = 1e-9;  // of the position
+  for (std::size_t other = 0; other < others.size(); ++other) {
+    const double here = position(place, scene);
+    if (std::abs(position(others[other].at, scene) - here) > kClosest * here) continue;
+    const char* where = scene.chain() != nullptr ? "mass" : "place";
+    in.fail("at", fmt::format("contact.{} is on this {} already", other, where),
+            fmt::format("one contact per {}", where));
+  }
+}
+
+}  // namespace
+
+std::vector<ContactSpec> read_contacts(TomlReader& in, const Scene& scene) {
+  std::vector<ContactSpec> contacts;
+  for (TomlReader& table : in.tables("contact")) {
+    ContactSpec contact;
+    contact.at = read_place(table, scene);
+    check_alone(table, contact.at, contacts, scene);
+    contact.normal_load = read_load(table);
+    contact.name = table.text_or("name", fmt::format("contact {}", contacts.size() + 1));
+    contact.law = read_law(table);
+    contact.tilt_deg = read_tilt(table);
+    check_combination(table, contact);
+    table.finish();
+    contacts.push_back(std::move(contact));
+  }
+  return contacts;
+}
+
+}  // namespace slipmode::scene

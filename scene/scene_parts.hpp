@@ -1,0 +1,39 @@
+#pragma once
+
+// Internal to scene/: the readers of a scene's tables. Each throws as TomlReader does.
+
+#include "scene/scene.hpp"
+#include "scene/toml_reader.hpp"
+
+#include <limits>
+
+namespace slipmode::scene {
+
+inline constexpr int kMostCount = std::numeric_limits<int>::max();
+/// A position computed by hand may miss an end by rounding; fem::Beam takes as much.
+inline constexpr double kEndSlack = 1e-12;
+
+/// Length of a beam's spans; with its rigid extension [m].
+[[nodiscard]] double beam_length(const fem::BeamOptions& beam);
+[[nodiscard]] double beam_reach(const fem::BeamOptions& beam);
+
+/// [structure]: chain or beam.
+[[nodiscard]] std::variant<fem::ChainOptions, fem::BeamOptions> read_structure(TomlReader in, const std::string& units);
+/// [[contact]] on the structure of `scene`.
+[[nodiscard]] std::vector<ContactSpec> read_contacts(TomlReader& in, const Scene& scene);
+/// [drive] into drive and amplitude of `scene`.
+void read_drive(TomlReader in, Scene& scene);
+/// [sensors] on the beam of `scene`.
+[[nodiscard]] SensorSpec read_sensors(TomlReader in, const Scene& scene);
+/// [reduction] with the sensors of `scene`.
+[[nodiscard]] ReductionSpec read_reduction(TomlReader in, const Scene& scene);
+/// [validation] on a belt, and under a shaker.
+[[nodiscard]] ValidationSpec read_validation(TomlReader in, const Scene& scene);
+[[nodiscard]] ShakenValidationSpec read_shaken_validation(TomlReader in, const Scene& scene);
+/// A range { from, to, step }.
+[[nodiscard]] Range read_range(TomlReader in, const Limits& ends);
+
+/// The time in seconds of a time in cycles.
+[[nodiscard]] TimeSpec in_seconds(const TimeSpec::Cycles& cycles, double frequency_hz);
+
+}  // namespace slipmode::scene

@@ -1,0 +1,20 @@
+#include "scene/specs.hpp"
+
+#include "diagnostics/sweep.hpp"
+#include "scene/scene_words.hpp"
+
+#include <fmt/format.h>
+
+namespace slipmode::scene {
+
+std::string to_string(const ContactPlace& place) {
+  if (const int* mass = std::get_if<int>(&place)) return fmt::format("{}", *mass);
+  if (const double* x = std::get_if<double>(&place)) return fmt::format("{}", *x);
+  return "tip";
+}
+
+std::string to_string(BasisChoice basis) { return kBases[static_cast<std::size_t>(basis)]; }
+
+std::vector<double> Range::values() const { return diagnostics::sweep_values(from, to, step); }
+
+}  // namespace slipmode::scene

@@ -1,0 +1,166 @@
+#include "scene/scene_words.hpp"
+#include "scene/toml_text.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace slipmode::scene {
+
+namespace {
+
+template <class... Ts>
+struct Overloaded : Ts... {
+  using Ts::operator()...;
+};
+template <class... Ts>
+Overloaded(Ts...) -> Overloaded<Ts...>;  // Clang before 17 does not deduce aggregates
+
+std::string line(const char* key, double value) { return fmt::format("{} = {}\n", key, number_text(value)); }
+
+std::string chain_toml(const fem::ChainOptions& chain) {
+  const auto ends = std::ranges::find_if(kEnds, [&](const Ends& entry) {
+    return entry.left_fixed == chain.left_fixed && entry.right_fixed == chain.right_fixed;
+  });
+  std::string out =
+      fmt::format("\n[structure]\nkind = \"chain\"\nmasses = {}\nends = \"{}\"\nmass = {}\nstiffness = {}\n",
+                  chain.masses, ends->word, one_or_many_text(chain.mass), one_or_many_text(chain.stiffness));
+  if (!chain.ground_stiffness.empty()) {
+    out += fmt::format("ground_stiffness = {}\n", one_or_many_text(chain.ground_stiffness));
+  }
+  return out + line("damping", chain.damping) + line("mass_damping", chain.mass_damping);
+}
+
+std::string span_toml(const fem::BeamSpan& span, fem::BeamTheory theory) {
+  std::string out = line("length", span.length) + line("width", span.width) + line("thickness", span.thickness) +
+                    line("youngs_modulus", span.youngs_modulus) + line("density", span.density) +
+                    fmt::format("elements = {}\n", span.elements);
+  if (theory == fem::BeamTheory::kEulerBernoulli) return out;
+  return out + line("poisson_ratio", span.poisson_ratio) + line("shear_coefficient", span.shear_coefficient);
+}
+
+std::string damping_toml(const fem::BeamDamping& damping) {
+  return std::visit(Overloaded{[](const fem::Rayleigh& rayleigh) {
+                                 return line("coefficient", rayleigh.stiffness) +
+                                        line("mass_coefficient", rayleigh.mass);
+                               },
+                               [](const fem::ProportionalRatios& proportional) {
+                                 std::vector<double> ratios, frequencies;
+                                 for (const fem::RatioAt& point : proportional.at) {
+                                   ratios.push_back(point.ratio);
+                                   frequencies.push_back(point.frequency_hz);
+                                 }
+                                 return fmt::format("ratio = {}\nfrequency = {}\n", one_or_many_text(ratios),
+                                                    one_or_many_text(frequencies));
+                               },
+                               [](const fem::ModalRatios& modal) {
+                                 return fmt::format("modal_ratio = {}\n", one_or_many_text(modal.ratios));
+                               }},
+                    damping);
+}
+
+std::string beam_toml(const fem::BeamOptions& beam) {
+  std::string out = fmt::format("\n[structure]\nkind = \"beam\"\ntheory = \"{}\"\n",
+                                std::ranges::find(kTheories, beam.theory, &TheoryWord::theory)->word);
+  if (beam.spans.size() == 1) {
+    out += span_toml(beam.spans.front(), beam.theory);
+  } else {
+    for (const fem::BeamSpan& span : beam.spans) out += "\n[[structure.span]]\n" + span_toml(span, beam.theory);
+  }
+  out += "\n[structure.tip]\n" + line("mass", beam.tip.mass) + line("inertia", beam.tip.inertia) +
+         line("offset", beam.tip.offset) + line("extension", beam.tip.extension);
+  return out + "\n[structure.damping]\n" + damping_toml(beam.damping);
+}
+
+std::string place_toml(const ContactPlace& place) {
+  return std::visit(Overloaded{[](int mass) { return fmt::format("{}", mass); },
+                               [](double x) { return number_text(x); }, [](AtTip) { return std::string("\"tip\""); }},
+                    place);
+}
+
+std::string load_toml(const friction::NormalLoad& load) {
+  if (load.is_constant()) return number_text(load.constant);
+  if (!load.oscillator) {
+    return fmt::format("{{ constant = {}, slope = {} }}", number_text(load.constant), number_text(load.slope));
+  }
+  const friction::NormalOscillator& own = *load.oscillator;
+  return fmt::format(
+      "{{ constant = {}, oscillator = {{ mass = {}, support_stiffness = {}, support_damping = {}, spring_stiffness = "
+      "{}, spring_damping = {}, slope = {} }} }}",
+      number_text(load.constant), number_text(own.mass), number_text(own.support_stiffness),
+      number_text(own.support_damping), number_text(own.spring_stiffness), number_text(own.spring_damping),
+      number_text(own.slope));
+}
+
+std::string coefficients_toml(const auto& law) { return line("mu_s", law.mu_s) + line("mu_k", law.mu_k); }
+
+std::string law_toml(const friction::Law& any) {
+  return std::visit(
+      Overloaded{[](const friction::Coulomb& law) { return coefficients_toml(law); },
+                 [](const friction::Stribeck& law) { return coefficients_toml(law) + line("alpha", law.alpha); },
+                 [](const friction::TanhRegularised& law) {
+                   return coefficients_toml(law) + line("alpha", law.alpha) + line("epsilon", law.epsilon);
+                 },
+                 [](const friction::CompliantCoulomb& law) {
+                   return coefficients_toml(law) + line("stiffness", law.stiffness);
+                 },
+                 [](const friction::Dahl& law) { return line("mu", law.mu) + line("stiffness", law.stiffness); },
+                 [](const friction::LuGre& law) {
+                   return coefficients_toml(law) + line("stribeck_speed", law.stribeck_speed) +
+                          line("stiffness", law.stiffness) + line("damping", law.damping) +
+                          line("viscous", law.viscous);
+                 }},
+      any);
+}
+
+std::string belt_toml(const friction::Belt& belt) {
+  const bool ramp = belt.ramp_end > belt.ramp_begin;
+  const std::string speed =
+      ramp ? fmt::format("{{ from = {}, to = {}, begin = {}, end = {} }}", number_text(belt.speed),
+                         number_text(belt.end_speed), number_text(belt.ramp_begin), number_text(belt.ramp_end))
+           : number_text(belt.speed);
+  return fmt::format("\n[drive]\nkind = \"belt\"\nspeed = {}\n", speed);
+}
+
+std::string amplitude_toml(const friction::AmplitudeCurve& curve) {
+  using Curve = friction::AmplitudeCurve;
+  return std::visit(Overloaded{[](const Curve::Constant& constant) { return number_text(constant.amplitude); },
+                               [](const Curve::Polynomial& polynomial) {
+                                 return fmt::format("{{ polynomial = {} }}", numbers_text(polynomial.coefficients));
+                               },
+                               [](const Curve::Table& table) {
+                                 std::vector<std::string> points;
+                                 for (const auto& [f, amplitude] : table.points)
+                                   points.push_back(numbers_text({f, amplitude}));
+                                 return fmt::format("{{ table = [{}] }}", fmt::join(points, ", "));
+                               },
+                               [](const Curve::Exponential& exponential) {
+                                 return fmt::format("{{ exponential = {{ at = {}, amplitude = {}, decay = {} }} }}",
+                                                    number_text(exponential.at), number_text(exponential.amplitude),
+                                                    number_text(exponential.decay));
+                               }},
+                    curve.kind);
+}
+
+}  // namespace
+
+std::string structure_toml(const Scene& scene) {
+  return scene.chain() != nullptr ? chain_toml(*scene.chain()) : beam_toml(*scene.beam());
+}
+
+std::string contact_toml(const ContactSpec& contact, const Scene& scene) {
+  std::string out =
+      fmt::format("\n[[contact]]\nname = {}\nat = {}\nlaw = \"{}\"\nnormal_load = {}\n", quoted_text(contact.name),
+                  place_toml(contact.at), kLaws[contact.law.index()], load_toml(contact.normal_load));
+  out += law_toml(contact.law);
+  if (contact.tilt_deg != 0.0 || scene.beam() != nullptr) out += line("tilt_deg", contact.tilt_deg);
+  return out;
+}
+
+std::string drive_toml(const Scene& scene) {
+  if (const friction::Belt* belt = scene.drive.belt()) return belt_toml(*belt);
+  const friction::Shaker& shaker = *scene.drive.shaker();
+  return "\n[drive]\nkind = \"shaker\"\n" + line("frequency", shaker.frequency_hz) + line("phase", shaker.phase) +
+         fmt::format("amplitude = {}\n", amplitude_toml(scene.amplitude));
+}
+
+}  // namespace slipmode::scene
