@@ -6,6 +6,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <Eigen/Eigenvalues>
 
 namespace slipmode::pod {
 namespace {
@@ -133,6 +134,23 @@ TEST(ModalFit, ConditionBoundsWhatNoiseDoes) {
   const double bad = ModalFit(bunched, natural_functions(beam(), 3)).condition();
   EXPECT_LT(good, 5.0);
   EXPECT_GT(bad, 1e3 * good);
+}
+
+TEST(ModalFit, ConditionIsThatOfTheScaledNormalEquations) {
+  // κ² is the ratio of the eigenvalues of DFᵀFD, D scaling its diagonal to 1; the figures are those of
+  // docs/theory/modal-functions.md, section 2.
+  fem::BeamOptions options = tests::without_tip_body(80);
+  options.tip = {.mass = 0.0155147, .extension = 0.064};
+  const fem::Beam source(options);
+  const ModalFunctions six = natural_functions(source, 6);
+  for (const auto& [sensors, documented] : {std::pair{gauges(source), 4.82}, std::pair{places(source), 408.0}}) {
+    const Eigen::MatrixXd F = sensors.readings(six.shapes);
+    const Eigen::MatrixXd normal = F.colwise().normalized().transpose() * F.colwise().normalized();
+    const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(normal).eigenvalues();
+    const double condition = ModalFit(sensors, six).condition();
+    EXPECT_NEAR(condition / std::sqrt(values[5] / values[0]), 1.0, 1e-8);
+    EXPECT_NEAR(condition / documented, 1.0, 2e-3);
+  }
 }
 
 TEST(ModalFit, RefusesWhatSensorsCannotTellApart) {
