@@ -268,7 +268,8 @@ pod::Basis load_basis(const StoreReader& store, const std::string& group, Eigen:
   }
   const auto optional = [&](const char* name) { return store.has(group + "/" + name); };
   basis.mean = Eigen::VectorXd::Zero(basis.vectors.rows());
-  if (optional("mean")) basis.mean = finite_vector(store, group + "/mean", basis.vectors.rows());
+  const bool centred = optional("mean") && store.vector(group + "/mean").size() > 0;  // a basis may have no mean
+  if (centred) basis.mean = finite_vector(store, group + "/mean", basis.vectors.rows());
   if (optional("energy")) basis.energy = finite_vector(store, group + "/energy");
   if (basis.energy.size() != 0 && basis.energy.size() != basis.modes()) {
     store.fail(group + "/energy", fmt::format("has {} values for {} modes; expected one each, or none",
