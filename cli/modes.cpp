@@ -1,8 +1,10 @@
 #include "fem/modes.hpp"
+
 #include "cli/text_table.hpp"
 #include "cli/units.hpp"
 #include "cli/verbs.hpp"
 #include "core/errors.hpp"
+#include "fem/beam_modes.hpp"
 #include "scene/provenance.hpp"
 
 #include <fmt/format.h>
@@ -19,7 +21,10 @@ struct Arguments {
 };
 
 struct ModeSets {
-  fem::Modes slipping, sticking;
+  fem::Modes slipping;
+  fem::Modes sticking;                    ///< every contact held; empty when nothing is left to move
+  fem::Modes compliant;                   ///< every contact held by its spring; empty unless each has one
+  std::vector<fem::TheoryEffect> theory;  ///< of a beam
 };
 
 /// Directions of all contacts, one per column.
@@ -29,22 +34,53 @@ Eigen::MatrixXd contact_directions(const dynamics::HybridSystem& system) {
   return w;
 }
 
-ModeSets compute(const dynamics::HybridSystem& system, Eigen::Index count) {
+/// Stiffness that holds a stuck contact; 0 for a law without a spring.
+double contact_stiffness(const friction::Law& law) {
+  if (const auto* own = std::get_if<friction::CompliantCoulomb>(&law)) return own->stiffness;
+  if (const auto* own = std::get_if<friction::Dahl>(&law)) return own->stiffness;
+  if (const auto* own = std::get_if<friction::LuGre>(&law)) return own->stiffness;
+  return 0.0;
+}
+
+ModeSets compute(const scene::Scene& scene, const dynamics::HybridSystem& system, Eigen::Index count) {
   const Eigen::MatrixXd w = contact_directions(system);
   const Eigen::Index free = system.size() - w.cols();
-  ModeSets sets{.slipping = fem::natural_modes(system.structure(), count), .sticking = {}};
+  ModeSets sets{
+      .slipping = fem::natural_modes(system.structure(), count), .sticking = {}, .compliant = {}, .theory = {}};
   if (free > 0 && w.cols() > 0) {
     sets.sticking = fem::constrained_modes(system.structure(), w, std::min(count, free));
   }
+  Eigen::VectorXd stiffness(w.cols());
+  std::ranges::transform(system.contacts(), stiffness.begin(),
+                         [](const friction::Contact& contact) { return contact_stiffness(contact.law); });
+  if (w.cols() > 0 && (stiffness.array() > 0.0).all()) {
+    sets.compliant = fem::compliant_modes(system.structure(), w, stiffness, count);
+  }
+  if (scene.beam() != nullptr) sets.theory = fem::theory_effects(*scene.beam(), count);
   return sets;
 }
 
-/// ζ = (α/ω + β ω)/2; NaN for a rigid-body mode or damping that is not proportional.
-double damping_ratio(const fem::Structure& structure, double omega) {
-  const auto rayleigh = structure.rayleigh();
-  if (!rayleigh || omega == 0.0) return std::nan("");
-  return 0.5 * (rayleigh->mass / omega + rayleigh->stiffness * omega);
+/// Damping ratios of the slipping structure's modes; NaN for rigid-body modes and where damping couples modes.
+Eigen::VectorXd damping_ratios(const fem::Structure& structure, const fem::Modes& modes) {
+  constexpr double kCoupled = 1e-6;  // of the largest entry
+  Eigen::VectorXd ratios(modes.omega.size());
+  if (const auto rayleigh = structure.rayleigh()) {  // ζ = (α/ω + β ω)/2
+    for (Eigen::Index k = 0; k < ratios.size(); ++k) {
+      const double omega = modes.omega[k];
+      ratios[k] = omega == 0.0 ? std::nan("") : 0.5 * (rayleigh->mass / omega + rayleigh->stiffness * omega);
+    }
+    return ratios;
+  }
+  const Eigen::MatrixXd C = modes.shapes.transpose() * fem::multiply(structure.C(), modes.shapes);
+  for (Eigen::Index k = 0; k < ratios.size(); ++k) {  // φᵀCφ = 2 ζ ω
+    const double others = C.col(k).cwiseAbs().sum() - std::abs(C(k, k));
+    const bool coupled = others > kCoupled * C.cwiseAbs().maxCoeff();
+    ratios[k] = coupled || modes.omega[k] == 0.0 ? std::nan("") : C(k, k) / (2.0 * modes.omega[k]);
+  }
+  return ratios;
 }
+
+double hertz(double omega) { return omega / (2.0 * std::numbers::pi); }
 
 void store(const std::filesystem::path& path, const scene::Scene& scene, const ModeSets& sets) {
   const Units units = Units::of(scene.units);
@@ -57,7 +93,70 @@ void store(const std::filesystem::path& path, const scene::Scene& scene, const M
   };
   write("modes/slipping", sets.slipping, "natural modes with every contact slipping");
   if (sets.sticking.omega.size() > 0) write("modes/sticking", sets.sticking, "natural modes with every contact stuck");
+  if (sets.compliant.omega.size() > 0) {
+    write("modes/compliant", sets.compliant, "natural modes with every contact held by its spring");
+  }
   writer.commit();
+}
+
+std::string mode_table(const scene::Scene& scene, const ModeSets& sets, const Eigen::VectorXd& ratios) {
+  const std::string unit = scene.units == "SI" ? " [rad/s]" : "";
+  const std::string hz = scene.units == "SI" ? "f [Hz]" : "f = ω/2π";
+  const bool springs = sets.compliant.omega.size() > 0;
+  std::vector<std::string> header = {"mode", "slipping ω" + unit, hz, "damping ratio", "sticking ω" + unit};
+  if (scene.beam() != nullptr) header.emplace_back(hz);
+  if (springs) header.emplace_back("held by springs " + hz);
+  TextTable table(header);
+  const auto cell = [](const Eigen::VectorXd& omega, Eigen::Index k, double scale) {
+    return k < omega.size() ? fmt::format("{:.8g}", omega[k] * scale) : std::string("–");
+  };
+  for (Eigen::Index k = 0; k < sets.slipping.omega.size(); ++k) {
+    std::vector<std::string> row = {fmt::format("{}", k + 1), cell(sets.slipping.omega, k, 1.0),
+                                    cell(sets.slipping.omega, k, hertz(1.0)), fmt::format("{:.4g}", ratios[k]),
+                                    cell(sets.sticking.omega, k, 1.0)};
+    if (scene.beam() != nullptr) row.push_back(cell(sets.sticking.omega, k, hertz(1.0)));
+    if (springs) row.push_back(cell(sets.compliant.omega, k, hertz(1.0)));
+    table.add(row);
+  }
+  return table.str();
+}
+
+/// What shear and rotary inertia change, mode by mode.
+std::string theory_table(const fem::BeamOptions& beam, const std::vector<fem::TheoryEffect>& effects) {
+  TextTable table({"mode", "Euler-Bernoulli [Hz]", "shear", "rotary inertia", "Timoshenko [Hz]", "both"});
+  const auto percent = [](double change) { return fmt::format("{:+.3g} %", 100.0 * change); };
+  for (std::size_t k = 0; k < effects.size(); ++k) {
+    const fem::TheoryEffect& effect = effects[k];
+    table.add({fmt::format("{}", k + 1), fmt::format("{:.8g}", effect.euler_bernoulli_hz), percent(effect.shear_change),
+               percent(effect.rotary_change), fmt::format("{:.8g}", effect.timoshenko_hz),
+               percent(effect.timoshenko_change)});
+  }
+  const bool timoshenko = beam.theory == fem::BeamTheory::kTimoshenko;
+  return fmt::format(
+      "\nChange of slipping modes by shear and rotary inertia (Poisson's ratio {:g}, shear coefficient {:g}; this "
+      "scene: theory = \"{}\"):\n{}",
+      beam.spans.front().poisson_ratio, beam.spans.front().shear_coefficient,
+      timoshenko ? "timoshenko" : "euler-bernoulli", table.str());
+}
+
+nlohmann::json set_json(const fem::Modes& modes) {
+  std::vector<double> omega(modes.omega.begin(), modes.omega.end()), frequencies;
+  for (const double value : omega) frequencies.push_back(hertz(value));
+  return {{"omega", omega}, {"frequency", frequencies}};
+}
+
+nlohmann::json theory_json(const std::vector<fem::TheoryEffect>& effects) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const fem::TheoryEffect& effect : effects) {
+    list.push_back({{"euler_bernoulli_hz", effect.euler_bernoulli_hz},
+                    {"shear_hz", effect.shear_hz},
+                    {"rotary_hz", effect.rotary_hz},
+                    {"timoshenko_hz", effect.timoshenko_hz},
+                    {"shear_change", effect.shear_change},
+                    {"rotary_change", effect.rotary_change},
+                    {"timoshenko_change", effect.timoshenko_change}});
+  }
+  return list;
 }
 
 Report run(const Session& session, const Arguments& arguments) {
@@ -69,28 +168,21 @@ Report run(const Session& session, const Arguments& arguments) {
                                    arguments.count, system.size()));
   }
   const Eigen::Index count = arguments.count == 0 ? std::min<Eigen::Index>(system.size(), 20) : arguments.count;
-  const ModeSets sets = compute(system, count);
+  const ModeSets sets = compute(scene, system, count);
+  const Eigen::VectorXd ratios = damping_ratios(system.structure(), sets.slipping);
 
   Report report;
-  const std::string unit = scene.units == "SI" ? " [rad/s]" : "";
-  TextTable table(
-      {"mode", "slipping ω" + unit, scene.units == "SI" ? "f [Hz]" : "f = ω/2π", "damping ratio", "sticking ω" + unit});
-  for (Eigen::Index k = 0; k < sets.slipping.omega.size(); ++k) {
-    const double omega = sets.slipping.omega[k];
-    table.add({fmt::format("{}", k + 1), fmt::format("{:.8g}", omega),
-               fmt::format("{:.8g}", omega / (2.0 * std::numbers::pi)),
-               fmt::format("{:.4g}", damping_ratio(system.structure(), omega)),
-               k < sets.sticking.omega.size() ? fmt::format("{:.8g}", sets.sticking.omega[k]) : "–"});
-  }
-  report.text = fmt::format("{}: {} degrees of freedom\n{}", scene.title, system.size(), table.str());
-
-  const auto list = [](const Eigen::VectorXd& values) { return std::vector<double>(values.begin(), values.end()); };
+  report.text =
+      fmt::format("{}: {} degrees of freedom\n{}", scene.title, system.size(), mode_table(scene, sets, ratios));
   report.data = {{"verb", "modes"}, {"degrees_of_freedom", system.size()}, {"units", scene.units}};
-  report.data["slipping"] = {{"omega", list(sets.slipping.omega)}};
-  report.data["sticking"] = {{"omega", list(sets.sticking.omega)}};
-  std::vector<double> ratios;
-  for (const double omega : sets.slipping.omega) ratios.push_back(damping_ratio(system.structure(), omega));
-  report.data["slipping"]["damping_ratio"] = ratios;
+  report.data["slipping"] = set_json(sets.slipping);
+  report.data["slipping"]["damping_ratio"] = std::vector<double>(ratios.begin(), ratios.end());
+  report.data["sticking"] = set_json(sets.sticking);
+  if (sets.compliant.omega.size() > 0) report.data["held_by_springs"] = set_json(sets.compliant);
+  if (scene.beam() != nullptr) {
+    report.text += theory_table(*scene.beam(), sets.theory);
+    report.data["theory_effects"] = theory_json(sets.theory);
+  }
   if (!arguments.output.empty()) {
     store(arguments.output, scene, sets);
     report.data["file"] = arguments.output;

@@ -70,6 +70,7 @@ scene::JournalRecord to_record(const SweepPoint& point) {
   append(values, settled.end.v);
   values.push_back(static_cast<double>(settled.end.modes.size()));
   for (const auto mode : settled.end.modes) values.push_back(static_cast<double>(mode));
+  append(values, settled.end.internal);
   return {point.model == 0 ? "full" : "reduced", static_cast<std::int64_t>(point.index), values, point.failure};
 }
 
@@ -102,6 +103,7 @@ SweepPoint from_record(const scene::JournalRecord& record) {
   settled.end.v = cursor.next_vector();
   settled.end.modes.resize(static_cast<std::size_t>(cursor.next()));
   for (auto& mode : settled.end.modes) mode = static_cast<dynamics::ContactMode>(cursor.next_int());
+  settled.end.internal = cursor.next_vector();
   return point;
 }
 
