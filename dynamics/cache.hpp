@@ -25,13 +25,13 @@ class SystemCache {
  public:
   /// @param rows_only  contact rows without mode shapes, where the structure allows it
   [[nodiscard]] const ModelTables& tables(const HybridSystem& system, bool rows_only);
-  /// The regime in which these contacts stick, built when first visited.
-  [[nodiscard]] const RegimeTables& regime(const HybridSystem& system, const std::vector<bool>& stuck);
+  /// The regime in which contacts have these roles, built when first visited.
+  [[nodiscard]] const RegimeTables& regime(const HybridSystem& system, const std::vector<ContactRole>& roles);
 
  private:
   std::mutex building_;
   std::unique_ptr<ModelTables> full_, rows_;
-  std::map<std::vector<bool>, std::unique_ptr<RegimeTables>> regimes_;
+  std::map<std::vector<ContactRole>, std::unique_ptr<RegimeTables>> regimes_;
 };
 
 }  // namespace slipmode::dynamics

@@ -17,8 +17,10 @@ constexpr double kTouching = 1e-12;
 constexpr double kWorthwhile = 0.05;
 /// The part of a proved interval that is used, to leave room for the rounding of its end.
 constexpr double kUsed = 1.0 - 1e-5;
-/// Phase below which the energy audit uses one short rule.
-constexpr double kShortRest = 0.25;
+/// A guard below this share of its scale when a regime begins starts at zero …
+constexpr double kStarting = 1e-9;
+/// … and with zero slope, if that is below this share of its scale times the fastest rate.
+constexpr double kSimpleStart = 1e-9;
 constexpr int kNewtonSteps = 20;
 /// The next window is longer when the least value of every guard is this many times what was left out.
 constexpr double kSpareToGrow = 32.0;
@@ -33,39 +35,131 @@ ClosedFormFlow::ClosedFormFlow(const HybridSystem& system, HybridPoint start, co
       resolver_(system, slipping_, options),
       options_(options),
       nc_(slipping_.contacts),
-      point_(std::move(start)),
-      exempt_until_(static_cast<std::size_t>(nc_), -std::numeric_limits<double>::infinity()) {
+      point_(std::move(start)) {
   statistics_.stick_time.assign(static_cast<std::size_t>(nc_), 0.0);
+  for (int c = 0; c < nc_; ++c) {
+    const friction::Contact& contact = system.contacts()[static_cast<std::size_t>(c)];
+    if (resolver_.laws()[static_cast<std::size_t>(c)].stiffness > 0.0) compliant_.push_back(c);
+    if (contact.normal_load.oscillator) {
+      const Eigen::Index end = system.internal_begin(c) + friction::internal_states(contact);
+      oscillator_states_.insert(oscillator_states_.end(), {end - 2, end - 1});
+    }
+  }
   resolver_.start(point_);
   enter_regime();
 }
 
-bool ClosedFormFlow::has_guard(int c) const { return resolver_.laws()[static_cast<std::size_t>(c)].sticks(); }
-
 void ClosedFormFlow::enter_regime() {
-  std::vector<bool> stuck;
-  for (const ContactMode mode : point_.modes) stuck.push_back(mode == ContactMode::kStick);
-  const auto known = std::find_if(visited_.begin(), visited_.end(), [&](const auto& v) { return v.first == stuck; });
+  const std::vector<ContactRole> roles = resolver_.roles(point_.modes);
+  const auto known = std::find_if(visited_.begin(), visited_.end(), [&](const auto& v) { return v.roles == roles; });
   if (known == visited_.end()) {
-    tables_ = &system_.cache().regime(system_, stuck);
-    visited_.emplace_back(stuck, tables_);
+    const RegimeTables& tables = system_.cache().regime(system_, roles);
+    visited_.push_back({roles, &tables, nullptr, nullptr});
+    Visited& now = visited_.back();
+    if (const friction::Shaker* shaker = resolver_.drive().shaker()) {
+      now.overlay = std::make_unique<DriveOverlay>(tables.regime(), *shaker);
+      const Regime& r = tables.regime();
+      now.lift_c = r.to_slipping * now.overlay->state.c + r.inputs_slipping * now.overlay->inputs.c;
+      now.lift_s = r.to_slipping * now.overlay->state.s + r.inputs_slipping * now.overlay->inputs.s;
+      if (options_.audit) now.forms = AuditForms::make(tables.regime(), *now.overlay);
+    }
+    regime_ = &now;
     ++statistics_.regimes_built;
   } else {
-    tables_ = known->second;
+    regime_ = &*known;
   }
+  tables_ = regime_->tables;
   const Regime& r = tables_->regime();
-  x_.noalias() = r.from_slipping * point_.x;
-  inputs_.resize(r.inputs());
-  for (int c = 0; c < nc_; ++c)
-    inputs_(c) = r.stuck[static_cast<std::size_t>(c)]
-                     ? dot_padded(slipping_.displacement_row.col(c).data(), point_.x.data(), 2 * slipping_.np)
-                     : point_.force(c);
-  inputs_(r.speed_input()) = resolver_.drive().velocity(point_.time);
-  inputs_(r.speed_input() + 1) = resolver_.drive().acceleration(point_.time);
+  const DriveOverlay* overlay = regime_->overlay.get();
+  const DrivePhase phase = overlay ? overlay->phase(point_.time) : DrivePhase{};
+
+  inputs_ = Eigen::VectorXd::Zero(r.inputs());
+  for (int c = 0; c < nc_; ++c) inputs_(c) = resolver_.regime_input(point_, c);
+  if (!overlay) {
+    inputs_(r.speed_input()) = resolver_.drive().velocity(point_.time);
+    inputs_(r.speed_input() + 1) = resolver_.drive().acceleration(point_.time);
+  }
   inputs_(r.speed_input() + 2) = 1.0;
+  x_.noalias() = r.from_slipping * point_.x;
+  if (!oscillator_states_.empty())
+    x_.noalias() += r.from_oscillators * Eigen::VectorXd(point_.internal(oscillator_states_));
+  if (overlay) {
+    for (Eigen::Index c = 0; c < nc_; ++c) inputs_(c) -= overlay->inputs.at(c, phase);
+    x_ -= phase.cosine * overlay->state.c + phase.sine * overlay->state.s;
+  }
+  if (regime_->forms) regime_->forms->begin(point_.time, x_, inputs_);
   amplitude_.resize(r.pairs.np);
   measure_amplitudes();
+  set_guards();
   foresee_starts();
+}
+
+void ClosedFormFlow::set_guards() {
+  guards_.clear();
+  const std::vector<RegimeOutput>& outputs = tables_->regime().outputs;
+  for (std::size_t k = 0; k < outputs.size(); ++k) {
+    const int c = outputs[k].contact;
+    const auto i = static_cast<std::size_t>(c);
+    const ContactForces& law = resolver_.laws()[i];
+    Guard guard{static_cast<Eigen::Index>(k), c};
+    switch (outputs[k].kind) {
+      case RegimeOutput::Kind::kSpeed:
+        guard.sign = sign_of(point_.modes[i]);
+        break;
+      case RegimeOutput::Kind::kForce:
+        guard.constant = law.limit(-1.0);
+        guards_.push_back(guard);
+        guard.constant = law.limit(1.0);
+        guard.sign = -1.0;
+        break;
+      case RegimeOutput::Kind::kLoad:
+        guard.of_load = true;
+        guard.sign = point_.modes[i] == ContactMode::kSeparated ? -1.0 : 1.0;
+        break;
+      case RegimeOutput::Kind::kExcess:
+      case RegimeOutput::Kind::kReserve:
+        break;
+    }
+    guards_.push_back(guard);
+  }
+}
+
+double ClosedFormFlow::scale(const Guard& guard) const {
+  const Regime& r = tables_->regime();
+  const RegimeOutput& output = r.outputs[static_cast<std::size_t>(guard.output)];
+  const ContactForces& law = resolver_.laws()[static_cast<std::size_t>(guard.contact)];
+  if (output.kind == RegimeOutput::Kind::kForce) return law.static_limit;
+  double size = r.weight.col(guard.output).dot(amplitude_);
+  if (regime_->overlay) size += regime_->overlay->outputs.size(guard.output);
+  if (output.kind == RegimeOutput::Kind::kSpeed)
+    return size + std::abs(inputs_(r.speed_input())) +
+           slipping_.mobility(guard.contact, guard.contact) * law.static_limit / r.rate;
+  return size + (guard.of_load ? law.load : law.static_limit);
+}
+
+ClosedFormFlow::GuardValue ClosedFormFlow::evaluate(const Guard& guard, double t) const {
+  const Regime& r = tables_->regime();
+  const auto k = guard.output;
+  double value = r.output(k, x_, inputs_);
+  double rate = dot_padded(r.row1.col(k).data(), x_.data(), x_.size()) + r.coefficient1.col(k).dot(inputs_);
+  if (const DriveOverlay* overlay = regime_->overlay.get()) {
+    const DrivePhase phase = overlay->phase(t);
+    value += overlay->outputs.at(k, phase);
+    rate += overlay->omega() * overlay->outputs.rate(k, phase);
+  }
+  return {guard.constant + guard.sign * value, guard.sign * rate};
+}
+
+double ClosedFormFlow::second_derivative(const Guard& guard, double t) const {
+  const Regime& r = tables_->regime();
+  double second = r.row2.col(guard.output).dot(x_) + r.coefficient2.col(guard.output).dot(inputs_);
+  if (const DriveOverlay* overlay = regime_->overlay.get())
+    second -= overlay->omega() * overlay->omega() * overlay->outputs.at(guard.output, overlay->phase(t));
+  return guard.sign * second;
+}
+
+double ClosedFormFlow::drive_velocity(double t, const Eigen::VectorXd& inputs) const {
+  return regime_->overlay ? resolver_.drive().velocity(t) : inputs(tables_->regime().speed_input());
 }
 
 void ClosedFormFlow::measure_amplitudes() {
@@ -85,37 +179,34 @@ void ClosedFormFlow::measure_amplitudes() {
 }
 
 void ClosedFormFlow::foresee_starts() {
-  // Sliding that starts now has a guard that starts at zero. Taylor's theorem says for how long it is sure to stay
-  // positive: g ≥ g′t − M₂t²/2 (or g″t²/2 − M₃t³/6 when g′ vanishes); half of that time is used.
+  // A guard that starts at zero. Taylor's theorem says for how long it is sure to stay positive: g ≥ g′t − M₂t²/2 (or
+  // g″t²/2 − M₃t³/6 when g′ vanishes); half of that time is used.
   const Regime& r = tables_->regime();
-  const double tiny = 1e-9 / r.rate;
+  const DriveOverlay* overlay = regime_->overlay.get();
+  const double tiny = 1e-9 / r.rate, room = std::exp(r.growth / r.rate);
   double shortest = std::numeric_limits<double>::infinity();
-  for (int c = 0; c < nc_; ++c) {
-    const auto i = static_cast<std::size_t>(c);
-    const bool stuck = point_.modes[i] == ContactMode::kStick;
-    double sign = sign_of(point_.modes[i]);
-    if (!has_guard(c)) continue;
-    if (stuck) {
-      // A stick force that starts at its limit and leaves it inwards is no release.
-      const double force = point_.force(c), limit = resolver_.laws()[i].static_limit;
-      if (std::abs(force) < limit * (1.0 - 1e-9)) continue;
-      sign = force > 0 ? 1.0 : -1.0;
-    } else if (point_.multiplicity[i] == 0) {
-      continue;
-    }
-    // Guard: sign (V − output) sliding, limit − sign · output in stick.
-    const double belt_rate = stuck ? 0.0 : inputs_(r.speed_input() + 1);
-    const double g1 = sign * (belt_rate - r.row1.col(c).dot(x_) - r.coefficient1.col(c).dot(inputs_));
-    const double g2 = -sign * (r.row2.col(c).dot(x_) + r.coefficient2.col(c).dot(inputs_));
-    const double third = std::abs(r.polynomial3.col(c).dot(inputs_));
-    const double m3 = r.weight3.col(c).dot(amplitude_) + third;
-    const double m2 = r.weight2.col(c).dot(amplitude_) + std::abs(r.polynomial2.col(c).dot(inputs_)) + third / r.rate;
+  for (Guard& guard : guards_) {
+    const auto i = static_cast<std::size_t>(guard.contact), k = static_cast<std::size_t>(guard.output);
+    const ContactForces& law = resolver_.laws()[i];
+    const bool rigid_speed =
+        r.outputs[k].kind == RegimeOutput::Kind::kSpeed && law.kind == ContactForces::Kind::kConstant && !law.varies;
+    const auto [g0, g1] = evaluate(guard, point_.time);
+    const double size = scale(guard);
+    if (rigid_speed ? point_.multiplicity[i] == 0 : g0 > kStarting * size) continue;
+    const double harmonic = overlay ? overlay->outputs.size(guard.output) : 0.0, w = overlay ? overlay->omega() : 0.0;
+    const double g2 = second_derivative(guard, point_.time);
+    const double third = std::abs(r.polynomial3.col(guard.output).dot(inputs_));
+    const double m3 = room * r.weight3.col(guard.output).dot(amplitude_) + third + harmonic * w * w * w;
+    const double m2 = room * r.weight2.col(guard.output).dot(amplitude_) +
+                      std::abs(r.polynomial2.col(guard.output).dot(inputs_)) + third / r.rate + harmonic * w * w;
+    const bool simple = rigid_speed ? point_.multiplicity[i] == 1 : g1 > kSimpleStart * r.rate * size;
+    const bool flat = rigid_speed ? point_.multiplicity[i] == 2 : std::abs(g1) <= kSimpleStart * r.rate * size;
     double clear = 0.0;
-    if (g1 > 0 && (stuck || point_.multiplicity[i] == 1)) clear = std::min(g1 / m2, 1.0 / r.rate);
-    if (!stuck && point_.multiplicity[i] == 2 && g2 > 0) clear = std::min(1.5 * g2 / m3, 1.0 / r.rate);
-    if (stuck && clear == 0.0) continue;  // rising through its limit: an event at once
+    if (simple && g1 > 0) clear = std::min(g1 / m2, 1.0 / r.rate);
+    if (flat && g2 > 0) clear = std::min(1.5 * g2 / m3, 1.0 / r.rate);
+    if (!rigid_speed && clear == 0.0) continue;  // falling through zero: an event at once
     clear = std::max(clear, tiny);
-    exempt_until_[i] = point_.time + clear;
+    guard.exempt_until = point_.time + clear;
     shortest = std::min(shortest, clear);
   }
   if (shortest < std::numeric_limits<double>::infinity())
@@ -124,17 +215,17 @@ void ClosedFormFlow::foresee_starts() {
     level_ = std::min(std::max(level_, tables_->level_covering(4.0 / r.rate)), RegimeTables::kLevels - 1);
 }
 
-void ClosedFormFlow::judge(const BernsteinPolynomial& guard, double remainder, double tolerance, int contact,
+void ClosedFormFlow::judge(const BernsteinPolynomial& polynomial, double remainder, double tolerance, int guard,
                            Search& found) const {
   found.spare = std::min(found.spare, 1.0);
   Search here;
-  here.contact = contact;
+  here.guard = guard;
   here.spare = found.spare;
   here.resolved = remainder <= tolerance;
   std::optional<FirstRoot> root;
-  if (here.resolved) root = first_root(guard);
+  if (here.resolved) root = first_root(polynomial);
   if (!root || root->touching) {
-    BernsteinPolynomial low = guard;
+    BernsteinPolynomial low = polynomial;
     for (int k = 0; k < kNodes; ++k) low.coefficient[static_cast<std::size_t>(k)] -= remainder;
     root = first_root(low);
     if (!root) return;
@@ -142,86 +233,86 @@ void ClosedFormFlow::judge(const BernsteinPolynomial& guard, double remainder, d
   }
   here.at = root->at;
   if (!here.resolved) here.refinement = 1 + std::min(8, std::ilogb(remainder / tolerance) / 8);
-  here.alone = found.contact < 0;
-  if (found.contact < 0 || here.at < found.at) found = here;
+  here.alone = found.guard < 0;
+  if (found.guard < 0 || here.at < found.at) found = here;
   found.alone = here.alone;
 }
 
 ClosedFormFlow::Search ClosedFormFlow::search(int level) const {
   const Regime& r = tables_->regime();
   const RegimeWindow& w = tables_->window(level);
+  const DriveOverlay* overlay = regime_->overlay.get();
   const auto np = r.pairs.np, ni = r.inputs();
-  const double h = tables_->length(level);
-  const double V = inputs_(r.speed_input()), a = inputs_(r.speed_input() + 1);
   Search found;
-  for (int c = 0; c < nc_; ++c) {
-    const auto i = static_cast<std::size_t>(c);
-    if (!has_guard(c) || exempt_until_[i] > begin_) continue;
-    V8 output = node_sums(w.from_state.data() + 8 * 2 * np * c, x_.data(), 2 * np) +
-                node_sums(w.from_inputs.data() + 8 * ni * c, inputs_.data(), ni);
-    const double remainder = dot_padded(w.remainder.col(c).data(), amplitude_.data(), np);
-    BernsteinPolynomial guard;
-    guard.degree = kNodes - 1;
-    alignas(64) double lanes[kNodes];
-    const auto consider = [&](const V8& values, double tolerance) {
-      const double least = min8(values);
-      if (least > remainder || stays_above(values, remainder, kHalvings)) {
-        found.spare = std::min(found.spare, std::max(least, 0.0) / std::max(remainder, 1e-300));
-        return;
+  Eigen::Index computed = -1;
+  V8 output{};
+  double remainder = 0.0;
+  for (std::size_t g = 0; g < guards_.size(); ++g) {
+    const Guard& guard = guards_[g];
+    if (guard.exempt_until > begin_) continue;
+    const auto k = guard.output;
+    if (k != computed) {
+      computed = k;
+      output = node_sums(w.from_state.data() + 8 * 2 * np * k, x_.data(), 2 * np) +
+               node_sums(w.from_inputs.data() + 8 * ni * k, inputs_.data(), ni);
+      remainder = dot_padded(w.remainder.col(k).data(), amplitude_.data(), np);
+      if (overlay) {
+        // c cos(θ₀ + ωτ) + s sin(θ₀ + ωτ) by the window's cos ωτ and sin ωτ.
+        const DriveOverlay::Window& harmonic = overlay->window(level, tables_->length(level));
+        output += overlay->outputs.at(k, phase_) * harmonic.cosine + overlay->outputs.rate(k, phase_) * harmonic.sine;
+        remainder += harmonic.remainder * overlay->outputs.size(k);
       }
-      store8(lanes, values);
-      std::copy_n(lanes, kNodes, guard.coefficient.begin());
-      judge(guard, remainder, tolerance, c, found);
-    };
-    if (r.stuck[i]) {
-      const double limit = resolver_.laws()[i].static_limit;
-      consider(limit - output, kTouching * limit);
-      consider(limit + output, kTouching * limit);
-    } else {
-      static constexpr V8 kRamp = {0.0, 1.0 / 7, 2.0 / 7, 3.0 / 7, 4.0 / 7, 5.0 / 7, 6.0 / 7, 1.0};
-      const V8 speed = sign_of(point_.modes[i]) * (V + (a * h) * kRamp - output);
-      const double scale = std::abs(V) + r.weight.col(c).dot(amplitude_) +
-                           slipping_.mobility(c, c) * resolver_.laws()[i].static_limit / r.rate;
-      consider(speed, kTouching * scale);
     }
+    const V8 values = guard.constant + guard.sign * output;
+    const double least = min8(values);
+    if (least > remainder || stays_above(values, remainder, kHalvings)) {
+      found.spare = std::min(found.spare, std::max(least, 0.0) / std::max(remainder, 1e-300));
+      continue;
+    }
+    alignas(64) double lanes[kNodes];
+    store8(lanes, values);
+    BernsteinPolynomial polynomial;
+    polynomial.degree = kNodes - 1;
+    std::copy_n(lanes, kNodes, polynomial.coefficient.begin());
+    judge(polynomial, remainder, kTouching * scale(guard), static_cast<int>(g), found);
   }
   return found;
 }
 
-bool ClosedFormFlow::approach(int c, double& tau) {
+bool ClosedFormFlow::approach(const Guard& guard, double& tau) {
   // Newton on the exact guard, from a time at which it is not yet reached.
-  const Regime& r = tables_->regime();
-  const auto i = static_cast<std::size_t>(c);
-  const double sign = r.stuck[i] ? (r.output(c, x_, inputs_) > 0 ? 1.0 : -1.0) : sign_of(point_.modes[i]);
-  const double belt_rate = r.stuck[i] ? 0.0 : inputs_(r.speed_input() + 1);
-  const double from = tau;
+  const double rate = tables_->regime().rate, from = tau, bend = curvature(guard.output);
   double slope = 0.0;
   for (int k = 0; k < kNewtonSteps; ++k) {
-    const double value = r.stuck[i] ? resolver_.laws()[i].static_limit - sign * r.output(c, x_, inputs_)
-                                    : sign * (inputs_(r.speed_input()) - r.output(c, x_, inputs_));
-    slope = sign *
-            (belt_rate - dot_padded(r.row1.col(c).data(), x_.data(), x_.size()) - r.coefficient1.col(c).dot(inputs_));
-    const double shift = -value / slope;
-    if (!(slope < 0.0) || !(std::abs(shift) * r.rate < 2.0) || tau + shift < 0.0) return false;
+    const GuardValue now = evaluate(guard, begin_ + tau);
+    slope = now.rate;
+    const double shift = -now.value / slope;
+    if (!(slope < 0.0) || !(std::abs(shift) * rate < 2.0) || tau + shift < 0.0) return false;
     tau += shift;
     advance(*tables_, shift, x_, inputs_);
     // Newton squares its error, with a factor of about the guard's curvature by its slope.
-    if (std::abs(shift) * r.rate < 1e-15 || shift * shift * curvature(c) < 1e-15 / r.rate * std::abs(slope)) break;
+    if (std::abs(shift) * rate < 1e-15 || shift * shift * bend < 1e-15 / rate * std::abs(slope)) break;
   }
   // The guard falls all the way from `from`: it vanishes here for the first time.
-  return tau <= from || (tau - from) * curvature(c) < std::abs(slope);
+  return tau <= from || (tau - from) * bend < std::abs(slope);
 }
 
-double ClosedFormFlow::curvature(int c) const {
+double ClosedFormFlow::curvature(Eigen::Index output) const {
   const Regime& r = tables_->regime();
-  return r.weight2.col(c).dot(amplitude_) + std::abs(r.polynomial2.col(c).dot(inputs_begin_)) +
-         std::abs(r.polynomial3.col(c).dot(inputs_begin_)) * tables_->length(level_);
+  const double h = tables_->length(level_);
+  double bend = std::exp(std::min(r.growth * h, 200.0)) * r.weight2.col(output).dot(amplitude_) +
+                std::abs(r.polynomial2.col(output).dot(inputs_begin_)) +
+                std::abs(r.polynomial3.col(output).dot(inputs_begin_)) * h;
+  if (const DriveOverlay* overlay = regime_->overlay.get())
+    bend += overlay->omega() * overlay->omega() * overlay->outputs.size(output);
+  return bend;
 }
 
 bool ClosedFormFlow::step(double t_limit) {
   resolver_.clear();
   begin_ = point_.time;
-  step_tables_ = tables_;
+  step_regime_ = regime_;
+  if (regime_->overlay) phase_ = regime_->overlay->phase(begin_);
   double limit = t_limit;
   bool corner = false;
   if (!resolver_.drive().is_constant()) {
@@ -231,8 +322,8 @@ bool ClosedFormFlow::step(double t_limit) {
     }
   }
   double end = limit;
-  for (const double until : exempt_until_)
-    if (until > begin_) end = std::min(end, until);
+  for (const Guard& guard : guards_)
+    if (guard.exempt_until > begin_) end = std::min(end, guard.exempt_until);
   const double remaining = end - begin_;
 
   measure_amplitudes();
@@ -242,8 +333,8 @@ bool ClosedFormFlow::step(double t_limit) {
     h = tables_->length(level_);
     found = search(level_);
     const bool finest = level_ + 1 >= RegimeTables::kLevels || !(begin_ + h > begin_);
-    if (found.contact < 0 || found.at * h >= remaining) {
-      found.contact = -1;
+    if (found.guard < 0 || found.at * h >= remaining) {
+      found.guard = -1;
       tau = std::min(h, remaining);
       break;
     }
@@ -255,19 +346,19 @@ bool ClosedFormFlow::step(double t_limit) {
   }
   x_begin_ = x_;
   inputs_begin_ = inputs_;
-  if (found.contact >= 0 && !found.touching) {
+  if (found.guard >= 0 && !found.touching) {
     // Up to the part that is proved clear; from there Newton, which may prove itself.
     if (!found.resolved) tau *= kUsed;
     advance(*tables_, tau, x_, inputs_);
     double root = tau;
-    const bool proved = approach(found.contact, root);
+    const bool proved = approach(guards_[static_cast<std::size_t>(found.guard)], root);
     if (proved ? root <= std::min(h, remaining) && (found.alone || found.resolved) : found.resolved) {
       tau = root;
     } else {
       x_ = x_begin_;
       inputs_ = inputs_begin_;
       advance(*tables_, tau, x_, inputs_);
-      found.contact = -1;
+      found.guard = -1;
       level_ = std::min(level_ + found.refinement, RegimeTables::kLevels - 1);
     }
   } else {
@@ -276,101 +367,75 @@ bool ClosedFormFlow::step(double t_limit) {
   point_.time = tau == remaining ? end : begin_ + tau;
   ++statistics_.steps;
   if ((x_.size() > 0 && !std::isfinite(x_(0))) || !std::isfinite(point_.time)) {
-    lift(tables_->regime(), x_begin_, inputs_begin_, point_.x, point_.force);
+    lift(*regime_, begin_, x_begin_, inputs_begin_, point_.x, point_.force);
     throw NumericalFailure("the state is no longer finite at t = " + std::to_string(begin_), begin_, point_.x,
                            std::numeric_limits<double>::quiet_NaN());
   }
   for (std::size_t c = 0; c < point_.modes.size(); ++c)
     if (point_.modes[c] == ContactMode::kStick) statistics_.stick_time[c] += tau;
-  if (options_.audit) account(tau);
+  const bool ends = found.guard >= 0 || point_.time >= limit;
+  if (options_.audit) account(tau, ends);
 
-  if (found.contact >= 0) return settle(found.contact, found.touching);
+  if (found.guard >= 0) return settle(found.guard, found.touching);
   if (found.spare > kSpareToGrow) {
     const int growth = std::clamp(std::ilogb(found.spare) / 8, 1, kLargestGrowth);
     level_ = std::max(0, level_ - growth);
   }
-  if (point_.time < limit) return false;
+  if (!ends) return false;
   if (corner) return settle(-1, false);
-  lift(tables_->regime(), x_, inputs_, point_.x, point_.force);
+  lift_point();
   return false;
 }
 
-bool ClosedFormFlow::settle(int contact, bool touching) {
-  lift(tables_->regime(), x_, inputs_, point_.x, point_.force);
+bool ClosedFormFlow::settle(int guard, bool touching) {
+  lift_point();
   const double window_end = begin_ + tables_->length(level_);
-  resolver_.settle(point_, contact, touching);
+  const Guard* reached = guard >= 0 ? &guards_[static_cast<std::size_t>(guard)] : nullptr;
+  resolver_.settle(point_, reached ? reached->contact : -1, touching,
+                   reached && reached->of_load ? GuardKind::kLoad : GuardKind::kFriction);
   statistics_.events += static_cast<std::int64_t>(resolver_.events().size());
-  std::fill(exempt_until_.begin(), exempt_until_.end(), -std::numeric_limits<double>::infinity());
   if (touching)
-    exempt_until_[static_cast<std::size_t>(contact)] = std::max(window_end, std::nextafter(point_.time, 1e300));
+    guards_[static_cast<std::size_t>(guard)].exempt_until = std::max(window_end, std::nextafter(point_.time, 1e300));
   else
     enter_regime();
   return true;
 }
 
-void ClosedFormFlow::lift(const Regime& r, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs,
+void ClosedFormFlow::lift(const Visited& in, double t, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs,
                           Eigen::VectorXd& out_x, Eigen::VectorXd& out_force) const {
+  const Regime& r = in.tables->regime();
   out_x.noalias() = r.to_slipping * x;
   out_x.noalias() += r.inputs_slipping * inputs;
   out_force.resize(nc_);
   for (int c = 0; c < nc_; ++c)
-    out_force(c) = r.stuck[static_cast<std::size_t>(c)] ? r.output(c, x, inputs) : inputs(c);
+    out_force(c) = r.roles[static_cast<std::size_t>(c)] == ContactRole::kSliding
+                       ? inputs(c)
+                       : r.force_row.col(c).dot(x) + r.force_coefficient.col(c).dot(inputs);
+  if (!in.overlay) return;
+  const DrivePhase phase = in.overlay->phase(t);
+  out_x.noalias() += phase.cosine * in.lift_c + phase.sine * in.lift_s;
+  for (int c = 0; c < nc_; ++c) out_force(c) += in.overlay->force.at(c, phase);
+}
+
+void ClosedFormFlow::lift_point() {
+  lift(*regime_, point_.time, x_, inputs_, point_.x, point_.force);
+  for (const int c : compliant_)
+    point_.internal(system_.internal_begin(c)) =
+        point_.force(c) / resolver_.laws()[static_cast<std::size_t>(c)].stiffness;
+  if (oscillator_states_.empty()) return;
+  const Regime& r = tables_->regime();
+  Eigen::VectorXd x = x_;
+  if (const DriveOverlay* overlay = regime_->overlay.get()) {
+    const DrivePhase phase = overlay->phase(point_.time);
+    x += phase.cosine * overlay->state.c + phase.sine * overlay->state.s;
+  }
+  point_.internal(oscillator_states_) = r.to_oscillators * x;
 }
 
 void ClosedFormFlow::evaluate(double t, Eigen::VectorXd& out_x, Eigen::VectorXd& out_force) const {
-  const Regime& r = step_tables_->regime();
   Eigen::VectorXd x = x_begin_, inputs = inputs_begin_;
-  advance(*step_tables_, std::max(0.0, t - begin_), x, inputs);
-  lift(r, x, inputs, out_x, out_force);
-}
-
-void ClosedFormFlow::account(double tau) {
-  const RegimeTables& tables = *tables_;
-  const Regime& r = tables.regime();
-  double contact = 0.0, drive = 0.0, viscous = 0.0;
-  const auto add = [&](double weight, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs) {
-    const double V = inputs(r.speed_input());
-    for (int c = 0; c < nc_; ++c) {
-      const double output = r.output(c, x, inputs);
-      const bool held = r.stuck[static_cast<std::size_t>(c)];
-      const double force = held ? output : inputs(c);
-      contact += weight * force * (held ? V : output);
-      drive += weight * force * V;
-    }
-    viscous += weight * r.viscous_power(x, V);
-  };
-  const auto move_to = [&](const RegimeStep& s, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs,
-                           Eigen::VectorXd& out_x, Eigen::VectorXd& out_inputs) {
-    apply(s, x.data(), inputs, out_x.data());
-    out_inputs = inputs;
-    r.advance_inputs(out_inputs, s.h);
-  };
-  Eigen::VectorXd x = x_begin_, inputs = inputs_begin_, at_x(x.size()), at_inputs(inputs.size());
-  for (int level = RegimeTables::kAuditLevel; level < RegimeTables::kLevels && r.rate * tau > kShortRest;) {
-    const double h = tables.length(level);
-    if (h > tau) {
-      ++level;
-      continue;
-    }
-    const RegimeAudit& audit = tables.audit(level);
-    for (Eigen::Index j = 0; j < audit.rule.node.size(); ++j) {
-      move_to(audit.point[static_cast<std::size_t>(j)], x, inputs, at_x, at_inputs);
-      add(h * audit.rule.weight(j), at_x, at_inputs);
-    }
-    move_to(tables.step(level), x, inputs, at_x, at_inputs);
-    x.swap(at_x);
-    inputs.swap(at_inputs);
-    tau -= h;
-  }
-  static const GaussRule rule = gauss_rule(5);
-  if (tau > 0.0)
-    for (Eigen::Index j = 0; j < rule.node.size(); ++j) {
-      at_x = x;
-      at_inputs = inputs;
-      advance(tables, rule.node(j) * tau, at_x, at_inputs);
-      add(rule.weight(j) * tau, at_x, at_inputs);
-    }
-  work_.add(contact, drive, viscous);
+  advance(*step_regime_->tables, std::max(0.0, t - begin_), x, inputs);
+  lift(*step_regime_, t, x, inputs, out_x, out_force);
 }
 
 }  // namespace slipmode::dynamics

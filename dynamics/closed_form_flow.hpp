@@ -1,10 +1,14 @@
 #pragma once
 
+#include "dynamics/audit_forms.hpp"
 #include "dynamics/bernstein.hpp"
 #include "dynamics/cache.hpp"
+#include "dynamics/drive_overlay.hpp"
 #include "dynamics/event_resolver.hpp"
 
 #include <Eigen/Core>
+#include <deque>
+#include <memory>
 #include <vector>
 
 namespace slipmode::dynamics {
@@ -34,9 +38,25 @@ class ClosedFormFlow {
   void evaluate(double t, Eigen::VectorXd& out_x, Eigen::VectorXd& out_force) const;
 
  private:
+  /// constant + sign · output ≥ 0 as long as the regime lasts.
+  struct Guard {
+    Eigen::Index output = 0;
+    int contact = 0;
+    double sign = 1.0, constant = 0.0;
+    bool of_load = false;          ///< the normal load's sign, not friction
+    double exempt_until = -1e300;  ///< known to be clear up to this time
+  };
+  /// A regime met in this run.
+  struct Visited {
+    std::vector<ContactRole> roles;
+    const RegimeTables* tables;
+    std::unique_ptr<DriveOverlay> overlay;     ///< null for a belt
+    std::unique_ptr<AuditForms> forms;         ///< null where the audit integrates by quadrature
+    Eigen::VectorXd lift_c = {}, lift_s = {};  ///< the overlay's state in the slipping model
+  };
   /// What a search of one window found.
   struct Search {
-    int contact = -1;       ///< whose guard may vanish first; −1: none in this window
+    int guard = -1;         ///< which may vanish first; −1: none in this window
     double at = 1.0;        ///< fraction of the window before which no guard vanishes
     bool resolved = false;  ///< nothing is left out that matters: `at` is the event
     bool touching = false;  ///< resolved: the guard comes within tolerance of zero and goes back
@@ -44,22 +64,35 @@ class ClosedFormFlow {
     int refinement = 1;     ///< not resolved: levels to go down until it is
     double spare = 1e300;   ///< smallest ratio of a guard's least value to its remainder
   };
+  /// A guard's value and derivatives.
+  struct GuardValue {
+    double value = 0.0, rate = 0.0;
+  };
 
   void enter_regime();
-  [[nodiscard]] bool has_guard(int c) const;
+  void set_guards();
   void measure_amplitudes();
   void foresee_starts();
+  /// The size of an output's values, which its rounding error is measured by.
+  [[nodiscard]] double scale(const Guard& guard) const;
+  [[nodiscard]] GuardValue evaluate(const Guard& guard, double t) const;
+  [[nodiscard]] double second_derivative(const Guard& guard, double t) const;
   [[nodiscard]] Search search(int level) const;
-  void judge(const BernsteinPolynomial& guard, double remainder, double tolerance, int contact, Search& found) const;
+  void judge(const BernsteinPolynomial& polynomial, double remainder, double tolerance, int guard, Search& found) const;
   /// Takes the state on to where the guard vanishes; tau follows. True if that is proved to be the first time.
-  [[nodiscard]] bool approach(int contact, double& tau);
+  [[nodiscard]] bool approach(const Guard& guard, double& tau);
   /// Bound on the second derivative of an output over the window.
-  [[nodiscard]] double curvature(int contact) const;
-  void account(double tau);
-  /// State of the slipping model and contact forces.
-  void lift(const Regime& regime, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs, Eigen::VectorXd& out_x,
-            Eigen::VectorXd& out_force) const;
-  [[nodiscard]] bool settle(int contact, bool touching);
+  [[nodiscard]] double curvature(Eigen::Index output) const;
+  /// Adds the work of a step of this length; where forms integrate whole stays, once a stay or the run `ends`.
+  void account(double tau, bool ends);
+  void integrate(double tau);
+  /// State of the slipping model and contact forces at t, from the regime's.
+  void lift(const Visited& in, double t, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs,
+            Eigen::VectorXd& out_x, Eigen::VectorXd& out_force) const;
+  /// The same into `point_`, contacts' own states included.
+  void lift_point();
+  [[nodiscard]] bool settle(int guard, bool touching);
+  [[nodiscard]] double drive_velocity(double t, const Eigen::VectorXd& inputs) const;
 
   const HybridSystem& system_;
   const ModalModel& slipping_;
@@ -68,16 +101,20 @@ class ClosedFormFlow {
   int nc_;
   HybridPoint point_;
 
-  const RegimeTables* tables_ = nullptr;
-  const RegimeTables* step_tables_ = nullptr;  ///< those of the last step
+  const Visited* regime_ = nullptr;
+  const RegimeTables* tables_ = nullptr;  ///< its tables
+  const Visited* step_regime_ = nullptr;  ///< that of the last step
+  std::vector<Guard> guards_;
+  std::vector<Eigen::Index> oscillator_states_;  ///< in HybridPoint::internal
+  std::vector<int> compliant_;                   ///< contacts behind a contact spring
   Eigen::VectorXd x_, inputs_, x_begin_, inputs_begin_, amplitude_;
   double begin_ = 0.0;
+  DrivePhase phase_;  ///< at begin_, of a harmonic drive
   int level_ = 0;
-  std::vector<double> exempt_until_;  ///< [nc] guards known to be clear up to this time
 
   WorkSums work_;
   FlowStatistics statistics_;
-  std::vector<std::pair<std::vector<bool>, const RegimeTables*>> visited_;
+  std::deque<Visited> visited_;
 };
 
 }  // namespace slipmode::dynamics

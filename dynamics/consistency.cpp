@@ -1,8 +1,10 @@
 #include "dynamics/consistency.hpp"
 
 #include "core/errors.hpp"
+#include "dynamics/load_form.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -37,7 +39,7 @@ bool evaluate(const Instant& now, const std::vector<bool>& at_rest, const std::v
   for (std::size_t c = 0; c < nc; ++c) {
     stuck[c] = trial.modes[c] == ContactMode::kStick;
     if (at_rest[c] && !stuck[c])
-      trial.force(static_cast<Eigen::Index>(c)) = sign_of(trial.modes[c]) * now.laws[c].onset();
+      trial.force(static_cast<Eigen::Index>(c)) = sign_of(trial.modes[c]) * now.laws[c].onset(sign_of(trial.modes[c]));
   }
   stick_forces(now, stuck, trial.force);
   const Eigen::VectorXd acceleration = free_acceleration(now) + now.model.mobility * trial.force;
@@ -46,7 +48,7 @@ bool evaluate(const Instant& now, const std::vector<bool>& at_rest, const std::v
     const auto i = static_cast<Eigen::Index>(c);
     const double limit = now.laws[c].static_limit;
     if (stuck[c]) {
-      if (std::abs(trial.force(i)) > limit * (1 + kForceTolerance)) return false;
+      if (std::abs(trial.force(i)) > now.laws[c].limit(trial.force(i)) * (1 + kForceTolerance)) return false;
     } else {
       const double scale = std::max(now.model.mobility(i, i) * limit, std::abs(now.belt_acceleration));
       // A release is located to the accuracy of the stick force; a continuous law then starts with zero acceleration.
@@ -98,21 +100,34 @@ double ContactForces::smooth(double v, double& slope) const {
 double ContactForces::sliding(ContactMode mode, double v) const {
   double slope;
   if (!sticks()) return smooth(v, slope);
+  if (kind != Kind::kStribeck) return sign_of(mode) * onset(sign_of(mode));
   return sign_of(mode) * (kinetic + drop * std::exp(-alpha * std::abs(v)));
 }
 
 ContactForces contact_forces(const friction::Contact& contact) {
   ContactForces f;
   const double N = contact.normal_load.constant;
-  f.static_limit = friction::static_coefficient(contact.law) * N;
+  f.load = N;
+  f.varies = LoadForm(contact).varies();
+  const double mu_s = friction::static_coefficient(contact.law), mu_k = friction::limit_coefficient(contact.law);
+  for (const int k : {0, 1}) {
+    f.mu_s[static_cast<std::size_t>(k)] = friction::effective_coefficient(mu_s, contact.tilt, 2.0 * k - 1.0);
+    f.mu_k[static_cast<std::size_t>(k)] = friction::effective_coefficient(mu_k, contact.tilt, 2.0 * k - 1.0);
+  }
+  f.static_limit = std::max(f.limit(-1.0), f.limit(1.0));
   if (const auto* coulomb = std::get_if<friction::Coulomb>(&contact.law)) {
     f.kinetic = coulomb->mu_k * N;
+  } else if (const auto* compliant = std::get_if<friction::CompliantCoulomb>(&contact.law)) {
+    f.kind = ContactForces::Kind::kCompliant;
+    f.kinetic = compliant->mu_k * N;
+    f.stiffness = compliant->stiffness;
   } else if (const auto* stribeck = std::get_if<friction::Stribeck>(&contact.law)) {
     f.kinetic = stribeck->mu_k * N;
     f.drop = (stribeck->mu_s - stribeck->mu_k) * N;
     f.alpha = stribeck->alpha;
     if (friction::is_piecewise_linear(contact.law)) {
       f.kinetic = friction::kinetic_coefficient(contact.law, 0.0) * N;
+      f.mu_k.fill(friction::kinetic_coefficient(contact.law, 0.0));
       f.drop = 0.0;
     } else {
       f.kind = ContactForces::Kind::kStribeck;
@@ -124,8 +139,16 @@ ContactForces contact_forces(const friction::Contact& contact) {
     f.alpha = tanh->alpha;
     f.epsilon = tanh->epsilon;
   }
-  if (f.static_limit == 0.0) f.kind = ContactForces::Kind::kFree;
+  if (mu_s == 0.0 || (N == 0.0 && !f.varies)) f.kind = ContactForces::Kind::kFree;
   return f;
+}
+
+ContactForces ContactForces::under(double normal_load) const {
+  ContactForces now = *this;
+  now.load = normal_load;
+  now.static_limit = std::max(now.limit(-1.0), now.limit(1.0));
+  now.kinetic = now.mu_k[1] * normal_load;
+  return now;
 }
 
 SingleResolution resolve_single(const Instant& now, bool released, double release_sign) {
@@ -137,8 +160,8 @@ SingleResolution resolve_single(const Instant& now, bool released, double releas
   const double stick = (now.belt_acceleration - free) / m.mobility(0, 0);
   if (!released && std::abs(stick) <= law.static_limit * (1 + kForceTolerance)) return {ContactMode::kStick, stick, 0};
   const double sign = released ? release_sign : (stick > 0 ? 1.0 : -1.0);
-  const double excess = sign * stick - law.onset();  // sliding starts with this, times the mobility
-  return {slip_mode(sign), sign * law.onset(), excess > kSimpleStart * law.static_limit ? 1 : 2};
+  const double excess = sign * stick - law.onset(sign);  // sliding starts with this, times the mobility
+  return {slip_mode(sign), sign * law.onset(sign), excess > kSimpleStart * law.static_limit ? 1 : 2};
 }
 
 void stick_forces(const Instant& now, const std::vector<bool>& stuck, Eigen::VectorXd& force) {
@@ -164,7 +187,9 @@ Resolution resolve(const Instant& now, const std::vector<ContactMode>& modes, co
   for (std::size_t c = 0; c < nc; ++c) {
     const auto i = static_cast<Eigen::Index>(c);
     const ContactForces& law = now.laws[c];
-    if (!law.sticks() || !at_rest[c])
+    if (now.applied && !at_rest[c])
+      trial.force(i) = (*now.applied)(i);
+    else if (!law.sticks() || !at_rest[c])
       trial.force(i) = law.sliding(modes[c], now.belt_velocity - now.model.velocity_row.col(i).dot(x));
     else
       trial.modes[c] = ContactMode::kStick;
@@ -178,7 +203,7 @@ Resolution resolve(const Instant& now, const std::vector<ContactMode>& modes, co
   const auto slide = [&](std::size_t c) {
     const auto i = static_cast<Eigen::Index>(c);
     trial.modes[c] = slip_mode(trial.force(i));
-    trial.force(i) = sign_of(trial.modes[c]) * now.laws[c].onset();
+    trial.force(i) = sign_of(trial.modes[c]) * now.laws[c].onset(sign_of(trial.modes[c]));
   };
   refresh();
   bool any_released = false;
@@ -193,8 +218,8 @@ Resolution resolve(const Instant& now, const std::vector<ContactMode>& modes, co
     double excess = 0.0;
     for (std::size_t c = 0; c < nc; ++c) {
       if (!stuck[c]) continue;
-      const double limit = now.laws[c].static_limit;
-      const double over = std::abs(trial.force(static_cast<Eigen::Index>(c))) - limit * (1 + kForceTolerance);
+      const double force = trial.force(static_cast<Eigen::Index>(c));
+      const double over = std::abs(force) - now.laws[c].limit(force) * (1 + kForceTolerance);
       if (over > excess) {
         excess = over;
         worst = c;

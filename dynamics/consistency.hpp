@@ -3,6 +3,7 @@
 #include "dynamics/modal_model.hpp"
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 namespace slipmode::dynamics {
@@ -12,20 +13,42 @@ namespace slipmode::dynamics {
 
 /// A contact's law in the numbers the flow needs, times the normal load.
 struct ContactForces {
-  /// kFree: no force ever (μ_s N = 0); kConstant: the force in slip is constant; kStribeck: it depends on the sliding
-  /// speed; kSmooth: no stick at all. Free and smooth contacts have no events (ContactMode::kSmooth).
-  enum class Kind : std::uint8_t { kFree, kConstant, kStribeck, kSmooth };
+  /// kFree: no force ever (μ_s N = 0); kConstant: the force in slip depends on the normal load alone; kCompliant: the
+  /// same behind a contact spring; kStribeck: it depends on the sliding speed; kSmooth: no stick at all. Free and
+  /// smooth contacts have no events (ContactMode::kSmooth).
+  enum class Kind : std::uint8_t { kFree, kConstant, kCompliant, kStribeck, kSmooth };
   Kind kind = Kind::kConstant;
-  double static_limit = 0.0;  ///< μ_s N
-  double kinetic = 0.0;       ///< μ_k N
+  double static_limit = 0.0;  ///< μ_s N, in the direction in which it is larger
+  double kinetic = 0.0;       ///< μ_k N; without tilt
   double drop = 0.0;          ///< (μ_s − μ_k) N of a speed-dependent law, else 0
   double alpha = 0.0;         ///< [s/m]
   double epsilon = 0.0;       ///< of the smooth law [m/s]
+  double stiffness = 0.0;     ///< K_c of a compliant contact, else 0 [N/m]
+  double load = 0.0;          ///< N these forces belong to [N]
+  bool varies = false;        ///< the normal load varies: `under` gives the forces of an instant
+  /// Coefficients for a force along −w and along +w; they differ on a tilted slider.
+  std::array<double, 2> mu_s = {}, mu_k = {};
 
-  /// |λ| just after sliding begins: μ_k N for a constant law, μ_s N for a Stribeck law.
-  [[nodiscard]] double onset() const { return kind == Kind::kStribeck ? kinetic + drop : kinetic; }
-  [[nodiscard]] bool sticks() const { return kind == Kind::kConstant || kind == Kind::kStribeck; }
+  [[nodiscard]] double static_coefficient(double direction) const { return mu_s[direction > 0]; }
+  [[nodiscard]] double kinetic_coefficient(double direction) const { return mu_k[direction > 0]; }
+  /// Largest |λ| in stick along this direction: μ_s N.
+  [[nodiscard]] double limit(double direction) const { return static_coefficient(direction) * load; }
+  /// |λ| just after sliding begins: μ_k N, for a Stribeck law μ_s N.
+  [[nodiscard]] double onset(double direction) const {
+    return kind == Kind::kStribeck ? kinetic + drop : kinetic_coefficient(direction) * load;
+  }
+  /// The law under another normal load ≥ 0. Coulomb laws only.
+  [[nodiscard]] ContactForces under(double normal_load) const;
+  [[nodiscard]] bool sticks() const {
+    return kind == Kind::kConstant || kind == Kind::kCompliant || kind == Kind::kStribeck;
+  }
+  /// Piecewise linear, and its force in slip constant: what the collocation flow takes without a law to solve.
   [[nodiscard]] bool is_constant() const { return kind == Kind::kFree || kind == Kind::kConstant; }
+  [[nodiscard]] bool is_piecewise_linear() const { return is_constant() || kind == Kind::kCompliant; }
+  /// Has what only the closed-form flow provides: a contact spring, a load that varies, a tilted slider.
+  [[nodiscard]] bool needs_closed_form() const {
+    return kind == Kind::kCompliant || varies || mu_s[0] != mu_s[1] || mu_k[0] != mu_k[1];
+  }
   /// λ while sliding with relative velocity v in this mode (not stick).
   [[nodiscard]] double sliding(ContactMode mode, double v) const;
   /// λ of the smooth law (0 for a free contact) at relative velocity v, and dλ/dv.
@@ -48,6 +71,8 @@ struct Instant {
   double time = 0.0;
   double belt_velocity = 0.0;
   double belt_acceleration = 0.0;
+  /// λ of the contacts that are not to be decided [nc]; null: their laws give it.
+  const Eigen::VectorXd* applied = nullptr;
 };
 
 /// Decides, in one place, what contacts do after an event (Filippov): of the contacts at zero relative velocity
@@ -61,7 +86,7 @@ struct Instant {
 [[nodiscard]] Resolution resolve(const Instant& now, const std::vector<ContactMode>& modes,
                                  const std::vector<bool>& at_rest, const std::vector<bool>& released);
 
-/// `resolve` for a system with one contact, without allocation.
+/// `resolve` for a system with one contact, untilted and under constant load, without allocation.
 struct SingleResolution {
   ContactMode mode;
   double force;

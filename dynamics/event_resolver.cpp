@@ -34,11 +34,118 @@ EventResolver::EventResolver(const HybridSystem& system, const ModalModel& model
       drive_(system.drive()),
       max_events_per_window_(options.max_events_per_window),
       zeno_window_(options.zeno_window) {
-  for (const auto& contact : system.contacts()) laws_.push_back(contact_forces(contact));
+  for (int c = 0; c < model.contacts; ++c) {
+    const friction::Contact& contact = system.contacts()[static_cast<std::size_t>(c)];
+    laws_.push_back(contact_forces(contact));
+    loads_.emplace_back(contact);
+    internal_.push_back(system.internal_begin(c));
+    oscillator_.push_back(internal_.back() + friction::internal_states(contact) - 2);
+  }
+  plain_ = laws_.size() == 1 && !laws_[0].needs_closed_form();
+}
+
+double EventResolver::contact_displacement(int c, const double* x) const {
+  return dot_padded(model_.displacement_row.col(c).data(), x, 2 * model_.np);
+}
+
+const double* EventResolver::own_states(const HybridPoint& point, int c) const {
+  return point.internal.data() + oscillator_[static_cast<std::size_t>(c)];
+}
+
+double EventResolver::normal_load(const HybridPoint& point, int c) const {
+  const LoadForm& load = loads_[static_cast<std::size_t>(c)];
+  if (!load.varies()) return load.constant;
+  return load.load(contact_displacement(c, point.x.data()), contact_velocity(c, point.x.data()),
+                   load.oscillates() ? own_states(point, c) : nullptr);
+}
+
+std::vector<ContactForces> EventResolver::laws_at(const HybridPoint& point) const {
+  std::vector<ContactForces> laws = laws_;
+  for (std::size_t c = 0; c < laws.size(); ++c)
+    if (laws[c].varies) laws[c] = laws[c].under(std::max(normal_load(point, static_cast<int>(c)), 0.0));
+  return laws;
+}
+
+double EventResolver::applied_force(const HybridPoint& point, int c) const {
+  const auto i = static_cast<std::size_t>(c);
+  const ContactMode mode = point.modes[i];
+  if (mode == ContactMode::kSeparated) return 0.0;
+  if (mode == ContactMode::kStick)
+    return laws_[i].kind == ContactForces::Kind::kCompliant ? laws_[i].stiffness * point.internal(internal_[i]) : 0.0;
+  if (laws_[i].varies) return laws_[i].under(std::max(normal_load(point, c), 0.0)).sliding(mode, 0.0);
+  return laws_[i].sliding(mode, drive_.velocity(point.time) - contact_velocity(c, point.x.data()));
+}
+
+double EventResolver::slide_velocity(const HybridPoint& point, int c, double direction) const {
+  // y_c = y ± μ_k N / K_c: the contact point follows y and the load.
+  const auto i = static_cast<std::size_t>(c);
+  const LoadForm& load = loads_[i];
+  const double* x = point.x.data();
+  const double velocity = contact_velocity(c, x), sliding = drive_.velocity(point.time) - velocity;
+  if (!load.varies()) return sliding;
+  double load_rate = load.y * velocity;
+  if (load.v != 0.0) {
+    Eigen::VectorXd force(model_.contacts);
+    for (int d = 0; d < model_.contacts; ++d) force(d) = d == c ? 0.0 : point.force(d);
+    force(c) = direction * laws_[i].under(std::max(normal_load(point, c), 0.0)).onset(direction);
+    load_rate += load.v * (model_.acceleration_row.col(c).dot(Eigen::Map<const Eigen::VectorXd>(x, 2 * model_.np)) +
+                           model_.load_acceleration(c) + model_.mobility.row(c).dot(force));
+  }
+  if (load.oscillates()) {
+    const double* own = own_states(point, c);
+    const double own_acceleration = -load.stiffness * own[0] - load.damping * own[1] +
+                                    load.lift * (contact_displacement(c, x) + load.offset) + load.lift_rate * velocity;
+    load_rate += load.z * own[1] + load.z_rate * own_acceleration;
+  }
+  return sliding - direction * laws_[i].kinetic_coefficient(direction) * load_rate / laws_[i].stiffness;
+}
+
+std::vector<ContactRole> EventResolver::roles(const std::vector<ContactMode>& modes) const {
+  std::vector<ContactRole> roles;
+  for (std::size_t c = 0; c < modes.size(); ++c) {
+    const bool compliant = laws_[c].kind == ContactForces::Kind::kCompliant;
+    switch (modes[c]) {
+      case ContactMode::kStick:
+        roles.push_back(compliant ? ContactRole::kSprung : ContactRole::kHeld);
+        break;
+      case ContactMode::kSeparated:
+        roles.push_back(ContactRole::kSeparated);
+        break;
+      case ContactMode::kSlipNegative:
+        roles.push_back(laws_[c].varies ? ContactRole::kSlidingNegative : ContactRole::kSliding);
+        break;
+      case ContactMode::kSlipPositive:
+        roles.push_back(laws_[c].varies ? ContactRole::kSlidingPositive : ContactRole::kSliding);
+        break;
+      case ContactMode::kSmooth:
+        roles.push_back(ContactRole::kSliding);
+        break;
+    }
+  }
+  return roles;
+}
+
+double EventResolver::regime_input(const HybridPoint& point, int c) const {
+  const auto i = static_cast<std::size_t>(c);
+  const ContactMode mode = point.modes[i];
+  if (mode == ContactMode::kSeparated) return 0.0;
+  if (mode == ContactMode::kStick) {
+    const double stretch = laws_[i].kind == ContactForces::Kind::kCompliant ? point.internal(internal_[i]) : 0.0;
+    return contact_displacement(c, point.x.data()) + stretch;
+  }
+  if (!laws_[i].varies) return point.force(c);
+  const double sign = sign_of(mode);
+  return sign * laws_[i].kinetic_coefficient(sign) * loads_[i].constant;
 }
 
 Instant EventResolver::instant(double time, const double* x) const {
   return {model_, laws_, x, time, drive_.velocity(time), drive_.acceleration(time)};
+}
+
+Instant EventResolver::instant(const HybridPoint& point, const std::vector<ContactForces>& laws,
+                               const Eigen::VectorXd& applied) const {
+  return {model_,  laws, point.x.data(), point.time, drive_.velocity(point.time), drive_.acceleration(point.time),
+          &applied};
 }
 
 double EventResolver::contact_velocity(int c, const double* x) const {
@@ -53,21 +160,48 @@ bool EventResolver::at_belt_speed(double time, int c, const double* x) const {
 }
 
 void EventResolver::start(HybridPoint& point) const {
-  const Instant now = instant(point.time, point.x.data());
+  for (std::size_t c = 0; c < laws_.size(); ++c) {
+    const auto i = static_cast<int>(c);
+    if (laws_[c].varies && normal_load(point, i) < 0.0) point.modes[c] = ContactMode::kSeparated;
+    if (laws_[c].kind != ContactForces::Kind::kCompliant) continue;
+    double& stretch = point.internal(internal_[c]);
+    if (point.modes[c] == ContactMode::kSeparated) {
+      stretch = 0.0;
+      continue;
+    }
+    const ContactForces law = laws_[c].varies ? laws_[c].under(normal_load(point, i)) : laws_[c];
+    const double force = law.stiffness * stretch;
+    if (point.modes[c] == ContactMode::kStick && std::abs(force) > law.limit(force))
+      point.modes[c] = force > 0 ? ContactMode::kSlipPositive : ContactMode::kSlipNegative;
+    if (point.modes[c] == ContactMode::kStick) continue;
+    stretch = law.sliding(point.modes[c], 0.0) / law.stiffness;
+    if (sign_of(point.modes[c]) * slide_velocity(point, i, sign_of(point.modes[c])) < 0.0)
+      point.modes[c] = ContactMode::kStick;
+  }
   std::vector<bool> at_rest;
-  for (const ContactMode mode : point.modes) at_rest.push_back(mode == ContactMode::kStick);
+  for (std::size_t c = 0; c < laws_.size(); ++c)
+    at_rest.push_back(point.modes[c] == ContactMode::kStick && laws_[c].kind != ContactForces::Kind::kCompliant);
   const std::vector<bool> none(at_rest.size(), false);
-  Resolution first = resolve(now, point.modes, at_rest, none);
+  const std::vector<ContactForces> laws = laws_at(point);
+  Eigen::VectorXd applied(model_.contacts);
+  for (int c = 0; c < model_.contacts; ++c) applied(c) = applied_force(point, c);
+  const Instant here = instant(point, laws, applied);
+  Resolution first = resolve(here, point.modes, at_rest, none);
   // A contact said to slide at zero speed does so if its acceleration takes it there; else it is at rest.
   bool again = false;
   for (std::size_t c = 0; c < at_rest.size(); ++c) {
     const auto i = static_cast<int>(c);
-    if (at_rest[c] || !laws_[c].sticks() || !at_belt_speed(point.time, i, point.x.data())) continue;
-    const int multiplicity = start_multiplicity(now, i, first.modes[c], first.force);
+    if (at_rest[c] || !decides_by_acceleration(point, c) || !at_belt_speed(point.time, i, point.x.data())) continue;
+    const int multiplicity = start_multiplicity(here, i, first.modes[c], first.force);
     first.multiplicity[c] = std::max(multiplicity, 0);
     if (multiplicity < 0) again = at_rest[c] = true;
   }
-  assign(point, again ? resolve(now, point.modes, at_rest, none) : std::move(first));
+  assign(point, again ? resolve(here, point.modes, at_rest, none) : std::move(first));
+}
+
+bool EventResolver::decides_by_acceleration(const HybridPoint& point, std::size_t c) const {
+  return laws_[c].sticks() && laws_[c].kind != ContactForces::Kind::kCompliant &&
+         point.modes[c] != ContactMode::kSeparated;
 }
 
 void EventResolver::hold(double time, const std::vector<ContactMode>& modes, double* x) const {
@@ -103,17 +237,21 @@ Eigen::VectorXd EventResolver::forces(double time, const std::vector<ContactMode
 
 std::vector<bool> EventResolver::released_together(const HybridPoint& point, int contact) const {
   std::vector<bool> released(point.modes.size());
-  if (contact < 0 || point.modes[static_cast<std::size_t>(contact)] != ContactMode::kStick) return released;
-  const Instant now = instant(point.time, point.x.data());
+  if (contact < 0 || point.modes[static_cast<std::size_t>(contact)] != ContactMode::kStick ||
+      !decides_by_acceleration(point, static_cast<std::size_t>(contact)))
+    return released;
+  const std::vector<ContactForces> laws = laws_at(point);
+  const Instant now = instant(point, laws, point.force);
   std::vector<bool> stuck;
-  for (const ContactMode mode : point.modes) stuck.push_back(mode == ContactMode::kStick);
+  for (std::size_t c = 0; c < laws_.size(); ++c)
+    stuck.push_back(point.modes[c] == ContactMode::kStick && decides_by_acceleration(point, c));
   Eigen::VectorXd force = point.force, rate;
   stick_forces(now, stuck, force);
   for (std::size_t c = 0; c < released.size(); ++c) {
     const auto i = static_cast<Eigen::Index>(c);
     if (i == contact) {
       released[c] = true;
-    } else if (stuck[c] && std::abs(force(i)) >= laws_[c].static_limit * (1 - kTogether)) {
+    } else if (stuck[c] && std::abs(force(i)) >= laws[c].limit(force(i)) * (1 - kTogether)) {
       if (rate.size() == 0) rate = stick_force_rates(now, point.modes, force);
       released[c] = rate(i) * force(i) > 0;
     }
@@ -121,15 +259,15 @@ std::vector<bool> EventResolver::released_together(const HybridPoint& point, int
   return released;
 }
 
-void EventResolver::settle(HybridPoint& point, int contact, bool touching) {
+void EventResolver::settle(HybridPoint& point, int contact, bool touching, GuardKind kind) {
   if (contact >= 0 && touching) {
     const auto i = static_cast<std::size_t>(contact);
     record(point, contact, EventKind::kGrazing, point.modes[i]);
     point.multiplicity[i] = point.modes[i] == ContactMode::kStick ? 0 : 2;
-  } else if (laws_.size() == 1 && contact == 0) {
+  } else if (plain_ && contact == 0) {
     settle_single(point);
   } else {
-    settle_coupled(point, contact);
+    settle_coupled(point, contact, kind);
   }
   guard_against_zeno(point);
 }
@@ -149,21 +287,62 @@ void EventResolver::settle_single(HybridPoint& point) {
   record_change(point, 0, before);
 }
 
-void EventResolver::settle_coupled(HybridPoint& point, int contact) {
-  // Contacts at rest on the belt, to be decided together: the sticking ones, the one whose guard was reached, and any
-  // other whose sliding speed is zero to rounding.
+void EventResolver::turn_compliant(HybridPoint& point, int c) const {
+  const auto i = static_cast<std::size_t>(c);
+  const ContactForces law = laws_at(point)[i];
+  double& stretch = point.internal(internal_[i]);
+  if (point.modes[i] != ContactMode::kStick) {
+    stretch = law.sliding(point.modes[i], 0.0) / law.stiffness;
+    point.modes[i] = ContactMode::kStick;
+    return;
+  }
+  // The contact point jumps to where the spring pulls with μ_k N, and slides on if it moves that way; else it is held
+  // there.
+  const ContactMode slip = stretch > 0 ? ContactMode::kSlipPositive : ContactMode::kSlipNegative;
+  stretch = law.sliding(slip, 0.0) / law.stiffness;
+  if (sign_of(slip) * slide_velocity(point, c, sign_of(slip)) > 0.0) point.modes[i] = slip;
+}
+
+void EventResolver::turn_load(HybridPoint& point, int c) const {
+  const auto i = static_cast<std::size_t>(c);
+  const bool compliant = laws_[i].kind == ContactForces::Kind::kCompliant;
+  if (compliant) point.internal(internal_[i]) = 0.0;
+  if (point.modes[i] != ContactMode::kSeparated) {
+    point.modes[i] = ContactMode::kSeparated;
+    return;
+  }
+  const double sliding = drive_.velocity(point.time) - contact_velocity(c, point.x.data());
+  const double sign = sliding > 0 ? 1.0 : -1.0;
+  const bool held =
+      compliant ? sign * slide_velocity(point, c, sign) <= 0.0 : at_belt_speed(point.time, c, point.x.data());
+  point.modes[i] = held ? ContactMode::kStick : sign > 0 ? ContactMode::kSlipPositive : ContactMode::kSlipNegative;
+}
+
+void EventResolver::settle_coupled(HybridPoint& point, int contact, GuardKind kind) {
+  const std::vector<ContactMode> before = point.modes;
+  const std::vector<bool> released =
+      kind == GuardKind::kFriction ? released_together(point, contact) : std::vector<bool>(point.modes.size());
+  if (contact >= 0 && kind == GuardKind::kLoad)
+    turn_load(point, contact);
+  else if (contact >= 0 && laws_[static_cast<std::size_t>(contact)].kind == ContactForces::Kind::kCompliant)
+    turn_compliant(point, contact);
+
+  // Rigid contacts at rest on the drive, to be decided together: the sticking ones, the one whose guard was reached,
+  // and any other whose sliding speed is zero to rounding.
   std::vector<bool> at_rest(point.modes.size());
   std::vector<Eigen::Index> resting;
   for (std::size_t c = 0; c < point.modes.size(); ++c) {
     const auto i = static_cast<int>(c);
-    if (!laws_[c].sticks()) continue;
-    at_rest[c] = point.modes[c] == ContactMode::kStick || i == contact || at_belt_speed(point.time, i, point.x.data());
+    if (!decides_by_acceleration(point, c)) continue;
+    at_rest[c] = point.modes[c] == ContactMode::kStick || (i == contact && kind == GuardKind::kFriction) ||
+                 at_belt_speed(point.time, i, point.x.data());
     if (at_rest[c]) resting.push_back(i);
   }
   hold(point.time, resting, point.x.data());
-  const std::vector<ContactMode> before = point.modes;
-  const std::vector<bool> released = released_together(point, contact);
-  assign(point, resolve(instant(point.time, point.x.data()), point.modes, at_rest, released));
+  const std::vector<ContactForces> laws = laws_at(point);
+  Eigen::VectorXd applied(model_.contacts);
+  for (int c = 0; c < model_.contacts; ++c) applied(c) = applied_force(point, c);
+  assign(point, resolve(instant(point, laws, applied), point.modes, at_rest, released));
 
   if (contact < 0) record(point, -1, EventKind::kDriveCorner, ContactMode::kStick);
   for (std::size_t c = 0; c < point.modes.size(); ++c)
@@ -184,12 +363,16 @@ void EventResolver::record(const HybridPoint& point, int contact, EventKind kind
 }
 
 void EventResolver::record_change(const HybridPoint& point, int contact, ContactMode before) {
-  const ContactMode after = point.modes[static_cast<std::size_t>(contact)];
+  const auto i = static_cast<std::size_t>(contact);
+  const ContactMode after = point.modes[i];
+  const bool jumped = laws_[i].kind == ContactForces::Kind::kCompliant && after == ContactMode::kStick;
   record(point, contact,
-         after == before                 ? EventKind::kGrazing
-         : before == ContactMode::kStick ? EventKind::kRelease
-         : after == ContactMode::kStick  ? EventKind::kStick
-                                         : EventKind::kReversal,
+         after == before                     ? (jumped ? EventKind::kJump : EventKind::kGrazing)
+         : before == ContactMode::kSeparated ? EventKind::kContact
+         : after == ContactMode::kSeparated  ? EventKind::kSeparation
+         : before == ContactMode::kStick     ? EventKind::kRelease
+         : after == ContactMode::kStick      ? EventKind::kStick
+                                             : EventKind::kReversal,
          before);
 }
 

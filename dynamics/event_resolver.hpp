@@ -1,6 +1,8 @@
 #pragma once
 
 #include "dynamics/consistency.hpp"
+#include "dynamics/load_form.hpp"
+#include "dynamics/regime.hpp"
 #include "dynamics/simulate.hpp"
 
 #include <Eigen/Core>
@@ -25,6 +27,12 @@ struct WorkSums {
   void add(double contact, double drive, double viscous);
 };
 
+/// What a guard guards.
+enum class GuardKind : std::uint8_t {
+  kFriction,  ///< the sliding speed in slip, the force's limit in stick
+  kLoad,      ///< the sign of the normal load
+};
+
 /// Turns a guard that was reached into events: puts the state onto the guard, lets consistency decide the new modes,
 /// keeps the record. The same for either flow.
 class EventResolver {
@@ -34,6 +42,9 @@ class EventResolver {
   [[nodiscard]] const std::vector<ContactForces>& laws() const { return laws_; }
   [[nodiscard]] const friction::Drive& drive() const { return drive_; }
   [[nodiscard]] Instant instant(double time, const double* x) const;
+  /// The same with the laws of the instant and the forces of contacts that are not to be decided.
+  [[nodiscard]] Instant instant(const HybridPoint& point, const std::vector<ContactForces>& laws,
+                                const Eigen::VectorXd& applied) const;
   /// wᵀq̇ of contact c.
   [[nodiscard]] double contact_velocity(int c, const double* x) const;
 
@@ -43,12 +54,19 @@ class EventResolver {
   /// λ of every contact in these modes, by their laws and by the belt's acceleration where they stick [nc].
   [[nodiscard]] Eigen::VectorXd forces(double time, const std::vector<ContactMode>& modes, const double* x) const;
 
-  /// Decides the modes of contacts that start at rest on the belt.
+  /// Decides the modes of contacts that start at rest on the drive, behind a contact spring, or without load.
   void start(HybridPoint& point) const;
   /// @param contact   whose guard was reached, or −1 for a corner of the drive
   /// @param touching  the guard was touched and not crossed: a grazing
   /// @throws NumericalFailure  Zeno, or no consistent modes
-  void settle(HybridPoint& point, int contact, bool touching);
+  void settle(HybridPoint& point, int contact, bool touching, GuardKind kind = GuardKind::kFriction);
+
+  /// What contacts in these modes are to a regime's linear equations.
+  [[nodiscard]] std::vector<ContactRole> roles(const std::vector<ContactMode>& modes) const;
+  /// The regime's input of contact c at a point whose modes are decided.
+  [[nodiscard]] double regime_input(const HybridPoint& point, int c) const;
+  /// N of contact c; negative where contact is lost.
+  [[nodiscard]] double normal_load(const HybridPoint& point, int c) const;
 
   /// Events of the last `settle` (simultaneous ones together).
   [[nodiscard]] const std::vector<Event>& events() const { return events_; }
@@ -56,11 +74,25 @@ class EventResolver {
 
  private:
   void hold(double time, const std::vector<Eigen::Index>& contacts, double* x) const;
+  /// Rigid and in contact: between stick and slip accelerations decide.
+  [[nodiscard]] bool decides_by_acceleration(const HybridPoint& point, std::size_t c) const;
   [[nodiscard]] bool at_belt_speed(double time, int c, const double* x) const;
   /// The contact whose limit was reached, and every other that reaches its own at the same instant.
   [[nodiscard]] std::vector<bool> released_together(const HybridPoint& point, int contact) const;
   void settle_single(HybridPoint& point);
-  void settle_coupled(HybridPoint& point, int contact);
+  void settle_coupled(HybridPoint& point, int contact, GuardKind kind);
+  /// A contact spring whose contact point starts or ceases to slide.
+  void turn_compliant(HybridPoint& point, int c) const;
+  /// Contact lost or regained.
+  void turn_load(HybridPoint& point, int c) const;
+  /// The laws at this instant's normal loads.
+  [[nodiscard]] std::vector<ContactForces> laws_at(const HybridPoint& point) const;
+  /// λ of a contact in its mode, unless it is rigid and sticks.
+  [[nodiscard]] double applied_force(const HybridPoint& point, int c) const;
+  /// Velocity at which the contact point of a compliant contact slides in this direction.
+  [[nodiscard]] double slide_velocity(const HybridPoint& point, int c, double direction) const;
+  [[nodiscard]] double contact_displacement(int c, const double* x) const;
+  [[nodiscard]] const double* own_states(const HybridPoint& point, int c) const;
   void record(const HybridPoint& point, int contact, EventKind kind, ContactMode before);
   void record_change(const HybridPoint& point, int contact, ContactMode before);
   void guard_against_zeno(const HybridPoint& point);
@@ -68,6 +100,10 @@ class EventResolver {
   const ModalModel& model_;
   friction::Drive drive_;
   std::vector<ContactForces> laws_;
+  std::vector<LoadForm> loads_;
+  std::vector<Eigen::Index> internal_;    ///< of each contact's first own state
+  std::vector<Eigen::Index> oscillator_;  ///< of its normal oscillator's, if it has one
+  bool plain_ = true;                     ///< one rigid contact, untilted, under constant load
   int max_events_per_window_;
   double zeno_window_;
   std::vector<Event> events_;

@@ -1,21 +1,17 @@
 #include "dynamics/modal_model.hpp"
 
-#include "core/errors.hpp"
 #include "core/v8.hpp"
+#include "dynamics/pair_form.hpp"
 #include "fem/modes.hpp"
 
 #include <Eigen/Dense>
-#include <Eigen/Eigenvalues>
 #include <cmath>
-#include <limits>
 
 namespace slipmode::dynamics {
 namespace {
 
 /// C in modal coordinates counts as diagonal when the rest is below this share of it.
 constexpr double kProportionalTolerance = 1e-12;
-/// Above this condition number of its eigenvectors the state matrix is treated as defective.
-constexpr double kLargestCondition = 1e10;
 
 Eigen::MatrixXd contact_directions(const HybridSystem& system) {
   Eigen::MatrixXd W(system.size(), static_cast<Eigen::Index>(system.contacts().size()));
@@ -45,12 +41,7 @@ void finish(ModalModel& m) {
   for (int c = 0; c < m.contacts; ++c) m.acceleration_row.col(c) = apply_transposed_G(m.velocity_row.col(c));
   m.mobility = m.velocity_row.transpose() * m.input;
   m.load_acceleration = m.velocity_row.transpose() * m.load;
-  for (Eigen::Index i = 0; i < m.n; ++i) {
-    const double half_trace = (m.g11(i) + m.g22(i)) / 2.0, det = m.g11(i) * m.g22(i) - m.g12(i) * m.g21(i);
-    const double gap = half_trace * half_trace - det;
-    const double size = gap < 0 ? std::sqrt(det) : std::abs(half_trace) + std::sqrt(gap);
-    m.fastest = std::max(m.fastest, size);
-  }
+  m.measure_rates();
 }
 
 void size_arrays(ModalModel& m) {
@@ -84,91 +75,67 @@ void fill_shapes(ModalModel& m, const Eigen::MatrixXd& shapes, const Eigen::Matr
   m.to_v.middleCols(m.np, m.n) = shapes;
   m.from_q.topRows(m.n) = shapes_M.transpose();
   m.from_v.middleRows(m.np, m.n) = shapes_M.transpose();
+  const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(m.n, m.n);
+  m.modal.to_eta = m.modal.to_eta_rate = Eigen::MatrixXd::Zero(m.n, 2 * m.np);
+  m.modal.to_eta.leftCols(m.n) = m.modal.to_eta_rate.middleCols(m.np, m.n) = unit;
+  m.modal.from_eta = m.modal.to_eta.transpose();
+  m.modal.from_eta_rate = m.modal.to_eta_rate.transpose();
 }
 
-/// Complex modes of the state matrix, in real form: a conjugate pair μ = σ ± iw becomes [σ w; −w σ], two real
-/// eigenvalues a diagonal block. Scaled by the modes of the undamped structure first, so that the state is balanced.
+/// Complex modes of the state matrix, in real form, from the modes of the undamped structure, so that the state is
+/// balanced.
 void fill_general(ModalModel& m, const fem::Modes& modes, const Eigen::MatrixXd& shapes_M, const Eigen::MatrixXd& D,
                   const Eigen::MatrixXd& rows, const Eigen::VectorXd& modal_load) {
   const auto n = m.n, np = m.np;
-  const double scale = std::max(modes.omega.maxCoeff(), 1e-300);
-  // State y = (scale·η, η̇).
-  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(2 * n, 2 * n);
-  A.topRightCorner(n, n).diagonal().setConstant(scale);
-  A.bottomLeftCorner(n, n).diagonal() = -modes.omega.array().square().matrix() / scale;
-  A.bottomRightCorner(n, n) = -D;
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(A);
-  if (solver.info() != Eigen::Success)
-    throw NumericalFailure("eigenvalues of the damped structure did not converge",
-                           std::numeric_limits<double>::quiet_NaN(), {}, std::numeric_limits<double>::quiet_NaN());
-
+  const BalancedState balanced = balanced_state(modes.omega, D);
+  const PairForm form = pair_form(balanced.A);
   size_arrays(m);
   m.proportional = false;
-  Eigen::MatrixXd T(2 * n, 2 * n);  // y = T x, columns in pair order (first, second)
-  const auto& values = solver.eigenvalues();
-  const auto vectors = solver.eigenvectors();
-  Eigen::Index pair = 0;
-  const auto put = [&](const Eigen::VectorXd& first, const Eigen::VectorXd& second, Eigen::Matrix2d G) {
-    T.col(pair) = first;
-    T.col(n + pair) = second;
-    m.g11(pair) = G(0, 0);
-    m.g12(pair) = G(0, 1);
-    m.g21(pair) = G(1, 0);
-    m.g22(pair) = G(1, 1);
-    ++pair;
-  };
-  std::optional<Eigen::Index> unpaired_real;
-  for (Eigen::Index k = 0; k < 2 * n; ++k) {
-    const auto mu = values(k);
-    if (mu.imag() > 0) {
-      put(vectors.col(k).real(), vectors.col(k).imag(),
-          (Eigen::Matrix2d() << mu.real(), mu.imag(), -mu.imag(), mu.real()).finished());
-    } else if (mu.imag() == 0 && unpaired_real) {
-      const auto j = *unpaired_real;
-      put(vectors.col(j).real(), vectors.col(k).real(),
-          (Eigen::Matrix2d() << values(j).real(), 0, 0, mu.real()).finished());
-      unpaired_real.reset();
-    } else if (mu.imag() == 0) {
-      unpaired_real = k;
-    }
-  }
-  const Eigen::VectorXd singular = Eigen::BDCSVD<Eigen::MatrixXd>(T).singularValues();
-  const double condition = singular(0) / singular(2 * n - 1);
-  if (!(condition < kLargestCondition))
-    throw NumericalFailure(
-        "the damping makes two modes coincide (condition number of the eigenvectors " + std::to_string(condition) +
-            ", at most 1e10 is workable): change the damping matrix slightly or make it proportional",
-        std::numeric_limits<double>::quiet_NaN(), {}, condition);
-  const Eigen::MatrixXd T_inverse = T.inverse();
+  m.g11.head(n) = form.g11;
+  m.g12.head(n) = form.g12;
+  m.g21.head(n) = form.g21;
+  m.g22.head(n) = form.g22;
 
-  const auto spread_rows = [&](const Eigen::MatrixXd& source, Eigen::MatrixXd& target) {  // 2n x k → 2np x k
+  const auto spread_rows = [&](const Eigen::MatrixXd& source) {  // 2n x k → 2np x k
+    Eigen::MatrixXd target = Eigen::MatrixXd::Zero(2 * np, source.cols());
     target.topRows(n) = source.topRows(n);
     target.middleRows(np, n) = source.bottomRows(n);
+    return target;
   };
-  const Eigen::MatrixXd eta = T.topRows(n) / scale, eta_dot = T.bottomRows(n);  // η = eta x, η̇ = eta_dot x
-  spread_rows(T_inverse.rightCols(n) * rows.transpose(), m.input);
-  Eigen::MatrixXd load = Eigen::MatrixXd::Zero(2 * np, 1);
-  spread_rows(T_inverse.rightCols(n) * modal_load, load);
-  m.load = load;
-  spread_rows((rows * eta).transpose(), m.displacement_row);
-  spread_rows((rows * eta_dot).transpose(), m.velocity_row);
-
-  Eigen::MatrixXd wide = Eigen::MatrixXd::Zero(2 * np, n);
-  spread_rows((modes.shapes * eta).transpose(), wide);
-  m.to_q = wide.transpose();
-  spread_rows((modes.shapes * eta_dot).transpose(), wide);
-  m.to_v = wide.transpose();
-  m.from_q = m.from_v = Eigen::MatrixXd::Zero(2 * np, n);
-  spread_rows(T_inverse.leftCols(n) * scale * shapes_M.transpose(), m.from_q);
-  spread_rows(T_inverse.rightCols(n) * shapes_M.transpose(), m.from_v);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> root(D);
-  const Eigen::MatrixXd half =
-      root.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * root.eigenvectors().transpose();
-  spread_rows((half * eta_dot).transpose(), wide);
-  m.dissipation_root = wide.transpose();
+  const Eigen::VectorXd inverse_scale = balanced.scale.cwiseInverse();
+  const Eigen::MatrixXd eta = inverse_scale.asDiagonal() * form.T.topRows(n), eta_dot = form.T.bottomRows(n);
+  const Eigen::MatrixXd from_eta = form.T_inverse.leftCols(n) * balanced.scale.asDiagonal();
+  const Eigen::MatrixXd from_eta_dot = form.T_inverse.rightCols(n);
+  m.input = spread_rows(from_eta_dot * rows.transpose());
+  m.load = spread_rows(from_eta_dot * modal_load);
+  m.displacement_row = spread_rows((rows * eta).transpose());
+  m.velocity_row = spread_rows((rows * eta_dot).transpose());
+  m.to_q = spread_rows((modes.shapes * eta).transpose()).transpose();
+  m.to_v = spread_rows((modes.shapes * eta_dot).transpose()).transpose();
+  m.from_q = spread_rows(from_eta * shapes_M.transpose());
+  m.from_v = spread_rows(from_eta_dot * shapes_M.transpose());
+  m.dissipation_root = spread_rows((square_root(D) * eta_dot).transpose()).transpose();
+  m.modal.to_eta = spread_rows(eta.transpose()).transpose();
+  m.modal.to_eta_rate = spread_rows(eta_dot.transpose()).transpose();
+  m.modal.from_eta = spread_rows(from_eta);
+  m.modal.from_eta_rate = spread_rows(from_eta_dot);
 }
 
 }  // namespace
+
+Eigen::MatrixXd square_root(const Eigen::MatrixXd& A) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> root(A);
+  return root.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * root.eigenvectors().transpose();
+}
+
+void ModalModel::measure_rates() {
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double half_trace = (g11(i) + g22(i)) / 2.0, det = g11(i) * g22(i) - g12(i) * g21(i);
+    const double gap = half_trace * half_trace - det;
+    const double size = gap < 0 ? std::sqrt(det) : std::abs(half_trace) + std::sqrt(gap);
+    fastest = std::max(fastest, size);
+  }
+}
 
 double ModalModel::viscous_power(const Eigen::VectorXd& x) const {
   if (!proportional) return (dissipation_root * x).squaredNorm();
@@ -237,18 +204,25 @@ ModalModel build_modal_model(const HybridSystem& system, bool rows_only) {
   const Eigen::VectorXd load =
       loaded ? Eigen::VectorXd(modes.shapes.transpose() * system.load()) : Eigen::VectorXd::Zero(m.n);
   const Eigen::MatrixXd shapes_M = fem::multiply(structure.M(), modes.shapes);
+  m.modal.omega = modes.omega;
+  m.modal.directions = rows.transpose();
+  m.modal.load = load;
   if (rayleigh) {
+    m.modal.damping = rayleigh_damping(modes.omega).asDiagonal();
     fill_proportional(m, modes.omega, rayleigh_damping(modes.omega), rows, load);
     m.rayleigh = rayleigh;
     fill_shapes(m, modes.shapes, shapes_M);
   } else {
-    const Eigen::MatrixXd D = modes.shapes.transpose() * fem::multiply(structure.C(), modes.shapes);
+    Eigen::MatrixXd D = modes.shapes.transpose() * fem::multiply(structure.C(), modes.shapes);
     const Eigen::VectorXd diagonal = D.diagonal();
     if ((D - Eigen::MatrixXd(diagonal.asDiagonal())).norm() <= kProportionalTolerance * D.norm()) {
+      m.modal.damping = diagonal.asDiagonal();
       fill_proportional(m, modes.omega, diagonal, rows, load);
       fill_shapes(m, modes.shapes, shapes_M);
     } else {
-      fill_general(m, modes, shapes_M, (D + D.transpose()) / 2.0, rows, load);
+      D = (D + D.transpose()).eval() / 2.0;
+      m.modal.damping = D;
+      fill_general(m, modes, shapes_M, D, rows, load);
     }
   }
   finish(m);

@@ -7,6 +7,16 @@
 
 namespace slipmode::dynamics {
 
+/// The structure in its undamped natural modes q = Φ η: η̈ + D η̇ + diag(ω²) η = p + Σ w_c λ_c.
+struct ModalCoordinates {
+  Eigen::VectorXd omega;       ///< ω [n, rad/s]
+  Eigen::MatrixXd damping;     ///< D = ΦᵀCΦ [n x n]
+  Eigen::MatrixXd directions;  ///< Φᵀw, columns [n x nc]
+  Eigen::VectorXd load;        ///< Φᵀp [n]
+  /// η = to_eta x, η̇ = to_eta_rate x; x = from_eta η + from_eta_rate η̇ [n x 2np], [2np x n].
+  Eigen::MatrixXd to_eta, to_eta_rate, from_eta, from_eta_rate;
+};
+
 /// The slipping structure in decoupled first-order form: n independent pairs x = (x₁, x₂),
 ///
 ///     ẋ = G x + Σ_c b_c λ_c + p,      wᵀq = u_cᵀ x,      wᵀq̇ = g_cᵀ x,
@@ -37,15 +47,21 @@ struct ModalModel {
 
   /// q = Q x, q̇ = V x; x = Xq q + Xv q̇ [n x 2np], [2np x n]. Empty when only the contacts' rows were computed.
   Eigen::MatrixXd to_q, to_v, from_q, from_v;
+  ModalCoordinates modal;  ///< empty when only the contacts' rows were computed
   /// q̇ᵀCq̇ = |L x|² for damping that is not proportional [n x 2np].
   Eigen::MatrixXd dissipation_root;
 
+  /// Sets `fastest` from the blocks of G.
+  void measure_rates();
   /// q̇ᵀCq̇ of a state [W].
   [[nodiscard]] double viscous_power(const Eigen::VectorXd& x) const;
   [[nodiscard]] bool has_shapes() const { return to_q.size() > 0; }
   /// e^{G_i t} of pair i as {a, b; c, d}: stable for oscillating, critical, overdamped and rigid-body pairs.
   [[nodiscard]] Eigen::Matrix2d exponential(Eigen::Index pair, double t) const;
 };
+
+/// R with RᵀR = A, for a symmetric positive semi-definite A.
+[[nodiscard]] Eigen::MatrixXd square_root(const Eigen::MatrixXd& A);
 
 /// Builds the model. Rows only: a long chain's frequencies and contact rows without mode shapes, O(n²).
 /// @throws NumericalFailure  when damping is not proportional and the state matrix is close to defective

@@ -10,58 +10,90 @@
 
 namespace slipmode::dynamics {
 
-/// The structure while certain contacts stick, all others sliding under constant forces, as decoupled pairs driven by
-/// inputs that are polynomials of time:
-///
-///     ẋ = G x + B ι,   ι = (ι_1 … ι_nc, V, a, 1),
-///
-/// where ι_c is the contact's displacement wᵀq if it sticks (it follows the belt: ι̇_c = V, V̇ = a) and its force λ_c if
-/// it slides. The output of a sticking contact is its force λ_c, that of a sliding one its velocity wᵀq̇.
-///
-/// The stuck directions are eliminated with an orthonormal null-space basis of M^{-1/2} w. Source: docs/theory/flow.md.
-struct Regime {
-  /// @param stuck  which contacts stick
-  Regime(const HybridSystem& system, const ModalModel& slipping, const std::vector<bool>& stuck);
+/// What a contact is to the linear equations of a regime.
+enum class ContactRole : std::int8_t {
+  kSliding,          ///< a constant force, whatever its sign
+  kHeld,             ///< sticks: its velocity is the drive's
+  kSprung,           ///< sticks behind its contact spring
+  kSlidingNegative,  ///< slides with a force proportional to a normal load that varies
+  kSlidingPositive,
+  kSeparated,  ///< no force; only where the normal load varies
+};
 
-  [[nodiscard]] Eigen::Index inputs() const { return static_cast<Eigen::Index>(stuck.size()) + 3; }
-  [[nodiscard]] Eigen::Index speed_input() const { return static_cast<Eigen::Index>(stuck.size()); }
+/// A scalar of a regime that must keep its sign: what guards are made of.
+struct RegimeOutput {
+  enum class Kind : std::uint8_t {
+    kSpeed,    ///< sliding speed; of the contact point, behind a contact spring
+    kForce,    ///< λ in stick
+    kExcess,   ///< μ_s N − λ, what is left to the upper limit under a load that varies
+    kReserve,  ///< μ_s N + λ, what is left to the lower one
+    kLoad,     ///< N
+  };
+  int contact = 0;
+  Kind kind = Kind::kSpeed;
+};
+
+/// The structure with its contacts in certain roles, as decoupled pairs driven by inputs that are polynomials of time
+/// (a harmonic drive is laid over them, see DriveOverlay):
+///
+///     ẋ = G x + B ι,   ι = (ι_1 … ι_nc, V, a, 1).
+///
+/// ι_c follows the drive (ι̇_c = V, V̇ = a) where the contact sticks: held, it is wᵀq; sprung, the contact point less
+/// its offset. Else it is constant: the constant part of λ_c.
+///
+/// Held directions are eliminated in the undamped modes of the slipping structure with an orthonormal null-space basis;
+/// contact springs and loads that vary with y add rank-one stiffness and damping, normal oscillators their own states.
+/// Source: docs/theory/flow.md.
+struct Regime {
+  Regime(const HybridSystem& system, const ModalModel& slipping, const std::vector<ContactRole>& roles);
+
+  [[nodiscard]] Eigen::Index inputs() const { return static_cast<Eigen::Index>(roles.size()) + 3; }
+  [[nodiscard]] Eigen::Index speed_input() const { return static_cast<Eigen::Index>(roles.size()); }
+  [[nodiscard]] bool held(int c) const { return roles[static_cast<std::size_t>(c)] == ContactRole::kHeld; }
+  [[nodiscard]] bool sticks(int c) const { return follows[static_cast<std::size_t>(c)]; }
   /// ι after a time t.
   void advance_inputs(Eigen::VectorXd& inputs, double t) const;
-  /// Output of contact c: its force if it sticks, its velocity if it slides.
-  [[nodiscard]] double output(int c, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs) const;
-  /// Time derivative of an output (row, coefficients): again of that form.
+  /// Value of output k.
+  [[nodiscard]] double output(Eigen::Index k, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs) const;
+  /// Time derivative of (row, coefficients): again of that form.
   void differentiate(Eigen::VectorXd& row, Eigen::VectorXd& coefficient) const;
   /// q̇ᵀCq̇ of a state [W].
-  [[nodiscard]] double viscous_power(const Eigen::VectorXd& x, double belt_velocity) const;
+  [[nodiscard]] double viscous_power(const Eigen::VectorXd& x, double drive_velocity) const;
 
-  std::vector<bool> stuck;
-  ModalModel pairs;   ///< only its pairs are used: no contacts
-  double rate = 0.0;  ///< fastest rate of the pairs, or of the slipping structure if nothing is left to move [1/s]
-  Eigen::MatrixXd B;  ///< [2np x ni]; the drive's columns act through ι as described above
-  Eigen::VectorXd B_stuck;      ///< Σ over sticking contacts of their columns of B
-  Eigen::MatrixXd row;          ///< outputs, columns [2np x nc]
-  Eigen::MatrixXd coefficient;  ///< outputs' dependence on ι, columns [ni x nc]
+  std::vector<ContactRole> roles;
+  std::vector<bool> follows;  ///< held or sprung
+  std::vector<RegimeOutput> outputs;
+  ModalModel pairs;     ///< only its pairs are used: no contacts
+  double rate = 0.0;    ///< fastest rate of the pairs, or of the slipping structure if nothing is left to move [1/s]
+  double growth = 0.0;  ///< largest rate at which free motion grows, 0 if none does [1/s]
+  Eigen::MatrixXd B;    ///< [2np x ni]; the drive's columns act through ι as described above
+  Eigen::VectorXd B_follows;    ///< Σ over contacts that follow the drive of their columns of B
+  Eigen::MatrixXd row;          ///< outputs, columns [2np x no]
+  Eigen::MatrixXd coefficient;  ///< outputs' dependence on ι, columns [ni x no]
   Eigen::MatrixXd row1, row2;   ///< first and second derivatives of the outputs
   Eigen::MatrixXd coefficient1, coefficient2;
+  /// λ and wᵀq̇ of each contact [2np x nc], [ni x nc].
+  Eigen::MatrixXd force_row, force_coefficient, velocity_row, velocity_coefficient;
 
   Eigen::MatrixXd from_slipping;    ///< state of the slipping model → x [2np x 2np_s]
   Eigen::MatrixXd to_slipping;      ///< x → state of the slipping model [2np_s x 2np]
   Eigen::MatrixXd inputs_slipping;  ///< ι → its part there [2np_s x ni]
+  Eigen::MatrixXd from_oscillators;  ///< (ζ, ζ̇ contact after contact) → x [2np x 2k]; no columns without oscillators
+  Eigen::MatrixXd to_oscillators;  ///< x → them [2k x 2np]
 
-  /// For bounds. Each pair is scaled so that its free motion never grows in the Euclidean norm (energy norm for modal
-  /// pairs) and its generator has norm `decay`; `particular` is the motion that follows the inputs. Components that are
-  /// plain polynomials of time have scale 0: interpolation is exact for them.
+  /// For bounds. Each pair is scaled so that its free motion never grows (faster than `growth`) in the Euclidean norm
+  /// (energy norm for modal pairs) and its generator has norm `pair_rate`; `particular` is the motion that follows the
+  /// inputs. Components that are plain polynomials of time have scale 0: interpolation is exact for them.
   Eigen::VectorXd scale1, scale2;            ///< [np]
   Eigen::VectorXd pair_rate;                 ///< ‖G_i‖ in that scale [np]
   Eigen::MatrixXd particular;                ///< ι → x_p [2np x ni]
-  Eigen::MatrixXd weight;                    ///< ‖row_i‖ in that scale [np x nc]
+  Eigen::MatrixXd weight;                    ///< ‖row_i‖ in that scale [np x no]
   Eigen::MatrixXd weight2, weight3;          ///< times pair_rate squared, cubed
-  Eigen::MatrixXd polynomial2, polynomial3;  ///< ι → second and third derivative of what is polynomial [ni x nc]
-  Eigen::VectorXd viscous_cross;             ///< q̇ᵀCq̇ = pairs' + 2V (this·x) + V² viscous_belt [2np]
-  double viscous_belt = 0.0;
+  Eigen::MatrixXd polynomial2, polynomial3;  ///< ι → second and third derivative of what is polynomial [ni x no]
+  Eigen::VectorXd viscous_cross;             ///< q̇ᵀCq̇ = pairs' + 2V (this·x) + V² viscous_drive [2np]
+  double viscous_drive = 0.0;
 
  private:
-  void eliminate(const HybridSystem& system, const ModalModel& slipping);
   void prepare_bounds();
 };
 
@@ -74,9 +106,9 @@ struct RegimeStep {
 
 /// Outputs over a window of length h as polynomials of degree 7 in Bernstein form, with what interpolation leaves out.
 struct RegimeWindow {
-  Eigen::MatrixXd from_state;   ///< [8 x 2np nc]
-  Eigen::MatrixXd from_inputs;  ///< [8 x ni nc]
-  Eigen::MatrixXd remainder;    ///< |output − polynomial| ≤ this column · pair amplitudes [np x nc]
+  Eigen::MatrixXd from_state;   ///< [8 x 2np no]
+  Eigen::MatrixXd from_inputs;  ///< [8 x ni no]
+  Eigen::MatrixXd remainder;    ///< |output − polynomial| ≤ this column · pair amplitudes [np x no]
 };
 
 /// States at the points of a quadrature rule, for the energy audit.
@@ -92,7 +124,7 @@ class RegimeTables {
   /// The first level at which the energy audit's rules are short enough to be tabulated.
   static constexpr int kAuditLevel = 8;
 
-  RegimeTables(const HybridSystem& system, const ModalModel& slipping, const std::vector<bool>& stuck);
+  RegimeTables(const HybridSystem& system, const ModalModel& slipping, const std::vector<ContactRole>& roles);
 
   [[nodiscard]] const Regime& regime() const { return regime_; }
   [[nodiscard]] double length(int level) const { return length_[static_cast<std::size_t>(level)]; }

@@ -1,10 +1,10 @@
 #include "core/v8.hpp"
+#include "dynamics/lobatto.hpp"
 #include "dynamics/regime.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace slipmode::dynamics {
 namespace {
@@ -15,9 +15,8 @@ constexpr double kTopPhase = 4096.0;
 constexpr double kTaylorPhase = 0.25;
 /// Quadrature over this many radians at once.
 constexpr double kQuadraturePhase = 4.0;
-/// 1 + the Lebesgue constant of eight Chebyshev-Lobatto points (2.2), rounded up.
-constexpr double kInterpolationGain = 3.3;
-constexpr double kFactorial8 = 40320.0;
+/// Exponent beyond which a growing window is useless anyway.
+constexpr double kLargestGrowth = 200.0;
 
 /// M_k = ∫₀ᵗ e^{G(t−s)} s^k/k! ds for k = 0, 1, 2.
 struct Moments {
@@ -49,33 +48,11 @@ Moments moments(const ModalModel& pairs, Eigen::Index i, double rate, const Eige
   return out;
 }
 
-/// Values at the eight Chebyshev-Lobatto points of [0, 1] → Bernstein coefficients of the interpolant.
-struct LobattoTables {
-  Eigen::Matrix<double, 8, 1> point;
-  Eigen::Matrix<double, 8, 8> bernstein;
-};
-
-LobattoTables build_lobatto() {
-  LobattoTables t;
-  Eigen::Matrix<long double, 8, 8> values;
-  for (int j = 0; j < 8; ++j) {
-    const long double at = (1.0L - std::cos(std::numbers::pi_v<long double> * j / 7)) / 2;
-    t.point(j) = static_cast<double>(at);
-    long double binomial = 1;
-    for (int k = 0; k < 8; ++k) {
-      values(j, k) =
-          binomial * std::pow(at, static_cast<long double>(k)) * std::pow(1 - at, static_cast<long double>(7 - k));
-      binomial = binomial * (7 - k) / (k + 1);
-    }
-  }
-  t.bernstein = values.inverse().cast<double>();
-  return t;
-}
-
 }  // namespace
 
-RegimeTables::RegimeTables(const HybridSystem& system, const ModalModel& slipping, const std::vector<bool>& stuck)
-    : regime_(system, slipping, stuck) {
+RegimeTables::RegimeTables(const HybridSystem& system, const ModalModel& slipping,
+                           const std::vector<ContactRole>& roles)
+    : regime_(system, slipping, roles) {
   for (int level = 0; level < kLevels; ++level)
     length_[static_cast<std::size_t>(level)] = std::ldexp(kTopPhase / regime_.rate, -level);
 }
@@ -98,7 +75,7 @@ void RegimeTables::step_of(double h, RegimeStep& out) const {
     out.e22(i) = E(1, 1);
     const Moments M = moments(pairs, i, regime_.pair_rate(i), E, h);
     const auto pair_of = [&](const auto& column) { return Eigen::Vector2d(column(i), column(np + i)); };
-    const Eigen::Vector2d held = pair_of(regime_.B_stuck), speed = pair_of(regime_.B.col(V));
+    const Eigen::Vector2d held = pair_of(regime_.B_follows), speed = pair_of(regime_.B.col(V));
     for (Eigen::Index k = 0; k < regime_.inputs(); ++k) {
       Eigen::Vector2d r = M.of0 * pair_of(regime_.B.col(k));
       if (k == V) r += M.of1 * held;
@@ -120,23 +97,17 @@ void RegimeTables::make(RegimeAudit& out, int level) const {
 }
 
 void RegimeTables::make(RegimeWindow& out, int level) const {
-  static const LobattoTables lobatto = build_lobatto();
   const Regime& r = regime_;
-  const auto np = r.pairs.np, ni = r.inputs(), nc = r.row.cols(), V = r.speed_input();
+  const auto np = r.pairs.np, ni = r.inputs(), no = r.row.cols(), V = r.speed_input();
   const double h = length(level);
-  out.from_state = Eigen::MatrixXd::Zero(8, 2 * np * nc);
-  out.from_inputs = Eigen::MatrixXd::Zero(8, ni * nc);
-  // |f − p| ≤ max|f⁽⁸⁾| (h/2)⁸ / (2⁶ 8!) on these points. A pair too fast for that is left out instead: of its free
-  // motion all that matters is how large it can be.
-  const auto interpolation_share = [&](Eigen::Index i) {
-    return std::pow(r.pair_rate(i) * h / 2.0, 8) / (64.0 * kFactorial8);
-  };
-  const auto interpolated = [&](Eigen::Index i) {
-    return interpolation_share(i) < 1.0 || r.scale1(i) == 0.0 || r.scale2(i) == 0.0;
-  };
+  out.from_state = Eigen::MatrixXd::Zero(8, 2 * np * no);
+  out.from_inputs = Eigen::MatrixXd::Zero(8, ni * no);
+  // A pair too fast to be interpolated is left out: of its free motion all that matters is how large it can be.
+  const auto share = [&](Eigen::Index i) { return interpolation_share(r.pair_rate(i), h); };
+  const auto interpolated = [&](Eigen::Index i) { return share(i) < 1.0 || r.scale1(i) == 0.0 || r.scale2(i) == 0.0; };
   RegimeStep step;
   for (int j = 0; j < 8; ++j) {
-    const double t = lobatto.point(j) * h;
+    const double t = lobatto().point(j) * h;
     step_of(t, step);
     for (Eigen::Index i = 0; i < r.pairs.n; ++i) {
       if (interpolated(i)) continue;
@@ -144,35 +115,35 @@ void RegimeTables::make(RegimeWindow& out, int level) const {
       for (const Eigen::Index k : {i, np + i}) {
         Eigen::RowVectorXd follows = r.particular.row(k);
         double held = 0.0;
-        for (std::size_t d = 0; d < r.stuck.size(); ++d)
-          if (r.stuck[d]) held += r.particular(k, static_cast<Eigen::Index>(d));
+        for (std::size_t d = 0; d < r.follows.size(); ++d)
+          if (r.follows[d]) held += r.particular(k, static_cast<Eigen::Index>(d));
         follows(V) += held * t;
         follows(V + 1) += held * t * t / 2.0 + r.particular(k, V) * t;
         step.response.row(k) = follows;
       }
     }
-    for (Eigen::Index c = 0; c < nc; ++c) {
+    for (Eigen::Index c = 0; c < no; ++c) {
       const auto first = r.row.col(c).head(np), second = r.row.col(c).tail(np);
       out.from_state.row(j).segment(2 * np * c, np) =
           (first.cwiseProduct(step.e11) + second.cwiseProduct(step.e21)).transpose();
       out.from_state.row(j).segment(2 * np * c + np, np) =
           (first.cwiseProduct(step.e12) + second.cwiseProduct(step.e22)).transpose();
       Eigen::RowVectorXd inputs = r.row.col(c).transpose() * step.response + r.coefficient.col(c).transpose();
-      double stuck = 0.0;
-      for (std::size_t d = 0; d < r.stuck.size(); ++d)
-        if (r.stuck[d]) stuck += r.coefficient(static_cast<Eigen::Index>(d), c);
-      inputs(V) += stuck * t;
-      inputs(V + 1) += stuck * t * t / 2.0 + r.coefficient(V, c) * t;
+      double followed = 0.0;
+      for (std::size_t d = 0; d < r.follows.size(); ++d)
+        if (r.follows[d]) followed += r.coefficient(static_cast<Eigen::Index>(d), c);
+      inputs(V) += followed * t;
+      inputs(V + 1) += followed * t * t / 2.0 + r.coefficient(V, c) * t;
       out.from_inputs.row(j).segment(ni * c, ni) = inputs;
     }
   }
-  out.from_state = (lobatto.bernstein * out.from_state).eval();
-  out.from_inputs = (lobatto.bernstein * out.from_inputs).eval();
+  out.from_state = (lobatto().bernstein * out.from_state).eval();
+  out.from_inputs = (lobatto().bernstein * out.from_inputs).eval();
 
-  out.remainder = Eigen::MatrixXd::Zero(np, nc);
+  out.remainder = Eigen::MatrixXd::Zero(np, no);
   for (Eigen::Index i = 0; i < r.pairs.n; ++i)
-    out.remainder.row(i) =
-        (interpolated(i) ? std::min(kInterpolationGain, interpolation_share(i)) : 1.0) * r.weight.row(i);
+    out.remainder.row(i) = (interpolated(i) ? std::min(kInterpolationGain, share(i)) : 1.0) *
+                           std::exp(std::min(r.growth * h, kLargestGrowth)) * r.weight.row(i);
 }
 
 void apply(const RegimeStep& s, const double* x, const Eigen::VectorXd& inputs, double* out_x) {
@@ -208,7 +179,7 @@ void advance(const RegimeTables& tables, double t, Eigen::VectorXd& x, Eigen::Ve
     t -= h;
   }
   if (t == 0.0) return;
-  // x⁽ᵏ⁾ tᵏ/k!, with f = B ι, ḟ = B_stuck V + B_V a, f̈ = B_stuck a.
+  // x⁽ᵏ⁾ tᵏ/k!, with f = B ι, ḟ = B_follows V + B_V a, f̈ = B_follows a.
   const double speed = inputs(V), acceleration = inputs(V + 1);
   const double phase = r.rate * std::abs(t);
   int terms = 3;
@@ -219,7 +190,7 @@ void advance(const RegimeTables& tables, double t, Eigen::VectorXd& x, Eigen::Ve
     V8 y1 = load8(x.data() + i), y2 = load8(x.data() + np + i), sum1 = y1, sum2 = y2;
     for (int k = 0; k < terms; ++k) {
       V8 next1 = g11 * y1 + g12 * y2, next2 = g21 * y1 + g22 * y2;
-      const double* held = r.B_stuck.data() + i;
+      const double* held = r.B_follows.data() + i;
       const double* moving = r.B.data() + 2 * np * V + i;
       if (k == 0)
         for (Eigen::Index d = 0; d < ni; ++d) {

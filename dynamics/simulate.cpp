@@ -4,6 +4,7 @@
 #include "dynamics/cache.hpp"
 #include "dynamics/closed_form_flow.hpp"
 #include "dynamics/collocation_flow.hpp"
+#include "dynamics/load_form.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -47,11 +48,13 @@ std::vector<ContactMode> start_modes(const HybridSystem& system, const State& st
     const ContactMode by_sign = std::abs(sliding) <= 1e-12 * scale ? ContactMode::kStick
                                 : sliding > 0                      ? ContactMode::kSlipPositive
                                                                    : ContactMode::kSlipNegative;
+    const bool compliant = contact_forces(contact).kind == ContactForces::Kind::kCompliant;
     if (start.modes.empty()) {
-      modes[c] = by_sign;
+      modes[c] = compliant ? ContactMode::kStick : by_sign;
       continue;
     }
     modes[c] = start.modes[c];
+    if (compliant || modes[c] == ContactMode::kSeparated) continue;  // decided by the force and the normal load
     const bool agrees = by_sign == ContactMode::kStick || modes[c] == by_sign ||
                         (modes[c] == ContactMode::kStick && std::abs(sliding) <= 1e-9 * std::max(1.0, scale));
     require(agrees && modes[c] != ContactMode::kSmooth,
@@ -66,15 +69,39 @@ std::vector<ContactMode> start_modes(const HybridSystem& system, const State& st
 constexpr Eigen::Index kClosedFormSize = 64;
 
 FlowMethod choose_method(const HybridSystem& system, FlowMethod asked) {
-  if (asked == FlowMethod::kCollocation) return asked;
-  for (std::size_t c = 0; c < system.contacts().size(); ++c)
-    if (!contact_forces(system.contacts()[c]).is_constant()) {
-      if (asked == FlowMethod::kAutomatic) return FlowMethod::kCollocation;
-      throw InvalidInput("the closed-form flow needs piecewise-linear laws, but contact " + std::to_string(c + 1) +
-                         " has a force that depends on the sliding speed; use the collocation flow, or Coulomb's law");
-    }
-  return asked == FlowMethod::kClosedForm || system.size() <= kClosedFormSize ? FlowMethod::kClosedForm
-                                                                              : FlowMethod::kCollocation;
+  int special = 0, nonlinear = 0;  // the last such contact, counted from 1
+  for (std::size_t c = 0; c < system.contacts().size(); ++c) {
+    const ContactForces law = contact_forces(system.contacts()[c]);
+    if (law.needs_closed_form()) special = static_cast<int>(c) + 1;
+    if (!law.is_piecewise_linear()) nonlinear = static_cast<int>(c) + 1;
+  }
+  const auto name = [](int contact) { return "contact " + std::to_string(contact); };
+  require(special == 0 || nonlinear == 0,
+          name(special) +
+              " has a contact spring, a tilt or a varying load, for which all laws must be piecewise linear, but " +
+              name(nonlinear) + " has a force that depends on the sliding speed");
+  require(special == 0 || asked != FlowMethod::kCollocation,
+          name(special) + " has a contact spring, a tilt or a varying load: use the closed-form flow");
+  require(nonlinear == 0 || asked != FlowMethod::kClosedForm,
+          "the closed-form flow needs piecewise-linear laws, but " + name(nonlinear) +
+              " has a force that depends on the sliding speed; use the collocation flow, or Coulomb's law");
+  if (asked != FlowMethod::kAutomatic) return asked;
+  if (special > 0 || (nonlinear == 0 && system.size() <= kClosedFormSize)) return FlowMethod::kClosedForm;
+  return FlowMethod::kCollocation;
+}
+
+/// The contacts' own states at the start: as given, or relaxed.
+Eigen::VectorXd start_internal(const HybridSystem& system, const State& start) {
+  if (start.internal.size() > 0) return start.internal;
+  Eigen::VectorXd internal = Eigen::VectorXd::Zero(system.internal_size());
+  for (std::size_t c = 0; c < system.contacts().size(); ++c) {
+    const friction::Contact& contact = system.contacts()[c];
+    const LoadForm load(contact);
+    if (!load.oscillates()) continue;
+    const Eigen::Index own = system.internal_begin(static_cast<int>(c)) + friction::internal_states(contact) - 2;
+    internal(own) = load.lift * (contact.direction.dot(start.q) + contact.offset) / load.stiffness;
+  }
+  return internal;
 }
 
 /// The modal model a run needs, and its state there.
@@ -100,7 +127,7 @@ Prepared prepare(const HybridSystem& system, const State& start, FlowOptions opt
                     start_modes(system, start),
                     std::vector<int>(static_cast<std::size_t>(nc), 0),
                     Eigen::VectorXd::Zero(nc),
-                    start.internal};
+                    start_internal(system, start)};
   return {tables, std::move(point), options};
 }
 

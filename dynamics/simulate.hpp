@@ -15,6 +15,9 @@ enum class EventKind : std::uint8_t {
   kReversal,     ///< v_rel passes through zero without sticking
   kGrazing,      ///< v_rel (or the stick force) touched its limit within tolerance; the mode did not change
   kDriveCorner,  ///< the drive's acceleration jumped; contact is -1
+  kSeparation,   ///< the normal load fell to zero: contact lost
+  kContact,      ///< the normal load rose from zero: contact regained
+  kJump,         ///< behind a contact spring: the contact point slipped from μ_s N to μ_k N and sticks again
 };
 
 /// An event belongs to the half-open window (t0, t1]; after it the state lies on the guard to rounding.

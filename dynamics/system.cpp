@@ -70,11 +70,11 @@ const ModelTables& SystemCache::tables(const HybridSystem& system, bool rows_onl
   return *slot;
 }
 
-const RegimeTables& SystemCache::regime(const HybridSystem& system, const std::vector<bool>& stuck) {
+const RegimeTables& SystemCache::regime(const HybridSystem& system, const std::vector<ContactRole>& roles) {
   const ModelTables& full = tables(system, false);
   const std::lock_guard lock(building_);
-  auto& slot = regimes_[stuck];
-  if (!slot) slot = std::make_unique<RegimeTables>(system, full.model, stuck);
+  auto& slot = regimes_[roles];
+  if (!slot) slot = std::make_unique<RegimeTables>(system, full.model, roles);
   return *slot;
 }
 

@@ -1,0 +1,167 @@
+#include "dynamics/audit_forms.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <complex>
+
+namespace slipmode::dynamics {
+namespace {
+
+/// Sums of two decay rates below this share of the drive's frequency leave too few digits in a form.
+constexpr double kSlowest = 1e-5;
+
+Eigen::Matrix2d block(const ModalModel& pairs, Eigen::Index i) {
+  return (Eigen::Matrix2d() << pairs.g11(i), pairs.g12(i), pairs.g21(i), pairs.g22(i)).finished();
+}
+
+/// Slowest decay of a pair: the smallest −Re of its eigenvalues.
+double decay(const Eigen::Matrix2d& G) {
+  const double half = G.trace() / 2.0, gap = half * half - G.determinant();
+  return gap <= 0.0 ? -half : -half > 0.0 ? G.determinant() / (-half + std::sqrt(gap)) : -half - std::sqrt(gap);
+}
+
+}  // namespace
+
+std::unique_ptr<AuditForms> AuditForms::make(const Regime& r, const DriveOverlay& overlay) {
+  const ModalModel& pairs = r.pairs;
+  const auto np = pairs.np, ni = r.inputs(), nu = ni + 2, nc = r.speed_input();
+  for (Eigen::Index i = 0; i < pairs.n; ++i)
+    if (!(2.0 * decay(block(pairs, i)) > kSlowest * overlay.omega())) return nullptr;
+  std::unique_ptr<AuditForms> forms(new AuditForms(r, overlay));
+
+  // x = x_f + S u, ι = E u.
+  Eigen::MatrixXd S(2 * np, nu), E = Eigen::MatrixXd::Zero(ni, nu);
+  S << r.particular, overlay.state.c, overlay.state.s;
+  E.leftCols(ni).setIdentity();
+  E.col(ni) = overlay.inputs.c;
+  E.col(ni + 1) = overlay.inputs.s;
+  const auto steady = [&](const auto& row, const auto& coefficient) -> Eigen::VectorXd {
+    return S.transpose() * row + E.transpose() * coefficient;
+  };
+  const Eigen::VectorXd speed = E.row(r.speed_input()).transpose();
+  const auto none = [&] {
+    return Power{Eigen::MatrixXd::Zero(2 * np, 2 * np), Eigen::MatrixXd::Zero(2 * np, nu),
+                 Eigen::MatrixXd::Zero(nu, nu)};
+  };
+  Power contact = none(), drive = none(), viscous = none();
+  for (Eigen::Index c = 0; c < nc; ++c) {
+    const Eigen::VectorXd f = r.force_row.col(c), v = r.velocity_row.col(c);
+    const Eigen::VectorXd f_steady = steady(f, r.force_coefficient.col(c));
+    const Eigen::VectorXd v_steady = steady(v, r.velocity_coefficient.col(c));
+    contact.Q += (f * v.transpose() + v * f.transpose()) / 2.0;
+    contact.R += f * v_steady.transpose() + v * f_steady.transpose();
+    contact.P += f_steady * v_steady.transpose();
+    drive.R += f * speed.transpose();
+    drive.P += f_steady * speed.transpose();
+  }
+  if (pairs.n > 0) {
+    if (pairs.proportional)
+      viscous.Q.bottomRightCorner(np, np).diagonal() = pairs.damping;
+    else
+      viscous.Q = pairs.dissipation_root.transpose() * pairs.dissipation_root;
+  }
+  viscous.R = 2.0 * (viscous.Q * S + r.viscous_cross * speed.transpose());
+  viscous.P = S.transpose() * viscous.Q * S + 2.0 * (S.transpose() * r.viscous_cross) * speed.transpose() +
+              r.viscous_drive * speed * speed.transpose();
+  if (!forms->integrate(contact, forms->contact_) || !forms->integrate(drive, forms->drive_) ||
+      !forms->integrate(viscous, forms->viscous_))
+    return nullptr;
+  return forms;
+}
+
+bool AuditForms::solve_quadratic(const Eigen::MatrixXd& Q, Eigen::MatrixXd& out_Y) const {
+  if (Q.isZero(0.0)) return true;
+  const ModalModel& pairs = regime_.pairs;
+  const auto np = pairs.np;
+  out_Y = Eigen::MatrixXd::Zero(2 * np, 2 * np);
+  for (Eigen::Index i = 0; i < pairs.n; ++i)
+    for (Eigen::Index j = i; j < pairs.n; ++j) {
+      Eigen::Matrix2d q;
+      q << Q(i, j), Q(i, np + j), Q(np + i, j), Q(np + i, np + j);
+      if (q.isZero(0.0)) continue;
+      // (I ⊗ G_iᵀ + G_jᵀ ⊗ I) vec Y = vec Q, columns stacked.
+      const Eigen::Matrix2d Gi = block(pairs, i), Gj = block(pairs, j);
+      Eigen::Matrix4d A = Eigen::Matrix4d::Zero();
+      A.topLeftCorner<2, 2>() = A.bottomRightCorner<2, 2>() = Gi.transpose();
+      A.topLeftCorner<2, 2>().diagonal().array() += Gj(0, 0);
+      A.bottomRightCorner<2, 2>().diagonal().array() += Gj(1, 1);
+      A.topRightCorner<2, 2>().diagonal().array() += Gj(1, 0);
+      A.bottomLeftCorner<2, 2>().diagonal().array() += Gj(0, 1);
+      const Eigen::Vector4d y = A.fullPivLu().solve(Eigen::Map<const Eigen::Vector4d>(q.data()));
+      if (!y.allFinite()) return false;
+      const Eigen::Map<const Eigen::Matrix2d> Y(y.data());
+      out_Y(i, j) = out_Y(j, i) = Y(0, 0);
+      out_Y(i, np + j) = out_Y(np + j, i) = Y(0, 1);
+      out_Y(np + i, j) = out_Y(j, np + i) = Y(1, 0);
+      out_Y(np + i, np + j) = out_Y(np + j, np + i) = Y(1, 1);
+    }
+  return true;
+}
+
+bool AuditForms::integrate(const Power& power, Form& out) const {
+  const ModalModel& pairs = regime_.pairs;
+  const auto np = pairs.np, ni = regime_.inputs();
+  if (!solve_quadratic(power.Q, out.Y)) return false;
+  out.constant = Eigen::MatrixXd::Zero(2 * np, ni);
+  out.cosine = out.sine = Eigen::VectorXd::Zero(2 * np);
+  using Complex = std::complex<double>;
+  for (Eigen::Index i = 0; i < pairs.n; ++i) {
+    const Eigen::Matrix2d Gt = block(pairs, i).transpose();
+    const Eigen::Matrix2d inverse = Gt.inverse();
+    for (Eigen::Index k = 0; k < ni; ++k) {
+      const Eigen::Vector2d y = inverse * Eigen::Vector2d(power.R(i, k), power.R(np + i, k));
+      out.constant(i, k) = y(0);
+      out.constant(np + i, k) = y(1);
+    }
+    Eigen::Matrix2cd A = Gt.cast<Complex>();
+    A.diagonal().array() += Complex(0.0, overlay_.omega());
+    const Eigen::Vector2cd r(Complex(power.R(i, ni), -power.R(i, ni + 1)),
+                             Complex(power.R(np + i, ni), -power.R(np + i, ni + 1)));
+    const Eigen::Vector2cd y = A.inverse() * r;
+    out.cosine(i) = y(0).real();
+    out.sine(i) = -y(0).imag();
+    out.cosine(np + i) = y(1).real();
+    out.sine(np + i) = -y(1).imag();
+  }
+  out.steady = power.P;
+  return out.constant.allFinite() && out.cosine.allFinite() && out.sine.allFinite();
+}
+
+double AuditForms::value(const Form& form, double t, const Eigen::VectorXd& free) const {
+  const auto ni = regime_.inputs();
+  const DrivePhase p = overlay_.phase(t);
+  double sum = free.dot(form.cosine) * p.cosine + free.dot(form.sine) * p.sine + free.dot(form.constant * inputs_);
+  if (form.Y.size() > 0) sum += free.dot(form.Y.selfadjointView<Eigen::Lower>() * free);
+  // ∫ uᵀPu over the stay, with the integrals of 1, cos θ, sin θ, cos² θ, cos θ sin θ and sin² θ.
+  const double w = overlay_.omega(), stay = t - begin_;
+  const Eigen::MatrixXd& P = form.steady;
+  const Eigen::VectorXd once_c = P.topRows(ni).col(ni) + P.row(ni).head(ni).transpose();
+  const Eigen::VectorXd once_s = P.topRows(ni).col(ni + 1) + P.row(ni + 1).head(ni).transpose();
+  sum += stay * inputs_.dot(P.topLeftCorner(ni, ni) * inputs_);
+  sum += (inputs_.dot(once_c) * p.sine - inputs_.dot(once_s) * p.cosine) / w;
+  const double both = p.sine * p.cosine / (2.0 * w);
+  sum += P(ni, ni) * (stay / 2.0 + both) + P(ni + 1, ni + 1) * (stay / 2.0 - both);
+  sum += (P(ni, ni + 1) + P(ni + 1, ni)) * p.sine * p.sine / (2.0 * w);
+  return sum;
+}
+
+StayWork AuditForms::values(double t, const Eigen::VectorXd& x) const {
+  const Eigen::VectorXd free = x - resting_;
+  return {value(contact_, t, free), value(drive_, t, free), value(viscous_, t, free)};
+}
+
+void AuditForms::begin(double t, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs) {
+  begin_ = t;
+  inputs_ = inputs;
+  resting_ = regime_.particular * inputs;
+  at_begin_ = values(t, x);
+}
+
+StayWork AuditForms::until(double t, const Eigen::VectorXd& x) {
+  const StayWork now = values(t, x);
+  const StayWork work{now.contact - at_begin_.contact, now.drive - at_begin_.drive, now.viscous - at_begin_.viscous};
+  at_begin_ = now;
+  return work;
+}
+
+}  // namespace slipmode::dynamics

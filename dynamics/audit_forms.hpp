@@ -1,0 +1,62 @@
+#pragma once
+
+#include "dynamics/drive_overlay.hpp"
+#include "dynamics/regime.hpp"
+
+#include <Eigen/Core>
+#include <memory>
+
+namespace slipmode::dynamics {
+
+/// Work of a stay in a regime [J].
+struct StayWork {
+  double contact = 0.0;  ///< ∫ Σ λ wᵀq̇ dt
+  double drive = 0.0;    ///< ∫ Σ λ v_drive dt
+  double viscous = 0.0;  ///< ∫ q̇ᵀCq̇ dt
+};
+
+/// The energy audit under a harmonic drive without quadrature: with x = x_f + S u, ẋ_f = G x_f, u = (ι, cos θ, sin θ),
+/// every power is a quadratic form of (x_f, u), and
+///
+///     ∫ x_fᵀQ x_f dt = [x_fᵀY x_f],  GᵀY + YG = Q;     ∫ x_fᵀr e^{iθ} dt = Re [x_fᵀy e^{iθ}],  (Gᵀ + iω) y = r.
+///
+/// Costs O(n²) per stay whatever its length, where quadrature would follow the fastest mode.
+/// Source: docs/theory/flow.md.
+class AuditForms {
+ public:
+  /// Null where a mode has no damping to speak of, or drifts: then the integrals have no such form.
+  [[nodiscard]] static std::unique_ptr<AuditForms> make(const Regime& regime, const DriveOverlay& overlay);
+
+  /// Starts a stay. @param inputs  constant over the stay
+  void begin(double t, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs);
+  /// Work since `begin` or the last `until`.
+  [[nodiscard]] StayWork until(double t, const Eigen::VectorXd& x);
+
+ private:
+  /// One power, as the antiderivative of a quadratic form.
+  struct Form {
+    Eigen::MatrixXd Y;             ///< [2np x 2np]; empty: no quadratic part
+    Eigen::MatrixXd constant;      ///< ι → y of the constant part [2np x ni]
+    Eigen::VectorXd cosine, sine;  ///< y of the harmonic part [2np]
+    Eigen::MatrixXd steady;        ///< uᵀ(this)u is what does not depend on x_f [(ni+2) x (ni+2)]
+  };
+  /// The same before integration.
+  struct Power {
+    Eigen::MatrixXd Q, R, P;
+  };
+
+  AuditForms(const Regime& regime, const DriveOverlay& overlay) : regime_(regime), overlay_(overlay) {}
+  [[nodiscard]] bool integrate(const Power& power, Form& out) const;
+  [[nodiscard]] bool solve_quadratic(const Eigen::MatrixXd& Q, Eigen::MatrixXd& out_Y) const;
+  [[nodiscard]] double value(const Form& form, double t, const Eigen::VectorXd& free) const;
+  [[nodiscard]] StayWork values(double t, const Eigen::VectorXd& x) const;
+
+  const Regime& regime_;
+  const DriveOverlay& overlay_;
+  Form contact_, drive_, viscous_;
+  double begin_ = 0.0;
+  Eigen::VectorXd inputs_, resting_;  ///< of this stay; x of constant inputs
+  StayWork at_begin_;
+};
+
+}  // namespace slipmode::dynamics

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace slipmode::dynamics {
+
+/// A real matrix of even size as independent 2 x 2 blocks: A T = T G. A conjugate pair of eigenvalues σ ± iw gives the
+/// block [σ w; −w σ], two real ones a diagonal block: in these coordinates free motion grows by e^{σt} and no more.
+/// Block i acts on columns i and n + i of T.
+struct PairForm {
+  Eigen::VectorXd g11, g12, g21, g22;  ///< blocks [n]
+  Eigen::MatrixXd T, T_inverse;        ///< [2n x 2n]
+};
+
+/// @param A  2n x 2n, balanced: its entries should be of the size of its eigenvalues
+/// @throws NumericalFailure  when A is close to defective (condition number of the eigenvectors above 1e10) or the
+///                           iteration does not converge
+[[nodiscard]] PairForm pair_form(const Eigen::MatrixXd& A);
+
+/// State matrix [0 diag(ω); −diag(ω) −D] of the balanced state (ω η, η̇); rigid-body modes (ω = 0) use the smallest
+/// scale that keeps it balanced.
+struct BalancedState {
+  Eigen::VectorXd scale;  ///< of η [n]
+  Eigen::MatrixXd A;      ///< [2n x 2n]
+};
+[[nodiscard]] BalancedState balanced_state(const Eigen::VectorXd& omega, const Eigen::MatrixXd& damping);
+
+}  // namespace slipmode::dynamics
