@@ -120,9 +120,9 @@ struct RegimeAudit {
 /// A regime and its tables for windows of length top·2^{-level}, built when first used; safe to share between threads.
 class RegimeTables {
  public:
-  static constexpr int kLevels = 56;
+  static constexpr int kLevels = 80;
   /// The first level at which the energy audit's rules are short enough to be tabulated.
-  static constexpr int kAuditLevel = 8;
+  static constexpr int kAuditLevel = 28;
 
   RegimeTables(const HybridSystem& system, const ModalModel& slipping, const std::vector<ContactRole>& roles);
 

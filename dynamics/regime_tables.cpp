@@ -4,13 +4,16 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 
 namespace slipmode::dynamics {
 namespace {
 
-/// The longest window, in radians of the fastest pair: 2^12.
-constexpr double kTopPhase = 4096.0;
+/// The longest window, in radians of the fastest pair: 2^32. Overdamped pairs of a fine mesh decay that much faster
+/// than anything moves.
+constexpr double kTopPhase = 4294967296.0;
 /// Below this phase a short Taylor series is exact to rounding.
 constexpr double kTaylorPhase = 0.25;
 /// Quadrature over this many radians at once.
@@ -22,6 +25,34 @@ constexpr double kLargestGrowth = 200.0;
 struct Moments {
   Eigen::Matrix2d of0 = Eigen::Matrix2d::Zero(), of1 = Eigen::Matrix2d::Zero(), of2 = Eigen::Matrix2d::Zero();
 };
+
+/// ∫₀ᵗ e^{μ(t−s)} s^k/k! ds for k = 0, 1, 2: t^{k+1} φ_{k+1}(μt).
+std::array<double, 3> scalar_moments(double mu, double t) {
+  const double z = mu * t;
+  if (std::abs(z) > 1.0) {
+    const double first = std::expm1(z) / mu, second = (first - t) / mu;
+    return {first, second, (second - t * t / 2.0) / mu};
+  }
+  std::array<double, 3> out{};
+  double power = t;  // t^{k+1}
+  for (int k = 0; k < 3; ++k, power *= t) {
+    double term = 1.0;
+    for (int j = 2; j <= k + 1; ++j) term /= j;
+    for (int j = k + 2; std::abs(term) > 1e-18; term *= z / j++) out[static_cast<std::size_t>(k)] += power * term;
+  }
+  return out;
+}
+
+/// Two real eigenvalues far apart: each has its own integral, however fast the faster one is.
+std::optional<Moments> separate_moments(const Eigen::Matrix2d& G, double t) {
+  const double half = G.trace() / 2.0, determinant = G.determinant(), gap = half * half - determinant;
+  if (!(gap > 0.25 * half * half)) return std::nullopt;
+  const double root = std::sqrt(gap), fast = half < 0 ? half - root : half + root, slow = determinant / fast;
+  const Eigen::Matrix2d of_fast = (G - slow * Eigen::Matrix2d::Identity()) / (fast - slow);
+  const Eigen::Matrix2d of_slow = (G - fast * Eigen::Matrix2d::Identity()) / (slow - fast);
+  const std::array<double, 3> a = scalar_moments(fast, t), b = scalar_moments(slow, t);
+  return Moments{a[0] * of_fast + b[0] * of_slow, a[1] * of_fast + b[1] * of_slow, a[2] * of_fast + b[2] * of_slow};
+}
 
 Moments moments(const ModalModel& pairs, Eigen::Index i, double rate, const Eigen::Matrix2d& E, double t) {
   Moments out;
@@ -35,6 +66,7 @@ Moments moments(const ModalModel& pairs, Eigen::Index i, double rate, const Eige
     out.of2 = inverse * (out.of1 - t * t / 2.0 * I);
     return out;
   }
+  if (const auto separate = separate_moments(G, t)) return *separate;
   static const GaussRule rule = gauss_rule(16);
   const int panels = 1 + static_cast<int>(phase / kQuadraturePhase);
   for (int p = 0; p < panels; ++p)
