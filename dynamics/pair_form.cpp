@@ -6,7 +6,9 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <optional>
+#include <vector>
 
 namespace slipmode::dynamics {
 namespace {
@@ -22,14 +24,22 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 PairForm pair_form(const Eigen::MatrixXd& A) {
   const Eigen::Index n = A.rows() / 2;
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(A);
+  // Pairs of rows from large to small: QR then keeps the digits of the small eigenvalues.
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(n)), rows;
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  const Eigen::VectorXd size = A.topRows(n).rowwise().lpNorm<Eigen::Infinity>().cwiseMax(
+      A.bottomRows(n).rowwise().lpNorm<Eigen::Infinity>());
+  std::stable_sort(order.begin(), order.end(), [&](Eigen::Index i, Eigen::Index j) { return size(i) > size(j); });
+  for (const Eigen::Index i : order) rows.insert(rows.end(), {i, n + i});
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(Eigen::MatrixXd(A(rows, rows)));
   if (solver.info() != Eigen::Success)
     throw NumericalFailure("eigenvalues of the damped structure did not converge", kNaN, {}, kNaN);
   PairForm form;
   for (auto* g : {&form.g11, &form.g12, &form.g21, &form.g22}) *g = Eigen::VectorXd::Zero(n);
   form.T.resize(2 * n, 2 * n);
   const auto& values = solver.eigenvalues();
-  const auto vectors = solver.eigenvectors();
+  Eigen::MatrixXcd vectors(2 * n, 2 * n);
+  vectors(rows, Eigen::all) = solver.eigenvectors();
   Eigen::Index pair = 0;
   const auto put = [&](const Eigen::VectorXd& first, const Eigen::VectorXd& second, double a, double b, double c,
                        double d) {
