@@ -24,12 +24,12 @@ constexpr double kNegligibleShift = 1e-15;
 constexpr double kAtLimit = 1e-10;
 /// Right after sliding has begun, a guard that vanishes within this share of a step is an error of interpolation.
 constexpr double kEarly = 1.0 / 64.0;
-/// Speeds below this share of the velocities at play are rounding.
-constexpr double kUnmoved = 1e-14;
 /// Halvings tried to show that a stick force stays below its limit.
 constexpr int kHalvings = 2;
 /// Shifts below this share of the step are made by two terms of Taylor's series.
 constexpr double kShortShift = 1e-7;
+/// A step spans at most this phase of a shaker, so that all quadratures resolve it.
+constexpr double kLargestDrivePhase = 2.0;
 constexpr int kRefinements = 20;
 
 /// How many times to halve a step whose eighth-order error is too large by this factor: at least once.
@@ -37,6 +37,16 @@ int halvings(double excess) {
   int exponent = 0;
   std::frexp(excess, &exponent);
   return std::clamp(1 + exponent / kNodes, 1, 4);
+}
+
+/// Level of the largest step over which the polynomial of degree 7 through the nodes follows the drive's velocity to
+/// within `tolerance` of its amplitude: |V − p| ≤ (ωh/2)⁸ / (2⁷ 8!).
+int coarsest_level(const friction::Drive& drive, const StepTables& tables, double tolerance) {
+  if (drive.shaker() == nullptr) return 0;
+  const double phase = std::min(kLargestDrivePhase, 2.0 * std::pow(tolerance * 128.0 * 40320.0, 1.0 / kNodes));
+  int level = 0;
+  while (level + 1 < StepTables::kLevels && tables.step(level) * drive.shaker()->omega() > phase) ++level;
+  return level;
 }
 
 }  // namespace
@@ -51,9 +61,11 @@ CollocationFlow::CollocationFlow(const HybridSystem& system, const StepTables& t
       begin_(start.time),
       point_(std::move(start)),
       x_begin_(point_.x),
+      coarsest_(coarsest_level(system.drive(), tables, options.tolerance)),
       newton_change_(std::min(1e-3, std::sqrt(kNewtonShare * options.tolerance))),
-      start_level_(static_cast<std::size_t>(nc_) + 1, 3) {
-  for (auto* v : {&free_, &velocity_, &forces_, &belt_nodes_}) *v = Eigen::VectorXd::Zero(kNodes * nc_);
+      start_level_(static_cast<std::size_t>(nc_) + 1, std::max(3, coarsest_)) {
+  for (auto* v : {&free_, &velocity_, &forces_, &drive_nodes_, &bristle_nodes_})
+    *v = Eigen::VectorXd::Zero(kNodes * nc_);
   statistics_.stick_time.assign(static_cast<std::size_t>(nc_), 0.0);
   for (std::size_t c = 0; c < laws().size(); ++c) {
     const auto i = static_cast<Eigen::Index>(c);
@@ -61,7 +73,15 @@ CollocationFlow::CollocationFlow(const HybridSystem& system, const StepTables& t
         std::log(laws()[c].alpha * laws()[c].drop * model_.mobility(i, i) * tables_.step(0) / kLargestGrowth) /
         laws()[c].alpha);
   }
+  for (int c = 0; c < nc_; ++c) {
+    any_bristle_ |= bristled(c);
+    bristle_at_.push_back(system.internal_begin(c));
+  }
+  if (any_bristle_ && point_.internal.size() == 0) point_.internal = Eigen::VectorXd::Zero(system.internal_size());
+  internal_begin_ = point_.internal;
+  if (any_bristle_) start_bristles();
   resolver_.start(point_);
+  if (any_bristle_) refresh_bristles();
   restart_steps();
 }
 
@@ -85,7 +105,7 @@ CollocationFlow::Guarded CollocationFlow::first_guard() const {
   for (int c = 0; c < nc_; ++c) {
     const auto i = static_cast<std::size_t>(c);
     const ContactForces& law = laws()[i];
-    if (!law.sticks()) continue;
+    if (!law.sticks() && !bristled(c)) continue;
     if (point_.modes[i] == ContactMode::kStick) {
       const V8 b = matrix8_times(t.bernstein7.data(), forces_.data() + kNodes * c);
       for (const double sign : {1.0, -1.0}) {
@@ -97,9 +117,9 @@ CollocationFlow::Guarded CollocationFlow::first_guard() const {
     }
     const double sign = sign_of(point_.modes[i]);
     alignas(64) double speed[kNodes];
-    store8(speed, sign * (load8(belt_nodes_.data() + kNodes * c) - load8(velocity_.data() + kNodes * c)));
+    store8(speed, sign * (load8(drive_nodes_.data() + kNodes * c) - load8(velocity_.data() + kNodes * c)));
     const int multiplicity = point_.multiplicity[i];
-    if (multiplicity > 0 && unmoved(c)) continue;
+    if ((multiplicity > 0 || bristled(c)) && unmoved(c)) continue;
     const double start =
         multiplicity > 0
             ? 0.0
@@ -115,10 +135,17 @@ CollocationFlow::Guarded CollocationFlow::first_guard() const {
 
 bool CollocationFlow::unmoved(int c) const {
   // So soon after its start that sliding has no speed beyond rounding, and its sign means nothing.
-  const V8 speed = load8(belt_nodes_.data() + kNodes * c) - load8(velocity_.data() + kNodes * c);
-  const double scale =
-      std::abs(drive().velocity(begin_)) + model_.velocity_row.col(c).cwiseAbs().dot(x_begin_.cwiseAbs());
-  return std::max(max8(speed), -min8(speed)) <= kUnmoved * scale;
+  const V8 speed = load8(drive_nodes_.data() + kNodes * c) - load8(velocity_.data() + kNodes * c);
+  return std::max(max8(speed), -min8(speed)) <= kUnmoved * velocity_scale(c, x_begin_);
+}
+
+double CollocationFlow::velocity_scale(int c, const Eigen::VectorXd& x) const {
+  // Rounding of the time changes V; and where a bristle comes to rest, speeds are what forces in balance leave.
+  const double by_time = std::abs(drive().acceleration(begin_) * begin_);
+  const double by_way =
+      bristled(c) ? model_.fastest * model_.displacement_row.col(c).cwiseAbs().dot(x.cwiseAbs()) : 0.0;
+  return std::abs(drive().velocity(begin_)) + by_time + by_way +
+         model_.velocity_row.col(c).cwiseAbs().dot(x.cwiseAbs());
 }
 
 bool CollocationFlow::too_early(const Guarded& guard) const {
@@ -131,7 +158,7 @@ double CollocationFlow::deepest_overshoot() const {
     const auto i = static_cast<std::size_t>(c);
     if (laws()[i].kind != ContactForces::Kind::kStribeck || point_.modes[i] == ContactMode::kStick) continue;
     const V8 speed =
-        sign_of(point_.modes[i]) * (load8(belt_nodes_.data() + kNodes * c) - load8(velocity_.data() + kNodes * c));
+        sign_of(point_.modes[i]) * (load8(drive_nodes_.data() + kNodes * c) - load8(velocity_.data() + kNodes * c));
     deepest = std::max(deepest, -laws()[i].alpha * min8(speed));
   }
   return deepest;
@@ -139,8 +166,10 @@ double CollocationFlow::deepest_overshoot() const {
 
 bool CollocationFlow::step(double t_limit) {
   resolver_.clear();
+  events_.clear();
   begin_ = point_.time;
   x_begin_.swap(point_.x);
+  internal_begin_ = point_.internal;
   step_modes_ = point_.modes;
   double limit = t_limit;
   bool corner = false;
@@ -152,7 +181,7 @@ bool CollocationFlow::step(double t_limit) {
   }
   const double remaining = limit - begin_;
 
-  int level = foreseen_level(level_);
+  int level = foreseen_level(std::max(level_, coarsest_));
   while (level + 1 < StepTables::kLevels && tables_.step(level + 1) >= remaining) ++level;
   Guarded guard;
   double h = 0.0, tau = 0.0, error = 0.0, tolerance = 0.0;
@@ -167,6 +196,7 @@ bool CollocationFlow::step(double t_limit) {
     guess_forces(level, retry);
     solved_ = solve_forces(table, h);
     step_level_ = level;
+    if (any_bristle_ && solved_ && turn_resting_bristles()) solved_ = solve_forces(table, h);
     if (!solved_) {
       ++level;
       continue;
@@ -207,6 +237,8 @@ bool CollocationFlow::step(double t_limit) {
     propagate(tables_.propagator(level), x_begin_.data(), forces_.data(), nc_, model_.np, point_.x.data());
   }
   point_.time = tau == remaining ? limit : begin_ + tau;
+  // A shaker's velocity feels the rounding of the time.
+  if (tau == h && drive().shaker() != nullptr) resolver_.hold(point_.time, point_.modes, point_.x.data());
   ++statistics_.steps;
   if (!std::isfinite(point_.x(0)) || !std::isfinite(point_.time))
     throw NumericalFailure("the state is no longer finite at t = " + std::to_string(begin_), begin_, x_begin_, error);
@@ -216,26 +248,38 @@ bool CollocationFlow::step(double t_limit) {
   if (options_.audit) account(level, tau);
   if (tangents_.size() > 0) push_tangents(level, tau);
 
-  level_ = error < tolerance * kGrowth && level > 0 ? level - 1 : level;
+  level_ = error < tolerance * kGrowth && level > coarsest_ ? level - 1 : level;
   solved_ = tau == h;
   if (fresh_) {
     start_level_[stuck_count()] = level_;
-    if (nc_ == 1 && point_.modes[0] != ContactMode::kStick && point_.force(0) != 0.0) {
+    if (nc_ == 1 && point_.modes[0] != ContactMode::kStick && !bristled(0) && point_.force(0) != 0.0) {
       first_level_ = level;
       first_shape_ = forces_ / point_.force(0);
     }
   }
   fresh_ = false;
   std::fill(point_.multiplicity.begin(), point_.multiplicity.end(), 0);
-  const auto& last = nodes_.lagrange(tau / h);
+  const RadauTables::Vector8 last = nodes_.lagrange(tau / h);
   for (int c = 0; c < nc_; ++c)
     point_.force(c) = tau < h ? forces_.segment<kNodes>(kNodes * c).dot(last) : forces_(kNodes * c + kNodes - 1);
+  if (any_bristle_) {
+    for (int c = 0; c < nc_; ++c)  // as long as its speed is rounding, a bristle's direction means nothing
+      if (bristled(c) && unmoved(c)) point_.multiplicity[static_cast<std::size_t>(c)] = 2;
+    point_.internal = internal_within(tau / h);
+    bristle_force_at(point_.time, point_.modes, point_.x.data(), point_.internal, point_.force);
+  }
   if (!at_guard && !(corner && point_.time == limit)) return false;
 
   const int contact = at_guard ? guard.contact : -1;
   const Eigen::VectorXd force_before = tangents_.size() > 0 ? point_.force : Eigen::VectorXd();
-  resolver_.settle(point_, contact, guard.touching);
-  statistics_.events += static_cast<std::int64_t>(resolver_.events().size());
+  if (at_guard && bristled(contact)) {
+    settle_bristle(contact, guard.touching);
+  } else {
+    resolver_.settle(point_, contact, guard.touching);
+    events_ = resolver_.events();
+    if (any_bristle_) refresh_bristles();
+  }
+  statistics_.events += static_cast<std::int64_t>(events_.size());
   if (!guard.touching) {
     restart_steps();
     if (tangents_.size() > 0) salt_tangents(force_before, contact);
@@ -251,7 +295,7 @@ void CollocationFlow::refine_event(const Guarded& guard, double& tau, Eigen::Vec
   const auto i = static_cast<std::size_t>(c);
   double previous = 0.0;
   for (int iteration = 0; iteration < kRefinements; ++iteration) {
-    const double a = drive().acceleration(begin_), V = drive().velocity(begin_) + a * tau;
+    const double a = drive_acceleration(begin_, tau), V = drive_velocity(begin_, tau);
     const RadauTables::Vector8 basis = nodes_.lagrange(tau / h);
     double value, rate, usual_rate;
     if (point_.modes[i] == ContactMode::kStick) {
@@ -307,7 +351,7 @@ void CollocationFlow::nudge(const RadauTables::Vector8& basis, double shift, Eig
 
 double CollocationFlow::stick_force(int c, const Eigen::VectorXd& x, double tau,
                                     const RadauTables::Vector8& basis) const {
-  const double a = drive().acceleration(begin_);
+  const double a = drive_acceleration(begin_, tau);
   if (nc_ == 1)
     return (a - dot_padded(model_.acceleration_row.data(), x.data(), 2 * model_.np) - model_.load_acceleration(0)) /
            model_.mobility(0, 0);
@@ -317,7 +361,7 @@ double CollocationFlow::stick_force(int c, const Eigen::VectorXd& x, double tau,
     stuck[static_cast<std::size_t>(d)] = point_.modes[static_cast<std::size_t>(d)] == ContactMode::kStick;
     force(d) = forces_.segment<kNodes>(kNodes * d).dot(basis);
   }
-  stick_forces({model_, laws(), x.data(), begin_ + tau, drive().velocity(begin_) + a * tau, a}, stuck, force);
+  stick_forces({model_, laws(), x.data(), begin_ + tau, drive_velocity(begin_, tau), a}, stuck, force);
   return force(c);
 }
 
@@ -344,13 +388,14 @@ void CollocationFlow::account(int level, double tau) {
 
 void CollocationFlow::account_whole(int level, const double* x, const double* forces, const double* velocities,
                                     double begin) {
-  const double length = tables_.step(level), V = drive().velocity(begin), a = drive().acceleration(begin);
+  const double length = tables_.step(level);
+  const RadauTables::Vector8 drive_speed = drive_velocities(begin, length);
   double contact = 0.0, driven = 0.0;
   for (int c = 0; c < nc_; ++c) {
     const Eigen::Map<const RadauTables::Vector8> force(forces + kNodes * c), speed(velocities + kNodes * c);
     const RadauTables::Vector8 weighted = length * nodes_.weight.cwiseProduct(force);
     contact += weighted.dot(speed);
-    driven += V * weighted.sum() + a * length * weighted.dot(nodes_.node);
+    driven += weighted.dot(drive_speed);
   }
   work_.add(contact, driven, viscous_loss(tables_, level, x, forces));
 }
@@ -374,6 +419,26 @@ void CollocationFlow::account_rest(int level, const double* x, const double* for
   work_.add(contact, driven, viscous);
 }
 
+double CollocationFlow::drive_velocity(double begin, double tau) const {
+  const double V = drive().velocity(begin), a = drive().acceleration(begin);
+  if (drive().shaker() == nullptr) return V + a * tau;
+  // From the phase at the beginning: begin + tau would round the time, and make a staircase of a short step.
+  const double omega = drive().shaker()->omega();
+  return V * std::cos(omega * tau) + a / omega * std::sin(omega * tau);
+}
+
+double CollocationFlow::drive_acceleration(double begin, double tau) const {
+  return drive().acceleration(drive().shaker() != nullptr ? begin + tau : begin);
+}
+
+RadauTables::Vector8 CollocationFlow::drive_velocities(double begin, double h) const {
+  const double V = drive().velocity(begin), a = drive().acceleration(begin);
+  if (drive().shaker() == nullptr) return (V + a * h * nodes_.node.array()).matrix();
+  const double omega = drive().shaker()->omega();
+  const auto phase = (omega * h) * nodes_.node.array();
+  return (V * phase.cos() + a / omega * phase.sin()).matrix();
+}
+
 void CollocationFlow::restart_steps() {
   level_ = start_level_[stuck_count()];
   solved_ = false;
@@ -389,7 +454,12 @@ void CollocationFlow::evaluate(double t, Eigen::VectorXd& out_x, Eigen::VectorXd
   out_x.resize(2 * model_.np);
   advance_within(tables_, x_begin_.data(), forces_.data(), step_level_, tau, out_x.data());
   resolver_.hold(t, step_modes_, out_x.data());
-  out_force = resolver_.forces(t, step_modes_, out_x.data());
+  if (any_bristle_) {
+    out_force.resize(nc_);
+    bristle_force_at(t, step_modes_, out_x.data(), internal_within(tau / h), out_force);
+  } else {
+    out_force = resolver_.forces(t, step_modes_, out_x.data());
+  }
 }
 
 }  // namespace slipmode::dynamics

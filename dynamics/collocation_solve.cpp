@@ -39,7 +39,7 @@ void CollocationFlow::guess_forces(int level, bool retry) {
         // Sliding speed is smoother than the force, and continues better.
         const double sign = sign_of(point_.modes[i]);
         const double* velocity = velocity_.data() + kNodes * c;
-        const V8 speed = sign * (load8(belt_nodes_.data() + kNodes * c) - matrix8_times(ahead, velocity));
+        const V8 speed = sign * (load8(drive_nodes_.data() + kNodes * c) - matrix8_times(ahead, velocity));
         store8(forces,
                sign * (laws()[i].kinetic + laws()[i].drop * exp8(-laws()[i].alpha * (speed > 0.0 ? speed : V8{}))));
       } else {
@@ -67,7 +67,7 @@ int CollocationFlow::foreseen_level(int level) const {
     const ContactForces& law = laws()[i];
     if (law.kind != ContactForces::Kind::kStribeck || point_.modes[i] == ContactMode::kStick) continue;
     const double sign = sign_of(point_.modes[i]);
-    const auto speed = [&](int j) { return sign * (belt_nodes_(kNodes * c + j) - velocity_(kNodes * c + j)); };
+    const auto speed = [&](int j) { return sign * (drive_nodes_(kNodes * c + j) - velocity_(kNodes * c + j)); };
     const double s1 = speed(2), s2 = speed(5), s3 = speed(7);
     const double d12 = (s2 - s1) / (node(5) - node(2)), d23 = (s3 - s2) / (node(7) - node(5));
     const double bend = (d23 - d12) / (node(7) - node(2)), slope = d23 + bend * (node(7) - node(5));
@@ -81,17 +81,16 @@ int CollocationFlow::foreseen_level(int level) const {
 }
 
 bool CollocationFlow::solve_forces(const Collocation& table, double h) {
-  const double V = drive().velocity(begin_), a = drive().acceleration(begin_);
-  const V8 node = load8(nodes_.node.data());
-  const V8 belt = broadcast8(V) + broadcast8(a * h) * node;
-  for (int c = 0; c < nc_; ++c) store8(belt_nodes_.data() + kNodes * c, belt);
-  if (nc_ != 1) return solve_coupled(table);
+  const RadauTables::Vector8 drive_speed = drive_velocities(begin_, h);
+  for (int c = 0; c < nc_; ++c) drive_nodes_.segment<kNodes>(kNodes * c) = drive_speed;
+  if (nc_ != 1 || any_bristle_) return solve_coupled(table, h);
 
   double* forces = forces_.data();
   if (point_.modes[0] == ContactMode::kStick) {
-    store8(free_.data(), belt - load8(free_.data()));
+    const V8 held = load8(drive_speed.data());
+    store8(free_.data(), held - load8(free_.data()));
     store8(forces, matrix8_times(table.kernel_inverse.data(), free_.data()));
-    store8(velocity_.data(), belt);
+    store8(velocity_.data(), held);
     return true;
   }
   if (laws()[0].is_constant()) {
@@ -104,7 +103,7 @@ bool CollocationFlow::solve_forces(const Collocation& table, double h) {
 
 bool CollocationFlow::solve_single_slip(const Collocation& table) {
   const ContactForces& law = laws()[0];
-  const V8 free = load8(free_.data()), belt = load8(belt_nodes_.data());
+  const V8 free = load8(free_.data()), drive_speed = load8(drive_nodes_.data());
   const bool smooth = !law.sticks();
   const double sign = smooth ? 1.0 : sign_of(point_.modes[0]);
   const double velocity_scale = smooth ? law.epsilon : 1.0 / law.alpha;
@@ -116,7 +115,7 @@ bool CollocationFlow::solve_single_slip(const Collocation& table) {
     V8 lambda, slope;
     if (smooth) {
       alignas(64) double l[kNodes], d[kNodes], s[kNodes];
-      store8(s, belt - v);
+      store8(s, drive_speed - v);
       for (int j = 0; j < kNodes; ++j) {
         l[j] = law.smooth(s[j], d[j]);
         d[j] = -d[j];
@@ -124,7 +123,7 @@ bool CollocationFlow::solve_single_slip(const Collocation& table) {
       lambda = load8(l);
       slope = load8(d);
     } else {
-      V8 scaled = law.alpha * sign * (belt - v);  // α times sliding speed
+      V8 scaled = law.alpha * sign * (drive_speed - v);  // α times sliding speed
       const auto inside = scaled > clip;
       scaled = inside ? scaled : clip;
       const V8 e = law.drop * exp8(-scaled);
@@ -147,7 +146,7 @@ bool CollocationFlow::solve_single_slip(const Collocation& table) {
   return false;
 }
 
-bool CollocationFlow::solve_coupled(const Collocation& table) {
+bool CollocationFlow::solve_coupled(const Collocation& table, double h) {
   const Eigen::Index size = kNodes * nc_;
   const auto block = [](auto& vector, int c) { return vector.template segment<kNodes>(kNodes * c); };
   std::vector<bool> stuck(static_cast<std::size_t>(nc_));
@@ -159,12 +158,13 @@ bool CollocationFlow::solve_coupled(const Collocation& table) {
     any_nonlinear |= !stuck[c] && !laws()[c].is_constant();
   }
   if (all_stuck) {
-    forces_.noalias() = table.kernel_inverse * (belt_nodes_ - free_);
-    velocity_ = belt_nodes_;
+    forces_.noalias() = table.kernel_inverse * (drive_nodes_ - free_);
+    velocity_ = drive_nodes_;
     return true;
   }
   for (int c = 0; c < nc_; ++c) {
     const auto i = static_cast<std::size_t>(c);
+    if (bristled(c)) continue;
     block(forces_, c)
         .setConstant(laws()[i].is_constant() && !stuck[i] ? sign_of(point_.modes[i]) * laws()[i].kinetic
                                                           : point_.force(c));
@@ -177,21 +177,30 @@ bool CollocationFlow::solve_coupled(const Collocation& table) {
   Eigen::MatrixXd jacobian(size, size);
   Eigen::VectorXd residual(size);
   for (int iteration = 0; iteration < kNewtonLimit; ++iteration) {
-    // Sliding contacts: λ − law(v) = 0. Sticking ones: v − v_belt = 0.
+    // Sliding contacts: λ − law(v) = 0. Sticking ones: v − v_drive = 0.
     velocity_.noalias() = free_ + table.kernel * forces_;
     double curvature = 0.0;
     for (int c = 0; c < nc_; ++c) {
       const auto i = static_cast<std::size_t>(c);
       const ContactForces& law = laws()[i];
+      if (bristled(c)) {
+        const BristleStep step = solve_bristle(law.bristle, sign_of(point_.modes[i]), internal_begin_(bristle_at_[i]),
+                                               h, block(drive_nodes_, c) - block(velocity_, c));
+        block(residual, c) = step.force - block(forces_, c);
+        jacobian.middleRows<kNodes>(kNodes * c).noalias() = step.slope * table.kernel.middleRows<kNodes>(kNodes * c);
+        jacobian.block<kNodes, kNodes>(kNodes * c, kNodes * c) += RadauTables::Matrix8::Identity();
+        block(bristle_nodes_, c) = step.z;
+        continue;
+      }
       for (int j = 0; j < kNodes; ++j) {
         const Eigen::Index row = kNodes * c + j;
         if (stuck[i]) {
-          residual(row) = belt_nodes_(row) - velocity_(row);
+          residual(row) = drive_nodes_(row) - velocity_(row);
           jacobian.row(row) = table.kernel.row(row);
           continue;
         }
         double lambda, slope;  // dλ/dv
-        const double s = belt_nodes_(row) - velocity_(row);
+        const double s = drive_nodes_(row) - velocity_(row);
         if (!law.sticks()) {
           lambda = law.smooth(s, slope);
           slope = -slope;
@@ -218,9 +227,16 @@ bool CollocationFlow::solve_coupled(const Collocation& table) {
         const double rate = law.kind == ContactForces::Kind::kSmooth ? 1.0 / law.epsilon : law.alpha;
         if (!stuck[static_cast<std::size_t>(c)])
           curvature = std::max(curvature, rate * block(dv, c).cwiseAbs().maxCoeff());
+      } else if (law.kind == ContactForces::Kind::kBristle) {
+        if (law.bristle.drop > 0.0)
+          curvature = std::max(curvature, block(dv, c).cwiseAbs().maxCoeff() / law.bristle.stribeck_speed);
+        curvature = std::max(curvature, block(delta, c).cwiseAbs().maxCoeff() / law.static_limit);
       }
     }
-    if (!any_nonlinear || curvature < newton_change_) return true;
+    if (!any_nonlinear || curvature < newton_change_) {
+      collocate_bristles(h);
+      return true;
+    }
   }
   return false;
 }
@@ -236,6 +252,7 @@ double CollocationFlow::force_error() const {
     // The first coefficient left out, if the sequence keeps falling as it does.
     const double next = seventh * std::min(1.0, seventh / std::max(sixth, 1e-300));
     worst = std::max(worst, next / laws()[i].static_limit);
+    if (bristled(c)) worst = std::max(worst, bristle_error(c) * tables_.step(0) / tables_.step(step_level_));
   }
   return worst;
 }

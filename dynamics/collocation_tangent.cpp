@@ -1,4 +1,6 @@
 #include "dynamics/collocation_flow.hpp"
+
+#include "core/errors.hpp"
 #include "dynamics/pair_kernels.hpp"
 
 #include <Eigen/Dense>
@@ -6,19 +8,23 @@
 
 namespace slipmode::dynamics {
 
-double CollocationFlow::force_slope(int c, ContactMode mode, double velocity, double belt) const {
+double CollocationFlow::force_slope(int c, ContactMode mode, double velocity, double drive_velocity) const {
   const ContactForces& law = laws()[static_cast<std::size_t>(c)];
   if (mode == ContactMode::kStick || law.is_constant()) return 0.0;
   if (!law.sticks()) {
     double slope;
-    static_cast<void>(law.smooth(belt - velocity, slope));
+    static_cast<void>(law.smooth(drive_velocity - velocity, slope));
     return -slope;
   }
-  const double speed = static_cast<double>(static_cast<int>(mode)) * (belt - velocity);
+  const double speed = static_cast<double>(static_cast<int>(mode)) * (drive_velocity - velocity);
   return law.alpha * law.drop * std::exp(-law.alpha * speed);
 }
 
 void CollocationFlow::set_tangents(Eigen::MatrixXd tangents) {
+  if (any_bristle_)
+    throw InvalidInput(
+        "the tangent flow carries displacements and velocities, but a contact's law (Dahl, LuGre) has a state of its "
+        "own; use a law without one, or differences of simulated motions");
   tangents_ = std::move(tangents);
   std::vector<Eigen::Index> stuck;
   for (int c = 0; c < nc_; ++c)
@@ -43,7 +49,7 @@ void CollocationFlow::push_tangents(int level, double tau) {
         jacobian.row(row) = -table.kernel.row(row);
         continue;
       }
-      const double slope = force_slope(c, step_modes_[static_cast<std::size_t>(c)], velocity_(row), belt_nodes_(row));
+      const double slope = force_slope(c, step_modes_[static_cast<std::size_t>(c)], velocity_(row), drive_nodes_(row));
       jacobian.row(row) = -slope * table.kernel.row(row);
       jacobian(row, row) += 1.0;
       right.row(row) *= slope;
@@ -62,7 +68,7 @@ void CollocationFlow::salt_tangents(const Eigen::VectorXd& force_before, int con
   // δx⁺ = δx + (f⁺ − f⁻) (∇g δx) / ġ⁻ for the guard g that was reached; f⁺ − f⁻ = Σ b_c Δλ_c.
   if (contact < 0) return;
   const Eigen::VectorXd jump = model_.input * (point_.force - force_before);
-  const double a = drive().acceleration(begin_), V = drive().velocity(point_.time);
+  const double a = drive_acceleration(begin_, point_.time - begin_), V = drive().velocity(point_.time);
   Eigen::RowVectorXd gradient;
   double rate;
   if (step_modes_[static_cast<std::size_t>(contact)] != ContactMode::kStick) {

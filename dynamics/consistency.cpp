@@ -89,7 +89,7 @@ bool enumerate(const Instant& now, const std::vector<bool>& at_rest, const std::
 }  // namespace
 
 double ContactForces::smooth(double v, double& slope) const {
-  if (kind == Kind::kFree) return slope = 0.0;
+  if (kind == Kind::kFree || kind == Kind::kBristle) return slope = 0.0;
   const double th = std::tanh(v / epsilon), dth = (1 - th * th) / epsilon;
   const double magnitude = v * th, d_magnitude = th + v * dth;
   const double e = drop * std::exp(-alpha * magnitude);
@@ -138,6 +138,9 @@ ContactForces contact_forces(const friction::Contact& contact) {
     f.drop = (tanh->mu_s - tanh->mu_k) * N;
     f.alpha = tanh->alpha;
     f.epsilon = tanh->epsilon;
+  } else {
+    f.kind = ContactForces::Kind::kBristle;
+    f.bristle = bristle_forces(contact.law, N);
   }
   if (mu_s == 0.0 || (N == 0.0 && !f.varies)) f.kind = ContactForces::Kind::kFree;
   return f;

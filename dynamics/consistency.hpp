@@ -1,5 +1,6 @@
 #pragma once
 
+#include "dynamics/bristle.hpp"
 #include "dynamics/modal_model.hpp"
 
 #include <Eigen/Core>
@@ -15,8 +16,9 @@ namespace slipmode::dynamics {
 struct ContactForces {
   /// kFree: no force ever (μ_s N = 0); kConstant: the force in slip depends on the normal load alone; kCompliant: the
   /// same behind a contact spring; kStribeck: it depends on the sliding speed; kSmooth: no stick at all. Free and
-  /// smooth contacts have no events (ContactMode::kSmooth).
-  enum class Kind : std::uint8_t { kFree, kConstant, kCompliant, kStribeck, kSmooth };
+  /// smooth contacts have no events (ContactMode::kSmooth). kBristle: no stick either, but the sliding speed's sign
+  /// matters; its forces are the collocation flow's.
+  enum class Kind : std::uint8_t { kFree, kConstant, kCompliant, kStribeck, kSmooth, kBristle };
   Kind kind = Kind::kConstant;
   double static_limit = 0.0;  ///< μ_s N, in the direction in which it is larger
   double kinetic = 0.0;       ///< μ_k N; without tilt
@@ -24,8 +26,9 @@ struct ContactForces {
   double alpha = 0.0;         ///< [s/m]
   double epsilon = 0.0;       ///< of the smooth law [m/s]
   double stiffness = 0.0;     ///< K_c of a compliant contact, else 0 [N/m]
-  double load = 0.0;          ///< N these forces belong to [N]
-  bool varies = false;        ///< the normal load varies: `under` gives the forces of an instant
+  BristleForces bristle = {};
+  double load = 0.0;    ///< N these forces belong to [N]
+  bool varies = false;  ///< the normal load varies: `under` gives the forces of an instant
   /// Coefficients for a force along −w and along +w; they differ on a tilted slider.
   std::array<double, 2> mu_s = {}, mu_k = {};
 
@@ -51,7 +54,8 @@ struct ContactForces {
   }
   /// λ while sliding with relative velocity v in this mode (not stick).
   [[nodiscard]] double sliding(ContactMode mode, double v) const;
-  /// λ of the smooth law (0 for a free contact) at relative velocity v, and dλ/dv.
+  /// λ of the smooth law (0 for a free contact, and for a bristle, whose force is not a function of v) at relative
+  /// velocity v, and dλ/dv.
   [[nodiscard]] double smooth(double v, double& slope) const;
 };
 [[nodiscard]] ContactForces contact_forces(const friction::Contact& contact);

@@ -114,7 +114,12 @@ RadauTables build() {
       if (k != j) product *= c(j) - c(k);
     t.barycentric(j) = static_cast<double>(1 / product);
   }
-  t.monomial = V.inverse().cast<double>();
+  const MatrixL to_monomial = V.inverse();
+  t.monomial = to_monomial.cast<double>();
+  MatrixL powers(kNodes, kNodes);  // ∫₀^{c_i} t^k
+  for (int i = 0; i < kNodes; ++i)
+    for (int k = 0; k < kNodes; ++k) powers(i, k) = V(i, k) * c(i) / static_cast<Real>(k + 1);
+  t.integral = (powers * to_monomial).cast<double>();
   return t;
 }
 

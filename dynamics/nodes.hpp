@@ -26,6 +26,7 @@ struct RadauTables {
   Vector8 legendre6, legendre7;  ///< node values → Legendre coefficients of degree 6 and 7
   Matrix8 left_half;             ///< node values on [0,1] → node values on [0,½]
   Matrix8 right_half;            ///< node values on [0,1] → node values on [½,1]
+  Matrix8 integral;              ///< node values → ∫₀^{c_i} of the degree-7 interpolant (Radau IIA's A)
   Matrix8 monomial;              ///< node values → coefficients of 1, t, ..., t⁷
 
   /// Node values on [0,1] → values at the nodes of the following interval of length 2, 1, ½, ¼: a first guess only, by
