@@ -1,5 +1,7 @@
 #include "dynamics/audit_forms.hpp"
 
+#include "dynamics/pair_kernels.hpp"
+
 #include <Eigen/Dense>
 #include <cmath>
 #include <complex>
@@ -48,9 +50,14 @@ std::unique_ptr<AuditForms> AuditForms::make(const Regime& r, const DriveOverlay
     const Eigen::VectorXd f = r.force_row.col(c), v = r.velocity_row.col(c);
     const Eigen::VectorXd f_steady = steady(f, r.force_coefficient.col(c));
     const Eigen::VectorXd v_steady = steady(v, r.velocity_coefficient.col(c));
-    contact.Q += (f * v.transpose() + v * f.transpose()) / 2.0;
-    contact.R += f * v_steady.transpose() + v * f_steady.transpose();
-    contact.P += f_steady * v_steady.transpose();
+    if (r.spring(c) > 0.0) {  // ∫ λ wᵀq̇ dt = ∫ λ v_drive dt − [½ λ²/K_c]
+      contact.R += f * speed.transpose();
+      contact.P += f_steady * speed.transpose();
+    } else if (r.slope(c) == 0.0) {
+      contact.Q += (f * v.transpose() + v * f.transpose()) / 2.0;
+      contact.R += f * v_steady.transpose() + v * f_steady.transpose();
+      contact.P += f_steady * v_steady.transpose();
+    }
     drive.R += f * speed.transpose();
     drive.P += f_steady * speed.transpose();
   }
@@ -90,10 +97,11 @@ bool AuditForms::solve_quadratic(const Eigen::MatrixXd& Q, Eigen::MatrixXd& out_
       const Eigen::Vector4d y = A.fullPivLu().solve(Eigen::Map<const Eigen::Vector4d>(q.data()));
       if (!y.allFinite()) return false;
       const Eigen::Map<const Eigen::Matrix2d> Y(y.data());
-      out_Y(i, j) = out_Y(j, i) = Y(0, 0);
-      out_Y(i, np + j) = out_Y(np + j, i) = Y(0, 1);
-      out_Y(np + i, j) = out_Y(j, np + i) = Y(1, 0);
-      out_Y(np + i, np + j) = out_Y(np + j, np + i) = Y(1, 1);
+      const double both = i == j ? 1.0 : 2.0;
+      out_Y(j, i) = both * Y(0, 0);
+      out_Y(np + j, np + i) = both * Y(1, 1);
+      out_Y(np + i, j) += both * Y(1, 0);
+      out_Y(np + j, i) += both * Y(0, 1);
     }
   return true;
 }
@@ -131,7 +139,10 @@ double AuditForms::value(const Form& form, double t, const Eigen::VectorXd& free
   const auto ni = regime_.inputs();
   const DrivePhase p = overlay_.phase(t);
   double sum = free.dot(form.cosine) * p.cosine + free.dot(form.sine) * p.sine + free.dot(form.constant * inputs_);
-  if (form.Y.size() > 0) sum += free.dot(form.Y.selfadjointView<Eigen::Lower>() * free);
+  for (Eigen::Index j = 0; j < form.Y.cols(); ++j) {
+    const Eigen::Index from = j / kLanes * kLanes;
+    sum += free(j) * dot_padded(form.Y.col(j).data() + from, free.data() + from, free.size() - from);
+  }
   // ∫ uᵀPu over the stay, with the integrals of 1, cos θ, sin θ, cos² θ, cos θ sin θ and sin² θ.
   const double w = overlay_.omega(), stay = t - begin_;
   const Eigen::MatrixXd& P = form.steady;
@@ -145,9 +156,27 @@ double AuditForms::value(const Form& form, double t, const Eigen::VectorXd& free
   return sum;
 }
 
+double AuditForms::contact_potential(double t, const Eigen::VectorXd& x) const {
+  const Regime& r = regime_;
+  const DrivePhase p = overlay_.phase(t);
+  double sum = 0.0;
+  for (Eigen::Index c = 0; c < r.speed_input(); ++c) {
+    if (r.spring(c) > 0.0) {
+      const double force =
+          r.force_row.col(c).dot(x) + r.force_coefficient.col(c).dot(inputs_) + overlay_.force.at(c, p);
+      sum -= force * force / (2.0 * r.spring(c));
+    } else if (r.slope(c) != 0.0) {
+      const double at = r.displacement_row.col(c).dot(x) + r.displacement_coefficient.col(c).dot(inputs_) +
+                        overlay_.displacement.at(c, p);
+      sum += inputs_(c) * at + r.slope(c) * at * at / 2.0;
+    }
+  }
+  return sum;
+}
+
 StayWork AuditForms::values(double t, const Eigen::VectorXd& x) const {
   const Eigen::VectorXd free = x - resting_;
-  return {value(contact_, t, free), value(drive_, t, free), value(viscous_, t, free)};
+  return {value(contact_, t, free) + contact_potential(t, x), value(drive_, t, free), value(viscous_, t, free)};
 }
 
 void AuditForms::begin(double t, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs) {

@@ -35,7 +35,8 @@ class AuditForms {
  private:
   /// One power, as the antiderivative of a quadratic form.
   struct Form {
-    Eigen::MatrixXd Y;             ///< [2np x 2np]; empty: no quadratic part
+    /// Lower triangle of Y, off-diagonal entries doubled, zeros above [2np x 2np]; empty: no quadratic part.
+    Eigen::MatrixXd Y;
     Eigen::MatrixXd constant;      ///< ι → y of the constant part [2np x ni]
     Eigen::VectorXd cosine, sine;  ///< y of the harmonic part [2np]
     Eigen::MatrixXd steady;        ///< uᵀ(this)u is what does not depend on x_f [(ni+2) x (ni+2)]
@@ -49,6 +50,8 @@ class AuditForms {
   [[nodiscard]] bool integrate(const Power& power, Form& out) const;
   [[nodiscard]] bool solve_quadratic(const Eigen::MatrixXd& Q, Eigen::MatrixXd& out_Y) const;
   [[nodiscard]] double value(const Form& form, double t, const Eigen::VectorXd& free) const;
+  /// Contact work that is a function of the state: −½λ²/K_c of contact springs, ∫λ d(wᵀq) under a load of wᵀq.
+  [[nodiscard]] double contact_potential(double t, const Eigen::VectorXd& x) const;
   [[nodiscard]] StayWork values(double t, const Eigen::VectorXd& x) const;
 
   const Regime& regime_;

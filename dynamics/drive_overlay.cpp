@@ -56,6 +56,7 @@ DriveOverlay::DriveOverlay(const Regime& r, const friction::Shaker& shaker)
   }
   outputs = through(r.row, r.coefficient, state, inputs);
   force = through(r.force_row, r.force_coefficient, state, inputs);
+  displacement = through(r.displacement_row, r.displacement_coefficient, state, inputs);
   velocity = through(r.velocity_row, r.velocity_coefficient, state, inputs);
 }
 

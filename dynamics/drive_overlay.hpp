@@ -37,11 +37,12 @@ class DriveOverlay {
   [[nodiscard]] DrivePhase phase(double t) const;
   [[nodiscard]] double omega() const { return omega_; }
 
-  Amplitudes state;     ///< X [2np]
-  Amplitudes inputs;    ///< J [ni]
-  Amplitudes outputs;   ///< [no]
-  Amplitudes force;     ///< λ of each contact [nc]
-  Amplitudes velocity;  ///< wᵀq̇ of each contact [nc]
+  Amplitudes state;         ///< X [2np]
+  Amplitudes inputs;        ///< J [ni]
+  Amplitudes outputs;       ///< [no]
+  Amplitudes force;         ///< λ of each contact [nc]
+  Amplitudes velocity;      ///< wᵀq̇ of each contact [nc]
+  Amplitudes displacement;  ///< wᵀq of each contact [nc]
 
   /// Bernstein coefficients of cos ωτ and sin ωτ over a window 0 ≤ τ ≤ h of this level, and the share of their size
   /// that interpolation leaves out.

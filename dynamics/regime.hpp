@@ -72,8 +72,11 @@ struct Regime {
   Eigen::MatrixXd coefficient;  ///< outputs' dependence on ι, columns [ni x no]
   Eigen::MatrixXd row1, row2;   ///< first and second derivatives of the outputs
   Eigen::MatrixXd coefficient1, coefficient2;
-  /// λ and wᵀq̇ of each contact [2np x nc], [ni x nc].
+  /// λ, wᵀq̇ and wᵀq of each contact [2np x nc], [ni x nc].
   Eigen::MatrixXd force_row, force_coefficient, velocity_row, velocity_coefficient;
+  Eigen::MatrixXd displacement_row, displacement_coefficient;
+  Eigen::VectorXd spring;  ///< K_c of sprung contacts, else 0 [nc]
+  Eigen::VectorXd slope;  ///< dλ/d(wᵀq) of contacts that slide under a load that depends on wᵀq alone, else 0 [nc]
 
   Eigen::MatrixXd from_slipping;    ///< state of the slipping model → x [2np x 2np_s]
   Eigen::MatrixXd to_slipping;      ///< x → state of the slipping model [2np_s x 2np]

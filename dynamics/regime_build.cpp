@@ -272,6 +272,9 @@ void RegimeBuilder::make_contact_rows(Regime& out) const {
   const Eigen::MatrixXd eta = Z_ * at_.to_y, eta_rate = Z_ * at_.to_rate;
   out.force_row = out.velocity_row = Eigen::MatrixXd::Zero(np2, nc_);
   out.force_coefficient = out.velocity_coefficient = Eigen::MatrixXd::Zero(ni_, nc_);
+  out.displacement_row = eta.transpose() * modal_.directions;
+  out.displacement_coefficient = P_.transpose() * modal_.directions;
+  out.spring = out.slope = Eigen::VectorXd::Zero(nc_);
   for (Eigen::Index c = 0; c < nc_; ++c) {
     const auto w = modal_.directions.col(c);
     auto row = out.force_row.col(c), coefficient = out.force_coefficient.col(c);
@@ -280,6 +283,7 @@ void RegimeBuilder::make_contact_rows(Regime& out) const {
       out.velocity_coefficient(V_, c) = w.dot(P_all_);
       coefficient(c) = 1.0;
       if (role(c) == ContactRole::kSprung) {
+        out.spring(c) = law(c).stiffness;
         row = -law(c).stiffness * (eta.transpose() * w);
         coefficient = -law(c).stiffness * (P_.transpose() * w);
         coefficient(c) += law(c).stiffness;
@@ -309,6 +313,7 @@ void RegimeBuilder::make_contact_rows(Regime& out) const {
                  .transpose();
     }
     if (friction_(c) != 0.0) {
+      if (!load(c).oscillates()) out.slope(c) = friction_(c) * load(c).y;
       row += friction_(c) * (load(c).y * (eta.transpose() * w) + load(c).v * (eta_rate.transpose() * w));
       coefficient += friction_(c) * load(c).y * (P_.transpose() * w);
       coefficient(V_) += friction_(c) * load(c).v * w.dot(P_all_);
