@@ -2,59 +2,21 @@
 
 #include "core/errors.hpp"
 #include "diagnostics/model.hpp"
+#include "diagnostics/timing.hpp"
 #include "rom/reduce.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
-#include <ctime>
 #include <limits>
 #include <optional>
 #include <vector>
 
 namespace slipmode::diagnostics {
 
-namespace {
-
-struct Times {
-  double wall = 0.0;
-  double cpu = 0.0;
-};
-
-/// CPU time of the calling thread: other threads of a parallel validation do not count.
-double thread_cpu() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-template <class Work>
-Times timed(const Work& work) {
-  const auto wall = std::chrono::steady_clock::now();
-  const double cpu = thread_cpu();
-  work();
-  return {.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count(),
-          .cpu = thread_cpu() - cpu};
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-Times median(const std::vector<Times>& times) {
-  std::vector<double> wall;
-  std::vector<double> cpu;
-  for (const Times& t : times) {
-    wall.push_back(t.wall);
-    cpu.push_back(t.cpu);
-  }
-  return {.wall = median(std::move(wall)), .cpu = median(std::move(cpu))};
-}
-
-}  // namespace
+using detail::median;
+using detail::timed;
+using detail::Times;
 
 double Cost::break_even(double basis_wall) const {
   const double saved = full_wall - reduced_wall;

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <variant>
 #include <vector>
 
 namespace slipmode::diagnostics {
@@ -50,22 +51,56 @@ double floored(double distance, double size) {
   return std::max(distance, std::numeric_limits<double>::epsilon() * std::max(size, 1e-300));
 }
 
+/// Difference of two states, contacts' own states included.
 struct Separation {
-  Eigen::VectorXd q, v;
+  Eigen::VectorXd q, v, internal;
 
-  [[nodiscard]] double norm(const fem::Structure& structure) const { return std::sqrt(structure.energy(q, v)); }
-
+  /// Energy norm; what contact springs store of a difference in stretch counts.
+  [[nodiscard]] double norm(const dynamics::HybridSystem& system) const {
+    double energy = system.structure().energy(q, v);
+    for (std::size_t c = 0; c < system.contacts().size() && internal.size() > 0; ++c) {
+      const auto* spring = std::get_if<friction::CompliantCoulomb>(&system.contacts()[c].law);
+      if (spring == nullptr) continue;
+      const double stretch = internal(system.internal_begin(static_cast<int>(c)));
+      energy += 0.5 * spring->stiffness * stretch * stretch;
+    }
+    return std::sqrt(energy);
+  }
   void scale(double factor) {
     q *= factor;
     v *= factor;
+    internal *= factor;
   }
 };
+
+bool is_compliant(const friction::Contact& contact) {
+  return std::holds_alternative<friction::CompliantCoulomb>(contact.law);
+}
+
+/// A state beside the reference. Behind a contact spring the modes cannot be told from the sliding speed: there they
+/// are the reference's; a rigid contact that slides the other way is given that way.
+dynamics::State neighbour_of(const dynamics::HybridSystem& system, const dynamics::State& reference,
+                             const Separation& separation) {
+  dynamics::State state = {.time = reference.time, .q = reference.q + separation.q, .v = reference.v + separation.v};
+  if (reference.internal.size() == 0) return state;
+  state.internal = reference.internal + separation.internal;
+  state.modes = reference.modes;
+  for (std::size_t c = 0; c < state.modes.size(); ++c) {
+    const friction::Contact& contact = system.contacts()[c];
+    const bool slides = std::abs(static_cast<int>(state.modes[c])) == 1;
+    if (is_compliant(contact) || !slides) continue;
+    const double sliding = system.drive().velocity(state.time) - contact.direction.dot(state.v);
+    state.modes[c] = sliding > 0.0 ? dynamics::ContactMode::kSlipPositive : dynamics::ContactMode::kSlipNegative;
+  }
+  return state;
+}
 
 /// Takes out of δv the directions in which the reference is stuck.
 void hold_stuck(const dynamics::HybridSystem& system, const dynamics::State& reference, Separation& separation) {
   std::vector<Eigen::Index> stuck;
   for (std::size_t c = 0; c < reference.modes.size(); ++c) {
-    if (reference.modes[c] == dynamics::ContactMode::kStick) stuck.push_back(static_cast<Eigen::Index>(c));
+    if (reference.modes[c] == dynamics::ContactMode::kStick && !is_compliant(system.contacts()[c]))
+      stuck.push_back(static_cast<Eigen::Index>(c));
   }
   if (stuck.empty()) return;
   Eigen::MatrixXd W(system.size(), static_cast<Eigen::Index>(stuck.size()));
@@ -124,11 +159,13 @@ LyapunovExponent largest_exponent(const dynamics::HybridSystem& system, const dy
   check(options);
   dynamics::FlowOptions flow = options.flow;
   flow.audit = false;
-  dynamics::State reference = restarted(start);
+  dynamics::State reference = system.drive().shaker() != nullptr ? start : restarted(start);
   if (options.transient > 0.0) reference = advance(system, reference, options.transient, flow);
 
   Random random(options.seed);
-  Separation separation{.q = Eigen::VectorXd(system.size()), .v = Eigen::VectorXd(system.size())};
+  Separation separation{.q = Eigen::VectorXd(system.size()),
+                        .v = Eigen::VectorXd(system.size()),
+                        .internal = Eigen::VectorXd::Zero(reference.internal.size())};
   for (double& x : separation.q) x = random.normal();
   for (double& x : separation.v) x = random.normal();
 
@@ -138,14 +175,13 @@ LyapunovExponent largest_exponent(const dynamics::HybridSystem& system, const dy
   for (std::size_t k = 0; k < intervals; ++k) {
     if (options.stop != nullptr && options.stop->load(std::memory_order_relaxed)) throw Interrupted();
     hold_stuck(system, reference, separation);
-    separation.scale(options.separation / separation.norm(system.structure()));
-    const dynamics::State neighbour = {
-        .time = reference.time, .q = reference.q + separation.q, .v = reference.v + separation.v};
-    const dynamics::State end = advance(system, neighbour, options.interval, flow);
+    separation.scale(options.separation / separation.norm(system));
+    const dynamics::State end = advance(system, neighbour_of(system, reference, separation), options.interval, flow);
     reference = advance(system, reference, options.interval, flow);
-    separation = {.q = end.q - reference.q, .v = end.v - reference.v};
+    separation = {.q = end.q - reference.q, .v = end.v - reference.v, .internal = Eigen::VectorXd()};
+    if (reference.internal.size() > 0) separation.internal = end.internal - reference.internal;
     const double size = std::sqrt(system.structure().energy(reference.q, reference.v));
-    const double distance = floored(separation.norm(system.structure()), size);
+    const double distance = floored(separation.norm(system), size);
     logs.push_back(std::log(distance / options.separation));
     if (separation.q.isZero(0.0) && separation.v.isZero(0.0)) separation.q.setConstant(options.separation);
   }

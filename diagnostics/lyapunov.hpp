@@ -35,7 +35,8 @@ struct LyapunovOptions {
                                         double separation);
 
 /// Largest exponent of a hybrid system by two trajectories, distance ½ δvᵀMδv + ½ δqᵀKδq (energy norm). While a contact
-/// of the reference sticks, the neighbour is put on the same belt speed: that direction is lost anyway.
+/// of the reference sticks, the neighbour is put on the same belt speed: that direction is lost anyway. Contacts' own
+/// states belong to the state; a stretch δz counts ½ K_c δz². Under a shaker start.time sets the phase.
 /// @throws InvalidInput  for non-positive times or separation
 [[nodiscard]] LyapunovExponent largest_exponent(const dynamics::HybridSystem& system, const dynamics::State& start,
                                                 const LyapunovOptions& options = {});

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
 #include <vector>
 
 namespace slipmode::diagnostics {
@@ -31,24 +32,27 @@ Model belt_model(const dynamics::HybridSystem& full) {
   return {.system = [full](double speed) { return full.with_drive(friction::Belt::constant(speed)); }};
 }
 
+double projection_energy(const dynamics::HybridSystem& full, const pod::Basis& basis) {
+  const Eigen::VectorXd& mean = basis.mean;
+  if (mean.size() == 0) return 0.0;
+  const double energy = 0.5 * mean.dot(fem::multiply(full.structure().K(), mean).col(0));
+  return full.load().size() > 0 ? energy - full.load().dot(mean) : energy;
+}
+
 Model reduced_belt_model(const dynamics::HybridSystem& full, const pod::Basis& basis) {
   const dynamics::HybridSystem reduced = rom::reduce(full, basis);
-  const Eigen::VectorXd& mean = basis.mean;
-  double offset = 0.0;
-  if (mean.size() > 0) {
-    offset = 0.5 * mean.dot(fem::multiply(full.structure().K(), mean).col(0));
-    if (full.load().size() > 0) offset -= full.load().dot(mean);
-  }
   return {.system = [reduced](double speed) { return reduced.with_drive(friction::Belt::constant(speed)); },
           .basis = basis,
-          .energy_offset = offset};
+          .energy_offset = projection_energy(full, basis)};
 }
 
 dynamics::State lifted(const Model& model, const dynamics::State& state) {
   return model.basis ? rom::lift(*model.basis, state) : state;
 }
 
-dynamics::State restarted(const dynamics::State& state) { return {.time = 0.0, .q = state.q, .v = state.v}; }
+dynamics::State restarted(const dynamics::State& state) {
+  return {.time = 0.0, .q = state.q, .v = state.v, .internal = state.internal};
+}
 
 dynamics::State continued(const dynamics::HybridSystem& system, const dynamics::State& state) {
   constexpr double kLargestRepair = 1e-6;
@@ -61,7 +65,8 @@ dynamics::State continued(const dynamics::HybridSystem& system, const dynamics::
     const auto sign = static_cast<double>(state.modes[c]);
     const bool sticks = state.modes[c] == dynamics::ContactMode::kStick;
     const bool slips = std::abs(sign) == 1.0;
-    const bool off_guard = sticks || (slips && sliding * sign < 0.0);
+    const bool rigid = !std::holds_alternative<friction::CompliantCoulomb>(system.contacts()[c].law);
+    const bool off_guard = rigid && (sticks || (slips && sliding * sign < 0.0));
     if (off_guard && std::abs(sliding) <= kLargestRepair * std::max(1.0, scale)) {
       held.push_back(static_cast<Eigen::Index>(c));
     }
@@ -76,6 +81,15 @@ dynamics::State continued(const dynamics::HybridSystem& system, const dynamics::
   const Eigen::VectorXd sliding = Eigen::VectorXd::Constant(W.cols(), belt) - W.transpose() * state.v;
   repaired.v += W * gram.ldlt().solve(sliding);
   return repaired;
+}
+
+double mean_energy(const dynamics::HybridSystem& system, const Eigen::Ref<const Eigen::MatrixXd>& q,
+                   const Eigen::Ref<const Eigen::MatrixXd>& v) {
+  const fem::Structure& structure = system.structure();
+  double sum = 0.5 * v.cwiseProduct(fem::multiply(structure.M(), v)).sum() +
+               0.5 * q.cwiseProduct(fem::multiply(structure.K(), q)).sum();
+  if (system.load().size() > 0) sum -= (system.load().transpose() * q).sum();
+  return sum / static_cast<double>(q.cols());
 }
 
 dynamics::State sliding_equilibrium(const dynamics::HybridSystem& system) {

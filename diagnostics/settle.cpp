@@ -59,12 +59,7 @@ class Reach {
 double mean_energy(const dynamics::HybridSystem& system, const dynamics::Trajectory& run, Eigen::Index samples) {
   const Eigen::Index columns = std::min(samples, run.q.cols());
   if (columns == 0) return std::numeric_limits<double>::quiet_NaN();
-  const auto q = run.q.leftCols(columns), v = run.v.leftCols(columns);
-  const fem::Structure& structure = system.structure();
-  double sum = 0.5 * v.cwiseProduct(fem::multiply(structure.M(), v)).sum() +
-               0.5 * q.cwiseProduct(fem::multiply(structure.K(), q)).sum();
-  if (system.load().size() > 0) sum -= (system.load().transpose() * q).sum();
-  return sum / static_cast<double>(columns);
+  return diagnostics::mean_energy(system, run.q.leftCols(columns), run.v.leftCols(columns));
 }
 
 /// Energy of a state about steady sliding, which falls while a motion without events dies out.

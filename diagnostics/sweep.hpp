@@ -23,26 +23,30 @@ enum class SweepMode {
   kFollow,
 };
 
-/// One value of a sweep, finished.
-struct SweepPoint {
+/// One value of a sweep, finished. Result: what is kept of the motion there (Settled, DrivenMotion).
+template <class Result>
+struct SweptValue {
   std::size_t index = 0;  ///< into the values
   int model = 0;          ///< 0: the only or the full model, 1: the reduced model of a paired sweep
   double parameter = 0.0;
-  Settled settled = {};      ///< empty where it failed; settled.end is in the model's own coordinates
+  Result settled = {};       ///< empty where it failed; settled.end is in the model's own coordinates
   std::string failure = {};  ///< empty, or why the value failed; the sweep went on
 
   [[nodiscard]] bool ok() const { return failure.empty(); }
 };
+using SweepPoint = SweptValue<Settled>;
 
 /// Where finished values go at once and where earlier ones come from, so that a sweep can be resumed.
 /// Calls come one at a time (never two at once), from any thread, in the order in which values finish.
-struct SweepSink {
+template <class Result>
+struct SinkOf {
   /// The point finished in an earlier run, if there is one. Must give back settled.end to the last bit: following
   /// values start there. Asked once per (index, model) before anything runs. Empty function: nothing to resume.
-  std::function<std::optional<SweepPoint>(std::size_t index, int model)> recall = {};
+  std::function<std::optional<SweptValue<Result>>(std::size_t index, int model)> recall = {};
   /// Keeps a point just finished. An exception thrown here ends the sweep. Empty function: nothing kept.
-  std::function<void(const SweepPoint&)> store = {};
+  std::function<void(const SweptValue<Result>&)> store = {};
 };
+using SweepSink = SinkOf<Settled>;
 
 struct SweepOptions {
   SweepMode mode = SweepMode::kIndependent;
