@@ -37,7 +37,7 @@ bool evaluate(const Instant& now, const std::vector<bool>& at_rest, const std::v
   const auto nc = trial.modes.size();
   std::vector<bool> stuck(nc);
   for (std::size_t c = 0; c < nc; ++c) {
-    stuck[c] = trial.modes[c] == ContactMode::kStick;
+    stuck[c] = at_rest[c] && trial.modes[c] == ContactMode::kStick;
     if (at_rest[c] && !stuck[c])
       trial.force(static_cast<Eigen::Index>(c)) = sign_of(trial.modes[c]) * now.laws[c].onset(sign_of(trial.modes[c]));
   }
@@ -200,7 +200,7 @@ Resolution resolve(const Instant& now, const std::vector<ContactMode>& modes, co
 
   std::vector<bool> stuck(nc);
   const auto refresh = [&] {
-    for (std::size_t c = 0; c < nc; ++c) stuck[c] = trial.modes[c] == ContactMode::kStick;
+    for (std::size_t c = 0; c < nc; ++c) stuck[c] = at_rest[c] && trial.modes[c] == ContactMode::kStick;
     stick_forces(now, stuck, trial.force);
   };
   const auto slide = [&](std::size_t c) {
@@ -256,7 +256,7 @@ int start_multiplicity(const Instant& now, int c, ContactMode mode, const Eigen:
 }
 
 Eigen::VectorXd stick_force_rates(const Instant& now, const std::vector<ContactMode>& modes,
-                                  const Eigen::VectorXd& force) {
+                                  const Eigen::VectorXd& force, const Eigen::VectorXd& deflection) {
   const ModalModel& m = now.model;
   const auto np = m.np;
   const Eigen::Map<const Eigen::VectorXd> x(now.x, 2 * np);
@@ -268,18 +268,30 @@ Eigen::VectorXd stick_force_rates(const Instant& now, const std::vector<ContactM
   std::vector<Eigen::Index> stuck;
   for (int c = 0; c < m.contacts; ++c) {
     const ContactForces& law = now.laws[static_cast<std::size_t>(c)];
-    if (modes[static_cast<std::size_t>(c)] == ContactMode::kStick) {
+    const bool sticks = modes[static_cast<std::size_t>(c)] == ContactMode::kStick;
+    if (sticks && law.kind != ContactForces::Kind::kCompliant) {
       stuck.push_back(c);
       continue;
     }
     const double v_rel = now.belt_velocity - m.velocity_row.col(c).dot(x);
+    if (sticks) {
+      force_rate(c) = law.stiffness * v_rel;
+      continue;
+    }
+    const double v_rel_rate = now.belt_acceleration - m.velocity_row.col(c).dot(rate);
+    if (law.kind == ContactForces::Kind::kBristle) {
+      force_rate(c) =
+          law.bristle.force_rate(sign_of(modes[static_cast<std::size_t>(c)]), v_rel, deflection(c), v_rel_rate);
+      continue;
+    }
     double slope = 0.0;  // dλ/dv_rel
     if (law.kind == ContactForces::Kind::kSmooth) static_cast<void>(law.smooth(v_rel, slope));
     if (law.kind == ContactForces::Kind::kStribeck)
       slope = -law.alpha * law.drop * std::exp(-law.alpha * std::abs(v_rel));
-    force_rate(c) = slope * (now.belt_acceleration - m.velocity_row.col(c).dot(rate));
+    force_rate(c) = slope * v_rel_rate;
   }
-  const Eigen::VectorXd missing = -(m.acceleration_row.transpose() * rate + m.mobility * force_rate);
+  const Eigen::VectorXd missing = Eigen::VectorXd::Constant(m.contacts, now.belt_jerk) -
+                                  m.acceleration_row.transpose() * rate - m.mobility * force_rate;
   const Eigen::VectorXd solved =
       Eigen::MatrixXd(m.mobility(stuck, stuck)).ldlt().solve(Eigen::VectorXd(missing(stuck)));
   for (std::size_t k = 0; k < stuck.size(); ++k) force_rate(stuck[k]) = solved(static_cast<Eigen::Index>(k));

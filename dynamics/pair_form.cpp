@@ -27,8 +27,8 @@ PairForm pair_form(const Eigen::MatrixXd& A) {
   // Pairs of rows from large to small: QR then keeps the digits of the small eigenvalues.
   std::vector<Eigen::Index> order(static_cast<std::size_t>(n)), rows;
   std::iota(order.begin(), order.end(), Eigen::Index{0});
-  const Eigen::VectorXd size = A.topRows(n).rowwise().lpNorm<Eigen::Infinity>().cwiseMax(
-      A.bottomRows(n).rowwise().lpNorm<Eigen::Infinity>());
+  const Eigen::VectorXd size =
+      A.topRows(n).rowwise().lpNorm<Eigen::Infinity>().cwiseMax(A.bottomRows(n).rowwise().lpNorm<Eigen::Infinity>());
   std::stable_sort(order.begin(), order.end(), [&](Eigen::Index i, Eigen::Index j) { return size(i) > size(j); });
   for (const Eigen::Index i : order) rows.insert(rows.end(), {i, n + i});
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(Eigen::MatrixXd(A(rows, rows)));

@@ -122,6 +122,7 @@ fem::Modes RegimeBuilder::base_modes() const {
   // The square root of the stiffness, not the stiffness, goes into the decomposition: low frequencies keep their
   // digits.
   const Eigen::Index m = Z_.cols();
+  if (m == 0) return {Eigen::VectorXd(0), Eigen::MatrixXd(0, 0)};
   std::vector<Eigen::Index> sprung;
   for (Eigen::Index c = 0; c < nc_; ++c)
     if (spring_(c) > 0.0) sprung.push_back(c);

@@ -44,7 +44,8 @@ std::vector<ContactMode> start_modes(const HybridSystem& system, const State& st
       continue;
     }
     const double sliding = V - contact.direction.dot(start.v);
-    const double scale = std::abs(V) + contact.direction.cwiseAbs().dot(start.v.cwiseAbs());
+    const double scale =
+        system.drive().velocity_scale(start.time) + contact.direction.cwiseAbs().dot(start.v.cwiseAbs());
     const ContactMode by_sign = std::abs(sliding) <= 1e-12 * scale ? ContactMode::kStick
                                 : sliding > 0                      ? ContactMode::kSlipPositive
                                                                    : ContactMode::kSlipNegative;

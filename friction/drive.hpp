@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <variant>
 
@@ -58,6 +59,10 @@ class Drive {
   /// Its acceleration just after t (right limit) [m/s²].
   [[nodiscard]] double acceleration(double t) const {
     return belt() ? belt()->acceleration(t) : shaker()->acceleration(t);
+  }
+  /// The size of its velocity around t, which its rounding error is measured by: the amplitude of a shaker's [m/s].
+  [[nodiscard]] double velocity_scale(double t) const {
+    return shaker() ? shaker()->amplitude * shaker()->omega() : std::abs(velocity(t));
   }
   /// The way it goes from t0 to t1 [m].
   [[nodiscard]] double way(double t0, double t1) const;
