@@ -12,6 +12,13 @@ BristleForces::Decay BristleForces::decay(double direction, double s) const {
   return {scale * s, scale * (1.0 - s * g_slope / g)};
 }
 
+double BristleForces::force_rate(double direction, double s, double z, double s_rate) const {
+  // d²z/dt² = (1 − κ′z) ṡ − κ ż
+  const Decay at = decay(direction, s);
+  const double z_rate = s - at.value * z;
+  return (stiffness - damping * at.value) * z_rate + (damping * (1.0 - at.slope * z) + viscous) * s_rate;
+}
+
 BristleForces bristle_forces(const friction::Law& law, double normal_load) {
   if (const auto* dahl = std::get_if<friction::Dahl>(&law))
     return {.stiffness = dahl->stiffness, .kinetic = dahl->mu * normal_load};

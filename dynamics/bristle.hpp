@@ -30,6 +30,8 @@ struct BristleForces {
   [[nodiscard]] double force(double direction, double s, double z) const {
     return stiffness * z + damping * rate(direction, s, z) + viscous * s;
   }
+  /// dλ/dt [N/s], for ds/dt [m/s²]
+  [[nodiscard]] double force_rate(double direction, double s, double z, double s_rate) const;
 };
 
 /// @param law  Dahl or LuGre

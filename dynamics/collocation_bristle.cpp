@@ -1,4 +1,3 @@
-#include "core/errors.hpp"
 #include "dynamics/collocation_flow.hpp"
 
 #include <algorithm>
@@ -9,13 +8,12 @@ namespace slipmode::dynamics {
 void CollocationFlow::start_bristles() {
   for (int c = 0; c < nc_; ++c) {
     const auto i = static_cast<std::size_t>(c);
-    if (laws()[i].sticks())
-      throw InvalidInput("contact " + std::to_string(c + 1) +
-                         " sticks and another one has a bristle (Dahl, LuGre); give all of them bristle laws, or none");
     if (!bristled(c)) continue;
     const double s = drive().velocity(begin_) - resolver_.contact_velocity(c, point_.x.data());
     point_.modes[i] = s < 0.0 ? ContactMode::kSlipNegative : ContactMode::kSlipPositive;
   }
+  // What they pull with, the resolver takes for given.
+  bristle_force_at(begin_, point_.modes, point_.x.data(), point_.internal, point_.force);
 }
 
 void CollocationFlow::refresh_bristles() {

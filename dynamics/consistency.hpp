@@ -77,6 +77,7 @@ struct Instant {
   double belt_acceleration = 0.0;
   /// λ of the contacts that are not to be decided [nc]; null: their laws give it.
   const Eigen::VectorXd* applied = nullptr;
+  double belt_jerk = 0.0;  ///< d³/dt³ of the counterpart's way: not zero for a shaker only
 };
 
 /// Decides, in one place, what contacts do after an event (Filippov): of the contacts at zero relative velocity
@@ -102,9 +103,10 @@ struct SingleResolution {
 /// acceleration relative to the belt vanishes to rounding. Less than 0: it would be driven back onto the belt.
 [[nodiscard]] int start_multiplicity(const Instant& now, int c, ContactMode mode, const Eigen::VectorXd& force);
 
-/// dλ/dt of the sticking contacts; sliding ones follow their laws.
+/// dλ/dt of the sticking contacts; sliding ones follow their laws, bristles their deflections' rates.
+/// @param deflection  z of the contacts with bristles; the others' entries are not read [nc]
 [[nodiscard]] Eigen::VectorXd stick_force_rates(const Instant& now, const std::vector<ContactMode>& modes,
-                                                const Eigen::VectorXd& force);
+                                                const Eigen::VectorXd& force, const Eigen::VectorXd& deflection);
 
 /// λ of the sticking contacts (belt acceleration followed), given the sliding ones in `force`; in place.
 void stick_forces(const Instant& now, const std::vector<bool>& stuck, Eigen::VectorXd& force);

@@ -70,6 +70,7 @@ double EventResolver::applied_force(const HybridPoint& point, int c) const {
   const auto i = static_cast<std::size_t>(c);
   const ContactMode mode = point.modes[i];
   if (mode == ContactMode::kSeparated) return 0.0;
+  if (laws_[i].kind == ContactForces::Kind::kBristle) return point.force(c);
   if (mode == ContactMode::kStick)
     return laws_[i].kind == ContactForces::Kind::kCompliant ? laws_[i].stiffness * point.internal(internal_[i]) : 0.0;
   if (laws_[i].varies) return laws_[i].under(std::max(normal_load(point, c), 0.0)).sliding(mode, 0.0);
@@ -144,8 +145,9 @@ Instant EventResolver::instant(double time, const double* x) const {
 
 Instant EventResolver::instant(const HybridPoint& point, const std::vector<ContactForces>& laws,
                                const Eigen::VectorXd& applied) const {
-  return {model_,  laws, point.x.data(), point.time, drive_.velocity(point.time), drive_.acceleration(point.time),
-          &applied};
+  const double V = drive_.velocity(point.time);
+  const double jerk = drive_.shaker() == nullptr ? 0.0 : -drive_.shaker()->omega() * drive_.shaker()->omega() * V;
+  return {model_, laws, point.x.data(), point.time, V, drive_.acceleration(point.time), &applied, jerk};
 }
 
 double EventResolver::contact_velocity(int c, const double* x) const {
@@ -155,7 +157,9 @@ double EventResolver::contact_velocity(int c, const double* x) const {
 bool EventResolver::at_belt_speed(double time, int c, const double* x) const {
   const double V = drive_.velocity(time);
   const Eigen::Map<const Eigen::VectorXd> state(x, 2 * model_.np);
-  const double scale = model_.velocity_row.col(c).cwiseAbs().dot(state.cwiseAbs()) + std::abs(V);
+  // V as computed errs by the rounding of its phase, and of the time.
+  const double scale = model_.velocity_row.col(c).cwiseAbs().dot(state.cwiseAbs()) + drive_.velocity_scale(time) +
+                       std::abs(drive_.acceleration(time) * time);
   return std::abs(V - contact_velocity(c, x)) <= kAtRest * scale;
 }
 
@@ -235,6 +239,15 @@ Eigen::VectorXd EventResolver::forces(double time, const std::vector<ContactMode
   return force;
 }
 
+Eigen::VectorXd EventResolver::deflections(const HybridPoint& point) const {
+  Eigen::VectorXd z = Eigen::VectorXd::Zero(model_.contacts);
+  for (int c = 0; c < model_.contacts; ++c) {
+    const auto i = static_cast<std::size_t>(c);
+    if (laws_[i].kind == ContactForces::Kind::kBristle) z(c) = point.internal(internal_[i]);
+  }
+  return z;
+}
+
 std::vector<bool> EventResolver::released_together(const HybridPoint& point, int contact) const {
   std::vector<bool> released(point.modes.size());
   if (contact < 0 || point.modes[static_cast<std::size_t>(contact)] != ContactMode::kStick ||
@@ -252,7 +265,7 @@ std::vector<bool> EventResolver::released_together(const HybridPoint& point, int
     if (i == contact) {
       released[c] = true;
     } else if (stuck[c] && std::abs(force(i)) >= laws[c].limit(force(i)) * (1 - kTogether)) {
-      if (rate.size() == 0) rate = stick_force_rates(now, point.modes, force);
+      if (rate.size() == 0) rate = stick_force_rates(now, point.modes, force, deflections(point));
       released[c] = rate(i) * force(i) > 0;
     }
   }

@@ -54,7 +54,8 @@ class EventResolver {
   /// λ of every contact in these modes, by their laws and by the belt's acceleration where they stick [nc].
   [[nodiscard]] Eigen::VectorXd forces(double time, const std::vector<ContactMode>& modes, const double* x) const;
 
-  /// Decides the modes of contacts that start at rest on the drive, behind a contact spring, or without load.
+  /// Decides the modes of contacts that start at rest on the drive, behind a contact spring, or without load. Like
+  /// `settle`, takes the forces of contacts with bristles from the point.
   void start(HybridPoint& point) const;
   /// @param contact   whose guard was reached, or −1 for a corner of the drive
   /// @param touching  the guard was touched and not crossed: a grazing
@@ -79,6 +80,8 @@ class EventResolver {
   [[nodiscard]] bool at_belt_speed(double time, int c, const double* x) const;
   /// The contact whose limit was reached, and every other that reaches its own at the same instant.
   [[nodiscard]] std::vector<bool> released_together(const HybridPoint& point, int contact) const;
+  /// z of the contacts with bristles, 0 of the others [nc].
+  [[nodiscard]] Eigen::VectorXd deflections(const HybridPoint& point) const;
   void settle_single(HybridPoint& point);
   void settle_coupled(HybridPoint& point, int contact, GuardKind kind);
   /// A contact spring whose contact point starts or ceases to slide.
@@ -87,7 +90,7 @@ class EventResolver {
   void turn_load(HybridPoint& point, int c) const;
   /// The laws at this instant's normal loads.
   [[nodiscard]] std::vector<ContactForces> laws_at(const HybridPoint& point) const;
-  /// λ of a contact in its mode, unless it is rigid and sticks.
+  /// λ of a contact in its mode, unless it is rigid and sticks. A bristle's is the point's own.
   [[nodiscard]] double applied_force(const HybridPoint& point, int c) const;
   /// Velocity at which the contact point of a compliant contact slides in this direction.
   [[nodiscard]] double slide_velocity(const HybridPoint& point, int c, double direction) const;

@@ -44,11 +44,13 @@ enum class FlowMethod {
 struct EnergyAudit {
   double energy_start = 0.0;
   double energy_end = 0.0;
-  double contact_work = 0.0;   ///< ∫ Σ λ wᵀq̇ dt, done on the structure [J]
-  double drive_work = 0.0;     ///< ∫ Σ λ v_drive dt [J]
-  double friction_loss = 0.0;  ///< ∫ Σ λ v_rel dt ≥ 0 [J]
-  double viscous_loss = 0.0;   ///< ∫ q̇ᵀC q̇ dt ≥ 0 [J]
-  double exchanged = 0.0;      ///< scale: |contact work| summed over steps + viscous loss + largest energy seen [J]
+  double contact_work = 0.0;  ///< ∫ Σ λ wᵀq̇ dt, done on the structure [J]
+  double drive_work = 0.0;    ///< ∫ Σ λ v_drive dt [J]
+  /// ∫ Σ λ v_rel dt [J]: what friction dissipates and what contact springs and bristles store more than at the start,
+  /// ½ Σ K_c (y_c − y)² and ½ Σ σ₀ z². Rigid and tanh laws store nothing: ≥ 0. It can be < 0 after a deflected start.
+  double friction_loss = 0.0;
+  double viscous_loss = 0.0;  ///< ∫ q̇ᵀC q̇ dt ≥ 0 [J]
+  double exchanged = 0.0;     ///< scale: |contact work| summed over steps + viscous loss + largest energy seen [J]
   /// (E_end − E_start − contact_work + viscous_loss) / exchanged
   [[nodiscard]] double residual() const;
 };

@@ -1,6 +1,7 @@
 // Dahl's and the LuGre law on the collocation flow.
 #include "core/errors.hpp"
 #include "fixtures/against_reference.hpp"
+#include "fixtures/bristle_scenes.hpp"
 #include "fixtures/scenes.hpp"
 
 #include <gtest/gtest.h>
@@ -99,39 +100,6 @@ TEST(Bristle, TurningPointsTendToCoulombsAtFirstOrderAsTheBristleStiffens) {
     before = error;
   }
   EXPECT_LT(before, 1e-3);
-}
-
-friction::Law random_bristle(Random& random, bool stiff) {
-  const double mu = random.uniform(0.1, 0.6);
-  const double stiffness = stiff ? std::exp(random.uniform(5.0, 11.0)) : random.uniform(1.0, 60.0);
-  if (random.chance(0.3)) return Dahl{mu, stiffness};
-  return LuGre{mu + random.uniform(0.0, 0.5),
-               mu,
-               random.uniform(0.02, 0.5),
-               stiffness,
-               random.chance(0.3) ? 0.0 : random.uniform(0.0, 0.5) * std::sqrt(stiffness),
-               random.chance(0.5) ? 0.0 : random.uniform(0.0, 0.3)};
-}
-
-/// The random scenes' structures, drives and places with bristle laws, springs deflected at the start.
-RandomScene random_bristles(std::uint64_t seed, bool stiff, int max_masses) {
-  const RandomScene scene = random_scene(seed, Laws::kAll, max_masses);
-  Random random(5000 + seed);
-  std::vector<friction::Contact> contacts = scene.system.contacts();
-  const auto count = static_cast<Eigen::Index>(contacts.size());
-  State start = scene.start;
-  start.internal = Eigen::VectorXd::Zero(count);
-  for (Eigen::Index c = 0; c < count; ++c) {
-    auto& contact = contacts[static_cast<std::size_t>(c)];
-    contact.law = random_bristle(random, stiff);
-    const double stiffness = std::holds_alternative<Dahl>(contact.law) ? std::get<Dahl>(contact.law).stiffness
-                                                                       : std::get<LuGre>(contact.law).stiffness;
-    start.internal(c) =
-        random.uniform(-0.8, 0.8) * friction::limit_coefficient(contact.law) * contact.normal_load.constant / stiffness;
-  }
-  friction::Drive drive = scene.system.drive();
-  if (random.chance(0.3)) drive = Shaker{random.uniform(0.1, 1.0), random.uniform(0.05, 1.0), random.uniform(0.0, 3.0)};
-  return {HybridSystem(scene.system.structure(), std::move(contacts), drive), std::move(start)};
 }
 
 TEST(Bristle, AgreesWithTheTaylorReferenceOnRandomScenes) {
