@@ -8,6 +8,8 @@
 #include "cli/figures/style.hpp"
 #include "cli/figures/time_history.hpp"
 #include "cli/portraits.hpp"
+#include "cli/shaken_figures.hpp"
+#include "cli/shaken_model.hpp"
 #include "cli/validation_setup.hpp"
 #include "rom/reduce.hpp"
 #include "scene/provenance.hpp"
@@ -212,9 +214,8 @@ Figure trajectory_portrait(const StoreReader& store) {
                                    .velocity_unit = units.velocity});
 }
 
-}  // namespace
-
-std::vector<FileFigure> figures_of(const StoreReader& store) {
+/// Figures of files made from a scene with a belt.
+std::vector<FileFigure> belt_figures_of(const StoreReader& store) {
   using Axes = figures::PortraitLayout::Axes;
   std::vector<FileFigure> out;
   const auto add = [&](const std::string& group, std::string name, std::string what, auto draw) {
@@ -231,6 +232,19 @@ std::vector<FileFigure> figures_of(const StoreReader& store) {
   add(scene::kReducedGroup, "shapes", "basis of the reduced model", reduced_shapes);
   add(scene::kTrajectoryGroup, "history", "displacement, velocity and force of the first contact", history);
   add(scene::kTrajectoryGroup, "portrait", "phase portrait of the first contact", trajectory_portrait);
+  return out;
+}
+
+}  // namespace
+
+std::vector<FileFigure> figures_of(const StoreReader& store) {
+  if (!store.has("provenance")) return belt_figures_of(store);
+  if (!is_shaken(scene::load_scene_of(store))) return belt_figures_of(store);
+  std::vector<FileFigure> out = shaken_figures_of(store);
+  if (!store.has(scene::kTrajectoryGroup)) return out;
+  for (FileFigure& figure : belt_figures_of(store)) {
+    if (figure.name == "history" || figure.name == "portrait") out.push_back(std::move(figure));
+  }
   return out;
 }
 

@@ -1,9 +1,8 @@
 #include "cli/pipeline.hpp"
 
-#include "cli/file_figures.hpp"
+#include "cli/pipeline_figures.hpp"
 #include "cli/validate_run.hpp"
 #include "cli/validation_setup.hpp"
-#include "core/parallel.hpp"
 #include "fem/modes.hpp"
 #include "rom/reduce.hpp"
 #include "scene/records.hpp"
@@ -114,22 +113,9 @@ class Pipeline {
                                        file("validation.h5"));
   }
 
-  /// Read from the files just written, so that `slipmode plot` draws the same; drawn side by side, as each is a process
-  /// of its own.
+  /// The reduced models' files have the same shapes as pod.h5.
   void figures() {
-    std::vector<std::pair<std::string, figures::Figure>> drawn;
-    for (const std::string& name : result_.files) {
-      const scene::StoreReader store(folder_ / name);
-      if (name.starts_with("reduced_")) continue;  // the same shapes as in pod.h5
-      for (const FileFigure& figure : figures_of(store)) drawn.emplace_back(figure.name, figure.draw());
-    }
-    const ParallelOptions parallel{.threads = session_.threads, .stop = session_.stop, .progress = {}};
-    for (const auto& entry : drawn) {
-      for (const char* extension : {".svg", ".png"}) result_.figures.push_back(entry.first + extension);
-    }
-    rethrow_first(parallel_for(result_.figures.size(), parallel, [&](std::size_t i) {
-      figures::save(drawn[i / 2].second, {folder_ / result_.figures[i]});
-    }));
+    result_.figures = save_figures_of(session_, folder_, result_.files, {"reduced_pom.h5", "reduced_lnm.h5"});
   }
 
   const Session& session_;

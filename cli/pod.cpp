@@ -1,5 +1,7 @@
 #include "pod/pod.hpp"
 
+#include "cli/shaken_bases.hpp"
+#include "cli/shaken_model.hpp"
 #include "cli/steps.hpp"
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
@@ -24,12 +26,38 @@ pod::PodResult decompose(const pod::Ensemble& ensemble, const Arguments& argumen
   }
 }
 
+/// Under a shaker modes have the mass metric, and sensors give modal functions.
+Report run_shaken(const Arguments& arguments, const scene::Scene& scene, const pod::Ensemble& ensemble,
+                  scene::Provenance provenance) {
+  if (arguments.modes > 0) {
+    throw InvalidInput("--modes: under a shaker all modes are kept, 'slipmode reduce --modes' takes as many as wanted");
+  }
+  const ShakenModes modes = shaken_modes(scene, scene::build_system(scene).structure(), ensemble);
+  provenance.command = "slipmode pod";
+  scene::StoreWriter writer(arguments.output);
+  scene::save(writer, provenance);
+  save(writer, modes);
+  writer.commit();
+  Report report;
+  report.text = fmt::format("{} snapshots of {} degrees of freedom\n{}Modes: {}\n", ensemble.snapshots.cols(),
+                            ensemble.snapshots.rows(), text_of(modes), arguments.output);
+  report.data = {{"verb", "pod"},
+                 {"file", arguments.output},
+                 {"snapshots", ensemble.snapshots.cols()},
+                 {"degrees_of_freedom", ensemble.snapshots.rows()}};
+  report.data.update(json_of(modes));
+  return report;
+}
+
 Report run(const Session& session, const Arguments& arguments) {
   require_writable(arguments.output);
   const scene::StoreReader store(arguments.input);
   scene::Provenance provenance = scene::load_provenance(store);
   const pod::Ensemble ensemble = load_snapshots(store);
   session.check_interrupt();
+  if (const scene::Scene scene = scene::load_scene_of(store); is_shaken(scene)) {
+    return run_shaken(arguments, scene, ensemble, std::move(provenance));
+  }
   const pod::PodResult result = decompose(ensemble, arguments);
 
   provenance.command = "slipmode pod";

@@ -1,5 +1,7 @@
 #include "rom/reduce.hpp"
 
+#include "cli/shaken_bases.hpp"
+#include "cli/shaken_model.hpp"
 #include "cli/steps.hpp"
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
@@ -16,6 +18,21 @@ struct Arguments {
   Eigen::Index modes = 0;
 };
 
+/// Under a shaker a POD holds several bases: the one that reduction.basis names is taken.
+BasisSource load_shaken_basis(const scene::Scene& scene, const dynamics::HybridSystem& full,
+                              const std::string& source) {
+  const auto no_ensemble = []() -> const ShakenModes& { throw InvalidInput("natural modes need no ensemble"); };
+  for (const auto word : {scene::BasisChoice::kLnm, scene::BasisChoice::kLnmStatic}) {
+    if (source == scene::to_string(word)) return {.basis = shaken_basis(word, scene, full, no_ensemble), .shares = {}};
+  }
+  const scene::StoreReader store(source);
+  if (!store.has(scene::kPodGroup)) return load_basis_source(source, full.structure());
+  scene::Scene one = scene;
+  one.shaken.bases = {scene.reduction.basis};
+  const pod::Basis basis = load_shaken_candidates(one, full, source).front().basis;
+  return {.basis = basis, .shares = basis.energy};
+}
+
 /// LNMs have no energies of their own: without a count there is nothing to choose by.
 Eigen::Index mode_count(const Arguments& arguments, const scene::Scene& scene, const BasisSource& source) {
   pod::ModeChoice choice = scene.reduction.choice;
@@ -31,7 +48,8 @@ Report run(const Session& session, const Arguments& arguments) {
   require_writable(arguments.output);
   const scene::Scene scene = session.load(arguments.scene);
   const dynamics::HybridSystem full = scene::build_system(scene);
-  const BasisSource source = load_basis_source(arguments.basis, full.structure());
+  const BasisSource source = is_shaken(scene) ? load_shaken_basis(scene, full, arguments.basis)
+                                              : load_basis_source(arguments.basis, full.structure());
   const Eigen::Index modes = mode_count(arguments, scene, source);
   const pod::Basis basis = source.basis.truncated(modes);
   const dynamics::HybridSystem reduced = rom::reduce(full, basis);
@@ -72,7 +90,8 @@ Verb add_reduce(CLI::App& app) {
   CLI::App* command = app.add_subcommand("reduce", "project a scene's model on a basis");
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("SCENE", arguments->scene, "scene file (TOML)")->required();
-  command->add_option("BASIS", arguments->basis, "result of 'slipmode pod', or the word lnm")->required();
+  command->add_option("BASIS", arguments->basis, "result of 'slipmode pod', or the word lnm, on a beam also lnm+static")
+      ->required();
   command->add_option("-o,--output", arguments->output, "result file (HDF5)")->required();
   command->add_option("--modes", arguments->modes, "number of modes; 0: as [reduction] says")
       ->check(CLI::NonNegativeNumber);

@@ -1,5 +1,7 @@
 #include "cli/figures/gnuplot.hpp"
 #include "cli/pipeline.hpp"
+#include "cli/shaken_model.hpp"
+#include "cli/shaken_pipeline.hpp"
 #include "cli/verbs.hpp"
 #include "cli/work_folder.hpp"
 
@@ -40,14 +42,19 @@ Report interrupted(const WorkFolder& folder) {
   return report;
 }
 
+Report run_scene(const Session& session, const scene::Scene& scene, const std::filesystem::path& folder) {
+  if (is_shaken(scene)) return run_shaken_pipeline(session, scene, folder);
+  const PipelineResult result = run_pipeline(session, scene, folder);
+  return {.data = to_json(result, scene), .text = summary_text(result, scene)};
+}
+
 Report run(const Session& session, const Arguments& arguments) {
   const scene::Scene scene = session.load(arguments.scene);
   figures::require_gnuplot();
   WorkFolder folder(arguments.output);
   std::filesystem::remove(folder.path() / "INCOMPLETE.txt");
   try {
-    const PipelineResult result = run_pipeline(session, scene, folder.path());
-    Report report{.data = to_json(result, scene), .text = summary_text(result, scene)};
+    Report report = run_scene(session, scene, folder.path());
     report.data["folder"] = arguments.output;
     write_text(folder.path() / "summary.json", report.data.dump(2) + "\n");
     write_text(folder.path() / "summary.txt", report.text);

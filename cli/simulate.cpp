@@ -1,3 +1,4 @@
+#include "cli/shaken_bases.hpp"
 #include "cli/steps.hpp"
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
@@ -59,6 +60,7 @@ Report run_trajectory(const Session& session, const Arguments& arguments, const 
   provenance.audit = trajectory.audit;
   scene::save(writer, provenance);
   scene::save(writer, scene::kTrajectoryGroup, trajectory);
+  if (scene.sensors) store_sensors(writer, scene, trajectory.q);
   if (run.failure) {
     writer.write("trajectory/incomplete", describe(*run.failure), {"", "the run stopped early: why and where"});
   }

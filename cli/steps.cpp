@@ -1,5 +1,6 @@
 #include "cli/steps.hpp"
 
+#include "cli/shaken_bases.hpp"
 #include "cli/units.hpp"
 #include "rom/reduce.hpp"
 #include "scene/records.hpp"
@@ -12,20 +13,51 @@
 namespace slipmode::cli {
 diagnostics::Model scene_model(const scene::Scene& scene, const dynamics::HybridSystem& system) {
   if (scene.drive.is_constant()) return diagnostics::belt_model(system);
+  if (scene.drive.shaker() != nullptr) {
+    return {
+        .system = [scene, system](double frequency) { return system.with_drive(scene::drive_at(scene, frequency)); }};
+  }
   return {.system = [system](double) { return system; }};
 }
 
+namespace {
+
+/// One run after the other, in order.
+void append(diagnostics::EnsembleRun& all, diagnostics::EnsembleRun part) {
+  const Eigen::Index before = all.ensemble.snapshots.cols();
+  Eigen::MatrixXd joined(part.ensemble.snapshots.rows(), before + part.ensemble.snapshots.cols());
+  if (before > 0) joined.leftCols(before) = all.ensemble.snapshots;
+  joined.rightCols(part.ensemble.snapshots.cols()) = part.ensemble.snapshots;
+  all.ensemble.snapshots = std::move(joined);
+  for (const Eigen::Index begin : part.ensemble.run_begin) all.ensemble.run_begin.push_back(before + begin);
+  for (auto& member : part.members) all.members.push_back(std::move(member));
+}
+
+diagnostics::EnsembleRun run_at(const scene::Scene& scene, const dynamics::HybridSystem& system,
+                                const std::vector<double>& parameters, const scene::TimeSpec& time,
+                                ParallelOptions parallel) {
+  return diagnostics::run_ensemble(scene_model(scene, system), parameters, scene::ensemble_states(scene, system),
+                                   {.duration = time.duration,
+                                    .transient = time.transient,
+                                    .sample = time.sample,
+                                    .flow = scene.flow,
+                                    .parallel = std::move(parallel)});
+}
+
+}  // namespace
+
 diagnostics::EnsembleRun run_scene_ensemble(const Session& session, const scene::Scene& scene,
                                             const dynamics::HybridSystem& system) {
-  std::vector<double> speeds = scene.ensemble.speeds;
-  if (speeds.empty()) speeds.push_back(scene.drive.velocity(0.0));
   ProgressLine line("ensemble", session.progress_mode());
-  return diagnostics::run_ensemble(scene_model(scene, system), speeds, scene::ensemble_states(scene, system),
-                                   {.duration = scene.time.duration,
-                                    .transient = scene.time.transient,
-                                    .sample = scene.time.sample,
-                                    .flow = scene.flow,
-                                    .parallel = session.parallel(line)});
+  const bool shaken = scene.drive.shaker() != nullptr;
+  std::vector<double> parameters = shaken ? scene.ensemble.frequencies : scene.ensemble.speeds;
+  if (parameters.empty()) parameters.push_back(scene::drive_parameter(scene));
+  if (!shaken) return run_at(scene, system, parameters, scene.time, session.parallel(line));
+  diagnostics::EnsembleRun all;  // a time in cycles is another one at each frequency
+  for (const double frequency : parameters) {
+    append(all, run_at(scene, system, {frequency}, scene::time_at(scene, frequency), session.parallel(line)));
+  }
+  return all;
 }
 
 double worst_audit(const diagnostics::EnsembleRun& run) {
@@ -53,7 +85,9 @@ void store_ensemble(const std::filesystem::path& path, const scene::Scene& scene
     residual.push_back(member.failure.empty() ? member.audit.residual() : std::numeric_limits<double>::quiet_NaN());
     failure.push_back(member.failure);
   }
-  members.columns = {{"speed", {units.velocity, "belt speed"}, parameter},
+  const bool shaken = scene.drive.shaker() != nullptr;
+  members.columns = {shaken ? scene::Column{"frequency", {"Hz", "shaker frequency"}, parameter}
+                            : scene::Column{"speed", {units.velocity, "belt speed"}, parameter},
                      {"start", {"", "number of the initial state"}, start},
                      {"snapshots", {"", "snapshots it gave"}, columns},
                      {"events", {"", "events located"}, events},
@@ -62,6 +96,7 @@ void store_ensemble(const std::filesystem::path& path, const scene::Scene& scene
   scene::save(writer, provenance);
   scene::save(writer, scene::kEnsembleGroup, run.ensemble);
   scene::save(writer, "members", members);
+  if (scene.sensors) store_sensors(writer, scene, run.ensemble.snapshots);
   writer.commit();
 }
 

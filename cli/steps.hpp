@@ -9,16 +9,18 @@
 
 namespace slipmode::cli {
 
-/// The scene's system as a model whose parameter is the belt speed. A belt that is not constant keeps its own speed.
+/// The scene's system as a model whose parameter is the belt speed, or the shaker's frequency. A belt that is not
+/// constant keeps its own speed.
 [[nodiscard]] diagnostics::Model scene_model(const scene::Scene& scene, const dynamics::HybridSystem& system);
 
 /// Runs what [ensemble] asks for: `members` starts (the scene's initial state plus `spread` times standard normal
-/// numbers in every displacement and velocity) at each of its belt speeds.
+/// numbers in every displacement and velocity) at each of its belt speeds or shaker frequencies; see
+/// scene::ensemble_states.
 /// @throws as diagnostics::run_ensemble
 [[nodiscard]] diagnostics::EnsembleRun run_scene_ensemble(const Session& session, const scene::Scene& scene,
                                                           const dynamics::HybridSystem& system);
 
-/// Writes groups `ensemble`, `members` and `provenance`.
+/// Writes groups `ensemble`, `members`, `provenance` and, where the scene has sensors, `sensors`.
 void store_ensemble(const std::filesystem::path& path, const scene::Scene& scene, const diagnostics::EnsembleRun& run);
 
 /// Largest energy residual of the members that went well.

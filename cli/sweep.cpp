@@ -1,6 +1,8 @@
 #include "diagnostics/sweep.hpp"
 
+#include "cli/shaken_model.hpp"
 #include "cli/steps.hpp"
+#include "cli/sweep_request.hpp"
 #include "cli/sweep_store.hpp"
 #include "cli/text_table.hpp"
 #include "cli/validation_setup.hpp"
@@ -11,47 +13,9 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <charconv>
-#include <fstream>
-#include <iterator>
 
 namespace slipmode::cli {
 namespace {
-
-struct Arguments {
-  std::string scene, over, output;
-  std::string model = "full";
-  bool follow = false;
-  std::size_t segments = 1;
-};
-
-/// KEY=FROM:TO:STEP.
-struct Over {
-  std::string key;
-  std::vector<double> values;
-};
-
-Over parse_over(const std::string& text) {
-  const auto complain = [&text](const std::string& what) {
-    return InvalidInput(
-        fmt::format("--over {}: {}; expected KEY=FROM:TO:STEP, e.g. drive.speed=0.5:0.001:0.001", text, what));
-  };
-  const std::size_t equals = text.find('=');
-  if (equals == std::string::npos || equals == 0) throw complain("no KEY=");
-  std::vector<double> numbers;
-  for (std::size_t begin = equals + 1; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(':', begin), text.size());
-    double value = 0.0;
-    const auto [stopped, error] = std::from_chars(text.data() + begin, text.data() + end, value);
-    if (error != std::errc() || stopped != text.data() + end) {
-      throw complain(fmt::format("'{}' is not a number", text.substr(begin, end - begin)));
-    }
-    numbers.push_back(value);
-    begin = end + 1;
-  }
-  if (numbers.size() != 3) throw complain(fmt::format("{} numbers found", numbers.size()));
-  return {text.substr(0, equals), diagnostics::sweep_values(numbers[0], numbers[1], numbers[2])};
-}
 
 /// The model swept, where it starts, and what identifies it for resuming.
 struct Subject {
@@ -59,11 +23,6 @@ struct Subject {
   dynamics::State start;
   std::string title, identity;
 };
-
-std::string file_fingerprint(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return scene::fingerprint({std::istreambuf_iterator<char>(in), {}});
-}
 
 /// Systems by the key's value. The belt's speed is special: modal data are then shared by all values.
 diagnostics::SystemFactory system_factory(const scene::Scene& scene, const std::string& key,
@@ -109,30 +68,7 @@ Subject subject(const scene::Scene& scene, const std::string& key, const std::st
   throw InvalidInput(fmt::format("--model {}: expected full, or rom:FILE with a result of 'slipmode reduce'", model));
 }
 
-/// Every value is tried before the first is computed: a typing error must not show after an hour.
-void check_values(const scene::Scene& scene, const Over& over, Eigen::Index size) {
-  for (const double value : over.values) {
-    const scene::Scene changed = scene::set_key(scene, over.key, value);
-    if (changed.size() == scene.size()) continue;
-    throw InvalidInput(
-        fmt::format("--over {}: the number of degrees of freedom must stay at {} along a sweep, value {} "
-                    "changes it; run one sweep per size with --set",
-                    over.key, size, value));
-  }
-}
-
-Report interrupted(const Arguments& arguments, const Over& over, std::size_t finished) {
-  Report report;
-  report.exit_code = kInterrupted;
-  report.text = fmt::format(
-      "interrupted with {} of {} values done; they are kept in {}\nThe same command goes on from "
-      "there.",
-      finished, over.values.size(), scene::Journal::path_for(arguments.output).string());
-  report.data = {{"verb", "sweep"}, {"finished", finished}, {"values", over.values.size()}, {"message", report.text}};
-  return report;
-}
-
-Report summary(const Arguments& arguments, const Subject& swept, const Over& over,
+Report summary(const SweepRequest& request, const Subject& swept, const Over& over,
                const std::vector<diagnostics::SweepPoint>& points) {
   Report report;
   TextTable table({"motion", "values", "share [%]"});
@@ -146,10 +82,10 @@ Report summary(const Arguments& arguments, const Subject& swept, const Over& ove
   for (const auto& point : points) {
     if (!point.ok()) failures.push_back({{"value", point.parameter}, {"reason", point.failure}});
   }
-  report.data = {{"verb", "sweep"},         {"file", arguments.output}, {"model", swept.title}, {"key", over.key},
-                 {"values", points.size()}, {"motions", motions},       {"failures", failures}};
+  report.data = {{"verb", "sweep"},         {"file", request.output}, {"model", swept.title}, {"key", over.key},
+                 {"values", points.size()}, {"motions", motions},     {"failures", failures}};
   report.text = fmt::format("{}: {} values of {}\n{}{}Sweep: {}\n", swept.title, points.size(), over.key, table.str(),
-                            undecided_note(points), arguments.output);
+                            undecided_note(points), request.output);
   if (!failures.empty()) {
     report.text += fmt::format("{} values failed, first at {:g}: {}\n", failures.size(),
                                failures.front()["value"].get<double>(), failures.front()["reason"].get<std::string>());
@@ -158,37 +94,39 @@ Report summary(const Arguments& arguments, const Subject& swept, const Over& ove
   return report;
 }
 
-Report run(const Session& session, const Arguments& arguments) {
-  require_writable(arguments.output);
-  const Over over = parse_over(arguments.over);
-  const scene::Scene scene = session.load(arguments.scene);
-  const Subject swept = subject(scene, over.key, arguments.model);
-  check_values(scene, over, swept.start.q.size());
+Report run(const Session& session, const SweepRequest& request) {
+  require_writable(request.output);
+  const Over over = parse_over(request.over);
+  const scene::Scene scene = session.load(request.scene);
+  if (is_shaken(scene)) return run_shaken_sweep(session, request, over, scene);
+  require_belt_request(request);
+  const Subject swept = subject(scene, over.key, request.model);
+  check_values(scene, over);
 
-  const std::string manner = arguments.follow ? fmt::format(" --follow --segments {}", arguments.segments) : "";
-  const std::string task = fmt::format("slipmode sweep --over {} --model {}{}", arguments.over, swept.title, manner);
+  const std::string manner = request.follow ? fmt::format(" --follow --segments {}", request.segments) : "";
+  const std::string task = fmt::format("slipmode sweep --over {} --model {}{}", request.over, swept.title, manner);
   const std::string identity = scene::fingerprint(
       fmt::format("{}\n{}\n{}\n{}", scene::version(), task, swept.identity, scene::scene_to_toml(scene)));
-  scene::Journal journal(scene::Journal::path_for(arguments.output), identity);
+  scene::Journal journal(scene::Journal::path_for(request.output), identity);
   const std::size_t resumed = journal.records().size();
   ProgressLine line("sweep", session.progress_mode());
   const diagnostics::SweepResult result = diagnostics::sweep(
       swept.model, over.values, swept.start,
-      {.mode = arguments.follow ? diagnostics::SweepMode::kFollow : diagnostics::SweepMode::kIndependent,
-       .segments = arguments.segments,
+      {.mode = request.follow ? diagnostics::SweepMode::kFollow : diagnostics::SweepMode::kIndependent,
+       .segments = request.segments,
        .settle = sweep_settle_options(scene),
        .parallel = session.parallel(line),
        .sink = journal_sink(journal)});
-  if (result.interrupted) return interrupted(arguments, over, result.points.size());
+  if (result.interrupted) return interrupted_sweep(request, over, result.points.size());
 
   const Units units = Units::of(scene.units);
-  scene::StoreWriter writer(arguments.output);
+  scene::StoreWriter writer(request.output);
   scene::save(writer, scene::provenance_of(scene, task));
   store_sweep(writer, swept.model.basis ? "sweep/reduced" : "sweep/full", swept.title, sweep_axis(over.key, units),
               units, result.points);
   writer.commit();
   journal.remove();
-  Report report = summary(arguments, swept, over, result.points);
+  Report report = summary(request, swept, over, result.points);
   report.data["resumed"] = resumed;
   if (resumed > 0) report.text += fmt::format("{} values were taken over from an interrupted run\n", resumed);
   return report;
@@ -198,18 +136,27 @@ Report run(const Session& session, const Arguments& arguments) {
 
 Verb add_sweep(CLI::App& app) {
   CLI::App* command = app.add_subcommand("sweep", "settled motion against one key of the scene");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<SweepRequest>();
   command->add_option("SCENE", arguments->scene, "scene file (TOML)")->required();
   command->add_option("--over", arguments->over, "key and range: KEY=FROM:TO:STEP")->required();
   command->add_option("-o,--output", arguments->output, "result file (HDF5)")->required();
   command->add_flag("--follow", arguments->follow, "start each value where the one before it ended");
   command->add_option("--segments", arguments->segments, "with --follow: number of chains side by side")
       ->check(CLI::PositiveNumber);
-  command->add_option("--model", arguments->model, "full, or rom:FILE with a result of 'slipmode reduce'");
+  command->add_option("--model", arguments->model,
+                      "full, or rom:FILE with a result of 'slipmode reduce'; under a shaker also BASIS:L, e.g. pomf:3, "
+                      "lnm:10, lnm+static:4, mass-pom:3");
+  command->add_flag("--reverse", arguments->reverse, "shaker: from the last value to the first");
+  command->add_flag("--both", arguments->both, "shaker, with --follow: up and down, to show hysteresis");
+  command
+      ->add_option("--lyapunov", arguments->exponent_cycles,
+                   "shaker: measure the largest Lyapunov exponent over so many cycles more")
+      ->check(CLI::NonNegativeNumber);
   command->footer(
-      "Time simulated at each value: [validation] transient, block, sweep_limit.\n"
+      "Time simulated at each value: [validation] transient, block, sweep_limit; under a shaker cycles.\n"
       "Example:\n  slipmode sweep datasets/chain10/scene.toml --over drive.speed=0.5:0.001:0.001 --follow "
-      "-o sweep.h5");
+      "-o sweep.h5\n"
+      "  slipmode sweep datasets/beam_sweep/scene.toml --over drive.frequency=5:60:0.5 --model pomf:3 -o sweep.h5");
   return {command, [arguments](const Session& session) { return run(session, *arguments); }};
 }
 

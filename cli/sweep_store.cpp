@@ -1,6 +1,6 @@
 #include "cli/sweep_store.hpp"
 
-#include "core/errors.hpp"
+#include "cli/journal_cursor.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -18,33 +18,8 @@ using diagnostics::Settled;
 using diagnostics::SlipState;
 using diagnostics::SweepPoint;
 
-/// Reads the values of a record one after the other.
-class Cursor {
- public:
-  explicit Cursor(const scene::JournalRecord& record) : record_(record) {}
-  double next() {
-    if (at_ >= record_.values.size()) {
-      throw InvalidInput(fmt::format("journal record {} {}: it is too short; remove the journal and start again",
-                                     record_.table, record_.index));
-    }
-    return record_.values[at_++];
-  }
-  int next_int() { return static_cast<int>(next()); }
-  Eigen::VectorXd next_vector() {
-    Eigen::VectorXd values(static_cast<Eigen::Index>(next()));
-    for (double& value : values) value = next();
-    return values;
-  }
-
- private:
-  const scene::JournalRecord& record_;
-  std::size_t at_ = 0;
-};
-
-void append(std::vector<double>& values, const Eigen::VectorXd& vector) {
-  values.push_back(static_cast<double>(vector.size()));
-  values.insert(values.end(), vector.begin(), vector.end());
-}
+using detail::append;
+using detail::Cursor;
 
 }  // namespace
 
@@ -65,12 +40,7 @@ scene::JournalRecord to_record(const SweepPoint& point) {
   for (const SlipState& slip : settled.slips) {
     values.insert(values.end(), {slip.time, static_cast<double>(slip.contact), slip.displacement});
   }
-  values.push_back(settled.end.time);
-  append(values, settled.end.q);
-  append(values, settled.end.v);
-  values.push_back(static_cast<double>(settled.end.modes.size()));
-  for (const auto mode : settled.end.modes) values.push_back(static_cast<double>(mode));
-  append(values, settled.end.internal);
+  append(values, settled.end);
   return {point.model == 0 ? "full" : "reduced", static_cast<std::int64_t>(point.index), values, point.failure};
 }
 
@@ -98,12 +68,7 @@ SweepPoint from_record(const scene::JournalRecord& record) {
     slip.contact = cursor.next_int();
     slip.displacement = cursor.next();
   }
-  settled.end.time = cursor.next();
-  settled.end.q = cursor.next_vector();
-  settled.end.v = cursor.next_vector();
-  settled.end.modes.resize(static_cast<std::size_t>(cursor.next()));
-  for (auto& mode : settled.end.modes) mode = static_cast<dynamics::ContactMode>(cursor.next_int());
-  settled.end.internal = cursor.next_vector();
+  settled.end = cursor.next_state();
   return point;
 }
 
@@ -124,7 +89,11 @@ diagnostics::SweepSink journal_sink(scene::Journal& journal) {
 
 SweepAxis sweep_axis(const std::string& key, const Units& units) {
   if (key == "drive.speed") return {key, "belt speed V", units.velocity};
-  return {key, key, key.ends_with("normal_load") ? units.force : "1"};
+  if (key == "drive.frequency") return {key, "frequency f", units.time == "s" ? "Hz" : "1"};
+  if (key == "drive.amplitude") return {key, "amplitude of the shaker", units.length};
+  if (key.starts_with("contact.") && key.ends_with(".stiffness")) return {key, "contact stiffness", units.stiffness};
+  const bool load = key.ends_with("normal_load") || key.ends_with("normal_load.constant");
+  return {key, load ? "normal load" : key, load ? units.force : "1"};
 }
 
 void store_sweep(scene::StoreWriter& writer, const std::string& group, const std::string& title, const SweepAxis& axis,

@@ -1,5 +1,8 @@
 #include "diagnostics/validate.hpp"
 
+#include "cli/shaken_bases.hpp"
+#include "cli/shaken_model.hpp"
+#include "cli/shaken_validation.hpp"
 #include "cli/validate_run.hpp"
 #include "cli/validation_setup.hpp"
 #include "cli/validation_store.hpp"
@@ -15,10 +18,22 @@ struct Arguments {
   bool no_sweep = false;
 };
 
+Report run_shaken(const Session& session, const Arguments& arguments, scene::Scene scene,
+                  const dynamics::HybridSystem& full) {
+  if (arguments.no_sweep) scene.shaken.frequencies.reset();
+  const auto candidates = load_shaken_candidates(scene, full, arguments.input);
+  const auto result = validate_shaken_into(session, scene, candidates, arguments.output);
+  Report report;
+  report.data = {{"verb", "validate"}, {"file", arguments.output}, {"validation", to_json(result)}};
+  report.text = fmt::format("{}Validation: {}\n", summary_text(result, scene), arguments.output);
+  return report;
+}
+
 Report run(const Session& session, const Arguments& arguments) {
   require_writable(arguments.output);
   const scene::Scene scene = session.load(arguments.scene);
   const dynamics::HybridSystem full = scene::build_system(scene);
+  if (is_shaken(scene)) return run_shaken(session, arguments, scene, full);
   const auto candidates = load_candidates(scene, full.structure(), arguments.input);
   diagnostics::ValidationOptions options = validation_options(scene, candidates);
   if (arguments.no_sweep) options.sweep_values.clear();
@@ -42,7 +57,8 @@ Verb add_validate(CLI::App& app) {
                    "what to judge: a POD or an ensemble (POMs and LNMs of every size), or a reduced model")
       ->required();
   command->add_option("-o,--output", arguments->output, "result file (HDF5)")->required();
-  command->add_flag("--no-sweep", arguments->no_sweep, "leave the bifurcation diagram out");
+  command->add_flag("--no-sweep", arguments->no_sweep,
+                    "leave the bifurcation diagram out; under a shaker: the drive's own frequency only");
   command->footer("Example:\n  slipmode validate datasets/chain10/scene.toml pod.h5 -o validation.h5");
   return {command, [arguments](const Session& session) { return run(session, *arguments); }};
 }

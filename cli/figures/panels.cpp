@@ -1,0 +1,124 @@
+#include "cli/figures/panels.hpp"
+
+#include "cli/figures/style.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
+
+namespace slipmode::figures {
+namespace {
+
+struct Range {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+
+  void include(const Eigen::VectorXd& values, bool positive) {
+    for (const double value : values) {
+      if (!std::isfinite(value) || (positive && !(value > 0.0))) continue;
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+  }
+  [[nodiscard]] std::string text(bool log) const {
+    if (!log) return padded_range(low, high);
+    if (!(high > 0.0) || !std::isfinite(low)) return "[1e-3:1]";
+    return fmt::format("[{:.3g}:{:.3g}]", 0.7 * low, 1.4 * high);
+  }
+};
+
+struct Ranges {
+  Range x, y;
+  void include(const Panel& panel, bool log_y) {
+    for (const Series& series : panel.series) {
+      x.include(series.x, false);
+      y.include(series.y, log_y);
+    }
+  }
+};
+
+/// One point per cell of a raster.
+Series thinned(const Series& series, const Ranges& ranges) {
+  constexpr double kCellsX = 700.0, kCellsY = 350.0;
+  std::set<std::pair<int, int>> seen;
+  std::vector<Eigen::Index> kept;
+  const auto cell = [](double value, const Range& range, double cells) {
+    return static_cast<int>(cells * (value - range.low) / std::max(range.high - range.low, 1e-300));
+  };
+  for (Eigen::Index i = 0; i < series.x.size(); ++i) {
+    if (!std::isfinite(series.x[i]) || !std::isfinite(series.y[i])) continue;
+    if (seen.emplace(cell(series.x[i], ranges.x, kCellsX), cell(series.y[i], ranges.y, kCellsY)).second) {
+      kept.push_back(i);
+    }
+  }
+  return {series.title, series.x(kept), series.y(kept), series.look, series.colour};
+}
+
+std::string style_of(const Series& series) {
+  switch (series.look) {
+    case Series::Look::kLine:
+      return fmt::format("with lines linewidth 1.3 linecolor rgb '{}'", series.colour);
+    case Series::Look::kDashed:
+      return fmt::format("with lines dashtype 2 linewidth 1.6 linecolor rgb '{}'", series.colour);
+    case Series::Look::kDots:
+      return fmt::format("with points pointtype 7 pointsize 0.25 linecolor rgb '{}'", series.colour);
+    case Series::Look::kMarkedLine:
+      break;
+  }
+  return fmt::format("with linespoints pointtype 7 pointsize 0.8 linewidth 1.5 linecolor rgb '{}'", series.colour);
+}
+
+std::string plot_of(Figure& figure, const Panel& panel, const Ranges& ranges) {
+  std::string plot;
+  for (const Series& series : panel.series) {
+    if (series.x.size() == 0) continue;
+    const bool dots = series.look == Series::Look::kDots;
+    const Series drawn = dots ? thinned(series, ranges) : series;
+    const std::string name = series.title.empty() ? "notitle" : fmt::format("title \"{}\"", literal(series.title));
+    plot += fmt::format("{}{} using 1:2 {} {}", plot.empty() ? "plot " : ", ", figure.data({drawn.x, drawn.y}),
+                        style_of(series), name);
+  }
+  return plot.empty() ? "plot NaN notitle" : plot;
+}
+
+}  // namespace
+
+Figure panel_grid(const std::vector<Panel>& panels, const PanelLayout& layout) {
+  const int count = static_cast<int>(panels.size());
+  const int columns = std::min(layout.columns, std::max(count, 1));
+  const int rows = (count + columns - 1) / columns;
+  Figure figure(1200, rows * layout.panel_height + 150);
+  common_style(figure);
+  Ranges all;
+  for (const Panel& panel : panels) all.include(panel, layout.log_y);
+  const double height = figure.height();
+  const double gap_x = columns == 1 ? 0.0 : (layout.shared_y ? 0.03 : 0.085);
+  figure.command(fmt::format("set multiplot layout {},{} margins 0.1,0.98,{:.4f},{:.4f} spacing {:.3f},{:.4f}", rows,
+                             columns, 75.0 / height, 1.0 - 75.0 / height, gap_x,
+                             (layout.shared_x ? 45.0 : 90.0) / height));
+  if (layout.log_y) figure.command("set logscale y; set format y '%.0e'");
+  for (int i = 0; i < count; ++i) {
+    Ranges ranges = all, own;
+    own.include(panels[static_cast<std::size_t>(i)], layout.log_y);
+    if (!layout.shared_x) ranges.x = own.x;
+    if (!layout.shared_y) ranges.y = own.y;
+    const bool left = i % columns == 0, below = i + columns >= count;
+    figure.command(i == 0 ? std::string(layout.legend.empty() ? kLegendAbove : layout.legend) : "unset key");
+    figure.command(fmt::format("set xrange {}; set yrange {}", ranges.x.text(false), ranges.y.text(layout.log_y)));
+    figure.command(fmt::format("set title \"{}\" offset 0,-0.7", literal(panels[static_cast<std::size_t>(i)].title)));
+    figure.command(left ? fmt::format("set ylabel \"{}\"", layout.y_label) : std::string("unset ylabel"));
+    if (layout.shared_y) {
+      figure.command(!left ? "set format y ''" : layout.log_y ? "set format y '%.0e'" : "set format y '%g'");
+    }
+    figure.command(below ? fmt::format("set xlabel \"{}\"", layout.x_label) : std::string("unset xlabel"));
+    if (layout.shared_x) figure.command(below ? "set format x '%g'" : "set format x ''");
+    figure.command(plot_of(figure, panels[static_cast<std::size_t>(i)], ranges));
+  }
+  figure.command("unset multiplot");
+  return figure;
+}
+
+}  // namespace slipmode::figures

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "cli/figures/gnuplot.hpp"
+#include "scene/store.hpp"
+
+namespace slipmode::cli {
+
+// Figures of a shaken trajectory.
+
+/// Force of the first contact against relative displacement and velocity (drive less contact), over the last cycles:
+/// the form of S4 Figs 6.2 to 6.4.
+[[nodiscard]] figures::Figure friction_loops(const scene::StoreReader& store);
+/// The scene's reading against itself a quarter of a drive period later.
+[[nodiscard]] figures::Figure delay_map(const scene::StoreReader& store);
+/// Averaged amplitude spectrum of the scene's reading.
+[[nodiscard]] figures::Figure spectrum(const scene::StoreReader& store);
+
+}  // namespace slipmode::cli

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "diagnostics/driven_sweep.hpp"
+#include "scene/scene.hpp"
+
+#include <string>
+
+namespace slipmode::cli {
+
+/// True for a scene with a shaker: sections, labels and sweeps are then those of diagnostics/driven.hpp.
+[[nodiscard]] bool is_shaken(const scene::Scene& scene);
+
+/// The scene's full model with its one reading: the strain at the gauge of a beam, the first contact's displacement of
+/// a chain.
+[[nodiscard]] diagnostics::DrivenCase shaken_case(const scene::Scene& scene);
+/// What that reading is: "strain at x = 0.05 m", "displacement of contact 1"; and its unit.
+[[nodiscard]] std::string reading_name(const scene::Scene& scene);
+[[nodiscard]] std::string reading_unit(const scene::Scene& scene);
+
+/// The drive over frequency, with the amplitude that the scene's curve has there.
+[[nodiscard]] diagnostics::DriveAt drive_over_frequency(const scene::Scene& scene);
+
+/// [validation] and [flow] of a shaken scene.
+[[nodiscard]] diagnostics::DrivenOptions driven_options(const scene::Scene& scene);
+
+/// A start near the scene's own, for a second run that shows the sampling noise of statistics: the first member of an
+/// ensemble of another seed, with the ensemble's spread, or 1e-4 where it has none.
+[[nodiscard]] dynamics::State second_start(const scene::Scene& scene, const dynamics::HybridSystem& system);
+
+}  // namespace slipmode::cli
