@@ -1,53 +1,14 @@
 #include "bench/cvode_peer.hpp"
 
+#include "bench/cvode_solver.hpp"
 #include "bench/event_chain.hpp"
 
-#include <cvode/cvode.h>
-#include <nvector/nvector_serial.h>
 #include <sunlinsol/sunlinsol_band.h>
 #include <sunmatrix/sunmatrix_band.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
-#include <stdexcept>
-#include <string>
 
 namespace slipmode::bench {
 namespace {
-
-/// Owns what CVODE allocates.
-struct Solver {
-  SUNContext context = nullptr;
-  N_Vector y = nullptr;
-  void* memory = nullptr;
-  SUNNonlinearSolver fixed_point = nullptr;
-  SUNLinearSolver linear = nullptr;
-  SUNMatrix matrix = nullptr;
-
-  Solver(int method, int size) {
-    SUNContext_Create(nullptr, &context);
-    y = N_VNew_Serial(size, context);
-    memory = CVodeCreate(method, context);
-  }
-  Solver(const Solver&) = delete;
-  Solver& operator=(const Solver&) = delete;
-  ~Solver() {
-    CVodeFree(&memory);
-    if (fixed_point != nullptr) SUNNonlinSolFree(fixed_point);
-    if (linear != nullptr) SUNLinSolFree(linear);
-    if (matrix != nullptr) SUNMatDestroy(matrix);
-    N_VDestroy(y);
-    SUNContext_Free(&context);
-  }
-  [[nodiscard]] double* data() const { return N_VGetArrayPointer(y); }
-  [[nodiscard]] long steps() const {
-    long count = 0;
-    CVodeGetNumSteps(memory, &count);
-    return count;
-  }
-};
-
-void check(int flag, const char* what) {
-  if (flag < 0) throw std::runtime_error(std::string("CVODE: ") + what + " failed with flag " + std::to_string(flag));
-}
 
 int chain_rhs(realtype, N_Vector y, N_Vector dy, void* user) {
   static_cast<const EventChain*>(user)->derivative(N_VGetArrayPointer(y), N_VGetArrayPointer(dy));
@@ -120,36 +81,34 @@ int tanh_jacobian(realtype, N_Vector y, N_Vector, SUNMatrix J, void* user, N_Vec
   return 0;
 }
 
-constexpr long kMaxSteps = 2'000'000'000L;
-
 }  // namespace
 
 PeerRun run_cvode_adams(const ChainProblem& problem, const std::vector<double>& q, const std::vector<double>& v,
                         double duration, double rtol, double atol) {
   EventChain chain(problem);
-  Solver solver(CV_ADAMS, chain.size());
+  CvodeSolver solver(CV_ADAMS, chain.size());
   chain.start(q, v, solver.data());
-  check(CVodeInit(solver.memory, chain_rhs, 0.0, solver.y), "CVodeInit");
-  check(CVodeSStolerances(solver.memory, rtol, atol), "CVodeSStolerances");
-  check(CVodeSetUserData(solver.memory, &chain), "CVodeSetUserData");
-  check(CVodeSetMaxNumSteps(solver.memory, kMaxSteps), "CVodeSetMaxNumSteps");
+  check_cvode(CVodeInit(solver.memory, chain_rhs, 0.0, solver.y), "CVodeInit");
+  check_cvode(CVodeSStolerances(solver.memory, rtol, atol), "CVodeSStolerances");
+  check_cvode(CVodeSetUserData(solver.memory, &chain), "CVodeSetUserData");
+  check_cvode(CVodeSetMaxNumSteps(solver.memory, kCvodeMaxSteps), "CVodeSetMaxNumSteps");
   solver.fixed_point = SUNNonlinSol_FixedPoint(solver.y, 0, solver.context);
-  check(CVodeSetNonlinearSolver(solver.memory, solver.fixed_point), "CVodeSetNonlinearSolver");
-  check(CVodeRootInit(solver.memory, 2, chain_guards), "CVodeRootInit");
+  check_cvode(CVodeSetNonlinearSolver(solver.memory, solver.fixed_point), "CVodeSetNonlinearSolver");
+  check_cvode(CVodeRootInit(solver.memory, 2, chain_guards), "CVodeRootInit");
   int falling[2] = {-1, -1};
-  check(CVodeSetRootDirection(solver.memory, falling), "CVodeSetRootDirection");
-  check(CVodeSetNoInactiveRootWarn(solver.memory), "CVodeSetNoInactiveRootWarn");
+  check_cvode(CVodeSetRootDirection(solver.memory, falling), "CVodeSetRootDirection");
+  check_cvode(CVodeSetNoInactiveRootWarn(solver.memory), "CVodeSetNoInactiveRootWarn");
 
   PeerRun run;
   double t = 0.0;
   while (t < duration) {
     const int flag = CVode(solver.memory, duration, solver.y, &t, CV_NORMAL);
-    check(flag, "CVode");
+    check_cvode(flag, "CVode");
     if (flag != CV_ROOT_RETURN) break;
     chain.resolve(solver.data());
     run.event_times.push_back(t);
     run.steps += solver.steps();
-    check(CVodeReInit(solver.memory, t, solver.y), "CVodeReInit");
+    check_cvode(CVodeReInit(solver.memory, t, solver.y), "CVodeReInit");
   }
   run.steps += solver.steps();
   chain.finish(solver.data(), run);
@@ -161,23 +120,23 @@ PeerRun run_cvode_bdf_tanh(const ChainProblem& problem, double epsilon, const st
   TanhChain chain{problem, epsilon};
   if (problem.coulomb) chain.p.alpha = 0.0, chain.p.mu_s = problem.mu_k;
   const int n = problem.n;
-  Solver solver(CV_BDF, 2 * n);
+  CvodeSolver solver(CV_BDF, 2 * n);
   for (int i = 0; i < n; ++i) {
     solver.data()[2 * i] = q[i];
     solver.data()[2 * i + 1] = v[i];
   }
-  check(CVodeInit(solver.memory, tanh_rhs, 0.0, solver.y), "CVodeInit");
-  check(CVodeSStolerances(solver.memory, rtol, atol), "CVodeSStolerances");
-  check(CVodeSetUserData(solver.memory, &chain), "CVodeSetUserData");
-  check(CVodeSetMaxNumSteps(solver.memory, kMaxSteps), "CVodeSetMaxNumSteps");
+  check_cvode(CVodeInit(solver.memory, tanh_rhs, 0.0, solver.y), "CVodeInit");
+  check_cvode(CVodeSStolerances(solver.memory, rtol, atol), "CVodeSStolerances");
+  check_cvode(CVodeSetUserData(solver.memory, &chain), "CVodeSetUserData");
+  check_cvode(CVodeSetMaxNumSteps(solver.memory, kCvodeMaxSteps), "CVodeSetMaxNumSteps");
   solver.matrix = SUNBandMatrix(2 * n, 2, 3, solver.context);
   solver.linear = SUNLinSol_Band(solver.y, solver.matrix, solver.context);
-  check(CVodeSetLinearSolver(solver.memory, solver.linear, solver.matrix), "CVodeSetLinearSolver");
-  check(CVodeSetJacFn(solver.memory, tanh_jacobian), "CVodeSetJacFn");
+  check_cvode(CVodeSetLinearSolver(solver.memory, solver.linear, solver.matrix), "CVodeSetLinearSolver");
+  check_cvode(CVodeSetJacFn(solver.memory, tanh_jacobian), "CVodeSetJacFn");
 
   PeerRun run;
   double t = 0.0;
-  check(CVode(solver.memory, duration, solver.y, &t, CV_NORMAL), "CVode");
+  check_cvode(CVode(solver.memory, duration, solver.y, &t, CV_NORMAL), "CVode");
   run.steps = solver.steps();
   for (int i = 0; i < n; ++i) {
     run.q.push_back(solver.data()[2 * i]);

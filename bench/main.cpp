@@ -1,4 +1,5 @@
 // Speed and accuracy beside the peers, measured in one process: see bench/README.md.
+#include "bench/beam_cases.hpp"
 #include "bench/cases.hpp"
 #include "bench/library_cases.hpp"
 #include "bench/report.hpp"
@@ -35,7 +36,9 @@ std::vector<LibraryCase> library_cases() {
   return {{"sweep-stribeck", [](bool quick) { return measure_sweep(false, quick); }},
           {"sweep-coulomb", [](bool quick) { return measure_sweep(true, quick); }},
           {"reduction", measure_reduction},
-          {"pod", measure_pod, true}};
+          {"pod", measure_pod, true},
+          {"beam", measure_beam, true},
+          {"beam-sweeps", measure_beam_sweeps, true}};
 }
 
 std::vector<std::string> known_cases() {
@@ -109,7 +112,7 @@ int main(int argc, char** argv) {
   Request request;
   app.add_option("--case", request.cases, "only these rows")->check(CLI::IsMember(known_cases()));
   app.add_flag("--quick", request.quick, "a tenth of the simulated time, fewer repeats");
-  app.add_flag("--all", request.all, "slow rows too (pod: a minute, 1 GiB)");
+  app.add_flag("--all", request.all, "slow rows too (pod: a minute, 1 GiB; the beam: minutes)");
   app.add_flag("--json", request.json, "one JSON object on standard output, the table on standard error");
   CLI11_PARSE(app, argc, argv);
   try {

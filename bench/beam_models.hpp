@@ -1,0 +1,27 @@
+#pragma once
+
+#include "diagnostics/driven_sweep.hpp"
+#include "scene/scene.hpp"
+
+#include <string>
+#include <vector>
+
+namespace slipmode::bench {
+
+/// One model of the friction-excited beam.
+struct BeamModel {
+  std::string name;
+  diagnostics::DrivenCase shaken;  ///< read at the scene's gauge
+  int stretches = 8;               ///< on which peers are timed and errors taken, evenly over the phases of the drive
+  double stretch = 1.0;            ///< their length, in cycles
+  double sweep_target = 0.0;       ///< of the sweep of 551 frequencies [s]
+};
+
+/// The scene of datasets/beam_sweep.
+[[nodiscard]] scene::Scene beam_scene();
+
+/// Three proper orthogonal modal functions from six gauges at 12 Hz (one run, 100 cycles after 100), ten linear natural
+/// modes, and the finite elements themselves.
+[[nodiscard]] std::vector<BeamModel> beam_models(const scene::Scene& scene);
+
+}  // namespace slipmode::bench
