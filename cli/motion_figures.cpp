@@ -57,13 +57,14 @@ Figure friction_loops(const StoreReader& store) {
     force[i] = run.lambda(0, first + i);
   }
   const std::string name = scene.contacts.front().name;
-  return figures::panel_grid({{fmt::format("{}: over relative displacement [{}]", name, units.length),
-                               {{"", way, force, Series::Look::kLine, figures::kFullColour}}},
-                              {fmt::format("{}: over relative velocity [{}]", name, units.velocity),
-                               {{"", speed, force, Series::Look::kDots, figures::kFullColour}}}},
+  return figures::panel_grid({{name,
+                               {{"", way, force, Series::Look::kLine, figures::kFullColour}},
+                               figures::axis_label("slider less contact", units.length)},
+                              {name,
+                               {{"", speed, force, Series::Look::kDots, figures::kFullColour}},
+                               figures::axis_label("slider less contact, velocity", units.velocity)}},
                              {.columns = 2,
                               .panel_height = 460,
-                              .x_label = "slider less contact",
                               .y_label = figures::axis_label("friction force {/Symbol l}", units.force),
                               .shared_x = false});
 }

@@ -209,8 +209,9 @@ Json to_json(const DrivenValidationReport& report) {
 }
 
 std::string summary_text(const DrivenValidationReport& report, const scene::Scene& scene) {
-  std::string out = fmt::format("Full against reduced at {} frequencies: {} at the sections of {:g} cycles of {:g}\n",
-                                report.full.size(), reading_name(scene), scene.shaken.kept, scene.shaken.cycles);
+  std::string out = fmt::format("Full against reduced at {} {}: {} at the sections of {:g} cycles of {:g}\n",
+                                report.full.size(), report.full.size() == 1 ? "frequency" : "frequencies",
+                                reading_name(scene), scene.shaken.kept, scene.shaken.cycles);
   for (const MotionCount& count : count_motions(report.full))
     out += fmt::format("  {:5} {}\n", count.values, count.motion);
   out += fmt::format(

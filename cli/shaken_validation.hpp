@@ -20,7 +20,6 @@ inline constexpr const char* kShakenValidationGroup = "shaken_validation";
     const std::filesystem::path& file);
 
 [[nodiscard]] Json to_json(const diagnostics::DrivenValidationReport& report);
-/// @param cycles  of the timed runs
 [[nodiscard]] std::string summary_text(const diagnostics::DrivenValidationReport& report, const scene::Scene& scene);
 
 }  // namespace slipmode::cli

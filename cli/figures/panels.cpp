@@ -90,14 +90,14 @@ Figure panel_grid(const std::vector<Panel>& panels, const PanelLayout& layout) {
   const int count = static_cast<int>(panels.size());
   const int columns = std::min(layout.columns, std::max(count, 1));
   const int rows = (count + columns - 1) / columns;
-  Figure figure(1200, rows * layout.panel_height + 150);
+  Figure figure(1200, rows * layout.panel_height + 170);
   common_style(figure);
   Ranges all;
   for (const Panel& panel : panels) all.include(panel, layout.log_y);
   const double height = figure.height();
   const double gap_x = columns == 1 ? 0.0 : (layout.shared_y ? 0.03 : 0.085);
-  figure.command(fmt::format("set multiplot layout {},{} margins 0.1,0.98,{:.4f},{:.4f} spacing {:.3f},{:.4f}", rows,
-                             columns, 75.0 / height, 1.0 - 75.0 / height, gap_x,
+  figure.command(fmt::format("set multiplot layout {},{} margins 0.115,0.98,{:.4f},{:.4f} spacing {:.3f},{:.4f}", rows,
+                             columns, 75.0 / height, 1.0 - 95.0 / height, gap_x,
                              (layout.shared_x ? 45.0 : 90.0) / height));
   if (layout.log_y) figure.command("set logscale y; set format y '%.0e'");
   for (int i = 0; i < count; ++i) {
@@ -113,7 +113,9 @@ Figure panel_grid(const std::vector<Panel>& panels, const PanelLayout& layout) {
     if (layout.shared_y) {
       figure.command(!left ? "set format y ''" : layout.log_y ? "set format y '%.0e'" : "set format y '%g'");
     }
-    figure.command(below ? fmt::format("set xlabel \"{}\"", layout.x_label) : std::string("unset xlabel"));
+    const std::string& own_label = panels[static_cast<std::size_t>(i)].x_label;
+    const std::string x_label = own_label.empty() && below ? layout.x_label : own_label;
+    figure.command(x_label.empty() ? std::string("unset xlabel") : fmt::format("set xlabel \"{}\"", x_label));
     if (layout.shared_x) figure.command(below ? "set format x '%g'" : "set format x ''");
     figure.command(plot_of(figure, panels[static_cast<std::size_t>(i)], ranges));
   }

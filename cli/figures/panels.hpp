@@ -21,6 +21,7 @@ struct Series {
 struct Panel {
   std::string title;
   std::vector<Series> series;  ///< drawn in this order, the last on top
+  std::string x_label = {};    ///< empty: the layout's, below the lowest row only
 };
 
 /// How panels stand together.
