@@ -18,6 +18,8 @@ struct HybridPoint {
   std::vector<int> multiplicity;  ///< order of the zero of each sliding speed right at `time`: 0, 1 or 2
   Eigen::VectorXd force;          ///< λ at `time`, right limit [nc]
   Eigen::VectorXd internal = {};  ///< contacts' own states, as State::internal
+
+  void assign(Resolution resolution);
 };
 
 /// Running sums of the energy balance (see EnergyAudit).

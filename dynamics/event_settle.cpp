@@ -1,0 +1,168 @@
+#include "core/errors.hpp"
+#include "dynamics/event_resolver.hpp"
+#include "dynamics/pair_kernels.hpp"
+
+#include <cmath>
+
+namespace slipmode::dynamics {
+namespace {
+
+/// A stick force this close to its limit (relative), and rising, reaches it together with the one that has.
+constexpr double kTogether = 1e-9;
+
+}  // namespace
+
+std::vector<bool> EventResolver::released_together(const HybridPoint& point, int contact) const {
+  std::vector<bool> released(point.modes.size());
+  if (contact < 0 || point.modes[static_cast<std::size_t>(contact)] != ContactMode::kStick ||
+      !decides_by_acceleration(point, static_cast<std::size_t>(contact)))
+    return released;
+  const std::vector<ContactForces> laws = laws_at(point);
+  const Instant now = instant(point, laws, point.force);
+  std::vector<bool> stuck;
+  for (std::size_t c = 0; c < laws_.size(); ++c)
+    stuck.push_back(point.modes[c] == ContactMode::kStick && decides_by_acceleration(point, c));
+  Eigen::VectorXd force = point.force, rate;
+  stick_forces(now, stuck, force);
+  for (std::size_t c = 0; c < released.size(); ++c) {
+    const auto i = static_cast<Eigen::Index>(c);
+    if (i == contact) {
+      released[c] = true;
+    } else if (stuck[c] && std::abs(force(i)) >= laws[c].limit(force(i)) * (1 - kTogether)) {
+      if (rate.size() == 0) rate = stick_force_rates(now, point.modes, force, deflections(point));
+      released[c] = rate(i) * force(i) > 0;
+    }
+  }
+  return released;
+}
+
+void EventResolver::settle(HybridPoint& point, int contact, bool touching, GuardKind kind) {
+  if (contact >= 0 && touching) {
+    const auto i = static_cast<std::size_t>(contact);
+    record(point, contact, EventKind::kGrazing, point.modes[i]);
+    point.multiplicity[i] = point.modes[i] == ContactMode::kStick ? 0 : 2;
+  } else if (plain_ && contact == 0) {
+    settle_single(point);
+  } else {
+    settle_coupled(point, contact, kind);
+  }
+  guard_against_zeno(point);
+}
+
+void EventResolver::settle_single(HybridPoint& point) {
+  const ContactMode before = point.modes[0];
+  const double force_before = point.force(0), gap = drive_.velocity(point.time) - contact_velocity(0, point.x.data());
+  const double impulse = gap / model_.mobility(0, 0);
+  const double* input = model_.input.data();
+  for (Eigen::Index i = 0; i < 2 * model_.np; i += kLanes)
+    store8(point.x.data() + i, load8(point.x.data() + i) + impulse * load8(input + i));
+  const SingleResolution next =
+      resolve_single(instant(point.time, point.x.data()), before == ContactMode::kStick, force_before > 0 ? 1.0 : -1.0);
+  point.modes[0] = next.mode;
+  point.multiplicity[0] = next.multiplicity;
+  point.force(0) = next.force;
+  record_change(point, 0, before);
+}
+
+void EventResolver::turn_compliant(HybridPoint& point, int c) const {
+  const auto i = static_cast<std::size_t>(c);
+  const ContactForces law = laws_at(point)[i];
+  double& stretch = point.internal(internal_[i]);
+  if (point.modes[i] != ContactMode::kStick) {
+    stretch = law.sliding(point.modes[i], 0.0) / law.stiffness;
+    point.modes[i] = ContactMode::kStick;
+    return;
+  }
+  // The contact point jumps to where the spring pulls with μ_k N, and slides on if it moves that way; else it is held
+  // there.
+  const ContactMode slip = stretch > 0 ? ContactMode::kSlipPositive : ContactMode::kSlipNegative;
+  stretch = law.sliding(slip, 0.0) / law.stiffness;
+  if (sign_of(slip) * slide_velocity(point, c, sign_of(slip)) > 0.0) point.modes[i] = slip;
+}
+
+void EventResolver::turn_load(HybridPoint& point, int c) const {
+  const auto i = static_cast<std::size_t>(c);
+  const bool compliant = laws_[i].kind == ContactForces::Kind::kCompliant;
+  if (compliant) point.internal(internal_[i]) = 0.0;
+  if (point.modes[i] != ContactMode::kSeparated) {
+    point.modes[i] = ContactMode::kSeparated;
+    return;
+  }
+  const double sliding = drive_.velocity(point.time) - contact_velocity(c, point.x.data());
+  const double sign = sliding > 0 ? 1.0 : -1.0;
+  const bool held =
+      compliant ? sign * slide_velocity(point, c, sign) <= 0.0 : at_belt_speed(point.time, c, point.x.data());
+  point.modes[i] = held ? ContactMode::kStick : sign > 0 ? ContactMode::kSlipPositive : ContactMode::kSlipNegative;
+}
+
+void EventResolver::settle_coupled(HybridPoint& point, int contact, GuardKind kind) {
+  const std::vector<ContactMode> before = point.modes;
+  const std::vector<bool> released =
+      kind == GuardKind::kFriction ? released_together(point, contact) : std::vector<bool>(point.modes.size());
+  if (contact >= 0 && kind == GuardKind::kLoad)
+    turn_load(point, contact);
+  else if (contact >= 0 && laws_[static_cast<std::size_t>(contact)].kind == ContactForces::Kind::kCompliant)
+    turn_compliant(point, contact);
+
+  // Rigid contacts at rest on the drive, to be decided together: the sticking ones, the one whose guard was reached,
+  // and any other whose sliding speed is zero to rounding.
+  std::vector<bool> at_rest(point.modes.size());
+  std::vector<Eigen::Index> resting;
+  for (std::size_t c = 0; c < point.modes.size(); ++c) {
+    const auto i = static_cast<int>(c);
+    if (!decides_by_acceleration(point, c)) continue;
+    at_rest[c] = point.modes[c] == ContactMode::kStick || (i == contact && kind == GuardKind::kFriction) ||
+                 at_belt_speed(point.time, i, point.x.data());
+    if (at_rest[c]) resting.push_back(i);
+  }
+  hold(point.time, resting, point.x.data());
+  const std::vector<ContactForces> laws = laws_at(point);
+  Eigen::VectorXd applied(model_.contacts);
+  for (int c = 0; c < model_.contacts; ++c) applied(c) = applied_force(point, c);
+  point.assign(resolve(instant(point, laws, applied), point.modes, at_rest, released));
+
+  if (contact < 0) record(point, -1, EventKind::kDriveCorner, ContactMode::kStick);
+  for (std::size_t c = 0; c < point.modes.size(); ++c)
+    if (point.modes[c] != before[c] || static_cast<int>(c) == contact)
+      record_change(point, static_cast<int>(c), before[c]);
+}
+
+void EventResolver::record(const HybridPoint& point, int contact, EventKind kind, ContactMode before) {
+  Event e{point.time, contact, kind, before, before, 0.0, 0.0, 0.0};
+  if (contact >= 0) {
+    e.after = point.modes[static_cast<std::size_t>(contact)];
+    e.displacement = dot_padded(model_.displacement_row.col(contact).data(), point.x.data(), 2 * model_.np) +
+                     model_.contact_offset(contact);
+    e.velocity = contact_velocity(contact, point.x.data());
+    e.force = point.force(contact);
+  }
+  events_.push_back(e);
+}
+
+void EventResolver::record_change(const HybridPoint& point, int contact, ContactMode before) {
+  const auto i = static_cast<std::size_t>(contact);
+  const ContactMode after = point.modes[i];
+  const bool jumped = laws_[i].kind == ContactForces::Kind::kCompliant && after == ContactMode::kStick;
+  record(point, contact,
+         after == before                     ? (jumped ? EventKind::kJump : EventKind::kGrazing)
+         : before == ContactMode::kSeparated ? EventKind::kContact
+         : after == ContactMode::kSeparated  ? EventKind::kSeparation
+         : before == ContactMode::kStick     ? EventKind::kRelease
+         : after == ContactMode::kStick      ? EventKind::kStick
+                                             : EventKind::kReversal,
+         before);
+}
+
+void EventResolver::guard_against_zeno(const HybridPoint& point) {
+  recent_.push_back(point.time);
+  const auto window = static_cast<std::size_t>(max_events_per_window_);
+  if (recent_.size() <= window) return;
+  const double since = recent_[recent_.size() - 1 - window];
+  if (point.time - since < zeno_window_)
+    throw NumericalFailure("Zeno: more than " + std::to_string(window) + " events within " +
+                               std::to_string(zeno_window_) + " before t = " + std::to_string(point.time),
+                           point.time, point.x, point.time - since);
+  if (recent_.size() > 8 * window) recent_.erase(recent_.begin(), recent_.end() - static_cast<std::ptrdiff_t>(window));
+}
+
+}  // namespace slipmode::dynamics
