@@ -30,12 +30,11 @@ std::string identity(const scene::Scene& scene, const std::vector<diagnostics::D
   return scene::fingerprint(text);
 }
 
-diagnostics::DrivenValidationOptions options_of(const scene::Scene& scene, std::size_t candidates, Eigen::Index size) {
+diagnostics::DrivenValidationOptions options_of(const scene::Scene& scene) {
   const auto& spec = scene.shaken;
   diagnostics::DrivenValidationOptions options;
   options.values = spec.frequencies ? spec.frequencies->values() : std::vector{scene::drive_parameter(scene)};
   options.modes.assign(spec.modes.begin(), spec.modes.end());
-  if (candidates == 1) options.modes = {size};
   options.mode = spec.follow == scene::ShakenValidationSpec::Follow::kNone ? diagnostics::SweepMode::kIndependent
                                                                            : diagnostics::SweepMode::kFollow;
   options.driven = driven_options(scene);
@@ -178,7 +177,7 @@ DrivenValidationReport validate_shaken_into(const Session& session, const scene:
   DrivenValidationReport report;
   {
     ProgressLine line("validate", session.progress_mode());
-    auto options = options_of(scene, candidates.size(), candidates.front().basis.modes());
+    auto options = options_of(scene);
     options.parallel = session.parallel(line);
     options.sink = driven_journal_sink(journal);
     report = diagnostics::validate_driven(full, drive_over_frequency(scene), candidates,
