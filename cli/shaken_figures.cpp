@@ -197,7 +197,9 @@ std::vector<FileFigure> shaken_figures_of(const StoreReader& store) {
   const std::string root = kShakenValidationGroup;
   if (store.has(root)) {
     add("agreement", "distance of reduced models to the full one against the number of modes", agreement);
+    const bool swept = scene::load_table(store, root + "/full/values").rows() > 1;
     for (const auto& [basis, models] : models_by_basis(store)) {
+      if (!swept) break;
       add("sweep_" + basis, "sections of reduced models over the full model's",
           [models, colour = colour_of_basis(basis)](const StoreReader& file) {
             return multiples(file, models, colour);

@@ -126,7 +126,8 @@ TEST_F(Shaken, AnyKeyOfTheSceneCanBeSwept) {
 }
 
 TEST_F(Shaken, ThePipelineLeavesSummaryValidationAndFigures) {
-  const auto summary = json({"run", kBeam, "-o", "out"});
+  const auto summary =
+      json({"run", kBeam, "-o", "out"}, {"--set", "validation.frequencies={from=10.0, to=12.0, step=1.0}"});
   ASSERT_EQ(summary["validation"]["bases"].size(), 4U);
   for (const auto& basis : summary["validation"]["bases"]) {
     for (const auto& row : basis["rows"]) EXPECT_FALSE(row.contains("failure")) << basis["basis"] << row;
