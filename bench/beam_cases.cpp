@@ -15,7 +15,8 @@ using dynamics::HybridSystem;
 using dynamics::State;
 
 constexpr double kCycles = 600.0, kTransientCycles = 100.0;
-constexpr double kTolerance = 1e-9, kReferenceTolerance = 1e-14;
+constexpr double kTolerance = 1e-9, kTightTolerance = 1e-12, kReferenceTolerance = 1e-14;
+constexpr int kRepeats = 5;
 constexpr double kWantedCvode = 300.0, kWantedOdeint = 25.0;
 constexpr std::array kPeers = {ShakenMethod::kAdams, ShakenMethod::kBdf, ShakenMethod::kDopri5};
 
@@ -34,10 +35,11 @@ struct Figures {
 struct BeamRow {
   std::string model;
   double frequency = 0.0;
-  double events = 0.0;         ///< per cycle, over 600
-  double audit_seconds = 0.0;  ///< of slipmode, per cycle
+  double events = 0.0;                             ///< per cycle, over 600
+  double long_seconds = 0.0, audit_seconds = 0.0;  ///< of slipmode, per cycle, over 600: audit off and on
   Figures slipmode;
   std::array<Figures, kPeers.size()> peers;
+  Figures tight;                  ///< dopri5 at 1e-12
   double reference_events = 0.0;  ///< per cycle, on the stretches
 
   [[nodiscard]] double ratio_cvode() const { return std::min(peers[0].seconds, peers[1].seconds) / slipmode.seconds; }
@@ -69,7 +71,6 @@ std::vector<State> starts_of(const HybridSystem& system, const BeamModel& model,
 }
 
 void time_slipmode(BeamRow& row, const HybridSystem& system, const State& start, double period) {
-  constexpr int kRepeats = 5;
   std::vector<double> plain, audited;
   for (int i = 0; i < kRepeats; ++i) {
     plain.push_back(thread_seconds_of([&] {
@@ -78,7 +79,7 @@ void time_slipmode(BeamRow& row, const HybridSystem& system, const State& start,
     }));
     audited.push_back(thread_seconds_of([&] { (void)advance(system, start, kCycles * period, true); }));
   }
-  row.slipmode.seconds = median(plain) / kCycles;
+  row.long_seconds = median(plain) / kCycles;
   row.audit_seconds = median(audited) / kCycles;
 }
 
@@ -87,33 +88,40 @@ BeamRow measure(const BeamModel& model, const scene::Scene& scene, double freque
   const ShakenCoordinates coordinates(system);
   const double period = 1.0 / frequency, duration = model.stretch * period;
   const double cycles = model.stretch * model.stretches;
-  BeamRow row{.model = model.name, .frequency = frequency, .slipmode = {}, .peers = {}};
+  BeamRow row{.model = model.name, .frequency = frequency, .slipmode = {}, .peers = {}, .tight = {}};
   const std::vector<State> starts = starts_of(system, model, period);
   time_slipmode(row, system, starts.front(), period);
   for (const State& start : starts) {
     const ShakenPoint from = coordinates.point(start);
     const ShakenRun truth = run_shaken_reference(coordinates.problem(), from, duration, kReferenceTolerance);
     row.reference_events += static_cast<double>(truth.event_times.size()) / cycles;
-    const auto own = advance(system, start, duration);
-    row.slipmode.add(coordinates.point(own.final_state).y, truth.y, changes(own), cycles);
-    for (std::size_t m = 0; m < kPeers.size(); ++m) {
-      ShakenRun run;
-      row.peers[m].seconds +=
-          thread_seconds_of([&] { run = run_shaken(kPeers[m], coordinates.problem(), from, duration, kTolerance); }) /
-          cycles;
-      row.peers[m].add(run.y, truth.y, run.event_times.size(), cycles);
+    dynamics::Trajectory own;
+    std::vector<double> seconds;
+    for (int i = 0; i < kRepeats; ++i) {
+      seconds.push_back(thread_seconds_of([&] { own = advance(system, start, duration); }));
     }
+    row.slipmode.seconds += median(seconds) / cycles;
+    row.slipmode.add(coordinates.point(own.final_state).y, truth.y, changes(own), cycles);
+    const auto run_peer = [&](ShakenMethod method, double tolerance, Figures& out) {
+      ShakenRun run;
+      const auto work = [&] { run = run_shaken(method, coordinates.problem(), from, duration, tolerance); };
+      out.seconds += thread_seconds_of(work) / cycles;
+      out.add(run.y, truth.y, run.event_times.size(), cycles);
+    };
+    for (std::size_t m = 0; m < kPeers.size(); ++m) run_peer(kPeers[m], kTolerance, row.peers[m]);
+    run_peer(ShakenMethod::kDopri5, kTightTolerance, row.tight);
   }
   return row;
 }
 
 std::string line(const BeamRow& row) {
-  const auto microseconds = [](double seconds) { return fmt::format("{:9.4g}", 1e6 * seconds); };
-  std::string out = fmt::format("{:<7}{:6.1f}{:9.2f}{}{} ", row.model, row.frequency, row.events,
-                                microseconds(row.slipmode.seconds), microseconds(row.audit_seconds));
+  const auto microseconds = [](double seconds) { return fmt::format("{:10.3g}", 1e6 * seconds); };
+  std::string out = fmt::format("{:<7}{:6.1f}{:9.2f}{}{} |{:9.2f}{}", row.model, row.frequency, row.events,
+                                microseconds(row.long_seconds), microseconds(row.audit_seconds), row.reference_events,
+                                microseconds(row.slipmode.seconds));
   for (const Figures& peer : row.peers) out += microseconds(peer.seconds);
-  return out + fmt::format("{:9.0f}{:8.0f}{:8.1f}{:8.0f}", row.ratio_cvode(), kWantedCvode, row.ratio_odeint(),
-                           kWantedOdeint);
+  return out + fmt::format("{}{:9.0f}{:7.0f}{:8.1f}{:7.0f}{:8.1f}", microseconds(row.tight.seconds), row.ratio_cvode(),
+                           kWantedCvode, row.ratio_odeint(), kWantedOdeint, row.tight.seconds / row.slipmode.seconds);
 }
 
 std::string error_line(const BeamRow& row) {
@@ -122,9 +130,9 @@ std::string error_line(const BeamRow& row) {
                        f.events);
   };
   std::string out =
-      fmt::format("{:<7}{:6.1f}{:9.2f}{}", row.model, row.frequency, row.reference_events, pair(row.slipmode));
+      fmt::format("{:<7}{:6.1f}{:8.2f}{}", row.model, row.frequency, row.reference_events, pair(row.slipmode));
   for (const Figures& peer : row.peers) out += pair(peer);
-  return out;
+  return out + pair(row.tight);
 }
 
 void add_figures(const BeamRow& row, Row& out_row) {
@@ -132,8 +140,9 @@ void add_figures(const BeamRow& row, Row& out_row) {
     out_row.figures.emplace_back(fmt::format("{} {:g} Hz: {}", row.model, row.frequency, what), value);
   };
   add("events per cycle", row.events);
+  add("slipmode seconds per cycle, 600 cycles", row.long_seconds);
   add("slipmode seconds per cycle", row.slipmode.seconds);
-  add("slipmode seconds per cycle, audit on", row.audit_seconds);
+  add("slipmode seconds per cycle, 600 cycles, audit on", row.audit_seconds);
   add("Adams seconds per cycle", row.peers[0].seconds);
   add("BDF seconds per cycle", row.peers[1].seconds);
   add("dopri5 seconds per cycle", row.peers[2].seconds);
@@ -142,6 +151,8 @@ void add_figures(const BeamRow& row, Row& out_row) {
   add("slipmode error", median(row.slipmode.errors));
   add("Adams error", median(row.peers[0].errors));
   add("BDF error", median(row.peers[1].errors));
+  add("dopri5 at 1e-12 seconds per cycle", row.tight.seconds);
+  add("dopri5 at 1e-12 error", median(row.tight.errors));
   add("dopri5 error", median(row.peers[2].errors));
 }
 
@@ -190,8 +201,10 @@ Row measure_beam(bool quick) {
       quick ? std::vector{12.0, 41.1} : std::vector{8.0, 12.0, 20.0, 30.0, 41.1, 55.0};
   Row out;
   std::vector<BeamRow> rows;
-  out.lines = {"               events slipmode audit on    Adams      BDF   dopri5   CVODE/ wanted  dopri5/ wanted",
-               "beam       Hz  /cycle µs/cycle µs/cycle µs/cycle µs/cycle µs/cycle  slipmode       slipmode"};
+  out.lines = {"CPU time in µs per cycle; left: 600 cycles, right: the stretches of the errors",
+               fmt::format("{:<7}{:>6}{:>9}{:>10}{:>10} |{:>9}{:>10}{:>10}{:>10}{:>10}{:>10}{:>9}{:>7}{:>8}{:>7}{:>8}",
+                           "beam", "Hz", "events", "slipmode", "audit on", "events", "slipmode", "Adams", "BDF",
+                           "dopri5", "at 1e-12", "CVODE/", "wanted", "dopri5/", "wanted", "1e-12/")};
   for (const BeamModel& model : beam_models(scene)) {
     for (const double frequency : frequencies) {
       rows.push_back(measure(model, scene, frequency));
@@ -201,20 +214,19 @@ Row measure_beam(bool quick) {
   }
   out.lines.emplace_back("");
   out.lines.emplace_back("errors: median, worst, events per cycle on the stretches");
-  out.lines.emplace_back(
-      "beam       Hz   truth  slipmode                     Adams                       BDF                    dopri5");
+  out.lines.push_back(fmt::format("{:<7}{:>6}{:>8}{:>26}{:>26}{:>26}{:>26}{:>26}", "beam", "Hz", "truth", "slipmode",
+                                  "Adams", "BDF", "dopri5", "dopri5, 1e-12"));
   for (const BeamRow& row : rows) out.lines.push_back(error_line(row));
   return out;
 }
 
-Row measure_beam_sweeps(bool quick) {
+Row measure_beam_sweep(std::size_t model, bool quick) {
   const scene::Scene scene = beam_scene();
   const std::vector<double> frequencies = diagnostics::sweep_values(5.0, 60.0, quick ? 1.0 : 0.1);
+  const BeamModel chosen = beam_models(scene).at(model);
   Row out;
   out.lines = {"sweep  audit   values      events    wall s     CPU s     CPU/2   wanted    residual"};
-  for (const BeamModel& model : beam_models(scene)) {
-    for (const bool audit : {false, true}) sweep(model, scene, frequencies, audit, out);
-  }
+  for (const bool audit : {true, false}) sweep(chosen, scene, frequencies, audit, out);
   return out;
 }
 

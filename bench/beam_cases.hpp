@@ -11,8 +11,9 @@ namespace slipmode::bench {
 /// norm of energy, relative to the state, against dopri5 in long double at 1e-14. @param quick  two frequencies
 [[nodiscard]] Row measure_beam(bool quick);
 
-/// Sweeps of 551 frequencies x 600 cycles of the three models on two threads, audit off and on.
+/// Sweep of 551 frequencies x 600 cycles on two threads, audit on and off.
+/// @param model  index into beam_models: POMF-3, LNM-10, FE-80
 /// @param quick  a tenth of the frequencies
-[[nodiscard]] Row measure_beam_sweeps(bool quick);
+[[nodiscard]] Row measure_beam_sweep(std::size_t model, bool quick);
 
 }  // namespace slipmode::bench

@@ -13,7 +13,7 @@ struct BeamModel {
   std::string name;
   diagnostics::DrivenCase shaken;  ///< read at the scene's gauge
   int stretches = 8;               ///< on which peers are timed and errors taken, evenly over the phases of the drive
-  double stretch = 1.0;            ///< their length, in cycles
+  double stretch = 10.0;           ///< their length, in cycles
   double sweep_target = 0.0;       ///< of the sweep of 551 frequencies [s]
 };
 

@@ -38,7 +38,9 @@ std::vector<LibraryCase> library_cases() {
           {"reduction", measure_reduction},
           {"pod", measure_pod, true},
           {"beam", measure_beam, true},
-          {"beam-sweeps", measure_beam_sweeps, true}};
+          {"beam-sweep-pomf", [](bool quick) { return measure_beam_sweep(0, quick); }, true},
+          {"beam-sweep-lnm", [](bool quick) { return measure_beam_sweep(1, quick); }, true},
+          {"beam-sweep-fe", [](bool quick) { return measure_beam_sweep(2, quick); }, true}};
 }
 
 std::vector<std::string> known_cases() {
