@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>

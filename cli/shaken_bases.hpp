@@ -5,6 +5,7 @@
 #include "pod/pomf.hpp"
 #include "scene/store.hpp"
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>

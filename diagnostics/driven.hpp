@@ -4,6 +4,7 @@
 #include "dynamics/simulate.hpp"
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <optional>
 
 namespace slipmode::diagnostics {
