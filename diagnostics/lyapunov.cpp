@@ -1,12 +1,12 @@
 #include "diagnostics/lyapunov.hpp"
 
+#include "core/decompositions.hpp"
 #include "core/errors.hpp"
 #include "core/random.hpp"
 #include "diagnostics/model.hpp"
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,10 +1,10 @@
 #include "diagnostics/model.hpp"
 
+#include "core/decompositions.hpp"
 #include "core/errors.hpp"
 #include "rom/reduce.hpp"
 
 #include <fmt/format.h>
-#include <Eigen/Cholesky>
 #include <Eigen/SparseCholesky>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
+#include "core/decompositions.hpp"
 #include "dynamics/collocation_flow.hpp"
 #include "dynamics/pair_kernels.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numbers>

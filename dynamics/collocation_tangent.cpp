@@ -1,9 +1,9 @@
 #include "dynamics/collocation_flow.hpp"
 
+#include "core/decompositions.hpp"
 #include "core/errors.hpp"
 #include "dynamics/pair_kernels.hpp"
 
-#include <Eigen/Dense>
 #include <cmath>
 
 namespace slipmode::dynamics {

@@ -1,9 +1,9 @@
 #include "dynamics/consistency.hpp"
 
+#include "core/decompositions.hpp"
 #include "core/errors.hpp"
 #include "dynamics/load_form.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>

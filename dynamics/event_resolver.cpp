@@ -1,9 +1,9 @@
 #include "dynamics/event_resolver.hpp"
 
+#include "core/decompositions.hpp"
 #include "core/errors.hpp"
 #include "dynamics/pair_kernels.hpp"
 
-#include <Eigen/Dense>
 #include <cmath>
 
 namespace slipmode::dynamics {

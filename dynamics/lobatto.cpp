@@ -1,6 +1,7 @@
 #include "dynamics/lobatto.hpp"
 
-#include <Eigen/Dense>
+#include "core/decompositions.hpp"
+
 #include <cmath>
 #include <numbers>
 

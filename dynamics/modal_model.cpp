@@ -1,10 +1,10 @@
 #include "dynamics/modal_model.hpp"
 
+#include "core/decompositions.hpp"
 #include "core/v8.hpp"
 #include "dynamics/pair_form.hpp"
 #include "fem/modes.hpp"
 
-#include <Eigen/Dense>
 #include <cmath>
 
 namespace slipmode::dynamics {

@@ -1,9 +1,8 @@
 #include "dynamics/pair_form.hpp"
 
+#include "core/decompositions.hpp"
 #include "core/errors.hpp"
 
-#include <Eigen/Dense>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <limits>
 #include <numeric>

@@ -1,9 +1,9 @@
 #include "dynamics/regime.hpp"
 
+#include "core/decompositions.hpp"
 #include "dynamics/pair_kernels.hpp"
 #include "dynamics/regime_build.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 

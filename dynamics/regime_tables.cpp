@@ -1,8 +1,8 @@
+#include "core/decompositions.hpp"
 #include "core/v8.hpp"
 #include "dynamics/lobatto.hpp"
 #include "dynamics/regime.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>

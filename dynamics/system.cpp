@@ -1,9 +1,9 @@
 #include "dynamics/system.hpp"
 
+#include "core/decompositions.hpp"
 #include "core/errors.hpp"
 #include "dynamics/cache.hpp"
 
-#include <Eigen/Dense>
 #include <string>
 
 namespace slipmode::dynamics {

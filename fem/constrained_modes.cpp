@@ -1,10 +1,10 @@
+#include "core/decompositions.hpp"
 #include "core/errors.hpp"
 #include "fem/eigensolvers.hpp"
 #include "fem/mode_conventions.hpp"
 #include "fem/modes.hpp"
 
 #include <fmt/format.h>
-#include <Eigen/QR>
 #include <algorithm>
 #include <optional>
 #include <vector>

@@ -1,9 +1,7 @@
+#include "core/decompositions.hpp"
 #include "core/errors.hpp"
 #include "fem/eigensolvers.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <cmath>
 #include <utility>
 

@@ -1,3 +1,4 @@
+#include "core/decompositions.hpp"
 #include "core/errors.hpp"
 #include "fem/eigensolvers.hpp"
 #include "fem/shift_invert.hpp"
@@ -6,7 +7,6 @@
 #include <Spectra/SymGEigsShiftSolver.h>
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 

@@ -1,9 +1,9 @@
 #include "fem/structure.hpp"
 
+#include "core/decompositions.hpp"
 #include "core/errors.hpp"
 
 #include <fmt/format.h>
-#include <Eigen/Cholesky>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,6 @@
 #include "pod/accumulator.hpp"
 
+#include "core/decompositions.hpp"
 #include "core/errors.hpp"
 #include "pod/assemble.hpp"
 #include "pod/right_svd.hpp"

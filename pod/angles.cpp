@@ -1,10 +1,9 @@
+#include "core/decompositions.hpp"
 #include "core/errors.hpp"
 #include "pod/mass_metric.hpp"
 #include "pod/pod.hpp"
 
 #include <fmt/format.h>
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 

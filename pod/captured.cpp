@@ -1,10 +1,10 @@
+#include "core/decompositions.hpp"
 #include "core/errors.hpp"
 #include "pod/assemble.hpp"
 #include "pod/centred.hpp"
 #include "pod/mass_metric.hpp"
 
 #include <fmt/format.h>
-#include <Eigen/QR>
 #include <cmath>
 
 namespace slipmode::pod {

@@ -1,9 +1,9 @@
+#include "core/decompositions.hpp"
 #include "core/errors.hpp"
 #include "pod/assemble.hpp"
 #include "pod/centred.hpp"
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
 

@@ -1,3 +1,4 @@
+#include "core/decompositions.hpp"
 #include "core/errors.hpp"
 #include "pod/assemble.hpp"
 #include "pod/centred.hpp"

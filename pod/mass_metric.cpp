@@ -1,5 +1,6 @@
 #include "pod/mass_metric.hpp"
 
+#include "core/decompositions.hpp"
 #include "core/errors.hpp"
 
 #include <fmt/format.h>

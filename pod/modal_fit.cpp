@@ -1,10 +1,10 @@
 #include "pod/modal_fit.hpp"
 
+#include "core/decompositions.hpp"
 #include "core/errors.hpp"
 #include "fem/modes.hpp"
 
 #include <fmt/format.h>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <limits>
 #include <utility>

@@ -1,10 +1,10 @@
 #include "pod/pod.hpp"
 
+#include "core/decompositions.hpp"
 #include "pod/accumulator.hpp"
 #include "pod/assemble.hpp"
 #include "pod/right_svd.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <limits>
 

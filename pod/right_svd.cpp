@@ -1,10 +1,9 @@
 #include "pod/right_svd.hpp"
 
+#include "core/decompositions.hpp"
 #include "core/errors.hpp"
 
 #include <fmt/format.h>
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>

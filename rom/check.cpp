@@ -1,10 +1,9 @@
 #include "rom/check.hpp"
 
+#include "core/decompositions.hpp"
 #include "core/errors.hpp"
 
 #include <fmt/format.h>
-#include <Eigen/QR>
-#include <Eigen/SVD>
 
 namespace slipmode::rom {
 

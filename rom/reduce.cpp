@@ -1,10 +1,10 @@
 #include "rom/reduce.hpp"
 
+#include "core/decompositions.hpp"
 #include "core/errors.hpp"
 #include "rom/check.hpp"
 
 #include <fmt/format.h>
-#include <Eigen/SVD>
 #include <string>
 #include <utility>
 #include <vector>

@@ -1,10 +1,9 @@
+#include "core/decompositions.hpp"
 #include "core/errors.hpp"
 #include "rom/check.hpp"
 #include "rom/reduce.hpp"
 
 #include <fmt/format.h>
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <string_view>
 
 namespace slipmode::rom {

@@ -1,10 +1,10 @@
+#include "core/decompositions.hpp"
 #include "core/errors.hpp"
 #include "fem/modes.hpp"
 #include "pod/gram_schmidt.hpp"
 #include "rom/reduce.hpp"
 
 #include <fmt/format.h>
-#include <Eigen/Cholesky>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 

@@ -1,10 +1,10 @@
+#include "core/decompositions.hpp"
 #include "core/errors.hpp"
 #include "core/random.hpp"
 #include "fem/modes.hpp"
 #include "scene/scene.hpp"
 
 #include <fmt/format.h>
-#include <Eigen/LU>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>

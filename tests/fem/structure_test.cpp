@@ -1,4 +1,5 @@
 #include "fem/structure.hpp"
+#include "core/decompositions.hpp"
 
 #include "core/errors.hpp"
 

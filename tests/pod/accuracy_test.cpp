@@ -1,3 +1,4 @@
+#include "core/decompositions.hpp"
 #include "core/errors.hpp"
 #include "known.hpp"
 #include "pod/accumulator.hpp"

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "core/decompositions.hpp"
 #include "core/random.hpp"
 #include "pod/ensemble.hpp"
 
-#include <Eigen/Dense>
 #include <cmath>
 #include <cstdint>
 

@@ -1,12 +1,11 @@
 #include "cantilever.hpp"
+#include "core/decompositions.hpp"
 #include "core/errors.hpp"
 #include "fem/modes.hpp"
 #include "known.hpp"
 #include "pod/pod.hpp"
 
 #include <gtest/gtest.h>
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 
 namespace slipmode::pod {
 namespace {

@@ -1,4 +1,5 @@
 #include "pod/modal_fit.hpp"
+#include "core/decompositions.hpp"
 
 #include "cantilever.hpp"
 #include "core/errors.hpp"
@@ -6,7 +7,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <Eigen/Eigenvalues>
 
 namespace slipmode::pod {
 namespace {

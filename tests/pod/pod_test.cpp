@@ -1,4 +1,5 @@
 #include "pod/pod.hpp"
+#include "core/decompositions.hpp"
 
 #include "core/errors.hpp"
 #include "known.hpp"

@@ -1,4 +1,5 @@
 #include "pod/pomf.hpp"
+#include "core/decompositions.hpp"
 
 #include "cantilever.hpp"
 #include "core/errors.hpp"

@@ -1,3 +1,4 @@
+#include "core/decompositions.hpp"
 #include "core/errors.hpp"
 #include "fem/chain.hpp"
 #include "fem/modes.hpp"

@@ -1,4 +1,5 @@
 #include "fem/beam.hpp"
+#include "core/decompositions.hpp"
 
 #include "fem/modes.hpp"
 #include "random_model.hpp"

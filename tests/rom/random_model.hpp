@@ -1,10 +1,9 @@
 #pragma once
 
+#include "core/decompositions.hpp"
 #include "core/random.hpp"
 #include "dynamics/system.hpp"
 #include "pod/basis.hpp"
-
-#include <Eigen/Dense>
 
 namespace slipmode::tests {
 

@@ -1,4 +1,5 @@
 #include "rom/reduce.hpp"
+#include "core/decompositions.hpp"
 
 #include "core/errors.hpp"
 #include "fem/chain.hpp"

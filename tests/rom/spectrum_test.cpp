@@ -1,8 +1,8 @@
+#include "core/decompositions.hpp"
 #include "random_model.hpp"
 #include "rom/reduce.hpp"
 
 #include <gtest/gtest.h>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 
 namespace slipmode::rom {

@@ -1,3 +1,4 @@
+#include "core/decompositions.hpp"
 #include "core/errors.hpp"
 #include "random_model.hpp"
 #include "rom/reduce.hpp"

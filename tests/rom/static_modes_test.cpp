@@ -1,3 +1,4 @@
+#include "core/decompositions.hpp"
 #include "core/errors.hpp"
 #include "fem/beam.hpp"
 #include "fem/chain.hpp"

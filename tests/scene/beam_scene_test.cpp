@@ -1,12 +1,12 @@
 // Scenes of shaken beams: what is read, written, built. Their error messages: beam_scene_errors_test.cpp.
 
 #include "scene/beam_scene.hpp"
+#include "core/decompositions.hpp"
 #include "core/errors.hpp"
 #include "fem/modes.hpp"
 #include "scene/scene.hpp"
 
 #include <gtest/gtest.h>
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
