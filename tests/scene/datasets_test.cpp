@@ -64,6 +64,7 @@ std::vector<Expectation> all_expectations() {
     text << std::ifstream(path).rdbuf();
     const scene::TomlDocument document(text.str(), path.string(), {});
     scene::TomlReader in(document);
+    if (!in.has("expect")) continue;  // shaken: beam_datasets_test
     const double own_speed = scene::load_scene(entry.path() / "scene.toml").drive.velocity(0.0);
     for (scene::TomlReader& item : in.tables("expect")) {
       found.push_back(read_expectation(item, entry.path().filename(), own_speed));
