@@ -2,8 +2,8 @@
 
 #include <Eigen/Dense>
 
-/// Eigen's decompositions of MatrixXd, compiled once in decompositions.cpp. Including this instead of <Eigen/Dense> where
-/// they are used takes half a minute off a source file.
+/// Eigen's decompositions of MatrixXd, compiled once in decompositions.cpp. Including this instead of <Eigen/Dense>
+/// where they are used takes half a minute off a source file.
 namespace Eigen {
 extern template class JacobiSVD<MatrixXd>;
 extern template class BDCSVD<MatrixXd>;

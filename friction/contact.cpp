@@ -1,6 +1,7 @@
 #include "friction/contact.hpp"
 
 #include "core/errors.hpp"
+#include "core/overloaded.hpp"
 
 #include <fmt/format.h>
 #include <cmath>
@@ -9,13 +10,6 @@
 namespace slipmode::friction {
 
 namespace {
-
-template <class... Ts>
-struct Overloaded : Ts... {
-  using Ts::operator()...;
-};
-template <class... Ts>
-Overloaded(Ts...) -> Overloaded<Ts...>;  // Clang before 17 does not deduce aggregates
 
 struct Checker {
   const Contact& contact;

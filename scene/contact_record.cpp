@@ -1,5 +1,6 @@
 #include "scene/contact_record.hpp"
 
+#include "core/overloaded.hpp"
 #include "scene/scene_words.hpp"
 
 #include <fmt/format.h>
@@ -13,13 +14,6 @@ namespace slipmode::scene {
 namespace {
 
 constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
-
-template <class... Ts>
-struct Overloaded : Ts... {
-  using Ts::operator()...;
-};
-template <class... Ts>
-Overloaded(Ts...) -> Overloaded<Ts...>;  // Clang before 17 does not deduce aggregates
 
 /// The numbers of all laws; NaN where a law has none.
 struct LawNumbers {

@@ -1,3 +1,4 @@
+#include "core/overloaded.hpp"
 #include "scene/scene_words.hpp"
 #include "scene/toml_text.hpp"
 
@@ -7,13 +8,6 @@
 namespace slipmode::scene {
 
 namespace {
-
-template <class... Ts>
-struct Overloaded : Ts... {
-  using Ts::operator()...;
-};
-template <class... Ts>
-Overloaded(Ts...) -> Overloaded<Ts...>;  // Clang before 17 does not deduce aggregates
 
 std::string line(const char* key, double value) { return fmt::format("{} = {}\n", key, number_text(value)); }
 
