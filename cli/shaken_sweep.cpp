@@ -2,8 +2,8 @@
 #include "cli/shaken_bases.hpp"
 #include "cli/shaken_model.hpp"
 #include "cli/steps.hpp"
+#include "cli/sweep_report.hpp"
 #include "cli/sweep_request.hpp"
-#include "cli/text_table.hpp"
 #include "rom/reduce.hpp"
 #include "scene/journal.hpp"
 #include "scene/provenance.hpp"
@@ -97,19 +97,12 @@ struct Pass {
 Report summary(const SweepRequest& request, const Subject& swept, const Over& over, const Pass& found) {
   const auto& points = found.up.empty() ? found.down : found.up;
   Report report;
-  TextTable table({"motion", "values", "share [%]"});
-  Json motions = Json::object();
-  for (const MotionCount& count : count_motions(points)) {
-    const double share = 100.0 * static_cast<double>(count.values) / static_cast<double>(points.size());
-    table.add({count.motion, fmt::format("{}", count.values), fixed(share, 1)});
-    motions[count.motion] = count.values;
-  }
+  const MotionTable motions = motion_table(count_motions(points), points.size());
   double audit = 0.0;
-  Json failures = Json::array(), peaks = Json::array();
-  for (const auto& point : points) {
+  for (const auto& point : points)
     if (point.ok()) audit = std::max(audit, std::abs(point.settled.audit_residual));
-    if (!point.ok()) failures.push_back({{"value", point.parameter}, {"reason", point.failure}});
-  }
+  const Json failures = failures_of(points);
+  Json peaks = Json::array();
   const auto highest = diagnostics::amplitude_peaks(points);
   for (const auto& peak : highest) peaks.push_back({{"value", peak.parameter}, {"amplitude", peak.amplitude}});
   report.data = {{"verb", "sweep"},
@@ -117,23 +110,19 @@ Report summary(const SweepRequest& request, const Subject& swept, const Over& ov
                  {"model", swept.title},
                  {"key", over.key},
                  {"values", points.size()},
-                 {"motions", motions},
+                 {"motions", motions.json},
                  {"largest_audit_residual", audit},
                  {"peaks", peaks},
                  {"failures", failures}};
   report.text = fmt::format("{}: {} values of {}, largest energy residual {:.1e}\n{}peaks of the amplitude at {}\n",
-                            swept.title, points.size(), over.key, audit, table.str(), peaks_text(highest));
+                            swept.title, points.size(), over.key, audit, motions.text.str(), peaks_text(highest));
   if (request.both) {
     const double share = diagnostics::hysteresis(found.up, found.down);
     report.data["hysteresis"] = share;
     report.text += fmt::format("up and down differ at {:.1f} % of the values\n", 100.0 * share);
   }
   report.text += fmt::format("Sweep: {}\n", request.output);
-  if (!failures.empty()) {
-    report.text += fmt::format("{} values failed, first at {:g}: {}\n", failures.size(),
-                               failures.front()["value"].get<double>(), failures.front()["reason"].get<std::string>());
-    if (failures.size() == points.size()) report.exit_code = kNumericalFailure;
-  }
+  report_failures(report, failures, points.size());
   return report;
 }
 

@@ -2,9 +2,9 @@
 
 #include "cli/shaken_model.hpp"
 #include "cli/steps.hpp"
+#include "cli/sweep_report.hpp"
 #include "cli/sweep_request.hpp"
 #include "cli/sweep_store.hpp"
-#include "cli/text_table.hpp"
 #include "cli/validation_setup.hpp"
 #include "cli/verbs.hpp"
 #include "rom/reduce.hpp"
@@ -71,26 +71,13 @@ Subject subject(const scene::Scene& scene, const std::string& key, const std::st
 Report summary(const SweepRequest& request, const Subject& swept, const Over& over,
                const std::vector<diagnostics::SweepPoint>& points) {
   Report report;
-  TextTable table({"motion", "values", "share [%]"});
-  Json motions = Json::object();
-  for (const MotionCount& count : count_motions(points)) {
-    const double share = 100.0 * static_cast<double>(count.values) / static_cast<double>(points.size());
-    table.add({count.motion, fmt::format("{}", count.values), fixed(share, 1)});
-    motions[count.motion] = count.values;
-  }
-  Json failures = Json::array();
-  for (const auto& point : points) {
-    if (!point.ok()) failures.push_back({{"value", point.parameter}, {"reason", point.failure}});
-  }
-  report.data = {{"verb", "sweep"},         {"file", request.output}, {"model", swept.title}, {"key", over.key},
-                 {"values", points.size()}, {"motions", motions},     {"failures", failures}};
-  report.text = fmt::format("{}: {} values of {}\n{}{}Sweep: {}\n", swept.title, points.size(), over.key, table.str(),
-                            undecided_note(points), request.output);
-  if (!failures.empty()) {
-    report.text += fmt::format("{} values failed, first at {:g}: {}\n", failures.size(),
-                               failures.front()["value"].get<double>(), failures.front()["reason"].get<std::string>());
-    if (failures.size() == points.size()) report.exit_code = kNumericalFailure;
-  }
+  const MotionTable motions = motion_table(count_motions(points), points.size());
+  const Json failures = failures_of(points);
+  report.data = {{"verb", "sweep"},         {"file", request.output},  {"model", swept.title}, {"key", over.key},
+                 {"values", points.size()}, {"motions", motions.json}, {"failures", failures}};
+  report.text = fmt::format("{}: {} values of {}\n{}{}Sweep: {}\n", swept.title, points.size(), over.key,
+                            motions.text.str(), undecided_note(points), request.output);
+  report_failures(report, failures, points.size());
   return report;
 }
 

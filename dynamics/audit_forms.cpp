@@ -135,10 +135,18 @@ bool AuditForms::integrate(const Power& power, Form& out) const {
   return out.constant.allFinite() && out.cosine.allFinite() && out.sine.allFinite();
 }
 
+void AuditForms::Form::set_inputs(const Eigen::VectorXd& inputs) {
+  const auto ni = inputs.size();
+  resting = constant * inputs;
+  mean = inputs.dot(steady.topLeftCorner(ni, ni) * inputs);
+  along_cosine = inputs.dot(steady.col(ni).head(ni) + steady.row(ni).head(ni).transpose());
+  along_sine = inputs.dot(steady.col(ni + 1).head(ni) + steady.row(ni + 1).head(ni).transpose());
+}
+
 double AuditForms::value(const Form& form, double t, const Eigen::VectorXd& free) const {
   const auto ni = regime_.inputs();
   const DrivePhase p = overlay_.phase(t);
-  double sum = free.dot(form.cosine) * p.cosine + free.dot(form.sine) * p.sine + free.dot(form.constant * inputs_);
+  double sum = free.dot(form.cosine) * p.cosine + free.dot(form.sine) * p.sine + free.dot(form.resting);
   for (Eigen::Index j = 0; j < form.Y.cols(); ++j) {
     const Eigen::Index from = j / kLanes * kLanes;
     sum += free(j) * dot_padded(form.Y.col(j).data() + from, free.data() + from, free.size() - from);
@@ -146,10 +154,8 @@ double AuditForms::value(const Form& form, double t, const Eigen::VectorXd& free
   // ∫ uᵀPu over the stay, with the integrals of 1, cos θ, sin θ, cos² θ, cos θ sin θ and sin² θ.
   const double w = overlay_.omega(), stay = t - begin_;
   const Eigen::MatrixXd& P = form.steady;
-  const Eigen::VectorXd once_c = P.topRows(ni).col(ni) + P.row(ni).head(ni).transpose();
-  const Eigen::VectorXd once_s = P.topRows(ni).col(ni + 1) + P.row(ni + 1).head(ni).transpose();
-  sum += stay * inputs_.dot(P.topLeftCorner(ni, ni) * inputs_);
-  sum += (inputs_.dot(once_c) * p.sine - inputs_.dot(once_s) * p.cosine) / w;
+  sum += stay * form.mean;
+  sum += (form.along_cosine * p.sine - form.along_sine * p.cosine) / w;
   const double both = p.sine * p.cosine / (2.0 * w);
   sum += P(ni, ni) * (stay / 2.0 + both) + P(ni + 1, ni + 1) * (stay / 2.0 - both);
   sum += (P(ni, ni + 1) + P(ni + 1, ni)) * p.sine * p.sine / (2.0 * w);
@@ -182,6 +188,7 @@ StayWork AuditForms::values(double t, const Eigen::VectorXd& x) const {
 void AuditForms::begin(double t, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs) {
   begin_ = t;
   inputs_ = inputs;
+  for (Form* form : {&contact_, &drive_, &viscous_}) form->set_inputs(inputs);
   resting_ = regime_.particular * inputs;
   at_begin_ = values(t, x);
 }

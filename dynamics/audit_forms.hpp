@@ -40,6 +40,13 @@ class AuditForms {
     Eigen::MatrixXd constant;      ///< ι → y of the constant part [2np x ni]
     Eigen::VectorXd cosine, sine;  ///< y of the harmonic part [2np]
     Eigen::MatrixXd steady;        ///< uᵀ(this)u is what does not depend on x_f [(ni+2) x (ni+2)]
+
+    /// Under the inputs of a stay: y of the constant part [2np], and the mean, cos θ and sin θ parts of what does not
+    /// depend on x_f.
+    Eigen::VectorXd resting;
+    double mean = 0.0, along_cosine = 0.0, along_sine = 0.0;
+
+    void set_inputs(const Eigen::VectorXd& inputs);
   };
   /// The same before integration.
   struct Power {
