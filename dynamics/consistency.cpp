@@ -138,6 +138,9 @@ ContactForces contact_forces(const friction::Contact& contact) {
     f.drop = (tanh->mu_s - tanh->mu_k) * N;
     f.alpha = tanh->alpha;
     f.epsilon = tanh->epsilon;
+  } else if (std::holds_alternative<friction::Clearance>(contact.law)) {
+    f.kind = ContactForces::Kind::kClearance;
+    return f;
   } else {
     f.kind = ContactForces::Kind::kBristle;
     f.bristle = bristle_forces(contact.law, N);
@@ -260,10 +263,7 @@ Eigen::VectorXd stick_force_rates(const Instant& now, const std::vector<ContactM
   const ModalModel& m = now.model;
   const auto np = m.np;
   const Eigen::Map<const Eigen::VectorXd> x(now.x, 2 * np);
-  Eigen::VectorXd rate(2 * np);
-  rate.head(np) = m.g11.cwiseProduct(x.head(np)) + m.g12.cwiseProduct(x.tail(np));
-  rate.tail(np) = m.g21.cwiseProduct(x.head(np)) + m.g22.cwiseProduct(x.tail(np));
-  rate += m.input * force + m.load;
+  const Eigen::VectorXd rate = m.rate(x, force);
   Eigen::VectorXd force_rate = Eigen::VectorXd::Zero(m.contacts);
   std::vector<Eigen::Index> stuck;
   for (int c = 0; c < m.contacts; ++c) {

@@ -17,8 +17,8 @@ struct ContactForces {
   /// kFree: no force ever (μ_s N = 0); kConstant: the force in slip depends on the normal load alone; kCompliant: the
   /// same behind a contact spring; kStribeck: it depends on the sliding speed; kSmooth: no stick at all. Free and
   /// smooth contacts have no events (ContactMode::kSmooth). kBristle: no stick either, but the sliding speed's sign
-  /// matters; its forces are the collocation flow's.
-  enum class Kind : std::uint8_t { kFree, kConstant, kCompliant, kStribeck, kSmooth, kBristle };
+  /// matters; its forces are the collocation flow's. kClearance: stops with play between them, no friction.
+  enum class Kind : std::uint8_t { kFree, kConstant, kCompliant, kStribeck, kSmooth, kBristle, kClearance };
   Kind kind = Kind::kConstant;
   double static_limit = 0.0;  ///< μ_s N, in the direction in which it is larger
   double kinetic = 0.0;       ///< μ_k N; without tilt
@@ -47,10 +47,12 @@ struct ContactForces {
   }
   /// Piecewise linear, and its force in slip constant: what the collocation flow takes without a law to solve.
   [[nodiscard]] bool is_constant() const { return kind == Kind::kFree || kind == Kind::kConstant; }
-  [[nodiscard]] bool is_piecewise_linear() const { return is_constant() || kind == Kind::kCompliant; }
-  /// Has what only the closed-form flow provides: a contact spring, a load that varies, a tilted slider.
+  [[nodiscard]] bool is_piecewise_linear() const {
+    return is_constant() || kind == Kind::kCompliant || kind == Kind::kClearance;
+  }
+  /// Has what only the closed-form flow provides: a contact spring, a clearance, a load that varies, a tilted slider.
   [[nodiscard]] bool needs_closed_form() const {
-    return kind == Kind::kCompliant || varies || mu_s[0] != mu_s[1] || mu_k[0] != mu_k[1];
+    return kind == Kind::kCompliant || kind == Kind::kClearance || varies || mu_s[0] != mu_s[1] || mu_k[0] != mu_k[1];
   }
   /// λ while sliding with relative velocity v in this mode (not stick).
   [[nodiscard]] double sliding(ContactMode mode, double v) const;

@@ -119,6 +119,21 @@ std::vector<ContactRole> EventResolver::roles(const std::vector<ContactMode>& mo
       case ContactMode::kSmooth:
         roles.push_back(ContactRole::kSliding);
         break;
+      case ContactMode::kGap:
+        roles.push_back(ContactRole::kGap);
+        break;
+      case ContactMode::kLeftStop:
+        roles.push_back(ContactRole::kLeftStop);
+        break;
+      case ContactMode::kRightStop:
+        roles.push_back(ContactRole::kRightStop);
+        break;
+      case ContactMode::kLeftFlight:
+        roles.push_back(ContactRole::kLeftFlight);
+        break;
+      case ContactMode::kRightFlight:
+        roles.push_back(ContactRole::kRightFlight);
+        break;
     }
   }
   return roles;

@@ -142,6 +142,13 @@ double ModalModel::viscous_power(const Eigen::VectorXd& x) const {
   return damping.dot(x.tail(np).cwiseAbs2());
 }
 
+Eigen::VectorXd ModalModel::rate(const Eigen::VectorXd& x, const Eigen::VectorXd& force) const {
+  Eigen::VectorXd rate = input * force + load;
+  rate.head(np) += g11.cwiseProduct(x.head(np)) + g12.cwiseProduct(x.tail(np));
+  rate.tail(np) += g21.cwiseProduct(x.head(np)) + g22.cwiseProduct(x.tail(np));
+  return rate;
+}
+
 Eigen::Matrix2d ModalModel::exponential(Eigen::Index i, double t) const {
   // e^{Gt} = e^{τt}(c I + s (G − τI)), τ = tr/2, c and s the (hyperbolic) cosine and sine of sqrt(|Δ|) t.
   const double tau = (g11(i) + g22(i)) / 2.0;

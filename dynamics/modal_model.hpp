@@ -55,6 +55,8 @@ struct ModalModel {
   void measure_rates();
   /// q̇ᵀCq̇ of a state [W].
   [[nodiscard]] double viscous_power(const Eigen::VectorXd& x) const;
+  /// ẋ under these contact forces and the constant load.
+  [[nodiscard]] Eigen::VectorXd rate(const Eigen::VectorXd& x, const Eigen::VectorXd& force) const;
   [[nodiscard]] bool has_shapes() const { return to_q.size() > 0; }
   /// e^{G_i t} of pair i as {a, b; c, d}: stable for oscillating, critical, overdamped and rigid-body pairs.
   [[nodiscard]] Eigen::Matrix2d exponential(Eigen::Index pair, double t) const;

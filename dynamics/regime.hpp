@@ -18,6 +18,11 @@ enum class ContactRole : std::int8_t {
   kSlidingNegative,  ///< slides with a force proportional to a normal load that varies
   kSlidingPositive,
   kSeparated,  ///< no force; only where the normal load varies
+  kGap,        ///< no force, between the stops of a clearance
+  kLeftStop,   ///< pressed by the stop's stiffness and damping
+  kRightStop,
+  kLeftFlight,  ///< no force, beyond the gap of a stop that has let go
+  kRightFlight,
 };
 
 /// A scalar of a regime that must keep its sign: what guards are made of.

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -15,8 +16,8 @@ enum class EventKind : std::uint8_t {
   kReversal,     ///< v_rel passes through zero without sticking
   kGrazing,      ///< v_rel (or the stick force) touched its limit within tolerance; the mode did not change
   kDriveCorner,  ///< the drive's acceleration jumped; contact is -1
-  kSeparation,   ///< the normal load fell to zero: contact lost
-  kContact,      ///< the normal load rose from zero: contact regained
+  kSeparation,   ///< contact lost: the normal load, or a stop's force or its way past the gap, fell to zero
+  kContact,      ///< contact gained: the normal load rose from zero, or a stop was reached
   kJump,         ///< behind a contact spring: the contact point slipped from μ_s N to μ_k N and sticks again
 };
 
@@ -39,7 +40,7 @@ enum class FlowMethod {
   kCollocation,  ///< scalar Volterra collocation of the contact forces, error-controlled; any law
 };
 
-/// Energy bookkeeping of a run: E_end − E_start = contact_work − viscous_loss, with
+/// Energy bookkeeping of a run: E_end − E_start = contact_work + force_work − viscous_loss, with
 /// contact_work = drive_work − friction_loss.
 struct EnergyAudit {
   double energy_start = 0.0;
@@ -47,11 +48,14 @@ struct EnergyAudit {
   double contact_work = 0.0;  ///< ∫ Σ λ wᵀq̇ dt, done on the structure [J]
   double drive_work = 0.0;    ///< ∫ Σ λ v_drive dt [J]
   /// ∫ Σ λ v_rel dt [J]: what friction dissipates and what contact springs and bristles store more than at the start,
-  /// ½ Σ K_c (y_c − y)² and ½ Σ σ₀ z². Rigid and tanh laws store nothing: ≥ 0. It can be < 0 after a deflected start.
+  /// ½ Σ K_c (y_c − y)² and ½ Σ σ₀ z², or stops ½ Σ k (|y| − b)². Rigid and tanh laws store nothing: ≥ 0. It can be < 0
+  /// after a deflected start.
   double friction_loss = 0.0;
+  /// ∫ Σ u_k d_kᵀq̇ dt, done by a force drive [J].
+  double force_work = 0.0;
   double viscous_loss = 0.0;  ///< ∫ q̇ᵀC q̇ dt ≥ 0 [J]
   double exchanged = 0.0;     ///< scale: |contact work| summed over steps + viscous loss + largest energy seen [J]
-  /// (E_end − E_start − contact_work + viscous_loss) / exchanged
+  /// (E_end − E_start − contact_work − force_work + viscous_loss) / exchanged
   [[nodiscard]] double residual() const;
 };
 
@@ -107,14 +111,38 @@ struct Trajectory {
 /// @throws NumericalFailure  with time and state (q, q̇): Zeno, no convergence of the collocation, values not finite
 [[nodiscard]] Trajectory simulate(const HybridSystem& system, const State& start, const SimulateOptions& options);
 
-/// Fundamental matrix of the flow over [start, start + duration] with saltation at every event.
+/// The flow over [start, start + duration] with its fundamental matrix, saltation at every event included.
+///
+/// Coordinates of the tangents are (q, q̇, internal), internal as State::internal, N = 2n + internal_size.
 struct TangentResult {
   State end;
-  Eigen::MatrixXd monodromy;  ///< 2n x 2n, d(q,v)_end / d(q,v)_start
+  Eigen::MatrixXd monodromy;  ///< d(end)/d(start) at fixed duration [N x N]
+  /// d(q, q̇, internal)/dt at the end, before an event there [N]: what one more instant of duration adds.
+  Eigen::VectorXd rate;
   std::vector<Event> events;
 };
 
-/// Carries the tangent flow along. Entering stick projects out one direction (rank drops by one).
+/// Runs the tangent flow again and again on one system, as shooting does: what a run has prepared serves the next.
+/// Not for several threads at once; copies of the system are.
+class TangentFlow {
+ public:
+  /// @throws InvalidInput  as `simulate`, and for contacts with bristles
+  explicit TangentFlow(const HybridSystem& system, const FlowOptions& options = {.audit = false});
+  TangentFlow(TangentFlow&&) noexcept;
+  TangentFlow& operator=(TangentFlow&&) noexcept;
+  ~TangentFlow();
+
+  /// Carries all N tangents. Entering stick projects out one direction (rank drops by one).
+  [[nodiscard]] TangentResult run(const State& start, double duration);
+  /// Carries these alone: `monodromy` is d(end)/d(start) times them. @param directions  [N x k]
+  [[nodiscard]] TangentResult run(const State& start, double duration, const Eigen::MatrixXd& directions);
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+/// One run of a TangentFlow.
 [[nodiscard]] TangentResult tangent_flow(const HybridSystem& system, const State& start, double duration,
                                          const FlowOptions& options = {});
 

@@ -7,13 +7,26 @@
 #include <string>
 
 namespace slipmode::dynamics {
+namespace {
+
+void check_drive(const friction::Drive& drive, Eigen::Index directions) {
+  friction::validate(drive);
+  if (const friction::Force* force = drive.force())
+    for (const friction::ForceHarmonic& h : force->harmonics)
+      if (h.direction >= directions)
+        throw InvalidInput("a harmonic of the force acts along direction " + std::to_string(h.direction) +
+                           " (from 0), but the system has " + std::to_string(directions) + " force directions");
+}
+
+}  // namespace
 
 HybridSystem::HybridSystem(fem::Structure structure, std::vector<friction::Contact> contacts, friction::Drive drive,
-                           Eigen::VectorXd load)
+                           Eigen::VectorXd load, Eigen::MatrixXd force_directions)
     : structure_(std::move(structure)),
       contacts_(std::move(contacts)),
-      drive_(drive),
+      drive_(std::move(drive)),
       load_(std::move(load)),
+      force_directions_(std::move(force_directions)),
       cache_(std::make_shared<SystemCache>()) {
   const auto n = structure_.size();
   Eigen::MatrixXd W(n, static_cast<Eigen::Index>(contacts_.size()));
@@ -25,7 +38,11 @@ HybridSystem::HybridSystem(fem::Structure structure, std::vector<friction::Conta
     friction::validate(contacts_[c]);
     W.col(static_cast<Eigen::Index>(c)) = contacts_[c].direction.normalized();
   }
-  friction::validate(drive_);
+  if (force_directions_.cols() == 0) force_directions_.resize(n, 0);
+  if (force_directions_.rows() != n || !force_directions_.allFinite())
+    throw InvalidInput("force directions have " + std::to_string(force_directions_.rows()) +
+                       " rows or values that are not finite; " + std::to_string(n) + " finite values are expected");
+  check_drive(drive_, force_directions_.cols());
   if (load_.size() > 0 && (load_.size() != n || !load_.allFinite()))
     throw InvalidInput("constant load has " + std::to_string(load_.size()) +
                        " entries or values that are not finite; " + std::to_string(n) + " finite values are expected");
@@ -41,9 +58,9 @@ HybridSystem::HybridSystem(fem::Structure structure, std::vector<friction::Conta
 }
 
 HybridSystem HybridSystem::with_drive(friction::Drive drive) const {
-  friction::validate(drive);
+  check_drive(drive, force_directions_.cols());
   HybridSystem copy = *this;
-  copy.drive_ = drive;
+  copy.drive_ = std::move(drive);
   return copy;
 }
 

@@ -12,9 +12,19 @@
 namespace slipmode::dynamics {
 
 /// What one contact is doing. The sign of a slip is the sign of v_rel = v_drive − wᵀq̇ (behind a contact spring: of the
-/// velocity at which the contact point slides). kSmooth: a law without stick. kSeparated: the normal load is negative
-/// and contact is lost.
-enum class ContactMode : std::int8_t { kSlipNegative = -1, kStick = 0, kSlipPositive = 1, kSmooth = 2, kSeparated = 3 };
+/// velocity at which the contact point slides).
+enum class ContactMode : std::int8_t {
+  kSlipNegative = -1,
+  kStick = 0,
+  kSlipPositive = 1,
+  kSmooth = 2,     ///< a law without stick
+  kSeparated = 3,  ///< the normal load is negative: contact is lost
+  kGap = 4,        ///< between the stops of a clearance
+  kLeftStop = 5,   ///< at the left stop
+  kRightStop = 6,
+  kLeftFlight = 7,  ///< beyond the left stop's gap, where its force has fallen to zero (ContactLoss::kZeroForce)
+  kRightFlight = 8,
+};
 
 /// A point of the hybrid state space, in the structure's own degrees of freedom.
 struct State {
@@ -30,24 +40,28 @@ struct State {
 
 class SystemCache;  // modal data and regimes, built when first needed
 
-/// M q̈ + C q̇ + K q = p + Σ_c w_c λ_c with friction contacts and a drive: a full model or a reduced one alike.
+/// M q̈ + C q̇ + K q = p + Σ_k d_k u_k(t) + Σ_c w_c λ_c with contacts and a drive: a full model or a reduced one alike.
 ///
 /// Immutable; copies share the lazily built modal data, which is safe to use from several threads.
 class HybridSystem {
  public:
   /// @param load  constant load p [n], or empty for none
-  /// @throws InvalidInput  for a contact direction of wrong size, invalid laws or drive, linearly dependent contacts
+  /// @param force_directions  d_k: what the harmonics of a force drive act along, columns [n x nk]; may have none
+  /// @throws InvalidInput  for a contact or force direction of wrong size, invalid laws or drive, linearly dependent
+  ///                       contacts, a harmonic along a direction that is not there
   HybridSystem(fem::Structure structure, std::vector<friction::Contact> contacts, friction::Drive drive,
-               Eigen::VectorXd load = {});
+               Eigen::VectorXd load = {}, Eigen::MatrixXd force_directions = {});
 
   [[nodiscard]] const fem::Structure& structure() const { return structure_; }
   [[nodiscard]] const std::vector<friction::Contact>& contacts() const { return contacts_; }
   [[nodiscard]] const friction::Drive& drive() const { return drive_; }
   [[nodiscard]] const Eigen::VectorXd& load() const { return load_; }
+  /// Columns [n x nk], [n x 0] without any.
+  [[nodiscard]] const Eigen::MatrixXd& force_directions() const { return force_directions_; }
   [[nodiscard]] Eigen::Index size() const { return structure_.size(); }
 
   /// The same structure and contacts under another drive: modal data and regimes are shared, so a sweep over belt
-  /// speeds or shaker frequencies pays for them once.
+  /// speeds, frequencies or amplitudes pays for them once.
   [[nodiscard]] HybridSystem with_drive(friction::Drive drive) const;
 
   /// q = 0, v = 0 at time 0.
@@ -68,6 +82,7 @@ class HybridSystem {
   std::vector<friction::Contact> contacts_;
   friction::Drive drive_;
   Eigen::VectorXd load_;
+  Eigen::MatrixXd force_directions_;
   std::shared_ptr<SystemCache> cache_;
 };
 

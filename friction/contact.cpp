@@ -59,6 +59,24 @@ struct Checker {
     }
   }
 
+  void stop(const char* side, const Stop& stop) const {
+    positive(fmt::format("{} stop stiffness", side).c_str(), stop.stiffness);
+    non_negative(fmt::format("{} stop damping", side).c_str(), stop.damping);
+    finite(fmt::format("{} stop gap", side).c_str(), stop.gap);
+  }
+
+  void stops(const Clearance& law) const {
+    if (!law.left && !law.right) fail("a clearance without stops", "a left stop, a right stop, or both");
+    if (law.left) stop("left", *law.left);
+    if (law.right) stop("right", *law.right);
+    if (law.left && law.right && law.left->gap + law.right->gap < 0.0)
+      fail(fmt::format("the stops overlap: left gap {} + right gap {} < 0", law.left->gap, law.right->gap),
+           "gaps whose sum is >= 0");
+    if (contact.tilt != 0.0) fail(fmt::format("tilt = {} rad with a clearance", contact.tilt), "no tilt");
+    if (!contact.normal_load.is_constant())
+      fail("a normal load that varies, with a clearance", "no normal load: a clearance has no friction");
+  }
+
   void coefficients(double mu_s, double mu_k) const {
     non_negative("mu_k", mu_k);
     non_negative("mu_s", mu_s);
@@ -109,9 +127,11 @@ void validate(const Contact& contact) {
                           check.positive("stiffness", law.stiffness);
                           check.non_negative("damping", law.damping);
                           check.non_negative("viscous", law.viscous);
-                        }},
+                        },
+                        [&](const Clearance& law) { check.stops(law); }},
              contact.law);
   check.finite("tilt", contact.tilt);
+  if (std::holds_alternative<Clearance>(contact.law)) return;
   if (!is_piecewise_linear(contact.law)) {
     if (contact.tilt != 0.0)
       check.fail(fmt::format("tilt = {} rad with a law that is not Coulomb", contact.tilt),
@@ -134,7 +154,7 @@ double kinetic_coefficient(const Law& law, double speed) {
                                         (stribeck.mu_s - stribeck.mu_k) * std::exp(-stribeck.alpha * speed);
                                },
                                [](const CompliantCoulomb& compliant) { return compliant.mu_k; },
-                               [](const Dahl& dahl) { return dahl.mu; },
+                               [](const Dahl& dahl) { return dahl.mu; }, [](const Clearance&) { return 0.0; },
                                [speed](const LuGre& lugre) {
                                  const double share = speed / lugre.stribeck_speed;
                                  return lugre.mu_k + (lugre.mu_s - lugre.mu_k) * std::exp(-share * share);
@@ -148,12 +168,14 @@ double kinetic_coefficient(const Law& law, double speed) {
 }
 
 double limit_coefficient(const Law& law) {
-  return std::visit(Overloaded{[](const Dahl& dahl) { return dahl.mu; }, [](const auto& any) { return any.mu_k; }},
+  return std::visit(Overloaded{[](const Dahl& dahl) { return dahl.mu; }, [](const Clearance&) { return 0.0; },
+                               [](const auto& any) { return any.mu_k; }},
                     law);
 }
 
 double static_coefficient(const Law& law) {
-  return std::visit(Overloaded{[](const Dahl& dahl) { return dahl.mu; }, [](const auto& any) { return any.mu_s; }},
+  return std::visit(Overloaded{[](const Dahl& dahl) { return dahl.mu; }, [](const Clearance&) { return 0.0; },
+                               [](const auto& any) { return any.mu_s; }},
                     law);
 }
 
@@ -161,7 +183,8 @@ bool is_piecewise_linear(const Law& law) {
   return std::visit(
       Overloaded{[](const Coulomb&) { return true; },
                  [](const Stribeck& stribeck) { return stribeck.alpha == 0.0 || stribeck.mu_s == stribeck.mu_k; },
-                 [](const CompliantCoulomb&) { return true; }, [](const auto&) { return false; }},
+                 [](const CompliantCoulomb&) { return true; }, [](const Clearance&) { return true; },
+                 [](const auto&) { return false; }},
       law);
 }
 

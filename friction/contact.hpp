@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <variant>
@@ -60,7 +61,31 @@ struct LuGre {
   double viscous = 0.0;         ///< σ2 ≥ 0 [N s/m]
 };
 
-using Law = std::variant<Coulomb, Stribeck, TanhRegularised, CompliantCoulomb, Dahl, LuGre>;
+/// One stop of a clearance: beyond the gap it presses with stiffness · (|y| − gap) + damping · d|y|/dt.
+struct Stop {
+  double stiffness = 0.0;  ///< k > 0 [N/m]
+  double damping = 0.0;    ///< c ≥ 0 [N s/m]
+  double gap = 0.0;  ///< b [m]: contact at y ≥ b on the right, y ≤ −b on the left; may be negative (preload)
+};
+
+/// When a stop lets go.
+enum class ContactLoss : std::uint8_t {
+  /// Where its force falls to zero: it never pulls. S0. Until y is back at the gap the stop is free and engages again,
+  /// without a jump, when k (|y| − b) + c d|y|/dt is positive again.
+  kZeroForce,
+  /// At the gap, S1 and S2; with damping it pulls on the way out.
+  kGap,
+};
+
+/// Play between stops (clearance, backlash): no force in the gap, −k (y − b) − c ẏ at the right stop, the mirror image
+/// at the left one. A stop that is absent is never met. It has no friction, and the normal load is not read. Source: S0
+/// (2.4)-(2.7), S1 (1), S2 (1).
+struct Clearance {
+  std::optional<Stop> left, right;  ///< at least one
+  ContactLoss loss = ContactLoss::kZeroForce;
+};
+
+using Law = std::variant<Coulomb, Stribeck, TanhRegularised, CompliantCoulomb, Dahl, LuGre, Clearance>;
 
 /// The normal load's own vibration: a mass on the beam's normal stiffness, pressed on the inclined slider by a leaf
 /// spring that rides at height slope · y, y the contact's displacement:
@@ -110,7 +135,7 @@ struct Contact {
 /// @throws InvalidInput  naming the contact, the value and the valid range: 0 ≤ μ_k ≤ μ_s, N0 ≥ 0, α ≥ 0, ε > 0,
 ///                       stiffnesses > 0, all finite, w not zero; tilt or a varying load with a law that is not
 ///                       Coulomb, rigid or compliant; a tilt at which an effective coefficient is negative or without
-///                       bound
+///                       bound; a clearance without stops, with a tilt, or whose stops overlap
 void validate(const Contact& contact);
 
 /// The coefficient that acts along ±w on a slider of this tilt. @param direction  +1 or −1
@@ -121,14 +146,14 @@ void validate(const Contact& contact);
 [[nodiscard]] int internal_states(const Contact& contact);
 
 /// Force in steady slip at |v_rel| = speed ≥ 0, in units of the normal load (the friction coefficient), without tilt.
-/// LuGre: without its viscous part, which does not scale with the load. Not for tanh.
+/// LuGre: without its viscous part, which does not scale with the load. 0 for a clearance. Not for tanh.
 [[nodiscard]] double kinetic_coefficient(const Law& law, double speed);
-/// μ_k of any law (μ of Dahl's): what remains at large sliding speed.
+/// μ_k of any law (μ of Dahl's, 0 of a clearance): what remains at large sliding speed.
 [[nodiscard]] double limit_coefficient(const Law& law);
-/// μ_s of any law (μ of Dahl's).
+/// μ_s of any law (μ of Dahl's, 0 of a clearance).
 [[nodiscard]] double static_coefficient(const Law& law);
 /// True when the force in slip does not depend on the sliding speed (Coulomb, rigid or compliant, or Stribeck with α =
-/// 0 or μ_s = μ_k): the contact is then piecewise linear.
+/// 0 or μ_s = μ_k), and for a clearance: the contact is then piecewise linear.
 [[nodiscard]] bool is_piecewise_linear(const Law& law);
 
 }  // namespace slipmode::friction

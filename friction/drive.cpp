@@ -43,7 +43,30 @@ double Shaker::next_upward_zero(double t) const {
   return (k - 0.25 - phase / (2.0 * std::numbers::pi)) / frequency_hz;
 }
 
+double Force::period() const { return 2.0 * std::numbers::pi / omega; }
+
+double Force::value(int direction, double t) const {
+  double sum = 0.0;
+  for (const ForceHarmonic& h : harmonics)
+    if (h.direction == direction) sum += h.amplitude * std::sin(h.order * omega * t + h.phase);
+  return sum;
+}
+
+double Force::rate(int direction, double t) const {
+  double sum = 0.0;
+  for (const ForceHarmonic& h : harmonics)
+    if (h.direction == direction) sum += h.amplitude * h.order * omega * std::cos(h.order * omega * t + h.phase);
+  return sum;
+}
+
+std::optional<double> Drive::period() const {
+  if (shaker()) return shaker()->period();
+  if (force()) return force()->period();
+  return std::nullopt;
+}
+
 double Drive::way(double t0, double t1) const {
+  if (force()) return 0.0;
   if (shaker()) return shaker()->displacement(t1) - shaker()->displacement(t0);
   const Belt& b = *belt();
   double way = 0.0;
@@ -82,11 +105,24 @@ void validate(const Shaker& shaker) {
     throw InvalidInput(fmt::format("shaker: frequency_hz = {}; expected > 0", shaker.frequency_hz));
 }
 
+void validate(const Force& force) {
+  check_finite("force", "omega", force.omega);
+  if (!(force.omega > 0.0)) throw InvalidInput(fmt::format("force: omega = {}; expected > 0", force.omega));
+  for (const ForceHarmonic& h : force.harmonics) {
+    check_finite("force", "amplitude", h.amplitude);
+    check_finite("force", "phase", h.phase);
+    if (h.order < 1) throw InvalidInput(fmt::format("force: harmonic of order {}; expected an integer >= 1", h.order));
+    if (h.direction < 0)
+      throw InvalidInput(fmt::format("force: direction {}; expected the number of a direction, >= 0", h.direction));
+  }
+}
+
 }  // namespace
 
 void validate(const Drive& drive) {
   if (drive.belt()) validate(*drive.belt());
   if (drive.shaker()) validate(*drive.shaker());
+  if (drive.force()) validate(*drive.force());
 }
 
 }  // namespace slipmode::friction

@@ -2,7 +2,9 @@
 
 #include <cmath>
 #include <optional>
+#include <utility>
 #include <variant>
+#include <vector>
 
 namespace slipmode::friction {
 
@@ -40,25 +42,51 @@ struct Shaker {
   [[nodiscard]] double next_upward_zero(double t) const;
 };
 
-/// What moves the contacts' counterpart.
+/// One harmonic of a force: amplitude sin(order · ωt + phase) along a direction.
+struct ForceHarmonic {
+  double amplitude = 0.0;  ///< [N]
+  double phase = 0.0;      ///< [rad]
+  int order = 1;           ///< ≥ 1
+  int direction = 0;       ///< column of HybridSystem::force_directions
+};
+
+/// A periodic force on the structure; contacts' counterparts rest. Its mean is the structure's constant load.
+struct Force {
+  double omega = 1.0;  ///< > 0 [rad/s]
+  std::vector<ForceHarmonic> harmonics = {};
+
+  [[nodiscard]] double period() const;  ///< [s]
+  /// Force along a direction at t, and its time derivative.
+  [[nodiscard]] double value(int direction, double t) const;  ///< [N]
+  [[nodiscard]] double rate(int direction, double t) const;   ///< [N/s]
+};
+
+/// What drives a system: the motion of the contacts' counterpart, or a force on the structure.
 class Drive {
  public:
   Drive() = default;
-  Drive(Belt belt) : kind_(belt) {}        // NOLINT(google-explicit-constructor): a belt is a drive
-  Drive(Shaker shaker) : kind_(shaker) {}  // NOLINT(google-explicit-constructor)
+  Drive(Belt belt) : kind_(belt) {}                // NOLINT(google-explicit-constructor): a belt is a drive
+  Drive(Shaker shaker) : kind_(shaker) {}          // NOLINT(google-explicit-constructor)
+  Drive(Force force) : kind_(std::move(force)) {}  // NOLINT(google-explicit-constructor)
 
   /// The belt, or null.
   [[nodiscard]] const Belt* belt() const { return std::get_if<Belt>(&kind_); }
   /// The shaker, or null.
   [[nodiscard]] const Shaker* shaker() const { return std::get_if<Shaker>(&kind_); }
+  /// The force, or null.
+  [[nodiscard]] const Force* force() const { return std::get_if<Force>(&kind_); }
+  /// Period of a shaker or a force; a belt has none [s].
+  [[nodiscard]] std::optional<double> period() const;
 
   /// True for a belt of constant speed.
   [[nodiscard]] bool is_constant() const { return belt() != nullptr && belt()->is_constant(); }
   /// Velocity of the counterpart at t [m/s].
-  [[nodiscard]] double velocity(double t) const { return belt() ? belt()->velocity(t) : shaker()->velocity(t); }
+  [[nodiscard]] double velocity(double t) const {
+    return belt() ? belt()->velocity(t) : shaker() ? shaker()->velocity(t) : 0.0;
+  }
   /// Its acceleration just after t (right limit) [m/s²].
   [[nodiscard]] double acceleration(double t) const {
-    return belt() ? belt()->acceleration(t) : shaker()->acceleration(t);
+    return belt() ? belt()->acceleration(t) : shaker() ? shaker()->acceleration(t) : 0.0;
   }
   /// The size of its velocity around t, which its rounding error is measured by: the amplitude of a shaker's [m/s].
   [[nodiscard]] double velocity_scale(double t) const {
@@ -72,10 +100,12 @@ class Drive {
   }
 
  private:
-  std::variant<Belt, Shaker> kind_ = Belt{};
+  std::variant<Belt, Shaker, Force> kind_ = Belt{};
 };
 
-/// @throws InvalidInput  if a value is not finite, ramp_end < ramp_begin, amplitude < 0 or frequency ≤ 0
+/// @throws InvalidInput  if a value is not finite, ramp_end < ramp_begin, a shaker's amplitude < 0, a frequency ≤ 0, or
+/// a
+///                       harmonic's order < 1 or direction < 0
 void validate(const Drive& drive);
 
 }  // namespace slipmode::friction

@@ -82,7 +82,8 @@ dynamics::HybridSystem reduce(const dynamics::HybridSystem& full, const pod::Bas
   }
   Eigen::VectorXd residual = -fem::multiply(full.structure().K(), mean);
   if (full.load().size() > 0) residual += full.load();
-  return {project_structure(full.structure(), Phi), std::move(contacts), full.drive(), Phi.transpose() * residual};
+  return {project_structure(full.structure(), Phi), std::move(contacts), full.drive(), Phi.transpose() * residual,
+          Phi.transpose() * full.force_directions()};
 }
 
 }  // namespace slipmode::rom

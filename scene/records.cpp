@@ -14,7 +14,7 @@ constexpr std::array kBasisKinds = {pod::BasisKind::kPom, pod::BasisKind::kLnm, 
                                     pod::BasisKind::kPomf, pod::BasisKind::kLnmStatic};
 constexpr const char* kBasisWords = "pom, lnm, user, pomf or lnm_static";
 constexpr const char* kModeWords = "-1 slip-, 0 stick, 1 slip+, 2 smooth, 3 contact lost";
-constexpr std::int64_t kLastMode = static_cast<std::int64_t>(dynamics::ContactMode::kSeparated);
+constexpr std::int64_t kLastMode = static_cast<std::int64_t>(dynamics::ContactMode::kRightFlight);
 
 template <class Values>
 void require_finite(const StoreReader& store, const std::string& name, const Values& values) {
