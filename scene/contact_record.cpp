@@ -35,9 +35,42 @@ LawNumbers numbers_of(const friction::Law& law) {
                           n.stiffness = own.stiffness;
                           n.damping = own.damping;
                           n.viscous = own.viscous;
-                        }},
+                        },
+                        [](const friction::Clearance&) {}},
              law);
   return n;
+}
+
+constexpr Eigen::Index kStopNumbers = 3;
+
+Eigen::VectorXd stop_numbers(const std::optional<friction::Stop>& stop) {
+  if (!stop) return Eigen::VectorXd::Constant(kStopNumbers, kAbsent);
+  return Eigen::VectorXd{{stop->stiffness, stop->damping, stop->gap}};
+}
+
+std::optional<friction::Stop> stop_of(const Eigen::VectorXd& own) {
+  if (std::isnan(own(0))) return std::nullopt;
+  return friction::Stop{own(0), own(1), own(2)};
+}
+
+/// Both stops of a contact, left first; all NaN for another law.
+Eigen::VectorXd stops_numbers(const friction::Law& law) {
+  const auto* clearance = std::get_if<friction::Clearance>(&law);
+  Eigen::VectorXd both(2 * kStopNumbers);
+  both << stop_numbers(clearance != nullptr ? clearance->left : std::nullopt),
+      stop_numbers(clearance != nullptr ? clearance->right : std::nullopt);
+  return both;
+}
+
+std::string loss_word(const friction::Law& law) {
+  const auto* clearance = std::get_if<friction::Clearance>(&law);
+  return clearance != nullptr ? kLosses[static_cast<std::size_t>(clearance->loss)] : std::string();
+}
+
+friction::Law clearance_of(const Eigen::VectorXd& stops, const std::string& loss) {
+  const bool gap = loss == kLosses[static_cast<std::size_t>(friction::ContactLoss::kGap)];
+  return friction::Clearance{stop_of(stops.head(kStopNumbers)), stop_of(stops.tail(kStopNumbers)),
+                             gap ? friction::ContactLoss::kGap : friction::ContactLoss::kZeroForce};
 }
 
 /// The law of that word made of those numbers.
@@ -95,9 +128,9 @@ Eigen::VectorXd numbers_or(const StoreReader& store, const std::string& name, Ei
 void save_contacts(StoreWriter& store, const std::string& group, const std::vector<friction::Contact>& contacts,
                    Eigen::Index n) {
   const auto count = static_cast<Eigen::Index>(contacts.size());
-  std::vector<std::string> names, laws;
+  std::vector<std::string> names, laws, losses;
   Eigen::VectorXd load(count), slope(count), tilt(count), offset(count);
-  Eigen::MatrixXd oscillator(kOscillatorNumbers, count), direction(n, count);
+  Eigen::MatrixXd oscillator(kOscillatorNumbers, count), stops(2 * kStopNumbers, count), direction(n, count);
   std::vector<LawNumbers> numbers;
   for (Eigen::Index c = 0; c < count; ++c) {
     const friction::Contact& contact = contacts[static_cast<std::size_t>(c)];
@@ -107,11 +140,13 @@ void save_contacts(StoreWriter& store, const std::string& group, const std::vect
     load(c) = contact.normal_load.constant;
     slope(c) = contact.normal_load.slope;
     oscillator.col(c) = oscillator_numbers(contact.normal_load);
+    stops.col(c) = stops_numbers(contact.law);
+    losses.push_back(loss_word(contact.law));
     tilt(c) = contact.tilt;
     offset(c) = contact.offset;
     direction.col(c) = contact.direction;
   }
-  store.describe_group(group, "friction contacts, one entry of each dataset per contact");
+  store.describe_group(group, "contacts, one entry of each dataset per contact");
   store.write(group + "/name", names, {"", "name"});
   store.write(group + "/law", laws, {"", fmt::format("{}", fmt::join(kLaws, ", "))});
   for (const LawColumn& column : law_columns()) {
@@ -125,6 +160,12 @@ void save_contacts(StoreWriter& store, const std::string& group, const std::vect
                       {"",
                        "normal oscillator, contact x (mass [kg], support stiffness [N/m] and damping [N s/m], "
                        "spring stiffness and damping, slope); NaN: none"});
+  store.write_columns(
+      group + "/stops", stops,
+      {"",
+       "stops of a clearance, contact x (left stiffness [N/m], damping [N s/m] and gap [m], the same of "
+       "the right one); NaN: none"});
+  store.write(group + "/loss", losses, {"", fmt::format("when a stop lets go: {}", fmt::join(kLosses, ", "))});
   store.write(group + "/tilt", tilt, {"rad", "of the slider's face"});
   store.write(group + "/offset", offset, {"m", "added to the contact displacement"});
   store.write_columns(group + "/direction", direction, {"1", "contact directions w, contact x dof"});
@@ -146,6 +187,11 @@ std::vector<friction::Contact> load_contacts(const StoreReader& store, const std
   const Eigen::MatrixXd oscillator = store.has(group + "/oscillator")
                                          ? store.columns(group + "/oscillator", kOscillatorNumbers, count)
                                          : Eigen::MatrixXd::Constant(kOscillatorNumbers, count, kAbsent);
+  const bool stopped = store.has(group + "/stops");  // not in files of versions that had no clearance
+  const Eigen::MatrixXd stops = stopped ? store.columns(group + "/stops", 2 * kStopNumbers, count)
+                                        : Eigen::MatrixXd::Constant(2 * kStopNumbers, count, kAbsent);
+  const std::vector<std::string> losses =
+      stopped ? store.texts(group + "/loss", count) : std::vector<std::string>(names.size());
   const Eigen::VectorXd tilt = numbers_or(store, group + "/tilt", count, 0.0);
   const Eigen::VectorXd offset = store.vector(group + "/offset", count);
   const Eigen::MatrixXd direction = store.columns(group + "/direction", n, count);
@@ -153,42 +199,14 @@ std::vector<friction::Contact> load_contacts(const StoreReader& store, const std
   for (Eigen::Index c = 0; c < count; ++c) {
     const auto at = static_cast<std::size_t>(c);
     contacts.push_back({.direction = direction.col(c),
-                        .law = law_of(laws[at], numbers[at], store, group + "/law"),
+                        .law = laws[at] == "clearance" ? clearance_of(stops.col(c), losses[at])
+                                                       : law_of(laws[at], numbers[at], store, group + "/law"),
                         .normal_load = load_of(load(c), slope(c), oscillator.col(c)),
                         .offset = offset(c),
                         .tilt = tilt(c),
                         .name = names[at]});
   }
   return contacts;
-}
-
-void save_drive(StoreWriter& store, const std::string& group, const friction::Drive& drive) {
-  if (const friction::Shaker* shaker = drive.shaker()) {
-    store.describe_group(group, "shaker under the contacts: displacement amplitude sin(2 pi frequency t + phase)");
-    store.write(group + "/kind", std::string("shaker"), {"", "kind of drive"});
-    store.write(group + "/amplitude", shaker->amplitude, {"m", "amplitude"});
-    store.write(group + "/frequency", shaker->frequency_hz, {"Hz", "frequency"});
-    store.write(group + "/phase", shaker->phase, {"rad", "phase at time 0"});
-    return;
-  }
-  const friction::Belt& belt = *drive.belt();
-  store.describe_group(group, "belt under the contacts");
-  store.write(group + "/kind", std::string("belt"), {"", "kind of drive"});
-  store.write(group + "/speed", belt.speed, {"m/s", "speed at the start"});
-  store.write(group + "/end_speed", belt.end_speed, {"m/s", "speed after the ramp"});
-  store.write(group + "/ramp_begin", belt.ramp_begin, {"s", "start of the ramp"});
-  store.write(group + "/ramp_end", belt.ramp_end, {"s", "end of the ramp; not after ramp_begin: no ramp"});
-}
-
-friction::Drive load_drive(const StoreReader& store, const std::string& group) {
-  const std::string kind = store.text(group + "/kind");
-  if (kind == "shaker") {
-    return friction::Shaker{store.number(group + "/amplitude"), store.number(group + "/frequency"),
-                            store.number(group + "/phase")};
-  }
-  if (kind != "belt") store.fail(group + "/kind", fmt::format("'{}'; expected belt or shaker", kind));
-  return friction::Belt{store.number(group + "/speed"), store.number(group + "/end_speed"),
-                        store.number(group + "/ramp_begin"), store.number(group + "/ramp_end")};
 }
 
 }  // namespace slipmode::scene

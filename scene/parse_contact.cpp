@@ -10,68 +10,6 @@ namespace slipmode::scene {
 
 namespace {
 
-struct Coefficients {
-  double mu_s, mu_k;
-};
-
-Coefficients read_coefficients(TomlReader& in) {
-  const double mu_k = in.number("mu_k", kNonNegative);
-  const double mu_s = in.number("mu_s", kNonNegative);
-  if (mu_s < mu_k) in.fail("mu_s", fmt::format("less than mu_k = {}", mu_k), fmt::format("mu_s >= {}", mu_k));
-  return {mu_s, mu_k};
-}
-
-friction::Law read_coulomb(TomlReader& in) {
-  const auto [mu_s, mu_k] = read_coefficients(in);
-  in.refuse("alpha", "law \"coulomb\" does not depend on the sliding speed", "no alpha");
-  in.refuse("stiffness", "law \"coulomb\" is rigid", "no stiffness, or law = \"compliant\"");
-  return friction::Coulomb{mu_s, mu_k};
-}
-
-friction::Law read_stribeck(TomlReader& in) {
-  const auto [mu_s, mu_k] = read_coefficients(in);
-  return friction::Stribeck{mu_s, mu_k, in.number("alpha", kNonNegative)};
-}
-
-friction::Law read_tanh(TomlReader& in) {
-  const auto [mu_s, mu_k] = read_coefficients(in);
-  friction::TanhRegularised tanh{mu_s, mu_k};
-  tanh.alpha = in.number_or("alpha", tanh.alpha, kNonNegative);
-  tanh.epsilon = in.number_or("epsilon", tanh.epsilon, kPositive);
-  return tanh;
-}
-
-friction::Law read_compliant(TomlReader& in) {
-  const auto [mu_s, mu_k] = read_coefficients(in);
-  return friction::CompliantCoulomb{mu_s, mu_k, in.number("stiffness", kPositive)};
-}
-
-friction::Law read_dahl(TomlReader& in) {
-  for (const char* key : {"mu_s", "mu_k"}) {
-    in.refuse(key, "law \"dahl\" does not tell static from sliding friction", "mu");
-  }
-  const double mu = in.number("mu", kPositive);
-  return friction::Dahl{mu, in.number("stiffness", kPositive)};
-}
-
-friction::Law read_lugre(TomlReader& in) {
-  const auto [mu_s, mu_k] = read_coefficients(in);
-  if (mu_k == 0.0) in.fail("mu_k", "impossible value with law \"lugre\"", "a number > 0");
-  friction::LuGre lugre{mu_s, mu_k};
-  lugre.stribeck_speed = in.number("stribeck_speed", kPositive);
-  lugre.stiffness = in.number("stiffness", kPositive);
-  lugre.damping = in.number_or("damping", lugre.damping, kNonNegative);
-  lugre.viscous = in.number_or("viscous", lugre.viscous, kNonNegative);
-  return lugre;
-}
-
-friction::Law read_law(TomlReader& in) {
-  using Read = friction::Law (*)(TomlReader&);
-  constexpr std::array<Read, 6> kRead = {read_coulomb,   read_stribeck, read_tanh,
-                                         read_compliant, read_dahl,     read_lugre};  // in the order of kLaws
-  return kRead[in.choice("law", kLaws)](in);
-}
-
 friction::NormalOscillator read_oscillator(TomlReader in) {
   friction::NormalOscillator own;
   own.mass = in.number("mass", kPositive);

@@ -21,6 +21,8 @@ inline constexpr double kEndSlack = 1e-12;
 [[nodiscard]] std::variant<fem::ChainOptions, fem::BeamOptions> read_structure(TomlReader in, const std::string& units);
 /// [[contact]] on the structure of `scene`.
 [[nodiscard]] std::vector<ContactSpec> read_contacts(TomlReader& in, const Scene& scene);
+/// The law of one [[contact]] and its keys.
+[[nodiscard]] friction::Law read_law(TomlReader& in);
 /// [drive] into drive and amplitude of `scene`.
 void read_drive(TomlReader in, Scene& scene);
 /// [sensors] on the beam of `scene`.

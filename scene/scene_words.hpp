@@ -23,7 +23,10 @@ inline constexpr std::array<Ends, 4> kEnds = {{{"fixed-free", true, false},
                                                {"free-free", false, false}}};
 
 /// In the order of friction::Law's alternatives.
-inline const std::vector<std::string> kLaws = {"coulomb", "stribeck", "tanh", "compliant", "dahl", "lugre"};
+inline const std::vector<std::string> kLaws = {"coulomb", "stribeck", "tanh",     "compliant",
+                                               "dahl",    "lugre",    "clearance"};
+/// In the order of friction::ContactLoss.
+inline const std::vector<std::string> kLosses = {"zero-force", "gap"};
 
 struct TheoryWord {
   const char* word;

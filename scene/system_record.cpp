@@ -86,6 +86,8 @@ void save(StoreWriter& store, const std::string& group, const dynamics::HybridSy
                 {"1/s, s", "C = first M + second K"});
   }
   store.write(group + "/load", system.load(), {"N", "constant load on each dof; empty: none"});
+  store.write_columns(group + "/force_directions", system.force_directions(),
+                      {"1", "what the harmonics of a force drive act along, direction x dof; empty: none"});
   save_contacts(store, group + "/contacts", system.contacts(), system.size());
   save_drive(store, group + "/drive", system.drive());
 }
@@ -96,7 +98,11 @@ dynamics::HybridSystem load_system(const StoreReader& store, const std::string& 
   try {
     fem::Structure structure = load_structure(store, group);
     std::vector<friction::Contact> contacts = load_contacts(store, group + "/contacts", structure.size());
-    return {std::move(structure), std::move(contacts), load_drive(store, group + "/drive"), std::move(load)};
+    const std::string directions = group + "/force_directions";  // not in files of versions that had no forces
+    Eigen::MatrixXd forces =
+        store.has(directions) ? store.columns(directions, structure.size()) : Eigen::MatrixXd(structure.size(), 0);
+    return {std::move(structure), std::move(contacts), load_drive(store, group + "/drive"), std::move(load),
+            std::move(forces)};
   } catch (const InvalidInput& error) {
     const std::string what = error.what();
     if (what.starts_with(store.path().string())) throw;

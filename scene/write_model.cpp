@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <tuple>
 
 namespace slipmode::scene {
 
@@ -87,6 +88,20 @@ std::string load_toml(const friction::NormalLoad& load) {
 
 std::string coefficients_toml(const auto& law) { return line("mu_s", law.mu_s) + line("mu_k", law.mu_k); }
 
+std::string stop_toml(const char* key, const friction::Stop& stop) {
+  return fmt::format("{} = {{ stiffness = {}, damping = {}, gap = {} }}\n", key, number_text(stop.stiffness),
+                     number_text(stop.damping), number_text(stop.gap));
+}
+
+std::string clearance_toml(const friction::Clearance& law) {
+  const auto numbers = [](const friction::Stop& stop) { return std::tuple(stop.stiffness, stop.damping, stop.gap); };
+  std::string out = fmt::format("loss = \"{}\"\n", kLosses[static_cast<std::size_t>(law.loss)]);
+  if (law.left && law.right && numbers(*law.left) == numbers(*law.right)) return out + stop_toml("stop", *law.left);
+  if (law.left) out += stop_toml("left", *law.left);
+  if (law.right) out += stop_toml("right", *law.right);
+  return out;
+}
+
 std::string law_toml(const friction::Law& any) {
   return std::visit(
       Overloaded{[](const friction::Coulomb& law) { return coefficients_toml(law); },
@@ -102,7 +117,8 @@ std::string law_toml(const friction::Law& any) {
                    return coefficients_toml(law) + line("stribeck_speed", law.stribeck_speed) +
                           line("stiffness", law.stiffness) + line("damping", law.damping) +
                           line("viscous", law.viscous);
-                 }},
+                 },
+                 [](const friction::Clearance& law) { return clearance_toml(law); }},
       any);
 }
 
