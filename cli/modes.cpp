@@ -73,7 +73,7 @@ Eigen::VectorXd damping_ratios(const fem::Structure& structure, const fem::Modes
   }
   const Eigen::MatrixXd C = modes.shapes.transpose() * fem::multiply(structure.C(), modes.shapes);
   for (Eigen::Index k = 0; k < ratios.size(); ++k) {  // φᵀCφ = 2 ζ ω
-    const double others = C.col(k).cwiseAbs().sum() - std::abs(C(k, k));
+    const double others = C.col(k).cwiseAbs().sum() + C.row(k).cwiseAbs().sum() - 2.0 * std::abs(C(k, k));
     const bool coupled = others > kCoupled * C.cwiseAbs().maxCoeff();
     ratios[k] = coupled || modes.omega[k] == 0.0 ? std::nan("") : C(k, k) / (2.0 * modes.omega[k]);
   }

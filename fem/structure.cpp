@@ -43,7 +43,8 @@ double largest_entry(const Eigen::MatrixXd& A) { return A.allFinite() ? A.cwiseA
 double asymmetry(const SparseMatrix& A) { return largest_entry(SparseMatrix(A - SparseMatrix(A.transpose()))); }
 double asymmetry(const Eigen::MatrixXd& A) { return (A - A.transpose()).cwiseAbs().maxCoeff(); }
 
-void check_matrix(const Matrix& A, const char* name, Eigen::Index n) {
+// Its largest entry.
+double check_entries(const Matrix& A, const char* name, Eigen::Index n) {
   if (rows_of(A) != n || cols_of(A) != n) {
     throw InvalidInput(
         fmt::format("structure: {} is {} x {}, expected {} x {} like M", name, rows_of(A), cols_of(A), n, n));
@@ -52,6 +53,11 @@ void check_matrix(const Matrix& A, const char* name, Eigen::Index n) {
   if (!std::isfinite(scale)) {
     throw InvalidInput(fmt::format("structure: {} holds a value that is not finite; give finite numbers", name));
   }
+  return scale;
+}
+
+void check_symmetric(const Matrix& A, const char* name, Eigen::Index n) {
+  const double scale = check_entries(A, name, n);
   const double skew = std::visit([](const auto& m) { return asymmetry(m); }, A);
   if (skew > kSymmetryTolerance * scale) {
     throw InvalidInput(
@@ -100,13 +106,29 @@ bool is_positive_definite(const Eigen::MatrixXd& A) { return Eigen::LLT<Eigen::M
 void check_mass_and_stiffness(const Matrix& M, const Matrix& K) {
   const Eigen::Index n = rows_of(M);
   if (n == 0) throw InvalidInput("structure: expected at least one degree of freedom, found a 0 x 0 mass matrix");
-  check_matrix(M, "M", n);
-  check_matrix(K, "K", n);
+  check_symmetric(M, "M", n);
+  check_symmetric(K, "K", n);
   if (!std::visit([](const auto& m) { return is_positive_definite(m); }, M)) {
     throw InvalidInput(
         "structure: M is not positive definite; every degree of freedom needs a positive mass (condense massless "
         "ones out)");
   }
+}
+
+// Whether C is symmetric; if it is not, its symmetric part must not feed energy in.
+bool check_damping(const Matrix& C, Eigen::Index n) {
+  constexpr double kRounding = 1e-12;  // what a projection may leave of an eigenvalue 0, of the largest entry
+  const double scale = check_entries(C, "C", n);
+  if (std::visit([](const auto& m) { return asymmetry(m); }, C) <= kSymmetryTolerance * scale) return true;
+  const SparseMatrix sparse = to_sparse(C);
+  SparseMatrix lifted = 0.5 * (sparse + SparseMatrix(sparse.transpose()));
+  for (Eigen::Index i = 0; i < n; ++i) lifted.coeffRef(i, i) += kRounding * scale;
+  if (!is_positive_definite(lifted)) {
+    throw InvalidInput(
+        "structure: C is not symmetric and its symmetric part is not positive semi-definite: some motion would gain "
+        "energy from it; check its signs");
+  }
+  return false;
 }
 
 std::vector<std::string> checked_names(std::vector<std::string> names, Eigen::Index n) {
@@ -169,7 +191,7 @@ bool chain_like(const Matrix& M, const Matrix& K) {
 Structure::Structure(Matrix M, Matrix C, Matrix K, std::vector<std::string> dof_names, std::string units)
     : M_(std::move(M)), C_(std::move(C)), K_(std::move(K)), units_(std::move(units)) {
   check_mass_and_stiffness(M_, K_);
-  check_matrix(C_, "C", size());
+  symmetric_damping_ = check_damping(C_, size());
   check_units(units_);
   dof_names_ = checked_names(std::move(dof_names), size());
   rayleigh_ = fit_rayleigh(M_, C_, K_);
@@ -186,7 +208,7 @@ Structure::Structure(Matrix M, Rayleigh r, Matrix K, std::vector<std::string> do
   check_units(units_);
   dof_names_ = checked_names(std::move(dof_names), size());
   C_ = combine(r.mass, M_, r.stiffness, K_);
-  check_matrix(C_, "C", size());
+  check_symmetric(C_, "C", size());
   chain_like_ = chain_like(M_, K_);
 }
 
@@ -197,6 +219,7 @@ const Matrix& Structure::K() const { return K_; }
 const std::vector<std::string>& Structure::dof_names() const { return dof_names_; }
 const std::string& Structure::units() const { return units_; }
 std::optional<Rayleigh> Structure::rayleigh() const { return rayleigh_; }
+bool Structure::has_symmetric_damping() const { return symmetric_damping_; }
 bool Structure::is_chain_like() const { return chain_like_; }
 
 double Structure::energy(const Eigen::VectorXd& q, const Eigen::VectorXd& v) const {
@@ -208,6 +231,13 @@ double Structure::energy(const Eigen::VectorXd& q, const Eigen::VectorXd& v) con
     return std::visit([&x](const auto& m) { return 0.5 * x.dot(m * x); }, A);
   };
   return half_square(M_, v) + half_square(K_, q);
+}
+
+double Structure::dissipation(const Eigen::VectorXd& v) const {
+  if (v.size() != size()) {
+    throw InvalidInput(fmt::format("structure dissipation: v has {} entries, expected {}", v.size(), size()));
+  }
+  return v.dot(multiply(C_, v).col(0));
 }
 
 Eigen::MatrixXd multiply(const Matrix& A, const Eigen::MatrixXd& x) {

@@ -22,15 +22,18 @@ struct Rayleigh {
 
 /// A linear structure M q̈ + C q̇ + K q = f, the part that full and reduced models share.
 ///
-/// M is symmetric positive definite, C and K symmetric positive semi-definite [n x n]. Immutable after construction.
-/// Source: S4 (3.1).
+/// M is symmetric positive definite, K symmetric positive semi-definite: a structure may float [n x n]. C may have a
+/// skew part, as gyroscopic forces and damping printed for relative coordinates have (S1 (6)): it does no work, so only
+/// the symmetric part ½(C + Cᵀ), positive semi-definite, dissipates. Immutable after construction. Source: S4 (3.1).
 class Structure {
  public:
-  /// @param M, C, K    n x n, symmetric to rounding
+  /// @param M, K       n x n, symmetric to rounding
+  /// @param C          n x n
   /// @param dof_names  n names, or empty: then "q1".."qn"
   /// @param units      "dimensionless" or "SI"
-  /// @throws InvalidInput  if n = 0, sizes differ, a value is not finite, a matrix is not symmetric, M is not
-  ///                       positive definite, or the units are unknown
+  /// @throws InvalidInput  if n = 0, sizes differ, a value is not finite, M or K is not symmetric, M is not
+  ///                       positive definite, a C that is not symmetric has a symmetric part that is indefinite, or the
+  ///                       units are unknown
   Structure(Matrix M, Matrix C, Matrix K, std::vector<std::string> dof_names = {}, std::string units = "dimensionless");
 
   /// Same, with C = r.mass·M + r.stiffness·K; the structure then knows its damping to be proportional.
@@ -47,11 +50,17 @@ class Structure {
   /// The Rayleigh coefficients, when the structure was built from them or C was found to fit them to rounding.
   [[nodiscard]] std::optional<Rayleigh> rayleigh() const;
 
+  /// True when C equals its transpose to rounding.
+  [[nodiscard]] bool has_symmetric_damping() const;
+
   /// True when M is diagonal and K is tridiagonal (a chain): modes then cost O(n²) or less.
   [[nodiscard]] bool is_chain_like() const;
 
   /// ½ vᵀMv + ½ qᵀKq [J]. Source: S4 (3.35) written for any structure.
   [[nodiscard]] double energy(const Eigen::VectorXd& q, const Eigen::VectorXd& v) const;
+
+  /// vᵀCv, the power that damping takes from the structure, ≥ 0 [W].
+  [[nodiscard]] double dissipation(const Eigen::VectorXd& v) const;
 
  private:
   Matrix M_, C_, K_;
@@ -59,6 +68,7 @@ class Structure {
   std::string units_;
   std::optional<Rayleigh> rayleigh_;
   bool chain_like_ = false;
+  bool symmetric_damping_ = true;
 };
 
 /// y = A x for either storage.

@@ -16,7 +16,11 @@ namespace {
 constexpr double kVisible = 1e-10;  // cosine between a contact's direction and the basis; below it is rounding
 
 Eigen::MatrixXd project(const fem::Matrix& A, const Eigen::MatrixXd& Phi) {
-  const Eigen::MatrixXd projected = Phi.transpose() * fem::multiply(A, Phi);
+  return Phi.transpose() * fem::multiply(A, Phi);
+}
+
+Eigen::MatrixXd project_symmetric(const fem::Matrix& A, const Eigen::MatrixXd& Phi) {
+  const Eigen::MatrixXd projected = project(A, Phi);
   return 0.5 * (projected + projected.transpose());
 }
 
@@ -60,11 +64,12 @@ std::vector<std::string> amplitude_names(Eigen::Index L) {
 }
 
 fem::Structure project_structure(const fem::Structure& full, const Eigen::MatrixXd& Phi) {
-  fem::Matrix M = project(full.M(), Phi);
-  fem::Matrix K = project(full.K(), Phi);
+  fem::Matrix M = project_symmetric(full.M(), Phi);
+  fem::Matrix K = project_symmetric(full.K(), Phi);
   const std::optional<fem::Rayleigh> rayleigh = full.rayleigh();
   if (rayleigh) return {std::move(M), *rayleigh, std::move(K), amplitude_names(Phi.cols()), full.units()};
-  return {std::move(M), fem::Matrix(project(full.C(), Phi)), std::move(K), amplitude_names(Phi.cols()), full.units()};
+  fem::Matrix C = full.has_symmetric_damping() ? project_symmetric(full.C(), Phi) : project(full.C(), Phi);
+  return {std::move(M), std::move(C), std::move(K), amplitude_names(Phi.cols()), full.units()};
 }
 
 }  // namespace

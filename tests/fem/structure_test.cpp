@@ -90,6 +90,32 @@ TEST(Structure, NamesDofsWhenNoneAreGiven) {
   EXPECT_THAT(two_dofs(kStiffness).dof_names(), testing::ElementsAre("q1", "q2"));
 }
 
+// S1 (6) times the adjugate of its stiffness matrix: the printed damping in power-conjugate form.
+const Eigen::Matrix2d kSkewed{{0.0994, -0.033}, {-0.024, 0.0884}};
+
+TEST(Structure, DampingMayHaveASkewPartThatDoesNoWork) {
+  const Structure s = two_dofs(kSkewed);
+  EXPECT_FALSE(s.has_symmetric_damping());
+  EXPECT_FALSE(s.rayleigh().has_value());
+  EXPECT_EQ(to_dense(s.C()), kSkewed);
+  const Eigen::Vector2d v(2.0, -3.0);
+  // by hand: vᵀCv = 4·0.0994 + 6·(0.033 + 0.024) + 9·0.0884
+  EXPECT_NEAR(s.dissipation(v), 1.5352, 1e-15);
+  EXPECT_NEAR(two_dofs(0.5 * (kSkewed + kSkewed.transpose())).dissipation(v), 1.5352, 1e-15);
+  EXPECT_TRUE(two_dofs(kStiffness).has_symmetric_damping());
+}
+
+TEST(Structure, PurelyGyroscopicDampingDissipatesNothing) {
+  const Structure s = two_dofs(Eigen::Matrix2d{{0.0, 0.7}, {-0.7, 0.0}});
+  EXPECT_FALSE(s.has_symmetric_damping());
+  EXPECT_EQ(s.dissipation(Eigen::Vector2d(1.0, 2.0)), 0.0);
+}
+
+TEST(Structure, RefusesSkewedDampingThatFeedsEnergyIn) {
+  const Eigen::MatrixXd feeds{{0.1, 0.5}, {0.1, 0.1}};  // symmetric part has the eigenvalue 0.1 − 0.3
+  EXPECT_THAT([&] { (void)two_dofs(feeds); }, ThrowsMessage<InvalidInput>(HasSubstr("positive semi-definite")));
+}
+
 TEST(Structure, RejectsBadInputSayingWhy) {
   const Eigen::MatrixXd M = kMass;
   const Eigen::MatrixXd K = kStiffness;

@@ -72,6 +72,18 @@ TEST(Reduce, GeneralDampingIsProjected) {
   EXPECT_LT((to_dense(reduce(full, basis).structure().C()) - expected).cwiseAbs().maxCoeff(), 1e-14 * expected.norm());
 }
 
+TEST(Reduce, KeepsTheSkewPartOfDamping) {
+  const Eigen::Matrix2d C{{0.0994, -0.033}, {-0.024, 0.0884}};  // S1 (6) in power-conjugate form
+  const fem::Structure structure(Eigen::MatrixXd(Eigen::Matrix2d{{1.21, 0.36}, {0.36, 1.0}}), Eigen::MatrixXd(C),
+                                 Eigen::MatrixXd(Eigen::Matrix2d::Zero()));
+  const friction::Contact contact{Eigen::Vector2d::Unit(0), friction::Clearance{{}, friction::Stop{1.0, 0.0, 1.0}}};
+  const HybridSystem full(structure, {contact}, friction::Force{});
+  const Eigen::MatrixXd Phi{{1.0, 2.0}, {-1.0, 1.0}};
+  const fem::Structure reduced = reduce(full, user_basis(Phi)).structure();
+  EXPECT_FALSE(reduced.has_symmetric_damping());
+  EXPECT_TRUE(to_dense(reduced.C()).isApprox(Phi.transpose() * C * Phi, 1e-15));
+}
+
 TEST(Reduce, TwiceEqualsOnceWithTheProductBasis) {
   Random random(52);
   const HybridSystem full = random_system(random, 9);
