@@ -27,6 +27,7 @@ double decay(const Eigen::Matrix2d& G) {
 std::unique_ptr<AuditForms> AuditForms::make(const Regime& r, const DriveOverlay& overlay) {
   const ModalModel& pairs = r.pairs;
   const auto np = pairs.np, ni = r.inputs(), nu = ni + 2, nc = r.speed_input();
+  if (overlay.orders() > 1) return nullptr;
   for (Eigen::Index i = 0; i < pairs.n; ++i)
     if (!(2.0 * decay(block(pairs, i)) > kSlowest * overlay.omega())) return nullptr;
   std::unique_ptr<AuditForms> forms(new AuditForms(r, overlay));
@@ -45,7 +46,7 @@ std::unique_ptr<AuditForms> AuditForms::make(const Regime& r, const DriveOverlay
     return Power{Eigen::MatrixXd::Zero(2 * np, 2 * np), Eigen::MatrixXd::Zero(2 * np, nu),
                  Eigen::MatrixXd::Zero(nu, nu)};
   };
-  Power contact = none(), drive = none(), viscous = none();
+  Power contact = none(), drive = none(), viscous = none(), force = none();
   for (Eigen::Index c = 0; c < nc; ++c) {
     const Eigen::VectorXd f = r.force_row.col(c), v = r.velocity_row.col(c);
     const Eigen::VectorXd f_steady = steady(f, r.force_coefficient.col(c));
@@ -61,8 +62,13 @@ std::unique_ptr<AuditForms> AuditForms::make(const Regime& r, const DriveOverlay
     drive.R += f * speed.transpose();
     drive.P += f_steady * speed.transpose();
   }
+  for (Eigen::Index k = 0; k < r.forces; ++k) {
+    const Eigen::VectorXd v = r.drive_row.col(k), u = E.row(r.force_input(k)).transpose();
+    force.R += v * u.transpose();
+    force.P += steady(v, r.drive_coefficient.col(k)) * u.transpose();
+  }
   if (pairs.n > 0) {
-    if (pairs.proportional)
+    if (pairs.dissipation_root.size() == 0)
       viscous.Q.bottomRightCorner(np, np).diagonal() = pairs.damping;
     else
       viscous.Q = pairs.dissipation_root.transpose() * pairs.dissipation_root;
@@ -71,7 +77,7 @@ std::unique_ptr<AuditForms> AuditForms::make(const Regime& r, const DriveOverlay
   viscous.P = S.transpose() * viscous.Q * S + 2.0 * (S.transpose() * r.viscous_cross) * speed.transpose() +
               r.viscous_drive * speed * speed.transpose();
   if (!forms->integrate(contact, forms->contact_) || !forms->integrate(drive, forms->drive_) ||
-      !forms->integrate(viscous, forms->viscous_))
+      !forms->integrate(viscous, forms->viscous_) || !forms->integrate(force, forms->force_))
     return nullptr;
   return forms;
 }
@@ -182,20 +188,22 @@ double AuditForms::contact_potential(double t, const Eigen::VectorXd& x) const {
 
 StayWork AuditForms::values(double t, const Eigen::VectorXd& x) const {
   const Eigen::VectorXd free = x - resting_;
-  return {value(contact_, t, free) + contact_potential(t, x), value(drive_, t, free), value(viscous_, t, free)};
+  return {value(contact_, t, free) + contact_potential(t, x), value(drive_, t, free), value(viscous_, t, free),
+          value(force_, t, free)};
 }
 
 void AuditForms::begin(double t, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs) {
   begin_ = t;
   inputs_ = inputs;
-  for (Form* form : {&contact_, &drive_, &viscous_}) form->set_inputs(inputs);
+  for (Form* form : {&contact_, &drive_, &viscous_, &force_}) form->set_inputs(inputs);
   resting_ = regime_.particular * inputs;
   at_begin_ = values(t, x);
 }
 
 StayWork AuditForms::until(double t, const Eigen::VectorXd& x) {
   const StayWork now = values(t, x);
-  const StayWork work{now.contact - at_begin_.contact, now.drive - at_begin_.drive, now.viscous - at_begin_.viscous};
+  const StayWork work{now.contact - at_begin_.contact, now.drive - at_begin_.drive, now.viscous - at_begin_.viscous,
+                      now.force - at_begin_.force};
   at_begin_ = now;
   return work;
 }

@@ -13,6 +13,7 @@ struct StayWork {
   double contact = 0.0;  ///< ∫ Σ λ wᵀq̇ dt
   double drive = 0.0;    ///< ∫ Σ λ v_drive dt
   double viscous = 0.0;  ///< ∫ q̇ᵀCq̇ dt
+  double force = 0.0;    ///< ∫ Σ u_k d_kᵀq̇ dt
 };
 
 /// The energy audit under a harmonic drive without quadrature: with x = x_f + S u, ẋ_f = G x_f, u = (ι, cos θ, sin θ),
@@ -24,7 +25,8 @@ struct StayWork {
 /// Source: docs/theory/flow.md.
 class AuditForms {
  public:
-  /// Null where a mode has no damping to speak of, or drifts: then the integrals have no such form.
+  /// Null where a mode has no damping to speak of, or drifts, or the drive has several harmonics: then the integrals
+  /// have no such form.
   [[nodiscard]] static std::unique_ptr<AuditForms> make(const Regime& regime, const DriveOverlay& overlay);
 
   /// Starts a stay. @param inputs  constant over the stay
@@ -63,7 +65,7 @@ class AuditForms {
 
   const Regime& regime_;
   const DriveOverlay& overlay_;
-  Form contact_, drive_, viscous_;
+  Form contact_, drive_, viscous_, force_;
   double begin_ = 0.0;
   Eigen::VectorXd inputs_, resting_;  ///< of this stay; x of constant inputs
   StayWork at_begin_;

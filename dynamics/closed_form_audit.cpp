@@ -1,12 +1,15 @@
 #include "dynamics/closed_form_flow.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 
 namespace slipmode::dynamics {
 namespace {
 
 /// Phase below which one short rule serves.
 constexpr double kShortRest = 0.25;
+/// Phase of the fastest harmonic that the rules of a window, made for the regime's own rate, take at least.
+constexpr double kDriveRest = 1.0;
 
 }  // namespace
 
@@ -14,14 +17,14 @@ void ClosedFormFlow::account(double tau, bool ends) {
   if (!regime_->forms) return integrate(tau);
   if (!ends) return;
   const StayWork work = regime_->forms->until(point_.time, x_);
-  work_.add(work.contact, work.drive, work.viscous);
+  work_.add(work.contact, work.drive, work.viscous, work.force);
 }
 
 void ClosedFormFlow::integrate(double tau) {
   const RegimeTables& tables = *tables_;
   const Regime& r = tables.regime();
   const DriveOverlay* overlay = regime_->overlay.get();
-  double contact = 0.0, driven = 0.0, viscous = 0.0;
+  double contact = 0.0, driven = 0.0, viscous = 0.0, forced = 0.0;
   const auto add = [&](double weight, double t, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs) {
     const DrivePhase phase = overlay ? overlay->phase(t) : DrivePhase{};
     const double V = drive_velocity(t, inputs);
@@ -37,10 +40,17 @@ void ClosedFormFlow::integrate(double tau) {
       contact += weight * force * velocity;
       driven += weight * force * V;
     }
-    if (overlay)
-      viscous += weight * r.viscous_power(x + phase.cosine * overlay->state.c + phase.sine * overlay->state.s, V);
-    else
+    if (const friction::Force* force = resolver_.drive().force())
+      for (Eigen::Index k = 0; k < r.forces; ++k)
+        forced += weight * force->value(static_cast<int>(k), t) *
+                  (r.drive_row.col(k).dot(x) + r.drive_coefficient.col(k).dot(inputs) + overlay->driven.at(k, phase));
+    if (overlay) {
+      Eigen::VectorXd all = x;
+      overlay->state.add(phase, 1.0, all);
+      viscous += weight * r.viscous_power(all, V);
+    } else {
       viscous += weight * r.viscous_power(x, V);
+    }
   };
   const auto move_to = [&](const RegimeStep& s, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs,
                            Eigen::VectorXd& out_x, Eigen::VectorXd& out_inputs) {
@@ -50,7 +60,13 @@ void ClosedFormFlow::integrate(double tau) {
   };
   Eigen::VectorXd x = x_begin_, inputs = inputs_begin_, at_x(x.size()), at_inputs(inputs.size());
   double t = begin_;
-  for (int level = RegimeTables::kAuditLevel; level < RegimeTables::kLevels && r.rate * tau > kShortRest;) {
+  const double drive_rate = overlay ? static_cast<double>(overlay->orders()) * overlay->omega() : 0.0;
+  const double fastest = std::max(r.rate, drive_rate);
+  const int first = drive_rate * tables.length(RegimeTables::kAuditLevel) > kDriveRest
+                        ? tables.level_covering(kDriveRest / drive_rate)
+                        : RegimeTables::kAuditLevel;
+  for (int level = std::max(first, RegimeTables::kAuditLevel);
+       level < RegimeTables::kLevels && fastest * tau > kShortRest;) {
     const double h = tables.length(level);
     if (h > tau) {
       ++level;
@@ -75,7 +91,7 @@ void ClosedFormFlow::integrate(double tau) {
       advance(tables, rule.node(j) * tau, at_x, at_inputs);
       add(rule.weight(j) * tau, t + rule.node(j) * tau, at_x, at_inputs);
     }
-  work_.add(contact, driven, viscous);
+  work_.add(contact, driven, viscous, forced);
 }
 
 }  // namespace slipmode::dynamics

@@ -49,6 +49,18 @@ ClosedFormFlow::ClosedFormFlow(const HybridSystem& system, HybridPoint start, co
   enter_regime();
 }
 
+void ClosedFormFlow::restart(HybridPoint start) {
+  point_ = std::move(start);
+  resolver_.forget();
+  regime_tangents_.resize(0, 0);
+  work_ = {};
+  statistics_ = {};
+  statistics_.stick_time.assign(static_cast<std::size_t>(nc_), 0.0);
+  level_ = 0;
+  resolver_.start(point_);
+  enter_regime();
+}
+
 void ClosedFormFlow::enter_regime() {
   const std::vector<ContactRole> roles = resolver_.roles(point_.modes);
   const auto known = std::find_if(visited_.begin(), visited_.end(), [&](const auto& v) { return v.roles == roles; });
@@ -56,11 +68,8 @@ void ClosedFormFlow::enter_regime() {
     const RegimeTables& tables = system_.cache().regime(system_, roles);
     visited_.push_back({roles, &tables, nullptr, nullptr});
     Visited& now = visited_.back();
-    if (const friction::Shaker* shaker = resolver_.drive().shaker()) {
-      now.overlay = std::make_unique<DriveOverlay>(tables.regime(), *shaker);
-      const Regime& r = tables.regime();
-      now.lift_c = r.to_slipping * now.overlay->state.c + r.inputs_slipping * now.overlay->inputs.c;
-      now.lift_s = r.to_slipping * now.overlay->state.s + r.inputs_slipping * now.overlay->inputs.s;
+    if (resolver_.drive().belt() == nullptr) {
+      now.overlay = std::make_unique<DriveOverlay>(tables.regime(), resolver_.drive());
       if (options_.audit) now.forms = AuditForms::make(tables.regime(), *now.overlay);
     }
     regime_ = &now;
@@ -85,7 +94,7 @@ void ClosedFormFlow::enter_regime() {
     x_.noalias() += r.from_oscillators * Eigen::VectorXd(point_.internal(oscillator_states_));
   if (overlay) {
     for (Eigen::Index c = 0; c < nc_; ++c) inputs_(c) -= overlay->inputs.at(c, phase);
-    x_ -= phase.cosine * overlay->state.c + phase.sine * overlay->state.s;
+    overlay->state.add(phase, -1.0, x_);
   }
   if (regime_->forms) regime_->forms->begin(point_.time, x_, inputs_);
   amplitude_.resize(r.pairs.np);
@@ -113,14 +122,48 @@ void ClosedFormFlow::set_guards() {
         guard.sign = -1.0;
         break;
       case RegimeOutput::Kind::kLoad:
-        guard.of_load = true;
+        guard.kind = GuardKind::kLoad;
         guard.sign = point_.modes[i] == ContactMode::kSeparated ? -1.0 : 1.0;
         break;
       case RegimeOutput::Kind::kExcess:
       case RegimeOutput::Kind::kReserve:
         break;
+      case RegimeOutput::Kind::kDisplacement:
+      case RegimeOutput::Kind::kPress:
+        add_clearance_guards(guard, outputs[k].kind);
+        continue;
     }
     guards_.push_back(guard);
+  }
+}
+
+void ClosedFormFlow::add_clearance_guards(const Guard& of_output, RegimeOutput::Kind kind) {
+  const auto i = static_cast<std::size_t>(of_output.contact);
+  const friction::Clearance& law = resolver_.laws()[i].clearance;
+  const ContactMode mode = point_.modes[i];
+  const auto add = [&](double sign, double constant, ContactMode next) {
+    Guard guard = of_output;
+    guard.kind = GuardKind::kStop;
+    guard.sign = sign;
+    guard.constant = constant;
+    guard.next = next;
+    guards_.push_back(guard);
+  };
+  const bool left = mode == ContactMode::kLeftStop || mode == ContactMode::kLeftFlight;
+  if (mode == ContactMode::kGap) {
+    if (law.right) add(-1.0, law.right->gap, ContactMode::kRightStop);
+    if (law.left) add(1.0, law.left->gap, ContactMode::kLeftStop);
+  } else if (kind == RegimeOutput::Kind::kDisplacement) {
+    if (left)
+      add(-1.0, -law.left->gap, ContactMode::kGap);
+    else
+      add(1.0, -law.right->gap, ContactMode::kGap);
+  } else if (mode == ContactMode::kLeftFlight || mode == ContactMode::kRightFlight) {
+    add(-1.0, 0.0, left ? ContactMode::kLeftStop : ContactMode::kRightStop);
+  } else {
+    // Without damping the force vanishes where the gap begins: there is no flight beyond it.
+    const bool damped = (left ? law.left : law.right)->damping > 0.0;
+    add(1.0, 0.0, !damped ? ContactMode::kGap : left ? ContactMode::kLeftFlight : ContactMode::kRightFlight);
   }
 }
 
@@ -129,12 +172,19 @@ double ClosedFormFlow::scale(const Guard& guard) const {
   const RegimeOutput& output = r.outputs[static_cast<std::size_t>(guard.output)];
   const ContactForces& law = resolver_.laws()[static_cast<std::size_t>(guard.contact)];
   if (output.kind == RegimeOutput::Kind::kForce) return law.static_limit;
+  if (guard.kind == GuardKind::kStop) {
+    // Not by amplitudes: a slow drift through the gap has a large one.
+    double size = std::abs(guard.constant) + r.row.col(guard.output).cwiseAbs().dot(x_.cwiseAbs()) +
+                  r.coefficient.col(guard.output).cwiseAbs().dot(inputs_.cwiseAbs());
+    if (regime_->overlay) size += regime_->overlay->outputs.size(guard.output);
+    return size;
+  }
   double size = r.weight.col(guard.output).dot(amplitude_);
   if (regime_->overlay) size += regime_->overlay->outputs.size(guard.output);
   if (output.kind == RegimeOutput::Kind::kSpeed)
     return size + std::abs(inputs_(r.speed_input())) +
            slipping_.mobility(guard.contact, guard.contact) * law.static_limit / r.rate;
-  return size + (guard.of_load ? law.load : law.static_limit);
+  return size + (guard.kind == GuardKind::kLoad ? law.load : law.static_limit);
 }
 
 ClosedFormFlow::GuardValue ClosedFormFlow::evaluate(const Guard& guard, double t) const {
@@ -154,7 +204,7 @@ double ClosedFormFlow::second_derivative(const Guard& guard, double t) const {
   const Regime& r = tables_->regime();
   double second = r.row2.col(guard.output).dot(x_) + r.coefficient2.col(guard.output).dot(inputs_);
   if (const DriveOverlay* overlay = regime_->overlay.get())
-    second -= overlay->omega() * overlay->omega() * overlay->outputs.at(guard.output, overlay->phase(t));
+    second += overlay->omega() * overlay->omega() * overlay->outputs.bend(guard.output, overlay->phase(t));
   return guard.sign * second;
 }
 
@@ -193,12 +243,14 @@ void ClosedFormFlow::foresee_starts() {
     const auto [g0, g1] = evaluate(guard, point_.time);
     const double size = scale(guard);
     if (rigid_speed ? point_.multiplicity[i] == 0 : g0 > kStarting * size) continue;
-    const double harmonic = overlay ? overlay->outputs.size(guard.output) : 0.0, w = overlay ? overlay->omega() : 0.0;
+    const double w = overlay ? overlay->omega() : 0.0;
+    const double harmonic2 = overlay ? w * w * overlay->outputs.size(guard.output, 2) : 0.0;
+    const double harmonic3 = overlay ? w * w * w * overlay->outputs.size(guard.output, 3) : 0.0;
     const double g2 = second_derivative(guard, point_.time);
     const double third = std::abs(r.polynomial3.col(guard.output).dot(inputs_));
-    const double m3 = room * r.weight3.col(guard.output).dot(amplitude_) + third + harmonic * w * w * w;
+    const double m3 = room * r.weight3.col(guard.output).dot(amplitude_) + third + harmonic3;
     const double m2 = room * r.weight2.col(guard.output).dot(amplitude_) +
-                      std::abs(r.polynomial2.col(guard.output).dot(inputs_)) + third / r.rate + harmonic * w * w;
+                      std::abs(r.polynomial2.col(guard.output).dot(inputs_)) + third / r.rate + harmonic2;
     const bool simple = rigid_speed ? point_.multiplicity[i] == 1 : g1 > kSimpleStart * r.rate * size;
     const bool flat = rigid_speed ? point_.multiplicity[i] == 2 : std::abs(g1) <= kSimpleStart * r.rate * size;
     double clear = 0.0;
@@ -257,10 +309,16 @@ ClosedFormFlow::Search ClosedFormFlow::search(int level) const {
                node_sums(w.from_inputs.data() + 8 * ni * k, inputs_.data(), ni);
       remainder = dot_padded(w.remainder.col(k).data(), amplitude_.data(), np);
       if (overlay) {
-        // c cos(θ₀ + ωτ) + s sin(θ₀ + ωτ) by the window's cos ωτ and sin ωτ.
-        const DriveOverlay::Window& harmonic = overlay->window(level, tables_->length(level));
-        output += overlay->outputs.at(k, phase_) * harmonic.cosine + overlay->outputs.rate(k, phase_) * harmonic.sine;
-        remainder += harmonic.remainder * overlay->outputs.size(k);
+        // c cos j(θ₀ + ωτ) + s sin j(θ₀ + ωτ) by the window's cos jωτ and sin jωτ.
+        DrivePhase p;
+        Eigen::Index j = 0;
+        for (const DriveOverlay::Window& harmonic : overlay->window(level, tables_->length(level))) {
+          p = p.times(phase_);
+          const double c = overlay->outputs.c(k, j), s = overlay->outputs.s(k, j);
+          output += (c * p.cosine + s * p.sine) * harmonic.cosine + (s * p.cosine - c * p.sine) * harmonic.sine;
+          remainder += harmonic.remainder * std::hypot(c, s);
+          ++j;
+        }
       }
     }
     const V8 values = guard.constant + guard.sign * output;
@@ -304,7 +362,7 @@ double ClosedFormFlow::curvature(Eigen::Index output) const {
                 std::abs(r.polynomial2.col(output).dot(inputs_begin_)) +
                 std::abs(r.polynomial3.col(output).dot(inputs_begin_)) * h;
   if (const DriveOverlay* overlay = regime_->overlay.get())
-    bend += overlay->omega() * overlay->omega() * overlay->outputs.size(output);
+    bend += overlay->omega() * overlay->omega() * overlay->outputs.size(output, 2);
   return bend;
 }
 
@@ -384,6 +442,7 @@ bool ClosedFormFlow::step(double t_limit) {
   if (!ends) return false;
   if (corner) return settle(-1, false);
   lift_point();
+  if (regime_tangents_.cols() > 0) push_tangents();
   return false;
 }
 
@@ -391,13 +450,16 @@ bool ClosedFormFlow::settle(int guard, bool touching) {
   lift_point();
   const double window_end = begin_ + tables_->length(level_);
   const Guard* reached = guard >= 0 ? &guards_[static_cast<std::size_t>(guard)] : nullptr;
-  resolver_.settle(point_, reached ? reached->contact : -1, touching,
-                   reached && reached->of_load ? GuardKind::kLoad : GuardKind::kFriction);
+  const bool carries = regime_tangents_.cols() > 0, crossed = reached != nullptr && !touching;
+  Saltation salted;
+  if (carries && crossed) salted = before_event(*reached);
+  resolver_.settle(point_, reached ? Reached{reached->contact, touching, reached->kind, reached->next} : Reached{});
   statistics_.events += static_cast<std::int64_t>(resolver_.events().size());
   if (touching)
     guards_[static_cast<std::size_t>(guard)].exempt_until = std::max(window_end, std::nextafter(point_.time, 1e300));
   else
     enter_regime();
+  if (carries && crossed) after_event(std::move(salted));
   return true;
 }
 
@@ -413,7 +475,7 @@ void ClosedFormFlow::lift(const Visited& in, double t, const Eigen::VectorXd& x,
                        : r.force_row.col(c).dot(x) + r.force_coefficient.col(c).dot(inputs);
   if (!in.overlay) return;
   const DrivePhase phase = in.overlay->phase(t);
-  out_x.noalias() += phase.cosine * in.lift_c + phase.sine * in.lift_s;
+  in.overlay->slipping.add(phase, 1.0, out_x);
   for (int c = 0; c < nc_; ++c) out_force(c) += in.overlay->force.at(c, phase);
 }
 
@@ -426,8 +488,7 @@ void ClosedFormFlow::lift_point() {
   const Regime& r = tables_->regime();
   Eigen::VectorXd x = x_;
   if (const DriveOverlay* overlay = regime_->overlay.get()) {
-    const DrivePhase phase = overlay->phase(point_.time);
-    x += phase.cosine * overlay->state.c + phase.sine * overlay->state.s;
+    overlay->state.add(overlay->phase(point_.time), 1.0, x);
   }
   point_.internal(oscillator_states_) = r.to_oscillators * x;
 }

@@ -25,6 +25,17 @@ class ClosedFormFlow {
   /// @param start  its modes may be undecided where a contact is at rest on the belt; laws must be piecewise linear
   ClosedFormFlow(const HybridSystem& system, HybridPoint start, const FlowOptions& options);
 
+  /// Starts anew from another point; regimes met so far stay prepared. Drops the tangents.
+  void restart(HybridPoint start);
+
+  /// Carries tangents along from here, saltation included. Coordinates: state of the slipping model, contacts' own
+  /// states. @param tangents  columns [2np + internal_size x k]
+  void set_tangents(const Eigen::MatrixXd& tangents);
+  /// They, at `point().time` (brought up to date at events and at the time asked).
+  [[nodiscard]] Eigen::MatrixXd tangents() const { return lifted_tangents(regime_tangents_, input_tangents_); }
+  /// d/dt of the point in the same coordinates, right limit [2np + internal_size].
+  [[nodiscard]] Eigen::VectorXd point_rate() const;
+
   /// Advances by one step, not beyond t_limit (> time). True if it ended at an event.
   bool step(double t_limit);
 
@@ -43,16 +54,16 @@ class ClosedFormFlow {
     Eigen::Index output = 0;
     int contact = 0;
     double sign = 1.0, constant = 0.0;
-    bool of_load = false;          ///< the normal load's sign, not friction
-    double exempt_until = -1e300;  ///< known to be clear up to this time
+    GuardKind kind = GuardKind::kFriction;
+    ContactMode next = ContactMode::kStick;  ///< of a clearance, once the guard is crossed
+    double exempt_until = -1e300;            ///< known to be clear up to this time
   };
   /// A regime met in this run.
   struct Visited {
     std::vector<ContactRole> roles;
     const RegimeTables* tables;
-    std::unique_ptr<DriveOverlay> overlay;     ///< null for a belt
-    std::unique_ptr<AuditForms> forms;         ///< null where the audit integrates by quadrature
-    Eigen::VectorXd lift_c = {}, lift_s = {};  ///< the overlay's state in the slipping model
+    std::unique_ptr<DriveOverlay> overlay;  ///< null for a belt
+    std::unique_ptr<AuditForms> forms;      ///< null where the audit integrates by quadrature
   };
   /// What a search of one window found.
   struct Search {
@@ -71,6 +82,7 @@ class ClosedFormFlow {
 
   void enter_regime();
   void set_guards();
+  void add_clearance_guards(const Guard& guard, RegimeOutput::Kind kind);
   void measure_amplitudes();
   void foresee_starts();
   /// The size of an output's values, which its rounding error is measured by.
@@ -92,6 +104,20 @@ class ClosedFormFlow {
   /// The same into `point_`, contacts' own states included.
   void lift_point();
   [[nodiscard]] bool settle(int guard, bool touching);
+  /// Brings the tangents up to the point's time, within a stay.
+  void push_tangents();
+  /// What passing an event does to the tangents.
+  struct Saltation {
+    Eigen::MatrixXd tangents;  ///< before, as `tangents()`
+    Eigen::RowVectorXd delay;  ///< δg/ġ: by how much later than the point each tangent reaches the guard
+    Eigen::VectorXd rate;      ///< of the point before
+    std::vector<ContactMode> modes;
+  };
+  [[nodiscard]] Saltation before_event(const Guard& guard);
+  void after_event(Saltation salted);
+  /// Into the coordinates of the regime entered.
+  void enter_tangents(const Eigen::MatrixXd& tangents);
+  [[nodiscard]] Eigen::MatrixXd lifted_tangents(const Eigen::MatrixXd& of_x, const Eigen::MatrixXd& of_inputs) const;
   [[nodiscard]] double drive_velocity(double t, const Eigen::VectorXd& inputs) const;
 
   const HybridSystem& system_;
@@ -111,6 +137,10 @@ class ClosedFormFlow {
   double begin_ = 0.0;
   DrivePhase phase_;  ///< at begin_, of a harmonic drive
   int level_ = 0;
+
+  Eigen::MatrixXd regime_tangents_;  ///< of x_ [2np x k]; no columns: none are carried
+  Eigen::MatrixXd input_tangents_;   ///< of inputs_ [ni x k]
+  double tangent_time_ = 0.0;
 
   WorkSums work_;
   FlowStatistics statistics_;

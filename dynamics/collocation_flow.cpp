@@ -183,7 +183,7 @@ bool CollocationFlow::step(double t_limit) {
   if (at_guard && bristled(contact)) {
     settle_bristle(contact, guard.touching);
   } else {
-    resolver_.settle(point_, contact, guard.touching);
+    resolver_.settle(point_, {contact, guard.touching});
     events_ = resolver_.events();
     if (any_bristle_) refresh_bristles();
   }

@@ -24,7 +24,9 @@ ContactMode slip_mode(double sign) { return sign > 0 ? ContactMode::kSlipPositiv
 /// wᵀq̈ of every contact with all forces zero.
 Eigen::VectorXd free_acceleration(const Instant& now) {
   const Eigen::Map<const Eigen::VectorXd> x(now.x, 2 * now.model.np);
-  return now.model.acceleration_row.transpose() * x + now.model.load_acceleration;
+  Eigen::VectorXd free = now.model.acceleration_row.transpose() * x + now.model.load_acceleration;
+  if (now.force.size() > 0) free += now.model.force_acceleration * now.force;
+  return free;
 }
 
 struct Trial {
@@ -89,12 +91,28 @@ bool enumerate(const Instant& now, const std::vector<bool>& at_rest, const std::
 }  // namespace
 
 double ContactForces::smooth(double v, double& slope) const {
-  if (kind == Kind::kFree || kind == Kind::kBristle) return slope = 0.0;
+  if (kind == Kind::kFree || kind == Kind::kBristle || kind == Kind::kClearance) return slope = 0.0;
   const double th = std::tanh(v / epsilon), dth = (1 - th * th) / epsilon;
   const double magnitude = v * th, d_magnitude = th + v * dth;
   const double e = drop * std::exp(-alpha * magnitude);
   slope = (kinetic + e) * dth - alpha * d_magnitude * e * th;
   return (kinetic + e) * th;
+}
+
+double ContactForces::stop_force(ContactMode mode, double displacement, double velocity) const {
+  if (mode == ContactMode::kRightStop)
+    return -clearance.right->stiffness * (displacement - clearance.right->gap) - clearance.right->damping * velocity;
+  if (mode == ContactMode::kLeftStop)
+    return -clearance.left->stiffness * (displacement + clearance.left->gap) - clearance.left->damping * velocity;
+  return 0.0;
+}
+
+double ContactForces::stop_force_rate(ContactMode mode, double velocity, double acceleration) const {
+  if (mode == ContactMode::kRightStop)
+    return -clearance.right->stiffness * velocity - clearance.right->damping * acceleration;
+  if (mode == ContactMode::kLeftStop)
+    return -clearance.left->stiffness * velocity - clearance.left->damping * acceleration;
+  return 0.0;
 }
 
 double ContactForces::sliding(ContactMode mode, double v) const {
@@ -138,8 +156,9 @@ ContactForces contact_forces(const friction::Contact& contact) {
     f.drop = (tanh->mu_s - tanh->mu_k) * N;
     f.alpha = tanh->alpha;
     f.epsilon = tanh->epsilon;
-  } else if (std::holds_alternative<friction::Clearance>(contact.law)) {
+  } else if (const auto* clearance = std::get_if<friction::Clearance>(&contact.law)) {
     f.kind = ContactForces::Kind::kClearance;
+    f.clearance = *clearance;
     return f;
   } else {
     f.kind = ContactForces::Kind::kBristle;
@@ -161,6 +180,7 @@ SingleResolution resolve_single(const Instant& now, bool released, double releas
   const ModalModel& m = now.model;
   const ContactForces& law = now.laws[0];
   double free = m.load_acceleration(0);
+  if (now.force.size() > 0) free += m.force_acceleration.row(0).dot(now.force);
   const double* row = m.acceleration_row.data();
   for (Eigen::Index i = 0; i < 2 * m.np; ++i) free += row[i] * now.x[i];
   const double stick = (now.belt_acceleration - free) / m.mobility(0, 0);
@@ -252,7 +272,8 @@ Resolution resolve(const Instant& now, const std::vector<ContactMode>& modes, co
 int start_multiplicity(const Instant& now, int c, ContactMode mode, const Eigen::VectorXd& force) {
   const ModalModel& m = now.model;
   const double acceleration = m.acceleration_row.col(c).dot(Eigen::Map<const Eigen::VectorXd>(now.x, 2 * m.np)) +
-                              m.load_acceleration(c) + m.mobility.row(c).dot(force);
+                              m.load_acceleration(c) + m.mobility.row(c).dot(force) +
+                              (now.force.size() > 0 ? m.force_acceleration.row(c).dot(now.force) : 0.0);
   const double start = sign_of(mode) * (now.belt_acceleration - acceleration);
   const double threshold = kSimpleStart * m.mobility(c, c) * now.laws[static_cast<std::size_t>(c)].static_limit;
   return start > threshold ? 1 : start >= -threshold ? 2 : -1;
@@ -263,11 +284,17 @@ Eigen::VectorXd stick_force_rates(const Instant& now, const std::vector<ContactM
   const ModalModel& m = now.model;
   const auto np = m.np;
   const Eigen::Map<const Eigen::VectorXd> x(now.x, 2 * np);
-  const Eigen::VectorXd rate = m.rate(x, force);
+  Eigen::VectorXd rate = m.rate(x, force);
+  if (now.force.size() > 0) rate += m.force_input * now.force;
   Eigen::VectorXd force_rate = Eigen::VectorXd::Zero(m.contacts);
   std::vector<Eigen::Index> stuck;
   for (int c = 0; c < m.contacts; ++c) {
     const ContactForces& law = now.laws[static_cast<std::size_t>(c)];
+    if (law.kind == ContactForces::Kind::kClearance) {
+      force_rate(c) = law.stop_force_rate(modes[static_cast<std::size_t>(c)], m.velocity_row.col(c).dot(x),
+                                          m.velocity_row.col(c).dot(rate));
+      continue;
+    }
     const bool sticks = modes[static_cast<std::size_t>(c)] == ContactMode::kStick;
     if (sticks && law.kind != ContactForces::Kind::kCompliant) {
       stuck.push_back(c);
@@ -290,8 +317,9 @@ Eigen::VectorXd stick_force_rates(const Instant& now, const std::vector<ContactM
       slope = -law.alpha * law.drop * std::exp(-law.alpha * std::abs(v_rel));
     force_rate(c) = slope * v_rel_rate;
   }
-  const Eigen::VectorXd missing = Eigen::VectorXd::Constant(m.contacts, now.belt_jerk) -
-                                  m.acceleration_row.transpose() * rate - m.mobility * force_rate;
+  Eigen::VectorXd missing = Eigen::VectorXd::Constant(m.contacts, now.belt_jerk) -
+                            m.acceleration_row.transpose() * rate - m.mobility * force_rate;
+  if (now.force_rate.size() > 0) missing -= m.force_acceleration * now.force_rate;
   const Eigen::VectorXd solved =
       Eigen::MatrixXd(m.mobility(stuck, stuck)).ldlt().solve(Eigen::VectorXd(missing(stuck)));
   for (std::size_t k = 0; k < stuck.size(); ++k) force_rate(stuck[k]) = solved(static_cast<Eigen::Index>(k));

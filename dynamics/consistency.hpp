@@ -27,6 +27,7 @@ struct ContactForces {
   double epsilon = 0.0;       ///< of the smooth law [m/s]
   double stiffness = 0.0;     ///< K_c of a compliant contact, else 0 [N/m]
   BristleForces bristle = {};
+  friction::Clearance clearance = {};
   double load = 0.0;    ///< N these forces belong to [N]
   bool varies = false;  ///< the normal load varies: `under` gives the forces of an instant
   /// Coefficients for a force along −w and along +w; they differ on a tilted slider.
@@ -54,6 +55,10 @@ struct ContactForces {
   [[nodiscard]] bool needs_closed_form() const {
     return kind == Kind::kCompliant || kind == Kind::kClearance || varies || mu_s[0] != mu_s[1] || mu_k[0] != mu_k[1];
   }
+  /// λ of a clearance at displacement y and velocity ẏ.
+  [[nodiscard]] double stop_force(ContactMode mode, double displacement, double velocity) const;
+  /// dλ/dt of a clearance.
+  [[nodiscard]] double stop_force_rate(ContactMode mode, double velocity, double acceleration) const;
   /// λ while sliding with relative velocity v in this mode (not stick).
   [[nodiscard]] double sliding(ContactMode mode, double v) const;
   /// λ of the smooth law (0 for a free contact, and for a bristle, whose force is not a function of v) at relative
@@ -79,7 +84,8 @@ struct Instant {
   double belt_acceleration = 0.0;
   /// λ of the contacts that are not to be decided [nc]; null: their laws give it.
   const Eigen::VectorXd* applied = nullptr;
-  double belt_jerk = 0.0;  ///< d³/dt³ of the counterpart's way: not zero for a shaker only
+  double belt_jerk = 0.0;                       ///< d³/dt³ of the counterpart's way: not zero for a shaker only
+  Eigen::VectorXd force = {}, force_rate = {};  ///< of a force drive along its directions [nk]; empty without one
 };
 
 /// Decides, in one place, what contacts do after an event (Filippov): of the contacts at zero relative velocity

@@ -20,11 +20,12 @@ void HybridPoint::assign(Resolution resolution) {
   force = std::move(resolution.force);
 }
 
-void WorkSums::add(double contact, double drive, double viscous) {
+void WorkSums::add(double contact, double drive, double viscous, double force) {
   contact_work += contact;
   drive_work += drive;
   viscous_loss += viscous;
-  exchanged += std::abs(contact) + viscous;
+  force_work += force;
+  exchanged += std::abs(contact) + std::abs(force) + viscous;
 }
 
 EventResolver::EventResolver(const HybridSystem& system, const ModalModel& model, const FlowOptions& options)
@@ -39,6 +40,7 @@ EventResolver::EventResolver(const HybridSystem& system, const ModalModel& model
     internal_.push_back(system.internal_begin(c));
     oscillator_.push_back(internal_.back() + friction::internal_states(contact) - 2);
   }
+  for (const ContactForces& law : laws_) frictionless_ &= !law.sticks();
   plain_ = laws_.size() == 1 && !laws_[0].needs_closed_form();
 }
 
@@ -69,6 +71,9 @@ double EventResolver::applied_force(const HybridPoint& point, int c) const {
   const ContactMode mode = point.modes[i];
   if (mode == ContactMode::kSeparated) return 0.0;
   if (laws_[i].kind == ContactForces::Kind::kBristle) return point.force(c);
+  if (laws_[i].kind == ContactForces::Kind::kClearance)
+    return laws_[i].stop_force(mode, contact_displacement(c, point.x.data()) + loads_[i].offset,
+                               contact_velocity(c, point.x.data()));
   if (mode == ContactMode::kStick)
     return laws_[i].kind == ContactForces::Kind::kCompliant ? laws_[i].stiffness * point.internal(internal_[i]) : 0.0;
   if (laws_[i].varies) return laws_[i].under(std::max(normal_load(point, c), 0.0)).sliding(mode, 0.0);
@@ -143,6 +148,7 @@ double EventResolver::regime_input(const HybridPoint& point, int c) const {
   const auto i = static_cast<std::size_t>(c);
   const ContactMode mode = point.modes[i];
   if (mode == ContactMode::kSeparated) return 0.0;
+  if (laws_[i].kind == ContactForces::Kind::kClearance) return laws_[i].stop_force(mode, loads_[i].offset, 0.0);
   if (mode == ContactMode::kStick) {
     const double stretch = laws_[i].kind == ContactForces::Kind::kCompliant ? point.internal(internal_[i]) : 0.0;
     return contact_displacement(c, point.x.data()) + stretch;
@@ -152,15 +158,40 @@ double EventResolver::regime_input(const HybridPoint& point, int c) const {
   return sign * laws_[i].kinetic_coefficient(sign) * loads_[i].constant;
 }
 
+Eigen::VectorXd EventResolver::drive_force(double time) const {
+  const friction::Force* drive = drive_.force();
+  if (drive == nullptr) return {};
+  return Eigen::VectorXd::NullaryExpr(model_.force_input.cols(),
+                                      [&](Eigen::Index k) { return drive->value(static_cast<int>(k), time); });
+}
+
+Eigen::VectorXd EventResolver::drive_force_rate(double time) const {
+  const friction::Force* drive = drive_.force();
+  if (drive == nullptr) return {};
+  return Eigen::VectorXd::NullaryExpr(model_.force_input.cols(),
+                                      [&](Eigen::Index k) { return drive->rate(static_cast<int>(k), time); });
+}
+
 Instant EventResolver::instant(double time, const double* x) const {
-  return {model_, laws_, x, time, drive_.velocity(time), drive_.acceleration(time)};
+  Instant now{model_, laws_, x, time, drive_.velocity(time), drive_.acceleration(time)};
+  now.force = drive_force(time);
+  return now;
 }
 
 Instant EventResolver::instant(const HybridPoint& point, const std::vector<ContactForces>& laws,
                                const Eigen::VectorXd& applied) const {
   const double V = drive_.velocity(point.time);
   const double jerk = drive_.shaker() == nullptr ? 0.0 : -drive_.shaker()->omega() * drive_.shaker()->omega() * V;
-  return {model_, laws, point.x.data(), point.time, V, drive_.acceleration(point.time), &applied, jerk};
+  return {model_,
+          laws,
+          point.x.data(),
+          point.time,
+          V,
+          drive_.acceleration(point.time),
+          &applied,
+          jerk,
+          drive_force(point.time),
+          drive_force_rate(point.time)};
 }
 
 double EventResolver::contact_velocity(int c, const double* x) const {

@@ -24,15 +24,24 @@ struct HybridPoint {
 
 /// Running sums of the energy balance (see EnergyAudit).
 struct WorkSums {
-  double contact_work = 0.0, drive_work = 0.0, viscous_loss = 0.0, exchanged = 0.0;
+  double contact_work = 0.0, drive_work = 0.0, viscous_loss = 0.0, force_work = 0.0, exchanged = 0.0;
 
-  void add(double contact, double drive, double viscous);
+  void add(double contact, double drive, double viscous, double force = 0.0);
 };
 
 /// What a guard guards.
 enum class GuardKind : std::uint8_t {
   kFriction,  ///< the sliding speed in slip, the force's limit in stick
   kLoad,      ///< the sign of the normal load
+  kStop,      ///< where a stop of a clearance is, or what it presses with
+};
+
+/// What was reached when a step ended.
+struct Reached {
+  int contact = -1;       ///< −1: a corner of the drive
+  bool touching = false;  ///< the guard was touched and not crossed: a grazing
+  GuardKind kind = GuardKind::kFriction;
+  ContactMode next = ContactMode::kStick;  ///< of a clearance whose guard was crossed
 };
 
 /// Turns a guard that was reached into events: puts the state onto the guard, lets consistency decide the new modes,
@@ -44,6 +53,9 @@ class EventResolver {
   [[nodiscard]] const std::vector<ContactForces>& laws() const { return laws_; }
   [[nodiscard]] const friction::Drive& drive() const { return drive_; }
   [[nodiscard]] Instant instant(double time, const double* x) const;
+  /// Force of a force drive along its directions, and its rate [nk]; empty without one.
+  [[nodiscard]] Eigen::VectorXd drive_force(double time) const;
+  [[nodiscard]] Eigen::VectorXd drive_force_rate(double time) const;
   /// The same with the laws of the instant and the forces of contacts that are not to be decided.
   [[nodiscard]] Instant instant(const HybridPoint& point, const std::vector<ContactForces>& laws,
                                 const Eigen::VectorXd& applied) const;
@@ -59,10 +71,8 @@ class EventResolver {
   /// Decides the modes of contacts that start at rest on the drive, behind a contact spring, or without load. Like
   /// `settle`, takes the forces of contacts with bristles from the point.
   void start(HybridPoint& point) const;
-  /// @param contact   whose guard was reached, or −1 for a corner of the drive
-  /// @param touching  the guard was touched and not crossed: a grazing
   /// @throws NumericalFailure  Zeno, or no consistent modes
-  void settle(HybridPoint& point, int contact, bool touching, GuardKind kind = GuardKind::kFriction);
+  void settle(HybridPoint& point, const Reached& reached);
 
   /// What contacts in these modes are to a regime's linear equations.
   [[nodiscard]] std::vector<ContactRole> roles(const std::vector<ContactMode>& modes) const;
@@ -74,6 +84,16 @@ class EventResolver {
   /// Events of the last `settle` (simultaneous ones together).
   [[nodiscard]] const std::vector<Event>& events() const { return events_; }
   void clear() { events_.clear(); }
+  /// True if contact c took part in the last `settle`.
+  [[nodiscard]] bool has_event(int c) const;
+  /// d(stretch)/d(state, contacts' own states) of a contact spring that has just jumped to where it slides
+  /// [2np + internal_size].
+  [[nodiscard]] Eigen::RowVectorXd slide_stretch_gradient(const HybridPoint& point, int c) const;
+  /// Forgets what came before, for a new start.
+  void forget() {
+    events_.clear();
+    recent_.clear();
+  }
 
  private:
   void hold(double time, const std::vector<Eigen::Index>& contacts, double* x) const;
@@ -85,7 +105,8 @@ class EventResolver {
   /// z of the contacts with bristles, 0 of the others [nc].
   [[nodiscard]] Eigen::VectorXd deflections(const HybridPoint& point) const;
   void settle_single(HybridPoint& point);
-  void settle_coupled(HybridPoint& point, int contact, GuardKind kind);
+  void settle_stop(HybridPoint& point, const Reached& reached);
+  void settle_coupled(HybridPoint& point, const Reached& reached);
   /// A contact spring whose contact point starts or ceases to slide.
   void turn_compliant(HybridPoint& point, int c) const;
   /// Contact lost or regained.
@@ -109,6 +130,7 @@ class EventResolver {
   std::vector<Eigen::Index> internal_;    ///< of each contact's first own state
   std::vector<Eigen::Index> oscillator_;  ///< of its normal oscillator's, if it has one
   bool plain_ = true;                     ///< one rigid contact, untilted, under constant load
+  bool frictionless_ = true;              ///< no contact ever sticks
   int max_events_per_window_;
   double zeno_window_;
   std::vector<Event> events_;

@@ -2,13 +2,17 @@
 #include "dynamics/event_resolver.hpp"
 #include "dynamics/pair_kernels.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace slipmode::dynamics {
 namespace {
 
 /// A stick force this close to its limit (relative), and rising, reaches it together with the one that has.
 constexpr double kTogether = 1e-9;
+
+bool presses(ContactMode mode) { return mode == ContactMode::kLeftStop || mode == ContactMode::kRightStop; }
 
 }  // namespace
 
@@ -36,15 +40,17 @@ std::vector<bool> EventResolver::released_together(const HybridPoint& point, int
   return released;
 }
 
-void EventResolver::settle(HybridPoint& point, int contact, bool touching, GuardKind kind) {
-  if (contact >= 0 && touching) {
-    const auto i = static_cast<std::size_t>(contact);
-    record(point, contact, EventKind::kGrazing, point.modes[i]);
+void EventResolver::settle(HybridPoint& point, const Reached& reached) {
+  if (reached.contact >= 0 && reached.touching) {
+    const auto i = static_cast<std::size_t>(reached.contact);
+    record(point, reached.contact, EventKind::kGrazing, point.modes[i]);
     point.multiplicity[i] = point.modes[i] == ContactMode::kStick ? 0 : 2;
-  } else if (plain_ && contact == 0) {
+  } else if (plain_ && reached.contact == 0) {
     settle_single(point);
+  } else if (frictionless_ && reached.kind == GuardKind::kStop) {
+    settle_stop(point, reached);
   } else {
-    settle_coupled(point, contact, kind);
+    settle_coupled(point, reached);
   }
   guard_against_zeno(point);
 }
@@ -64,6 +70,13 @@ void EventResolver::settle_single(HybridPoint& point) {
   record_change(point, 0, before);
 }
 
+void EventResolver::settle_stop(HybridPoint& point, const Reached& reached) {
+  ContactMode& mode = point.modes[static_cast<std::size_t>(reached.contact)];
+  const ContactMode before = std::exchange(mode, reached.next);
+  for (int c = 0; c < model_.contacts; ++c) point.force(c) = applied_force(point, c);
+  record_change(point, reached.contact, before);
+}
+
 void EventResolver::turn_compliant(HybridPoint& point, int c) const {
   const auto i = static_cast<std::size_t>(c);
   const ContactForces law = laws_at(point)[i];
@@ -78,6 +91,24 @@ void EventResolver::turn_compliant(HybridPoint& point, int c) const {
   const ContactMode slip = stretch > 0 ? ContactMode::kSlipPositive : ContactMode::kSlipNegative;
   stretch = law.sliding(slip, 0.0) / law.stiffness;
   if (sign_of(slip) * slide_velocity(point, c, sign_of(slip)) > 0.0) point.modes[i] = slip;
+}
+
+bool EventResolver::has_event(int c) const {
+  return std::any_of(events_.begin(), events_.end(), [c](const Event& e) { return e.contact == c; });
+}
+
+Eigen::RowVectorXd EventResolver::slide_stretch_gradient(const HybridPoint& point, int c) const {
+  const auto i = static_cast<std::size_t>(c);
+  const LoadForm& load = loads_[i];
+  Eigen::RowVectorXd gradient = Eigen::RowVectorXd::Zero(2 * model_.np + point.internal.size());
+  if (!load.varies()) return gradient;
+  const double sign = point.internal(internal_[i]) > 0 ? 1.0 : -1.0;
+  gradient.head(2 * model_.np) = load.y * model_.displacement_row.col(c) + load.v * model_.velocity_row.col(c);
+  if (load.oscillates()) {
+    gradient(2 * model_.np + oscillator_[i]) = load.z;
+    gradient(2 * model_.np + oscillator_[i] + 1) = load.z_rate;
+  }
+  return sign * laws_[i].kinetic_coefficient(sign) / laws_[i].stiffness * gradient;
 }
 
 void EventResolver::turn_load(HybridPoint& point, int c) const {
@@ -95,12 +126,15 @@ void EventResolver::turn_load(HybridPoint& point, int c) const {
   point.modes[i] = held ? ContactMode::kStick : sign > 0 ? ContactMode::kSlipPositive : ContactMode::kSlipNegative;
 }
 
-void EventResolver::settle_coupled(HybridPoint& point, int contact, GuardKind kind) {
+void EventResolver::settle_coupled(HybridPoint& point, const Reached& reached) {
+  const auto [contact, touching, kind, next] = reached;
   const std::vector<ContactMode> before = point.modes;
   const std::vector<bool> released =
       kind == GuardKind::kFriction ? released_together(point, contact) : std::vector<bool>(point.modes.size());
   if (contact >= 0 && kind == GuardKind::kLoad)
     turn_load(point, contact);
+  else if (contact >= 0 && kind == GuardKind::kStop)
+    point.modes[static_cast<std::size_t>(contact)] = next;
   else if (contact >= 0 && laws_[static_cast<std::size_t>(contact)].kind == ContactForces::Kind::kCompliant)
     turn_compliant(point, contact);
 
@@ -142,6 +176,12 @@ void EventResolver::record(const HybridPoint& point, int contact, EventKind kind
 void EventResolver::record_change(const HybridPoint& point, int contact, ContactMode before) {
   const auto i = static_cast<std::size_t>(contact);
   const ContactMode after = point.modes[i];
+  if (laws_[i].kind == ContactForces::Kind::kClearance) {
+    // A stop that has let go is passed again without anything happening.
+    if (presses(before) || presses(after))
+      record(point, contact, presses(after) ? EventKind::kContact : EventKind::kSeparation, before);
+    return;
+  }
   const bool jumped = laws_[i].kind == ContactForces::Kind::kCompliant && after == ContactMode::kStick;
   record(point, contact,
          after == before                     ? (jumped ? EventKind::kJump : EventKind::kGrazing)

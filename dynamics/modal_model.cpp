@@ -6,6 +6,7 @@
 #include "fem/modes.hpp"
 
 #include <cmath>
+#include <vector>
 
 namespace slipmode::dynamics {
 namespace {
@@ -41,6 +42,7 @@ void finish(ModalModel& m) {
   for (int c = 0; c < m.contacts; ++c) m.acceleration_row.col(c) = apply_transposed_G(m.velocity_row.col(c));
   m.mobility = m.velocity_row.transpose() * m.input;
   m.load_acceleration = m.velocity_row.transpose() * m.load;
+  m.force_acceleration = m.velocity_row.transpose() * m.force_input;
   m.measure_rates();
 }
 
@@ -53,8 +55,11 @@ void size_arrays(ModalModel& m) {
 
 /// Real modes: pair = (η, η̇).
 void fill_proportional(ModalModel& m, const Eigen::VectorXd& omega, const Eigen::VectorXd& damping,
-                       const Eigen::MatrixXd& rows, const Eigen::VectorXd& modal_load) {
+                       const Eigen::MatrixXd& rows, const Eigen::VectorXd& modal_load,
+                       const Eigen::MatrixXd& modal_forces) {
   size_arrays(m);
+  m.force_input = Eigen::MatrixXd::Zero(2 * m.np, modal_forces.cols());
+  m.force_input.middleRows(m.np, m.n) = modal_forces;
   m.omega = m.damping = Eigen::VectorXd::Zero(m.np);
   m.omega.head(m.n) = omega;
   m.damping.head(m.n) = damping;
@@ -85,7 +90,7 @@ void fill_shapes(ModalModel& m, const Eigen::MatrixXd& shapes, const Eigen::Matr
 /// Complex modes of the state matrix, in real form, from the modes of the undamped structure, so that the state is
 /// balanced.
 void fill_general(ModalModel& m, const fem::Modes& modes, const Eigen::MatrixXd& shapes_M, const Eigen::MatrixXd& D,
-                  const Eigen::MatrixXd& rows, const Eigen::VectorXd& modal_load) {
+                  const Eigen::MatrixXd& rows, const Eigen::VectorXd& modal_load, const Eigen::MatrixXd& modal_forces) {
   const auto n = m.n, np = m.np;
   const BalancedState balanced = balanced_state(modes.omega, D);
   const PairForm form = pair_form(balanced.A);
@@ -108,6 +113,7 @@ void fill_general(ModalModel& m, const fem::Modes& modes, const Eigen::MatrixXd&
   const Eigen::MatrixXd from_eta_dot = form.T_inverse.rightCols(n);
   m.input = spread_rows(from_eta_dot * rows.transpose());
   m.load = spread_rows(from_eta_dot * modal_load);
+  m.force_input = spread_rows(from_eta_dot * modal_forces);
   m.displacement_row = spread_rows((rows * eta).transpose());
   m.velocity_row = spread_rows((rows * eta_dot).transpose());
   m.to_q = spread_rows((modes.shapes * eta).transpose()).transpose();
@@ -124,8 +130,27 @@ void fill_general(ModalModel& m, const fem::Modes& modes, const Eigen::MatrixXd&
 }  // namespace
 
 Eigen::MatrixXd square_root(const Eigen::MatrixXd& A) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> root(A);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> root(Eigen::MatrixXd((A + A.transpose()) / 2.0));
   return root.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * root.eigenvectors().transpose();
+}
+
+void separate_rigid_modes(const Eigen::VectorXd& omega, Eigen::MatrixXd& shapes, Eigen::MatrixXd& damping) {
+  std::vector<Eigen::Index> rigid;
+  for (Eigen::Index i = 0; i < omega.size(); ++i)
+    if (omega(i) == 0.0) rigid.push_back(i);
+  if (rigid.empty()) return;
+  const Eigen::MatrixXd own = damping(rigid, rigid);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> turn(Eigen::MatrixXd((own + own.transpose()) / 2.0));
+  const Eigen::MatrixXd& Q = turn.eigenvectors();
+  shapes(Eigen::all, rigid) = (shapes(Eigen::all, rigid) * Q).eval();
+  damping(rigid, Eigen::all) = (Q.transpose() * damping(rigid, Eigen::all)).eval();
+  damping(Eigen::all, rigid) = (damping(Eigen::all, rigid) * Q).eval();
+  const double nothing = kProportionalTolerance * damping.norm();
+  for (const Eigen::Index i : rigid)
+    if (damping.row(i).norm() <= nothing && damping.col(i).norm() <= nothing) {
+      damping.row(i).setZero();
+      damping.col(i).setZero();
+    }
 }
 
 void ModalModel::measure_rates() {
@@ -138,7 +163,7 @@ void ModalModel::measure_rates() {
 }
 
 double ModalModel::viscous_power(const Eigen::VectorXd& x) const {
-  if (!proportional) return (dissipation_root * x).squaredNorm();
+  if (dissipation_root.size() > 0) return (dissipation_root * x).squaredNorm();
   return damping.dot(x.tail(np).cwiseAbs2());
 }
 
@@ -194,19 +219,28 @@ ModalModel build_modal_model(const HybridSystem& system, bool rows_only) {
   };
 
   if (rows_only && rayleigh && structure.is_chain_like()) {
-    Eigen::MatrixXd vectors(m.n, m.contacts + (loaded ? 1 : 0));
+    const Eigen::Index nk = system.force_directions().cols();
+    Eigen::MatrixXd vectors(m.n, m.contacts + nk + (loaded ? 1 : 0));
     vectors.leftCols(m.contacts) = W;
+    vectors.middleCols(m.contacts, nk) = system.force_directions();
     if (loaded) vectors.rightCols(1) = system.load();
     const fem::ModalRows modal = fem::modal_rows(structure, vectors);
     const Eigen::VectorXd load =
         loaded ? Eigen::VectorXd(modal.rows.bottomRows(1).transpose()) : Eigen::VectorXd::Zero(m.n);
-    fill_proportional(m, modal.omega, rayleigh_damping(modal.omega), modal.rows.topRows(m.contacts), load);
+    fill_proportional(m, modal.omega, rayleigh_damping(modal.omega), modal.rows.topRows(m.contacts), load,
+                      modal.rows.middleRows(m.contacts, nk).transpose());
     m.rayleigh = rayleigh;
     finish(m);
     return m;
   }
 
-  const fem::Modes modes = fem::natural_modes(structure);
+  fem::Modes modes = fem::natural_modes(structure);
+  Eigen::MatrixXd D;
+  if (!rayleigh) {
+    D = modes.shapes.transpose() * fem::multiply(structure.C(), modes.shapes);
+    if ((D - D.transpose()).norm() <= kProportionalTolerance * D.norm()) D = (D + D.transpose()).eval() / 2.0;
+    separate_rigid_modes(modes.omega, modes.shapes, D);
+  }
   const Eigen::MatrixXd rows = W.transpose() * modes.shapes;
   const Eigen::VectorXd load =
       loaded ? Eigen::VectorXd(modes.shapes.transpose() * system.load()) : Eigen::VectorXd::Zero(m.n);
@@ -214,22 +248,21 @@ ModalModel build_modal_model(const HybridSystem& system, bool rows_only) {
   m.modal.omega = modes.omega;
   m.modal.directions = rows.transpose();
   m.modal.load = load;
+  m.modal.forces = modes.shapes.transpose() * system.force_directions();
   if (rayleigh) {
     m.modal.damping = rayleigh_damping(modes.omega).asDiagonal();
-    fill_proportional(m, modes.omega, rayleigh_damping(modes.omega), rows, load);
+    fill_proportional(m, modes.omega, rayleigh_damping(modes.omega), rows, load, m.modal.forces);
     m.rayleigh = rayleigh;
     fill_shapes(m, modes.shapes, shapes_M);
   } else {
-    Eigen::MatrixXd D = modes.shapes.transpose() * fem::multiply(structure.C(), modes.shapes);
     const Eigen::VectorXd diagonal = D.diagonal();
     if ((D - Eigen::MatrixXd(diagonal.asDiagonal())).norm() <= kProportionalTolerance * D.norm()) {
       m.modal.damping = diagonal.asDiagonal();
-      fill_proportional(m, modes.omega, diagonal, rows, load);
+      fill_proportional(m, modes.omega, diagonal, rows, load, m.modal.forces);
       fill_shapes(m, modes.shapes, shapes_M);
     } else {
-      D = (D + D.transpose()).eval() / 2.0;
       m.modal.damping = D;
-      fill_general(m, modes, shapes_M, D, rows, load);
+      fill_general(m, modes, shapes_M, D, rows, load, m.modal.forces);
     }
   }
   finish(m);

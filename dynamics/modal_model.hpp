@@ -13,6 +13,7 @@ struct ModalCoordinates {
   Eigen::MatrixXd damping;     ///< D = ΦᵀCΦ [n x n]
   Eigen::MatrixXd directions;  ///< Φᵀw, columns [n x nc]
   Eigen::VectorXd load;        ///< Φᵀp [n]
+  Eigen::MatrixXd forces;      ///< Φᵀd, columns [n x nk]
   /// η = to_eta x, η̇ = to_eta_rate x; x = from_eta η + from_eta_rate η̇ [n x 2np], [2np x n].
   Eigen::MatrixXd to_eta, to_eta_rate, from_eta, from_eta_rate;
 };
@@ -33,11 +34,13 @@ struct ModalModel {
   Eigen::VectorXd g11, g12, g21, g22;  ///< blocks of G [np]
   Eigen::MatrixXd input;               ///< b_c, columns [2np x nc]
   Eigen::VectorXd load;                ///< p [2np]
+  Eigen::MatrixXd force_input;         ///< what a unit force along d_k adds to ẋ, columns [2np x nk]
   Eigen::MatrixXd displacement_row;    ///< u_c, columns [2np x nc]
   Eigen::MatrixXd velocity_row;        ///< g_c, columns [2np x nc]
   Eigen::MatrixXd acceleration_row;    ///< Gᵀ g_c: wᵀq̈ = this·x + g_cᵀ(Σ b λ + p) [2np x nc]
   Eigen::MatrixXd mobility;            ///< g_cᵀ b_d = (Wᵀ M⁻¹ W)_cd [nc x nc]
   Eigen::VectorXd load_acceleration;   ///< g_cᵀ p [nc]
+  Eigen::MatrixXd force_acceleration;  ///< what a unit force along d_k adds to wᵀq̈ [nc x nk]
   Eigen::VectorXd contact_offset;      ///< [nc]
   double fastest = 0.0;                ///< largest |eigenvalue| of G [1/s]
 
@@ -48,7 +51,8 @@ struct ModalModel {
   /// q = Q x, q̇ = V x; x = Xq q + Xv q̇ [n x 2np], [2np x n]. Empty when only the contacts' rows were computed.
   Eigen::MatrixXd to_q, to_v, from_q, from_v;
   ModalCoordinates modal;  ///< empty when only the contacts' rows were computed
-  /// q̇ᵀCq̇ = |L x|² for damping that is not proportional [n x 2np].
+  /// q̇ᵀCq̇ = |L x|² where modal dampings do not give it: for damping that is not proportional, and where stops add to it
+  /// [n x 2np].
   Eigen::MatrixXd dissipation_root;
 
   /// Sets `fastest` from the blocks of G.
@@ -62,8 +66,14 @@ struct ModalModel {
   [[nodiscard]] Eigen::Matrix2d exponential(Eigen::Index pair, double t) const;
 };
 
-/// R with RᵀR = A, for a symmetric positive semi-definite A.
+/// R with RᵀR = (A + Aᵀ)/2, for an A that is positive semi-definite.
 [[nodiscard]] Eigen::MatrixXd square_root(const Eigen::MatrixXd& A);
+
+/// Turns rigid-body modes (ω = 0) within their own space so that damping does not couple them to one another, and sets
+/// to zero what damping leaves of a mode it does not act on: such a mode then decouples exactly.
+/// @param omega   [m]; @param shapes  in whatever coordinates, columns [n x m]; turned
+/// @param damping  in these modes [m x m]; turned with them
+void separate_rigid_modes(const Eigen::VectorXd& omega, Eigen::MatrixXd& shapes, Eigen::MatrixXd& damping);
 
 /// Builds the model. Rows only: a long chain's frequencies and contact rows without mode shapes, O(n²).
 /// @throws NumericalFailure  when damping is not proportional and the state matrix is close to defective

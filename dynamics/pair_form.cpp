@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
-#include <optional>
 #include <vector>
 
 namespace slipmode::dynamics {
@@ -23,22 +22,9 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 PairForm pair_form(const Eigen::MatrixXd& A) {
   const Eigen::Index n = A.rows() / 2;
-  // Pairs of rows from large to small: QR then keeps the digits of the small eigenvalues.
-  std::vector<Eigen::Index> order(static_cast<std::size_t>(n)), rows;
-  std::iota(order.begin(), order.end(), Eigen::Index{0});
-  const Eigen::VectorXd size =
-      A.topRows(n).rowwise().lpNorm<Eigen::Infinity>().cwiseMax(A.bottomRows(n).rowwise().lpNorm<Eigen::Infinity>());
-  std::stable_sort(order.begin(), order.end(), [&](Eigen::Index i, Eigen::Index j) { return size(i) > size(j); });
-  for (const Eigen::Index i : order) rows.insert(rows.end(), {i, n + i});
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(Eigen::MatrixXd(A(rows, rows)));
-  if (solver.info() != Eigen::Success)
-    throw NumericalFailure("eigenvalues of the damped structure did not converge", kNaN, {}, kNaN);
   PairForm form;
   for (auto* g : {&form.g11, &form.g12, &form.g21, &form.g22}) *g = Eigen::VectorXd::Zero(n);
   form.T.resize(2 * n, 2 * n);
-  const auto& values = solver.eigenvalues();
-  Eigen::MatrixXcd vectors(2 * n, 2 * n);
-  vectors(rows, Eigen::all) = solver.eigenvectors();
   Eigen::Index pair = 0;
   const auto put = [&](const Eigen::VectorXd& first, const Eigen::VectorXd& second, double a, double b, double c,
                        double d) {
@@ -50,19 +36,49 @@ PairForm pair_form(const Eigen::MatrixXd& A) {
     form.g22(pair) = d;
     ++pair;
   };
-  std::optional<Eigen::Index> unpaired_real;
-  for (Eigen::Index k = 0; k < 2 * n; ++k) {
-    const auto mu = values(k);
-    if (mu.imag() > 0) {
-      put(vectors.col(k).real(), vectors.col(k).imag(), mu.real(), mu.imag(), -mu.imag(), mu.real());
-    } else if (mu.imag() == 0 && unpaired_real) {
-      const auto j = *unpaired_real;
-      put(vectors.col(j).real(), vectors.col(k).real(), values(j).real(), 0.0, 0.0, mu.real());
-      unpaired_real.reset();
-    } else if (mu.imag() == 0) {
-      unpaired_real = k;
+
+  // Pairs of rows from large to small: QR then keeps the digits of the small eigenvalues. Rigid-body displacements are
+  // taken out: rounding would leave their eigenvalues a little off zero.
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(n)), shifted, rest;
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  const Eigen::VectorXd size =
+      A.topRows(n).rowwise().lpNorm<Eigen::Infinity>().cwiseMax(A.bottomRows(n).rowwise().lpNorm<Eigen::Infinity>());
+  std::stable_sort(order.begin(), order.end(), [&](Eigen::Index i, Eigen::Index j) { return size(i) > size(j); });
+  for (const Eigen::Index i : order) {
+    const bool rigid = A.col(i).isZero(0.0);
+    if (rigid && A.row(n + i).isZero(0.0) && A(i, n + i) != 0.0 && A.col(n + i).lpNorm<1>() == std::abs(A(i, n + i))) {
+      put(Eigen::VectorXd::Unit(2 * n, i), Eigen::VectorXd::Unit(2 * n, n + i), 0.0, A(i, n + i), 0.0, 0.0);
+      continue;
     }
+    if (rigid) shifted.push_back(i);
+    if (!rigid) rest.push_back(i);
+    rest.push_back(n + i);
   }
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(Eigen::MatrixXd(A(rest, rest)));
+  if (solver.info() != Eigen::Success)
+    throw NumericalFailure("eigenvalues of the damped structure did not converge", kNaN, {}, kNaN);
+  const Eigen::VectorXcd values = solver.eigenvalues();
+  Eigen::MatrixXcd vectors = Eigen::MatrixXcd::Zero(2 * n, values.size());
+  vectors(rest, Eigen::all) = solver.eigenvectors();
+  if (!shifted.empty())
+    vectors(shifted, Eigen::all) = A(shifted, rest) * solver.eigenvectors() * values.cwiseInverse().asDiagonal();
+
+  struct Real {
+    Eigen::VectorXd vector;
+    double value;
+  };
+  std::vector<Real> reals;
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    const auto mu = values(k);
+    if (mu.imag() > 0)
+      put(vectors.col(k).real(), vectors.col(k).imag(), mu.real(), mu.imag(), -mu.imag(), mu.real());
+    else if (mu.imag() == 0)
+      reals.push_back({vectors.col(k).real(), mu.real()});
+  }
+  for (const Eigen::Index i : shifted) reals.push_back({Eigen::VectorXd::Unit(2 * n, i), 0.0});
+  for (std::size_t k = 0; k + 1 < reals.size(); k += 2)
+    put(reals[k].vector, reals[k + 1].vector, reals[k].value, 0.0, 0.0, reals[k + 1].value);
+
   const Eigen::VectorXd singular = Eigen::BDCSVD<Eigen::MatrixXd>(form.T).singularValues();
   const double condition = singular(0) / singular(2 * n - 1);
   if (!(condition < kLargestCondition))

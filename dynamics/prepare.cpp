@@ -10,6 +10,9 @@
 namespace slipmode::dynamics {
 namespace {
 
+/// A clearance this close to a guard, as a share of the sizes at play, is on it.
+constexpr double kOnGuard = 1e-12;
+
 void require(bool condition, const std::string& message) {
   if (!condition) throw InvalidInput(message);
 }
@@ -29,12 +32,47 @@ void check_start(const HybridSystem& system, const State& start) {
               std::to_string(system.contacts().size()));
 }
 
+/// Where a clearance is at the start. On a guard to rounding the mode given decides, else the velocity.
+ContactMode start_mode(const friction::Clearance& law, const friction::Contact& contact, const State& start,
+                       std::size_t c) {
+  const double y = contact.direction.dot(start.q) + contact.offset, rate = contact.direction.dot(start.v);
+  const double size = contact.direction.cwiseAbs().dot(start.q.cwiseAbs()) + std::abs(contact.offset);
+  const ContactMode given = start.modes.empty() ? ContactMode::kSmooth : start.modes[c];
+  ContactMode mode = ContactMode::kGap;
+  const auto look = [&](const std::optional<friction::Stop>& stop, double side, ContactMode pressed,
+                        ContactMode flight) {
+    if (!stop) return;
+    const double past = side * y - stop->gap, press = stop->stiffness * past + stop->damping * side * rate;
+    const double near = kOnGuard * (size + std::abs(stop->gap));
+    const bool at_gap = std::abs(past) <= near;
+    const double near_press = kOnGuard * (stop->stiffness * (size + std::abs(stop->gap)) +
+                                          stop->damping * contact.direction.cwiseAbs().dot(start.v.cwiseAbs()));
+    if (at_gap ? (given == pressed || (given != ContactMode::kGap && given != flight && side * rate > 0.0))
+               : past > 0.0)
+      mode = pressed;
+    if (mode != pressed || law.loss == friction::ContactLoss::kGap) return;
+    const bool at_zero = std::abs(press) <= near_press;
+    if (at_zero ? given == flight : press < 0.0) mode = at_gap ? ContactMode::kGap : flight;
+  };
+  look(law.right, 1.0, ContactMode::kRightStop, ContactMode::kRightFlight);
+  if (mode == ContactMode::kGap) look(law.left, -1.0, ContactMode::kLeftStop, ContactMode::kLeftFlight);
+  require(given == ContactMode::kSmooth || given == mode,
+          "start state says the clearance of contact " + std::to_string(c + 1) + " is in mode " +
+              std::to_string(static_cast<int>(given)) + ", but its displacement is " + std::to_string(y) +
+              " and its velocity " + std::to_string(rate) + "; leave the modes empty to have them derived");
+  return mode;
+}
+
 /// Modes at the start: as given, or by the sign of the sliding speed with zero speed left to consistency.
 std::vector<ContactMode> start_modes(const HybridSystem& system, const State& start) {
   std::vector<ContactMode> modes(system.contacts().size());
   const double V = system.drive().velocity(start.time);
   for (std::size_t c = 0; c < modes.size(); ++c) {
     const auto& contact = system.contacts()[c];
+    if (const auto* clearance = std::get_if<friction::Clearance>(&contact.law)) {
+      modes[c] = start_mode(*clearance, contact, start, c);
+      continue;
+    }
     if (!contact_forces(contact).sticks()) {
       modes[c] = ContactMode::kSmooth;
       continue;
@@ -83,23 +121,28 @@ Eigen::VectorXd start_internal(const HybridSystem& system, const State& start) {
 
 FlowMethod choose_method(const HybridSystem& system, FlowMethod asked) {
   int special = 0, nonlinear = 0;  // the last such contact, counted from 1
+  const bool forced = system.drive().force() != nullptr;
   for (std::size_t c = 0; c < system.contacts().size(); ++c) {
     const ContactForces law = contact_forces(system.contacts()[c]);
     if (law.needs_closed_form()) special = static_cast<int>(c) + 1;
     if (!law.is_piecewise_linear()) nonlinear = static_cast<int>(c) + 1;
   }
   const auto name = [](int contact) { return "contact " + std::to_string(contact); };
-  require(special == 0 || nonlinear == 0,
-          name(special) +
-              " has a contact spring, a tilt or a varying load, for which all laws must be piecewise linear, but " +
-              name(nonlinear) + " has a force that depends on the sliding speed");
+  require(!forced || nonlinear == 0,
+          "a force drive needs piecewise-linear laws, but " + name(nonlinear) +
+              " has a force that depends on the sliding speed: use Coulomb's law, rigid or compliant");
+  require(!forced || asked != FlowMethod::kCollocation, "a force drive needs the closed-form flow");
+  require(special == 0 || nonlinear == 0, name(special) +
+                                              " has a contact spring, a clearance, a tilt or a varying load, for which "
+                                              "all laws must be piecewise linear, but " +
+                                              name(nonlinear) + " has a force that depends on the sliding speed");
   require(special == 0 || asked != FlowMethod::kCollocation,
-          name(special) + " has a contact spring, a tilt or a varying load: use the closed-form flow");
+          name(special) + " has a contact spring, a clearance, a tilt or a varying load: use the closed-form flow");
   require(nonlinear == 0 || asked != FlowMethod::kClosedForm,
           "the closed-form flow needs piecewise-linear laws, but " + name(nonlinear) +
               " has a force that depends on the sliding speed; use the collocation flow, or Coulomb's law");
   if (asked != FlowMethod::kAutomatic) return asked;
-  if (special > 0 || (nonlinear == 0 && system.size() <= kClosedFormSize)) return FlowMethod::kClosedForm;
+  if (forced || special > 0 || (nonlinear == 0 && system.size() <= kClosedFormSize)) return FlowMethod::kClosedForm;
   return FlowMethod::kCollocation;
 }
 

@@ -39,12 +39,14 @@ void Regime::prepare_bounds() {
   for (Eigen::Index i = 0; i < pairs.n; ++i) {
     Eigen::Matrix2d G;
     G << pairs.g11(i), pairs.g12(i), pairs.g21(i), pairs.g22(i);
+    double lag = 0.0;  // of a damped rigid-body motion: η + lag η̇ merely integrates the inputs
     if (pairs.proportional) {
       scale1(i) = pairs.omega(i);
       scale2(i) = pairs.omega(i) > 0 || pairs.damping(i) > 0 ? 1.0 : 0.0;
+      if (scale1(i) == 0.0 && scale2(i) > 0.0) lag = 1.0 / pairs.damping(i);
       pair_rate(i) = pairs.damping(i) / 2.0 + std::hypot(pairs.omega(i), pairs.damping(i) / 2.0);
     } else {
-      const bool oscillates = pairs.g12(i) != 0.0;
+      const bool oscillates = pairs.g21(i) != 0.0;
       scale1(i) = oscillates || pairs.g11(i) != 0.0 ? 1.0 : 0.0;
       scale2(i) = oscillates || pairs.g22(i) != 0.0 ? 1.0 : 0.0;
       pair_rate(i) = oscillates ? std::hypot(pairs.g11(i), pairs.g12(i))
@@ -69,8 +71,8 @@ void Regime::prepare_bounds() {
     put(V, -inverse * inverse * held);
     put(a, -inverse * inverse * pair_of(B.col(V)) - inverse * inverse * inverse * held);
     for (Eigen::Index c = 0; c < no; ++c) {
-      weight(i, c) =
-          std::hypot(scale1(i) > 0 ? row(i, c) / scale1(i) : 0.0, scale2(i) > 0 ? row(np + i, c) / scale2(i) : 0.0);
+      weight(i, c) = std::hypot(scale1(i) > 0 ? row(i, c) / scale1(i) : 0.0,
+                                scale2(i) > 0 ? (row(np + i, c) - lag * row(i, c)) / scale2(i) : 0.0);
       if (scale1(i) > 0) polynomial_row(i, c) = 0.0;
       if (scale2(i) > 0) polynomial_row(np + i, c) = 0.0;
     }

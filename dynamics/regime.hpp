@@ -28,11 +28,13 @@ enum class ContactRole : std::int8_t {
 /// A scalar of a regime that must keep its sign: what guards are made of.
 struct RegimeOutput {
   enum class Kind : std::uint8_t {
-    kSpeed,    ///< sliding speed; of the contact point, behind a contact spring
-    kForce,    ///< λ in stick
-    kExcess,   ///< μ_s N − λ, what is left to the upper limit under a load that varies
-    kReserve,  ///< μ_s N + λ, what is left to the lower one
-    kLoad,     ///< N
+    kSpeed,         ///< sliding speed; of the contact point, behind a contact spring
+    kForce,         ///< λ in stick
+    kExcess,        ///< μ_s N − λ, what is left to the upper limit under a load that varies
+    kReserve,       ///< μ_s N + λ, what is left to the lower one
+    kLoad,          ///< N
+    kDisplacement,  ///< y = wᵀq + offset, of a clearance
+    kPress,         ///< k (|y| − b) + c d|y|/dt: what a stop presses with, or would
   };
   int contact = 0;
   Kind kind = Kind::kSpeed;
@@ -41,19 +43,22 @@ struct RegimeOutput {
 /// The structure with its contacts in certain roles, as decoupled pairs driven by inputs that are polynomials of time
 /// (a harmonic drive is laid over them, see DriveOverlay):
 ///
-///     ẋ = G x + B ι,   ι = (ι_1 … ι_nc, V, a, 1).
+///     ẋ = G x + B ι,   ι = (ι_1 … ι_nc, V, a, 1, u_1 … u_nk).
 ///
 /// ι_c follows the drive (ι̇_c = V, V̇ = a) where the contact sticks: held, it is wᵀq; sprung, the contact point less
-/// its offset. Else it is constant: the constant part of λ_c.
+/// its offset. Else it is constant: the constant part of λ_c. u_k are the forces of a force drive, laid over as well.
 ///
 /// Held directions are eliminated in the undamped modes of the slipping structure with an orthonormal null-space basis;
-/// contact springs and loads that vary with y add rank-one stiffness and damping, normal oscillators their own states.
+/// contact springs, stops and loads that vary with y add rank-one stiffness and damping, normal oscillators their own
+/// states.
 /// Source: docs/theory/flow.md.
 struct Regime {
   Regime(const HybridSystem& system, const ModalModel& slipping, const std::vector<ContactRole>& roles);
 
-  [[nodiscard]] Eigen::Index inputs() const { return static_cast<Eigen::Index>(roles.size()) + 3; }
+  [[nodiscard]] Eigen::Index inputs() const { return speed_input() + 3 + forces; }
   [[nodiscard]] Eigen::Index speed_input() const { return static_cast<Eigen::Index>(roles.size()); }
+  /// Of the force drive's direction k.
+  [[nodiscard]] Eigen::Index force_input(Eigen::Index k) const { return speed_input() + 3 + k; }
   [[nodiscard]] bool held(int c) const { return roles[static_cast<std::size_t>(c)] == ContactRole::kHeld; }
   [[nodiscard]] bool sticks(int c) const { return follows[static_cast<std::size_t>(c)]; }
   /// ι after a time t.
@@ -66,6 +71,7 @@ struct Regime {
   [[nodiscard]] double viscous_power(const Eigen::VectorXd& x, double drive_velocity) const;
 
   std::vector<ContactRole> roles;
+  Eigen::Index forces = 0;    ///< directions of a force drive
   std::vector<bool> follows;  ///< held or sprung
   std::vector<RegimeOutput> outputs;
   ModalModel pairs;     ///< only its pairs are used: no contacts
@@ -80,7 +86,8 @@ struct Regime {
   /// λ, wᵀq̇ and wᵀq of each contact [2np x nc], [ni x nc].
   Eigen::MatrixXd force_row, force_coefficient, velocity_row, velocity_coefficient;
   Eigen::MatrixXd displacement_row, displacement_coefficient;
-  Eigen::VectorXd spring;  ///< K_c of sprung contacts, else 0 [nc]
+  Eigen::MatrixXd drive_row, drive_coefficient;  ///< d_kᵀq̇ of each force direction [2np x nk], [ni x nk]
+  Eigen::VectorXd spring;                        ///< K_c of sprung contacts, else 0 [nc]
   Eigen::VectorXd slope;  ///< dλ/d(wᵀq) of contacts that slide under a load that depends on wᵀq alone, else 0 [nc]
 
   Eigen::MatrixXd from_slipping;    ///< state of the slipping model → x [2np x 2np_s]

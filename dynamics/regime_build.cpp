@@ -39,13 +39,15 @@ RegimeBuilder::RegimeBuilder(const HybridSystem& system, const ModalModel& slipp
       rayleigh_(slipping.rayleigh),
       n_(slipping.n),
       nc_(static_cast<Eigen::Index>(roles.size())),
-      ni_(nc_ + 3),
+      nk_(modal_.forces.cols()),
+      ni_(nc_ + 3 + nk_),
       V_(nc_),
       one_(nc_ + 2),
       friction_(Eigen::VectorXd::Zero(nc_)),
       K_(modal_.omega.cwiseAbs2().asDiagonal()),
       C_(modal_.damping),
-      spring_(Eigen::VectorXd::Zero(nc_)) {
+      spring_(Eigen::VectorXd::Zero(nc_)),
+      damper_(Eigen::VectorXd::Zero(nc_)) {
   for (Eigen::Index c = 0; c < nc_; ++c) {
     const friction::Contact& contact = system.contacts()[static_cast<std::size_t>(c)];
     laws_.push_back(contact_forces(contact));
@@ -61,6 +63,11 @@ void RegimeBuilder::couple_contacts() {
   for (Eigen::Index c = 0; c < nc_; ++c) {
     const auto w = modal_.directions.col(c);
     if (role(c) == ContactRole::kSprung) spring_(c) = law(c).stiffness;
+    if (role(c) == ContactRole::kLeftStop || role(c) == ContactRole::kRightStop) {
+      spring_(c) = stop(c)->stiffness;
+      damper_(c) = stop(c)->damping;
+      C_ += damper_(c) * w * w.transpose();
+    }
     if (role(c) == ContactRole::kSlidingNegative) friction_(c) = -law(c).kinetic_coefficient(-1.0);
     if (role(c) == ContactRole::kSlidingPositive) friction_(c) = law(c).kinetic_coefficient(1.0);
     if (friction_(c) != 0.0) {
@@ -72,7 +79,14 @@ void RegimeBuilder::couple_contacts() {
     if (spring_(c) != 0.0) K_ += spring_(c) * w * w.transpose();
   }
   symmetric_ &= oscillators_.empty();
-  bare_ = symmetric_ && held_.empty() && spring_.isZero(0.0);
+  bare_ = symmetric_ && held_.empty() && spring_.isZero(0.0) && damper_.isZero(0.0);
+}
+
+const friction::Stop* RegimeBuilder::stop(Eigen::Index c) const {
+  const ContactRole is = role(c);
+  if (is == ContactRole::kLeftStop || is == ContactRole::kLeftFlight) return &*law(c).clearance.left;
+  if (is == ContactRole::kRightStop || is == ContactRole::kRightFlight) return &*law(c).clearance.right;
+  return nullptr;
 }
 
 void RegimeBuilder::eliminate_held() {
@@ -141,12 +155,13 @@ fem::Modes RegimeBuilder::base_modes() const {
 
 void RegimeBuilder::make_symmetric_pairs(Regime& out) {
   const Eigen::Index m = Z_.cols();
-  const auto [omega, shapes] = base_modes();
+  auto [omega, shapes] = base_modes();
   ModalModel& pairs = out.pairs;
   Eigen::MatrixXd D = shapes.transpose() * (Z_.transpose() * C_ * Z_) * shapes;
-  D = (D + D.transpose()).eval() / 2.0;
+  if ((D - D.transpose()).norm() <= kProportionalTolerance * D.norm()) D = (D + D.transpose()).eval() / 2.0;
+  separate_rigid_modes(omega, shapes, D);
   const Eigen::VectorXd diagonal = D.diagonal();
-  const bool kept = rayleigh_ && spring_.isZero(0.0);
+  const bool kept = rayleigh_ && spring_.isZero(0.0) && damper_.isZero(0.0);
   const Eigen::MatrixXd no_rate = Eigen::MatrixXd::Zero(m, m);
   if (kept || (D - Eigen::MatrixXd(diagonal.asDiagonal())).norm() <= kProportionalTolerance * D.norm()) {
     pairs.proportional = true;
@@ -238,12 +253,13 @@ void RegimeBuilder::make_pairs(Regime& out) {
     make_general_pairs(out);
   }
   pairs.measure_rates();
-  if (!pairs.proportional && !bare_ && pairs.n > 0)
+  if ((!pairs.proportional || !damper_.isZero(0.0)) && !bare_ && pairs.n > 0)
     pairs.dissipation_root = square_root(modal_.damping) * (Z_ * at_.to_rate);
 }
 
 void RegimeBuilder::fill(Regime& out) {
   out.roles = roles_;
+  out.forces = nk_;
   for (const ContactRole r : roles_) out.follows.push_back(r == ContactRole::kHeld || r == ContactRole::kSprung);
   make_pairs(out);
   make_inputs(out);

@@ -5,6 +5,7 @@
 #include "dynamics/regime.hpp"
 #include "fem/modes.hpp"
 
+#include <functional>
 #include <vector>
 
 namespace slipmode::dynamics {
@@ -38,10 +39,14 @@ class RegimeBuilder {
   void make_inputs(Regime& out) const;
   void make_contact_rows(Regime& out) const;
   void make_outputs(Regime& out) const;
+  using AddOutput = std::function<void(Eigen::Index, RegimeOutput::Kind, Eigen::VectorXd, Eigen::VectorXd)>;
+  void add_clearance_outputs(Eigen::Index c, const Regime& out, const AddOutput& add) const;
   void make_changes(Regime& out) const;
 
   [[nodiscard]] ContactRole role(Eigen::Index c) const { return roles_[static_cast<std::size_t>(c)]; }
   [[nodiscard]] const ContactForces& law(Eigen::Index c) const { return laws_[static_cast<std::size_t>(c)]; }
+  /// The stop that presses, or would in flight; null for any other contact.
+  [[nodiscard]] const friction::Stop* stop(Eigen::Index c) const;
   [[nodiscard]] const LoadForm& load(Eigen::Index c) const { return loads_[static_cast<std::size_t>(c)]; }
 
   const ModalModel& slipping_;
@@ -50,13 +55,14 @@ class RegimeBuilder {
   std::optional<fem::Rayleigh> rayleigh_;
   std::vector<ContactForces> laws_;
   std::vector<LoadForm> loads_;
-  Eigen::Index n_, nc_, ni_, V_, one_;
+  Eigen::Index n_, nc_, nk_, ni_, V_, one_;
   std::vector<Eigen::Index> held_, oscillators_;  ///< contacts
   Eigen::VectorXd friction_;                      ///< ±μ_k of contacts that slide under a varying load, else 0
   Eigen::MatrixXd Z_, P_;                         ///< η = Z y + P ι
   Eigen::VectorXd P_all_;
   Eigen::MatrixXd K_, C_;   ///< with what contacts add
   Eigen::VectorXd spring_;  ///< stiffness added along each contact's direction, of either sign
+  Eigen::VectorXd damper_;  ///< damping that stops add along it
   bool symmetric_ = true, bare_ = true;
   Coordinates at_;
 };

@@ -10,6 +10,7 @@ void RegimeBuilder::make_inputs(Regime& out) const {
   Eigen::MatrixXd force = -K_ * P_;
   force.col(V_) -= C_ * P_all_;
   force.col(one_) += modal_.load;
+  force.rightCols(nk_) += modal_.forces;
   Eigen::MatrixXd lift = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(oscillators_.size()), ni_);
   for (Eigen::Index c = 0; c < nc_; ++c) {
     const auto w = modal_.directions.col(c);
@@ -27,8 +28,9 @@ void RegimeBuilder::make_inputs(Regime& out) const {
   out.B_follows = Eigen::VectorXd::Zero(out.B.rows());
   for (Eigen::Index c = 0; c < nc_; ++c)
     if (out.follows[static_cast<std::size_t>(c)]) out.B_follows += out.B.col(c);
-  out.viscous_cross = ((P_all_.transpose() * modal_.damping) * Z_ * at_.to_rate).transpose();
-  out.viscous_drive = P_all_.dot(modal_.damping * P_all_);
+  const Eigen::MatrixXd dissipation = (modal_.damping + modal_.damping.transpose()) / 2.0;
+  out.viscous_cross = ((P_all_.transpose() * dissipation) * Z_ * at_.to_rate).transpose();
+  out.viscous_drive = P_all_.dot(dissipation * P_all_);
 }
 
 void RegimeBuilder::make_contact_rows(Regime& out) const {
@@ -38,6 +40,9 @@ void RegimeBuilder::make_contact_rows(Regime& out) const {
   out.force_coefficient = out.velocity_coefficient = Eigen::MatrixXd::Zero(ni_, nc_);
   out.displacement_row = eta.transpose() * modal_.directions;
   out.displacement_coefficient = P_.transpose() * modal_.directions;
+  out.drive_row = eta_rate.transpose() * modal_.forces;
+  out.drive_coefficient = Eigen::MatrixXd::Zero(ni_, nk_);
+  out.drive_coefficient.row(V_) = P_all_.transpose() * modal_.forces;
   out.spring = out.slope = Eigen::VectorXd::Zero(nc_);
   for (Eigen::Index c = 0; c < nc_; ++c) {
     const auto w = modal_.directions.col(c);
@@ -59,6 +64,7 @@ void RegimeBuilder::make_contact_rows(Regime& out) const {
       coefficient(V_) += P_.col(c).dot(C_ * P_all_);
       coefficient(V_ + 1) += P_.col(c).dot(P_all_);
       coefficient(one_) -= P_.col(c).dot(modal_.load);
+      coefficient.tail(nk_) -= modal_.forces.transpose() * P_.col(c);
       for (Eigen::Index d = 0; d < nc_; ++d) {
         if (role(d) == ContactRole::kHeld) continue;
         const double share = P_.col(c).dot(modal_.directions.col(d));
@@ -76,6 +82,11 @@ void RegimeBuilder::make_contact_rows(Regime& out) const {
               load(d).z_rate * at_.to_zeta_rate.row(static_cast<Eigen::Index>(j)))
                  .transpose();
     }
+    if (role(c) == ContactRole::kLeftStop || role(c) == ContactRole::kRightStop) {
+      row -= spring_(c) * (eta.transpose() * w) + damper_(c) * (eta_rate.transpose() * w);
+      coefficient -= spring_(c) * (P_.transpose() * w);
+      coefficient(V_) -= damper_(c) * w.dot(P_all_);
+    }
     if (friction_(c) != 0.0) {
       if (!load(c).oscillates()) out.slope(c) = friction_(c) * load(c).y;
       row += friction_(c) * (load(c).y * (eta.transpose() * w) + load(c).v * (eta_rate.transpose() * w));
@@ -83,6 +94,22 @@ void RegimeBuilder::make_contact_rows(Regime& out) const {
       coefficient(V_) += friction_(c) * load(c).v * w.dot(P_all_);
     }
   }
+}
+
+void RegimeBuilder::add_clearance_outputs(Eigen::Index c, const Regime& out, const AddOutput& add) const {
+  const Eigen::VectorXd y = out.displacement_row.col(c), rate = out.velocity_row.col(c);
+  Eigen::VectorXd y_coefficient = out.displacement_coefficient.col(c);
+  y_coefficient(one_) += load(c).offset;
+  const bool flying = role(c) == ContactRole::kLeftFlight || role(c) == ContactRole::kRightFlight;
+  if (role(c) == ContactRole::kGap || flying || law(c).clearance.loss == friction::ContactLoss::kGap)
+    add(c, RegimeOutput::Kind::kDisplacement, y, y_coefficient);
+  if (role(c) == ContactRole::kGap || law(c).clearance.loss == friction::ContactLoss::kGap) return;
+  const friction::Stop& own = *stop(c);
+  const double side = role(c) == ContactRole::kLeftStop || role(c) == ContactRole::kLeftFlight ? -1.0 : 1.0;
+  Eigen::VectorXd coefficient =
+      side * (own.stiffness * y_coefficient + own.damping * Eigen::VectorXd(out.velocity_coefficient.col(c)));
+  coefficient(one_) -= own.stiffness * own.gap;
+  add(c, RegimeOutput::Kind::kPress, side * (own.stiffness * y + own.damping * rate), std::move(coefficient));
 }
 
 void RegimeBuilder::make_outputs(Regime& out) const {
@@ -95,6 +122,7 @@ void RegimeBuilder::make_outputs(Regime& out) const {
     coefficients.push_back(std::move(coefficient));
   };
   for (Eigen::Index c = 0; c < nc_; ++c) {
+    if (law(c).kind == ContactForces::Kind::kClearance) add_clearance_outputs(c, out, add);
     if (!law(c).sticks()) continue;
     const auto w = modal_.directions.col(c);
     const bool varies = load(c).varies();

@@ -144,6 +144,7 @@ void run(AnyFlow& flow, const HybridSystem& system, const ModalModel& m, const S
   out.audit.contact_work = flow.work().contact_work;
   out.audit.drive_work = flow.work().drive_work;
   out.audit.friction_loss = flow.work().drive_work - flow.work().contact_work;
+  out.audit.force_work = flow.work().force_work;
   out.audit.viscous_loss = flow.work().viscous_loss;
   out.audit.exchanged = flow.work().exchanged + std::max(largest_energy, std::abs(out.audit.energy_end));
   out.statistics = flow.statistics();

@@ -117,7 +117,7 @@ struct Trajectory {
 struct TangentResult {
   State end;
   Eigen::MatrixXd monodromy;  ///< d(end)/d(start) at fixed duration [N x N]
-  /// d(q, q̇, internal)/dt at the end, before an event there [N]: what one more instant of duration adds.
+  /// d(q, q̇, internal)/dt at the end, after an event there [N]: what one more instant of duration adds.
   Eigen::VectorXd rate;
   std::vector<Event> events;
 };

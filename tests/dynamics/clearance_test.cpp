@@ -1,0 +1,107 @@
+// Clearances and force drives: against an independent Runge-Kutta, closed forms, and the energy balance.
+#include "core/errors.hpp"
+#include "dynamics/simulate.hpp"
+#include "fixtures/clearance_reference.hpp"
+#include "fixtures/clearance_scenes.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <cmath>
+#include <numbers>
+
+namespace slipmode::dynamics {
+namespace {
+
+using namespace slipmode::fixtures;
+using friction::Clearance;
+using friction::Contact;
+using friction::ContactLoss;
+using friction::Force;
+using friction::Stop;
+
+/// One mass on a spring k, damper c.
+fem::Structure oscillator(double k, double c) {
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Ones(1, 1);
+  return {fem::Matrix(one), fem::Matrix(Eigen::MatrixXd(c * one)), fem::Matrix(Eigen::MatrixXd(k * one))};
+}
+
+void expect_reference(const HybridSystem& system, const State& start, double duration, double tolerance) {
+  const Trajectory run = simulate(system, start, {.duration = duration});
+  ClearanceReference reference(system, start);
+  reference.run(static_cast<long double>(duration), 5e-4L);
+  ASSERT_EQ(run.events.size(), reference.changes().size());
+  for (std::size_t k = 0; k < run.events.size(); ++k) {
+    EXPECT_NEAR(run.events[k].time, reference.changes()[k].time, tolerance);
+    EXPECT_EQ(run.events[k].contact, reference.changes()[k].contact);
+    EXPECT_EQ(run.events[k].kind, reference.changes()[k].pressing ? EventKind::kContact : EventKind::kSeparation);
+  }
+  EXPECT_LT((run.final_state.q - reference.q()).cwiseAbs().maxCoeff(), tolerance);
+  EXPECT_LT((run.final_state.v - reference.v()).cwiseAbs().maxCoeff(), tolerance);
+  EXPECT_LT(std::abs(run.audit.residual()), 1e-11);
+}
+
+TEST(Clearance, SourcesAgreeWithRungeKutta) {
+  // Errors grow along the motion where it is not attracting: at most 1e-7 after these times.
+  expect_reference(backlash_mass(1.4), {0.0, Eigen::VectorXd::Constant(1, 3.0), Eigen::VectorXd::Zero(1)}, 60.0, 1e-9);
+  expect_reference(backlash_mass(0.5, 1.0, ContactLoss::kGap), backlash_mass(0.5).rest(), 40.0, 1e-7);
+  expect_reference(backlash_train(0.9), backlash_train(0.9).rest(), 60.0, 1e-8);
+  expect_reference(clearance_pair(0.6), clearance_pair(0.6).rest(), 60.0, 1e-8);
+}
+
+TEST(Clearance, RandomStructuresAgreeWithRungeKutta) {
+  int events = 0;
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE(seed);
+    const HybridSystem system = random_clearances(seed);
+    expect_reference(system, system.rest(), 12.0, 1e-7);
+    events += static_cast<int>(simulate(system, system.rest(), {.duration = 12.0}).statistics.events);
+  }
+  EXPECT_GT(events, 400);  // the scenes are not idle
+}
+
+TEST(Clearance, RandomStructuresCloseTheirEnergy) {
+  for (unsigned seed = 1000; seed < 1200; ++seed) {
+    SCOPED_TRACE(seed);
+    const HybridSystem system = random_clearances(seed);
+    EXPECT_LT(std::abs(simulate(system, system.rest(), {.duration = 50.0}).audit.residual()), 1e-10);
+  }
+}
+
+TEST(Clearance, WithoutAGapItIsTheStiffLinearOscillator) {
+  // Stops at zero on both sides, without damping: m q̈ + (k + k_s) q = A sin ωt from rest; closed form.
+  const Stop stop{.stiffness = 3.0, .damping = 0.0, .gap = 0.0};
+  const double omega = 1.3, own = std::sqrt(1.0 + 3.0);
+  for (const ContactLoss loss : {ContactLoss::kZeroForce, ContactLoss::kGap}) {
+    const HybridSystem system(oscillator(1.0, 0.0),
+                              {Contact{.direction = Eigen::VectorXd::Ones(1), .law = Clearance{stop, stop, loss}}},
+                              Force{omega, {{.amplitude = 0.7}}}, {}, Eigen::MatrixXd::Ones(1, 1));
+    const Trajectory run = simulate(system, system.rest(), {.duration = 40.0, .sample = 0.25});
+    double worst = 0.0;
+    for (Eigen::Index k = 0; k < run.times.size(); ++k) {
+      const double t = run.times(k);
+      const double q = 0.7 / (own * own - omega * omega) * (std::sin(omega * t) - omega / own * std::sin(own * t));
+      worst = std::max(worst, std::abs(run.q(0, k) - q));
+    }
+    EXPECT_LT(worst, 1e-12);
+  }
+}
+
+TEST(Clearance, AnUndampedStopReturnsTheSpeedItWasHitWith) {
+  // No force but the stop's: the mass flies back with its speed after half a period of the contact's own vibration.
+  const Stop stop{.stiffness = 9.0, .damping = 0.0, .gap = 0.5};
+  const HybridSystem system(oscillator(0.0, 0.0),
+                            {Contact{.direction = Eigen::VectorXd::Ones(1), .law = Clearance{stop, stop}}},
+                            Force{1.0, {}}, {}, Eigen::MatrixXd::Ones(1, 1));
+  const State start{0.0, Eigen::VectorXd::Zero(1), Eigen::VectorXd::Constant(1, 2.0)};
+  const Trajectory run = simulate(system, start, {.duration = 100.0});
+  ASSERT_GE(run.events.size(), 100U);
+  const double flight = 1.0 / 2.0, contact = std::numbers::pi / 3.0;
+  for (std::size_t k = 0; k < run.events.size(); ++k) {
+    const double hit = flight / 2.0 + static_cast<double>(k / 2) * (flight + contact);
+    EXPECT_NEAR(run.events[k].time, k % 2 == 0 ? hit : hit + contact, 1e-11);
+    EXPECT_NEAR(std::abs(run.events[k].velocity), 2.0, 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace slipmode::dynamics
