@@ -38,6 +38,8 @@ struct PeriodicOrbit {
   double period = 0.0;    ///< [s]
   OrbitKind kind = OrbitKind::kDriven;
   int order = 1;  ///< period / period of the drive; 1 when self-excited
+  /// How often a shorter orbit is passed within `period` (to 1e-6 of its size): driven orbits of order > 1 only.
+  int repeats = 1;
 
   /// Φ = d x(T)/d x(0) over one period, saltation included, at fixed T [N x N].
   Eigen::MatrixXd monodromy;
@@ -62,9 +64,10 @@ struct PeriodicOrbit {
   std::string word;
   int crossings = 0;  ///< events that change the force law of a contact: a stop's flight → gap is none
 
-  bool symmetric = false;    ///< x(T/2) = −x(0) within `symmetry_tolerance`
-  double asymmetry = 0.0;    ///< ‖x(T/2) + x(0)‖ in the norm of `residual`
-  double grazing = 0.0;      ///< smallest |speed across its guard| of all regime changes, over the orbit's top speed
+  bool symmetric = false;  ///< x(T/2) = −x(0) within ShootingOptions::symmetry_tolerance, and the system allows it
+  double asymmetry = 0.0;  ///< mismatch of x(T/2) + x(0), relative as `residual`; 0 where the system is not symmetric
+  /// Smallest |ẏ| at which a stop is reached, over the largest |ẏ| of all events; 1 without stops reached.
+  double grazing = 1.0;
   bool has_grazing = false;  ///< an event of kind kGrazing, or `grazing` below 1e-4
 
   /// The orbit is one of a family of orbits of the same period that fill a line or plane: `family` spans it [N x k].
@@ -114,8 +117,8 @@ struct Amplitude {
 
 /// @param row  r [n]
 /// @throws InvalidInput  for a row of wrong size
-/// Means by Gauss' rule between events on interpolated displacement and velocity, panels halved until they agree to
-/// 1e-12 of the range; extremes by root finding on the flow itself.
+/// Between events y is interpolated from displacements and velocities (degree 9), panels halved until a halving changes
+/// means by less than 1e-10 of the range: the last are about a thousand times as good. Extremes are roots of ẏ.
 [[nodiscard]] Amplitude amplitude(const dynamics::HybridSystem& system, const PeriodicOrbit& orbit,
                                   const Eigen::VectorXd& row);
 

@@ -51,9 +51,9 @@ struct ShootingResult {
 ///
 /// Driven: T = order × period of the drive. Self-excited: T is unknown too, the phase held by fᵀδx = 0 (f the rate of
 /// the state) at an origin between two events, the middle of the longest stretch free of events; the orbit is handed
-/// back with its origin there, so that it is fixed by its guards. Orbits through stick: Φ has no full rank, and a start
-/// in stick stays consistent (wᵀq̇ = V); all systems are solved by least squares of minimum norm. Floating orbits: the
-/// solution nearest to the guess, with its family.
+/// back with its origin there, so that it is fixed by its guards; a multiple of a shorter orbit is handed back as that.
+/// Orbits through stick: Φ has no full rank, and a start in stick stays consistent (wᵀq̇ = V); all systems are solved by
+/// least squares of minimum norm. Floating orbits: the solution nearest to the guess, with its family.
 /// @param guess  near the orbit; a start on a guard is moved off it along the trajectory
 /// @throws InvalidInput  for a period that is missing or not positive, order or segments < 1, half_period on a system
 ///                       that is not symmetric, a drive that is neither periodic nor constant, bristle laws
@@ -86,7 +86,7 @@ struct RecurrenceGuess {
 
 /// Settles for `transient`, then watches events of one kind at one contact (a section) for `duration` and hands out the
 /// return to it, of at most `max_returns`, whose states match best; a shorter one is preferred where it matches within
-/// three times the best.
+/// three times the best or 1e-4 of the size of the states.
 /// @throws NumericalFailure  when the section is met fewer than twice
 [[nodiscard]] RecurrenceGuess recurrence_guess(const dynamics::HybridSystem& system, const dynamics::State& start,
                                                double transient, double duration, int max_returns = 16, int contact = 0,

@@ -1,0 +1,59 @@
+#include "core/decompositions.hpp"
+#include "orbits/shooting_problem.hpp"
+
+#include <cmath>
+
+namespace slipmode::orbits {
+namespace {
+
+/// Below this share of the largest singular value a direction counts as lost.
+constexpr double kRankTolerance = 1e-12;
+
+struct Decomposition {
+  Eigen::MatrixXd U, V;
+  Eigen::VectorXd sigma;
+};
+
+Decomposition decompose(const Eigen::MatrixXd& J) {
+  constexpr unsigned kThin = Eigen::ComputeThinU | Eigen::ComputeThinV;
+  if (J.cols() <= 24) {
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(J, kThin);
+    return {svd.matrixU(), svd.matrixV(), svd.singularValues()};
+  }
+  const Eigen::BDCSVD<Eigen::MatrixXd> svd(J, kThin);
+  return {svd.matrixU(), svd.matrixV(), svd.singularValues()};
+}
+
+}  // namespace
+
+BoundedLeastSquares bounded_least_squares(const Eigen::MatrixXd& J, const Eigen::VectorXd& r, double radius) {
+  const Decomposition d = decompose(J);
+  const Eigen::VectorXd beta = -d.U.transpose() * r;
+  const Eigen::Index count = d.sigma.size();
+  BoundedLeastSquares out;
+  out.smallest = d.sigma[0] > 0 ? d.sigma[count - 1] / d.sigma[0] : 0.0;
+  const auto coefficients = [&](double mu) {
+    Eigen::VectorXd c = Eigen::VectorXd::Zero(count);
+    for (Eigen::Index i = 0; i < count; ++i)
+      if (d.sigma[i] > kRankTolerance * d.sigma[0]) c[i] = d.sigma[i] * beta[i] / (d.sigma[i] * d.sigma[i] + mu);
+    return c;
+  };
+  Eigen::VectorXd c = coefficients(0.0);
+  if (c.norm() > radius) {
+    // ‖c(μ)‖ falls with μ: bisection on ln μ, a tenth of the radius is near enough.
+    double low = std::log(1e-30 * d.sigma[0] * d.sigma[0]);
+    double high = std::log(d.sigma[0] * d.sigma[0] + d.sigma[0] * beta.norm() / radius);
+    for (int k = 0; k < 60; ++k) {
+      const double middle = 0.5 * (low + high);
+      c = coefficients(std::exp(middle));
+      const double norm = c.norm();
+      if (norm <= radius && norm >= 0.9 * radius) break;
+      (norm > radius ? low : high) = middle;
+    }
+  }
+  out.step = d.V * c;
+  out.predicted = (J * out.step + r).norm();
+  return out;
+}
+
+}  // namespace slipmode::orbits

@@ -1,0 +1,83 @@
+#include "orbits/floquet.hpp"
+
+#include "core/decompositions.hpp"
+#include "core/errors.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace slipmode::orbits {
+namespace {
+
+std::vector<Eigen::Index> order_by_modulus(const Eigen::VectorXcd& values) {
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(values.size()));
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
+    const double size_a = std::abs(values[a]), size_b = std::abs(values[b]);
+    if (std::abs(size_a - size_b) > 1e-14 * std::max(size_a, size_b)) return size_a > size_b;
+    return values[a].imag() > values[b].imag();
+  });
+  return order;
+}
+
+void require_solved(bool solved) {
+  if (!solved)
+    throw NumericalFailure("the eigenvalues of a fundamental matrix were not found",
+                           std::numeric_limits<double>::quiet_NaN(), {}, std::numeric_limits<double>::quiet_NaN());
+}
+
+}  // namespace
+
+Eigen::VectorXcd sorted_eigenvalues(const Eigen::MatrixXd& matrix) {
+  if (matrix.size() == 0) return {};
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(matrix, false);
+  require_solved(solver.info() == Eigen::Success);
+  return solver.eigenvalues()(order_by_modulus(solver.eigenvalues()));
+}
+
+std::vector<FloquetMode> floquet_modes(const Eigen::MatrixXd& matrix) {
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(matrix, true);
+  require_solved(solver.info() == Eigen::Success);
+  const Eigen::MatrixXcd vectors = solver.eigenvectors();
+  std::vector<FloquetMode> modes;
+  for (const Eigen::Index i : order_by_modulus(solver.eigenvalues())) {
+    Eigen::VectorXcd direction = vectors.col(i).normalized();
+    Eigen::Index at;
+    direction.cwiseAbs().maxCoeff(&at);
+    direction *= std::conj(direction[at]) / std::abs(direction[at]);
+    modes.push_back({solver.eigenvalues()[i], std::move(direction)});
+  }
+  return modes;
+}
+
+std::vector<Eigen::Index> trivial_indices(const Eigen::VectorXcd& multipliers, int count) {
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(multipliers.size()));
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
+    return std::abs(multipliers[a] - 1.0) < std::abs(multipliers[b] - 1.0);
+  });
+  order.resize(static_cast<std::size_t>(std::min<Eigen::Index>(count, multipliers.size())));
+  return order;
+}
+
+void set_stability(PeriodicOrbit& orbit, double marginal_band) {
+  orbit.multipliers = sorted_eigenvalues(orbit.monodromy);
+  const std::vector<Eigen::Index> trivial = trivial_indices(orbit.multipliers, orbit.trivial_multipliers);
+  const double zero = 1e-8 * std::max(1.0, orbit.monodromy.norm());
+  orbit.leading_modulus = 0.0;
+  orbit.zero_multipliers = 0;
+  for (Eigen::Index i = 0; i < orbit.multipliers.size(); ++i) {
+    if (std::find(trivial.begin(), trivial.end(), i) != trivial.end()) continue;
+    orbit.leading_modulus = std::max(orbit.leading_modulus, std::abs(orbit.multipliers[i]));
+    if (std::abs(orbit.multipliers[i]) <= zero) ++orbit.zero_multipliers;
+  }
+  const auto others = orbit.multipliers.size() - static_cast<Eigen::Index>(trivial.size());
+  orbit.superstable = orbit.zero_multipliers == others;
+  orbit.stability = orbit.leading_modulus > 1.0 + marginal_band    ? Stability::kUnstable
+                    : orbit.leading_modulus >= 1.0 - marginal_band ? Stability::kMarginal
+                                                                   : Stability::kStable;
+}
+
+}  // namespace slipmode::orbits

@@ -1,0 +1,86 @@
+#include "orbits/periodic_orbit.hpp"
+
+#include <algorithm>
+
+namespace slipmode::orbits {
+namespace {
+
+using dynamics::ContactMode;
+
+/// True where a clearance exerts no force.
+bool is_free(ContactMode mode) {
+  return mode == ContactMode::kGap || mode == ContactMode::kLeftFlight || mode == ContactMode::kRightFlight;
+}
+
+std::string symbols_of(const std::vector<ContactMode>& modes) {
+  std::string result;
+  for (const ContactMode mode : modes) result += regime_symbol(mode);
+  return result;
+}
+
+}  // namespace
+
+char regime_symbol(ContactMode mode) {
+  switch (mode) {
+    case ContactMode::kSlipNegative:
+      return '-';
+    case ContactMode::kStick:
+      return '0';
+    case ContactMode::kSlipPositive:
+      return '+';
+    case ContactMode::kSmooth:
+      return '~';
+    case ContactMode::kSeparated:
+      return 'x';
+    case ContactMode::kGap:
+      return 'g';
+    case ContactMode::kLeftStop:
+      return 'l';
+    case ContactMode::kRightStop:
+      return 'r';
+    case ContactMode::kLeftFlight:
+      return 'L';
+    case ContactMode::kRightFlight:
+      return 'R';
+  }
+  return '?';
+}
+
+bool changes_force_law(const dynamics::Event& event) {
+  return event.contact >= 0 && event.before != event.after && !(is_free(event.before) && is_free(event.after));
+}
+
+std::vector<RegimeSpan> regime_sequence(double start_time, std::vector<ContactMode> modes,
+                                        std::span<const dynamics::Event> events) {
+  std::vector<RegimeSpan> result{{start_time, std::move(modes)}};
+  for (const dynamics::Event& event : events) {
+    if (event.contact < 0 || event.before == event.after) continue;
+    RegimeSpan next{event.time, result.back().modes};
+    next.modes[static_cast<std::size_t>(event.contact)] = event.after;
+    if (event.time == result.back().time && result.size() > 1) {
+      result.back() = std::move(next);  // contacts that change together
+    } else {
+      result.push_back(std::move(next));
+    }
+  }
+  return result;
+}
+
+std::string word_of(std::span<const RegimeSpan> regimes) {
+  std::vector<std::string> letters;
+  for (const RegimeSpan& span : regimes) {
+    std::string next = symbols_of(span.modes);
+    if (letters.empty() || letters.back() != next) letters.push_back(std::move(next));
+  }
+  while (letters.size() > 1 && letters.front() == letters.back()) letters.pop_back();
+  std::vector<std::string> smallest = letters;
+  for (std::size_t k = 1; k < letters.size(); ++k) {
+    std::rotate(letters.begin(), letters.begin() + 1, letters.end());
+    smallest = std::min(smallest, letters);
+  }
+  std::string word;
+  for (const std::string& letter : smallest) word += (word.empty() ? "" : " ") + letter;
+  return word;
+}
+
+}  // namespace slipmode::orbits

@@ -1,0 +1,151 @@
+#include "orbits/shooting_problem.hpp"
+
+#include "core/decompositions.hpp"
+#include "core/errors.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace slipmode::orbits {
+namespace {
+
+using dynamics::ContactMode;
+using dynamics::State;
+
+double largest(const Eigen::VectorXd& x) { return x.size() > 0 ? x.cwiseAbs().maxCoeff() : 0.0; }
+
+bool sticks_rigidly(const friction::Law& law) {
+  return std::holds_alternative<friction::Coulomb>(law) || std::holds_alternative<friction::Stribeck>(law);
+}
+
+}  // namespace
+
+ShootingProblem::ShootingProblem(const dynamics::HybridSystem& system, const ShootingOptions& options, OrbitKind kind)
+    : system_(system), options_(options), kind_(kind), flow_(system, options.flow) {
+  for (const friction::Contact& contact : system.contacts())
+    keeps_modes_ |= std::holds_alternative<friction::CompliantCoulomb>(contact.law);
+}
+
+ShootingPoint ShootingProblem::initial_point(const State& guess, double period) const {
+  ShootingPoint point{.nodes = {guess}, .period = period};
+  if (!options_.segment_guesses.empty()) {
+    point.nodes = options_.segment_guesses;
+    return point;
+  }
+  const double length = covered() * period / options_.segments;
+  for (int k = 1; k < options_.segments; ++k) point.nodes.push_back(advanced(system_, point.nodes.back(), length));
+  return point;
+}
+
+void ShootingProblem::set_scales(const State& guess, double period) {
+  const State end = advanced(system_, guess, 0.37 * period);
+  double q = std::max(largest(guess.q), largest(end.q)), v = std::max(largest(guess.v), largest(end.v));
+  const double radian = period / (2.0 * std::numbers::pi);
+  const double size = std::max(q, v * radian);
+  q = size > 0 ? size : 1.0;
+  v = std::max(v, q / radian);
+  const Eigen::Index n = system_.size();
+  scale_.resize(2 * n + system_.internal_size());
+  scale_.head(n).setConstant(q);
+  scale_.segment(n, n).setConstant(v);
+  scale_.tail(system_.internal_size()).setConstant(q);
+  for (std::size_t c = 0; c < system_.contacts().size(); ++c)  // ż of a normal oscillator
+    if (system_.contacts()[c].normal_load.oscillator)
+      scale_[2 * n + system_.internal_begin(static_cast<int>(c)) + internal_states(system_.contacts()[c]) - 1] = v;
+}
+
+ShootingEvaluation ShootingProblem::evaluate(const ShootingPoint& point) {
+  ShootingEvaluation out;
+  out.point = point;
+  const std::size_t count = point.nodes.size();
+  const double length = covered() * point.period / static_cast<double>(count);
+  const Eigen::VectorXd inverse = scale_.cwiseInverse();
+  double sum = 0.0;
+  out.largest = 0.0;
+  for (std::size_t k = 0; k < count; ++k) {
+    State& node = out.point.nodes[k];
+    node.time = out.point.nodes[0].time + length * static_cast<double>(k);
+    dynamics::TangentResult run = flow_.run(node, length);
+    if (!run.monodromy.allFinite() || !run.end.q.allFinite() || !run.end.v.allFinite())
+      throw NumericalFailure("the tangent flow of a shooting segment is not finite", node.time, stacked(node),
+                             std::numeric_limits<double>::quiet_NaN());
+    out.transfer.push_back(inverse.asDiagonal() * run.monodromy * scale_.asDiagonal());
+    out.rate.push_back(inverse.cwiseProduct(run.rate));
+    out.events.insert(out.events.end(), run.events.begin(), run.events.end());
+    out.ends.push_back(std::move(run.end));
+    const double sign = k + 1 == count && options_.half_period ? -1.0 : 1.0;
+    out.mismatch.push_back(inverse.cwiseProduct(stacked(out.ends[k]) - sign * stacked(point.nodes[(k + 1) % count])));
+    sum += out.mismatch.back().squaredNorm();
+    out.largest = std::max(out.largest, largest(out.mismatch.back()));
+  }
+  out.norm = std::sqrt(sum);
+  return out;
+}
+
+CondensedShooting ShootingProblem::condense(const ShootingEvaluation& at,
+                                            const std::vector<Eigen::MatrixXd>& extra) const {
+  CondensedShooting out{at.transfer[0], {}, at.mismatch[0]};
+  out.columns = extra.empty() ? Eigen::MatrixXd(at.mismatch[0].size(), 0) : extra[0];
+  for (std::size_t k = 1; k < at.transfer.size(); ++k) {
+    out.matrix = at.transfer[k] * out.matrix;
+    out.rest = at.transfer[k] * out.rest + at.mismatch[k];
+    if (!extra.empty()) out.columns = at.transfer[k] * out.columns + extra[k];
+  }
+  out.matrix.diagonal().array() -= options_.half_period ? -1.0 : 1.0;
+  return out;
+}
+
+std::vector<Eigen::MatrixXd> ShootingProblem::period_columns(const ShootingEvaluation& at) const {
+  std::vector<Eigen::MatrixXd> columns;
+  const double length = covered() * at.point.period / static_cast<double>(at.rate.size());
+  for (const Eigen::VectorXd& rate : at.rate) columns.emplace_back(length * rate);
+  return columns;
+}
+
+ShootingPoint ShootingProblem::moved(const ShootingEvaluation& at, const Eigen::VectorXd& first,
+                                     const std::vector<Eigen::MatrixXd>& columns, const Eigen::VectorXd& extra,
+                                     double share) const {
+  ShootingPoint out = at.point;
+  if (period_unknown()) out.period = at.point.period * std::exp(extra[0]);
+  const std::size_t count = out.nodes.size();
+  const double length = covered() * out.period / static_cast<double>(count);
+  Eigen::VectorXd step = first;
+  for (std::size_t k = 0; k < count; ++k) {
+    State& node = out.nodes[k];
+    node = with_coordinates(node, stacked(at.point.nodes[k]) + scale_.cwiseProduct(step));
+    node.time = out.nodes[0].time + length * static_cast<double>(k);
+    put_on_constraint(node, at.ends[(k + count - 1) % count].modes);
+    if (k + 1 == count) break;
+    step = at.transfer[k] * step + share * at.mismatch[k];
+    if (!columns.empty()) step += columns[k] * extra;
+  }
+  return out;
+}
+
+void ShootingProblem::put_on_constraint(State& node, const std::vector<ContactMode>& incoming) const {
+  std::vector<Eigen::Index> stuck;
+  for (std::size_t c = 0; c < system_.contacts().size(); ++c)
+    if (incoming[c] == ContactMode::kStick && sticks_rigidly(system_.contacts()[c].law))
+      stuck.push_back(static_cast<Eigen::Index>(c));
+  if (!stuck.empty()) {
+    Eigen::MatrixXd W(system_.size(), static_cast<Eigen::Index>(stuck.size()));
+    for (std::size_t k = 0; k < stuck.size(); ++k)
+      W.col(static_cast<Eigen::Index>(k)) = system_.contacts()[static_cast<std::size_t>(stuck[k])].direction;
+    const Eigen::VectorXd missing = (W.transpose() * node.v).array() - system_.drive().velocity(node.time);
+    node.v -= W * (W.transpose() * W).eval().ldlt().solve(missing);
+  }
+  if (!keeps_modes_) {
+    node.modes.clear();
+    return;
+  }
+  for (std::size_t c = 0; c < node.modes.size(); ++c) {
+    if (!sticks_rigidly(system_.contacts()[c].law)) continue;
+    const double sliding = system_.drive().velocity(node.time) - system_.contacts()[c].direction.dot(node.v);
+    node.modes[c] = incoming[c] == ContactMode::kStick ? ContactMode::kStick
+                    : sliding > 0                      ? ContactMode::kSlipPositive
+                                                       : ContactMode::kSlipNegative;
+  }
+}
+
+}  // namespace slipmode::orbits
