@@ -3,6 +3,7 @@
 #include "scene/scene_words.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -64,8 +65,49 @@ void check_combination(TomlReader& in, const ContactSpec& spec) {
   }
 }
 
+/// Whether two contacts have the same displacement but for its sign.
+bool same_place(const ContactPlace& a, const ContactPlace& b, const Scene& scene) {
+  constexpr double kClosest = 1e-9;  // of the position
+  if (scene.beam() == nullptr) {
+    const auto* pair = std::get_if<Between>(&a);
+    const auto* other = std::get_if<Between>(&b);
+    if (pair == nullptr || other == nullptr) return a.index() == b.index() && std::get<int>(a) == std::get<int>(b);
+    return std::minmax(pair->first, pair->second) == std::minmax(other->first, other->second);
+  }
+  const auto position = [&scene](const ContactPlace& place) {
+    const double* x = std::get_if<double>(&place);
+    return x != nullptr ? *x : beam_reach(*scene.beam());
+  };
+  return std::abs(position(a) - position(b)) <= kClosest * position(b);
+}
+
+void check_alone(TomlReader& in, const ContactPlace& place, const std::vector<ContactSpec>& others,
+                 const Scene& scene) {
+  for (std::size_t other = 0; other < others.size(); ++other) {
+    if (!same_place(others[other].at, place, scene)) continue;
+    const bool pair = std::holds_alternative<Between>(place);
+    const char* where = pair ? "pair of masses" : scene.beam() == nullptr ? "mass" : "place";
+    in.fail(pair ? "between" : "at", fmt::format("contact.{} is on this {} already", other, where),
+            fmt::format("one contact per {}", where));
+  }
+}
+
+Between read_between(TomlReader& in, int masses) {
+  const std::string valid = fmt::format("[mass, mass], two different masses from 1 to {}", masses);
+  in.refuse("at", "between is given too", "either at or between");
+  const std::vector<int> pair = in.integers_or("between", {}, 1, masses);
+  if (pair.size() != 2 || pair[0] == pair[1]) in.fail("between", "not two different masses", valid);
+  return {pair[0], pair[1]};
+}
+
+}  // namespace
+
 ContactPlace read_place(TomlReader& in, const Scene& scene) {
-  if (scene.chain() != nullptr) return static_cast<int>(in.integer("at", 1, scene.chain()->masses));
+  if (scene.beam() == nullptr) {
+    const int masses = static_cast<int>(scene.size());
+    if (in.has("between")) return read_between(in, masses);
+    return static_cast<int>(in.integer("at", 1, masses));
+  }
   if (in.is_text("at")) {
     (void)in.choice("at", {"tip"});
     return AtTip{};
@@ -75,38 +117,19 @@ ContactPlace read_place(TomlReader& in, const Scene& scene) {
   return in.number("at", {.low = 0.0, .high = reach * (1.0 + kEndSlack), .above = true, .text = valid.c_str()});
 }
 
-/// A number that is the same for contacts at the same place.
-double position(const ContactPlace& place, const Scene& scene) {
-  if (const int* mass = std::get_if<int>(&place)) return *mass;
-  const double* x = std::get_if<double>(&place);
-  return x != nullptr ? *x : beam_reach(*scene.beam());
-}
-
-void check_alone(TomlReader& in, const ContactPlace& place, const std::vector<ContactSpec>& others,
-                 const Scene& scene) {
-  constexpr double kClosest = 1e-9;  // of the position
-  for (std::size_t other = 0; other < others.size(); ++other) {
-    const double here = position(place, scene);
-    if (std::abs(position(others[other].at, scene) - here) > kClosest * here) continue;
-    const char* where = scene.chain() != nullptr ? "mass" : "place";
-    in.fail("at", fmt::format("contact.{} is on this {} already", other, where),
-            fmt::format("one contact per {}", where));
-  }
-}
-
-}  // namespace
-
 std::vector<ContactSpec> read_contacts(TomlReader& in, const Scene& scene) {
   std::vector<ContactSpec> contacts;
   for (TomlReader& table : in.tables("contact")) {
     ContactSpec contact;
     contact.at = read_place(table, scene);
     check_alone(table, contact.at, contacts, scene);
-    contact.normal_load = read_load(table);
     contact.name = table.text_or("name", fmt::format("contact {}", contacts.size() + 1));
     contact.law = read_law(table);
-    contact.tilt_deg = read_tilt(table);
-    check_combination(table, contact);
+    if (!std::holds_alternative<friction::Clearance>(contact.law)) {
+      contact.normal_load = read_load(table);
+      contact.tilt_deg = read_tilt(table);
+      check_combination(table, contact);
+    }
     table.finish();
     contacts.push_back(std::move(contact));
   }

@@ -10,7 +10,7 @@ namespace {
 
 friction::Belt read_belt(TomlReader& in) {
   for (const char* key : {"frequency", "amplitude", "phase"}) {
-    in.refuse(key, "belongs to a shaker, the drive is a belt", "speed, or kind = \"shaker\"");
+    in.refuse(key, "belongs to a shaker or a force, the drive is a belt", "speed, or kind = \"shaker\" or \"force\"");
   }
   friction::Belt belt;
   if (in.is_table("speed")) {
@@ -69,12 +69,21 @@ friction::AmplitudeCurve read_amplitude(TomlReader& in) {
 }  // namespace
 
 void read_drive(TomlReader in, Scene& scene) {
-  if (in.choice("kind", {"belt", "shaker"}) == 0) {
+  const std::vector<std::string> kinds = {"belt", "shaker", "force"};
+  const std::string kind = kinds[in.choice("kind", kinds)];
+  if (kind == "belt") {
     scene.drive = read_belt(in);
     in.finish();
     return;
   }
+  if (kind == "force") {
+    scene.force = read_force(in, scene);
+    in.finish();
+    scene.drive = force_drive(*scene.force);
+    return;
+  }
   in.refuse("speed", "belongs to a belt, the drive is a shaker", "frequency and amplitude, or kind = \"belt\"");
+  in.refuse("omega", "belongs to a force, the drive is a shaker", "frequency, or kind = \"force\"");
   friction::Shaker shaker;
   shaker.frequency_hz = in.number("frequency", kPositive);
   shaker.phase = in.number_or("phase", shaker.phase, kFinite);

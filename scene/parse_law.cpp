@@ -76,7 +76,7 @@ friction::Stop read_stop(TomlReader in, const std::optional<friction::Stop>& oth
 }
 
 friction::Law read_clearance(TomlReader& in) {
-  for (const char* key : {"normal_load", "mu_s", "mu_k"}) {
+  for (const char* key : {"normal_load", "mu_s", "mu_k", "mu", "alpha", "tilt_deg"}) {
     in.refuse(key, "a clearance has no friction", "stop, or left and right, each { stiffness, damping, gap }");
   }
   friction::Clearance law;

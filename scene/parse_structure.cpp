@@ -132,8 +132,11 @@ double beam_length(const fem::BeamOptions& beam) {
 
 double beam_reach(const fem::BeamOptions& beam) { return beam_length(beam) + beam.tip.extension; }
 
-std::variant<fem::ChainOptions, fem::BeamOptions> read_structure(TomlReader in, const std::string& units) {
-  if (in.choice("kind", {"chain", "beam"}) == 0) return read_chain(in, units);
+StructureSpec read_structure(TomlReader in, const std::string& units) {
+  const std::string kind = kStructures[in.choice("kind", kStructures)];
+  if (kind == "chain") return read_chain(in, units);
+  if (kind == "masses") return read_masses(in, units);
+  if (kind == "matrices") return read_matrices(in, units);
   if (units != "SI")
     in.fail("kind", "units are \"" + units + "\", a beam has dimensions", "units = \"SI\" with a beam");
   return read_beam(in);

@@ -24,7 +24,7 @@ void check_sensors(TomlReader& in, const std::string& key, BasisChoice basis, co
 }
 
 std::vector<BasisChoice> default_bases(const Scene& scene) {
-  if (scene.chain() != nullptr) return {BasisChoice::kPom, BasisChoice::kLnm};
+  if (scene.beam() == nullptr) return {BasisChoice::kPom, BasisChoice::kLnm};
   return {scene.sensors ? BasisChoice::kPomf : BasisChoice::kMassPom, BasisChoice::kLnm, BasisChoice::kLnmStatic};
 }
 

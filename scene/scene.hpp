@@ -4,6 +4,7 @@
 #include "dynamics/system.hpp"
 #include "fem/beam.hpp"
 #include "fem/chain.hpp"
+#include "fem/masses.hpp"
 #include "friction/amplitude_curve.hpp"
 #include "friction/drive.hpp"
 #include "scene/specs.hpp"
@@ -23,21 +24,25 @@ struct SceneSource {
   std::vector<std::string> overrides;  ///< "drive.speed=0.25", in order
 };
 
+/// What [structure] may be.
+using StructureSpec = std::variant<fem::ChainOptions, fem::BeamOptions, fem::MassesOptions, MatricesSpec>;
+
 /// Everything a scene file says (TOML; keys as in datasets/README.md). Plain data: checked when read.
 struct Scene {
   std::string title;
   std::string units = "dimensionless";  ///< "dimensionless" or "SI"
-  std::variant<fem::ChainOptions, fem::BeamOptions> structure;
+  StructureSpec structure;
   std::vector<ContactSpec> contacts;
   friction::Drive drive;               ///< a shaker has the amplitude of its curve at its frequency
   friction::AmplitudeCurve amplitude;  ///< of a shaker, over frequency
+  std::optional<ForceSpec> force;      ///< when the drive is a force: where it acts, and its mean
   TimeSpec time;
   InitialSpec initial;
   EnsembleSpec ensemble;
   std::optional<SensorSpec> sensors;
   ReductionSpec reduction;
   ValidationSpec validation;    ///< for a belt
-  ShakenValidationSpec shaken;  ///< for a shaker
+  ShakenValidationSpec shaken;  ///< for a shaker; a scene with a force has neither
   dynamics::FlowOptions flow;   ///< method and tolerance from [flow]
   SceneSource source;
 
@@ -69,26 +74,33 @@ struct Scene {
 [[nodiscard]] Scene set_key(const Scene& scene, const std::string& path, double value);
 /// Value of any numeric key, defaults included. @throws InvalidInput if there is none of that name or it is no number
 [[nodiscard]] double get_key(const Scene& scene, const std::string& path);
+/// Value of a key that can be varied continuously: a real number of the structure, a contact or the drive.
+/// @throws InvalidInput  for a key that is not there, a word, a whole number (masses, elements), or one that is not
+/// part
+///                       of the model ([time], [flow]); the message says which and what would do
+[[nodiscard]] double get_continuous_key(const Scene& scene, const std::string& path);
 
 /// The finite-element beam of a beam scene: rows of displacement, slope and strain, the structure of the full model.
 /// @throws InvalidInput  for a chain; for damping that cannot be met
 [[nodiscard]] fem::Beam build_beam(const Scene& scene);
-/// The full model: chain or beam, contacts, drive.
+/// The full model: structure, contacts, drive.
 [[nodiscard]] dynamics::HybridSystem build_system(const Scene& scene);
 /// The same on a beam that was built already.
 [[nodiscard]] dynamics::HybridSystem build_system(const Scene& scene, const fem::Beam& beam);
 
-/// The drive at another belt speed [m/s] or, with the amplitude its curve has there, shaker frequency [Hz].
+/// The drive at another belt speed [m/s], force's ω [rad/s] or, with the amplitude its curve has there, shaker
+/// frequency [Hz].
 /// @throws InvalidInput  for a frequency the amplitude curve does not cover
 [[nodiscard]] friction::Drive drive_at(const Scene& scene, double speed_or_frequency);
-/// The parameter of drive_at the scene itself is at: the belt's speed at time 0, or the shaker's frequency.
+/// The parameter of drive_at the scene itself is at: the belt's speed at time 0, the force's ω, the shaker's frequency.
 [[nodiscard]] double drive_parameter(const Scene& scene);
 /// [time] at another shaker frequency: a time in cycles is another one in seconds there.
 [[nodiscard]] TimeSpec time_at(const Scene& scene, double frequency_hz);
 
 /// Where a run starts (see InitialSpec), at time 0. In "static" contact springs and bristles carry the sliding force
 /// and normal oscillators are at rest; elsewhere contacts' own states are left to the flow (dynamics::State::internal).
-/// @throws InvalidInput  "static" for a structure that is free to move as a whole, or when contact is lost there
+/// @throws InvalidInput  "static" for a structure that is free to move as a whole, with a clearance, or when contact is
+///                       lost there
 [[nodiscard]] dynamics::State initial_state(const Scene& scene, const dynamics::HybridSystem& system);
 /// Starts of the ensemble's members. All equal when spread = 0; member k draws from Random::stream(seed, k).
 ///

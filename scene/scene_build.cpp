@@ -1,5 +1,7 @@
 #include "core/errors.hpp"
+#include "core/overloaded.hpp"
 #include "scene/scene_parts.hpp"
+#include "scene/scene_words.hpp"
 
 #include <fmt/format.h>
 #include <numbers>
@@ -10,8 +12,8 @@ namespace {
 
 const fem::BeamOptions& beam_of(const Scene& scene, const char* what) {
   if (scene.beam() != nullptr) return *scene.beam();
-  throw InvalidInput(fmt::format("{}: structure.kind = \"chain\": {} is for beams; valid: a scene with kind = \"beam\"",
-                                 scene.source.path, what));
+  throw InvalidInput(fmt::format("{}: structure.kind = \"{}\": {} is for beams; valid: a scene with kind = \"beam\"",
+                                 scene.source.path, kStructures[scene.structure.index()], what));
 }
 
 const SensorSpec& sensors_of(const Scene& scene) {
@@ -21,9 +23,41 @@ const SensorSpec& sensors_of(const Scene& scene) {
 
 /// Row over the degrees of freedom that gives the contact's displacement.
 Eigen::VectorXd direction(const ContactPlace& place, const fem::Structure& structure, const fem::Beam* beam) {
-  if (const int* mass = std::get_if<int>(&place)) return Eigen::VectorXd::Unit(structure.size(), *mass - 1);
+  const Eigen::Index n = structure.size();
+  if (const int* mass = std::get_if<int>(&place)) return Eigen::VectorXd::Unit(n, *mass - 1);
+  if (const auto* pair = std::get_if<Between>(&place)) {
+    return Eigen::VectorXd::Unit(n, pair->second - 1) - Eigen::VectorXd::Unit(n, pair->first - 1);
+  }
   const double* x = std::get_if<double>(&place);
   return beam->displacement_row(x != nullptr ? *x : beam->reach());
+}
+
+Eigen::VectorXd direction(const ForcePlace& place, const fem::Structure& structure, const fem::Beam* beam) {
+  if (const auto* at = std::get_if<ContactPlace>(&place)) return direction(*at, structure, beam);
+  return Eigen::Map<const Eigen::VectorXd>(std::get<1>(place).data(), structure.size());
+}
+
+/// What a force's mean and harmonics act along.
+struct ForceRows {
+  Eigen::VectorXd load;
+  Eigen::MatrixXd directions;
+};
+
+ForceRows force_rows(const Scene& scene, const fem::Structure& structure, const fem::Beam* beam) {
+  if (!scene.force) return {};
+  const std::vector<ForcePlace> places = force_places(*scene.force);
+  ForceRows rows;
+  rows.directions.resize(structure.size(), static_cast<Eigen::Index>(places.size()));
+  for (Eigen::Index k = 0; k < rows.directions.cols(); ++k) {
+    rows.directions.col(k) = direction(places[static_cast<std::size_t>(k)], structure, beam);
+  }
+  if (const double* mean = std::get_if<double>(&scene.force->mean)) {
+    if (*mean != 0.0) rows.load = *mean * rows.directions.col(0);
+  } else {
+    const auto& list = std::get<1>(scene.force->mean);
+    rows.load = Eigen::Map<const Eigen::VectorXd>(list.data(), structure.size());
+  }
+  return rows;
 }
 
 dynamics::HybridSystem assemble(const Scene& scene, fem::Structure structure, const fem::Beam* beam) {
@@ -37,23 +71,33 @@ dynamics::HybridSystem assemble(const Scene& scene, fem::Structure structure, co
     contact.name = spec.name;
     contacts.push_back(std::move(contact));
   }
-  return {std::move(structure), std::move(contacts), scene.drive};
+  ForceRows force = force_rows(scene, structure, beam);
+  return {std::move(structure), std::move(contacts), scene.drive, std::move(force.load), std::move(force.directions)};
 }
 
 }  // namespace
 
 Eigen::Index Scene::size() const {
-  if (chain() != nullptr) return chain()->masses;
-  Eigen::Index nodes = 0;  // the clamped one has no freedom
-  for (const fem::BeamSpan& span : beam()->spans) nodes += span.elements;
-  return 2 * nodes;
+  return std::visit(Overloaded{[](const fem::ChainOptions& own) -> Eigen::Index { return own.masses; },
+                               [](const fem::BeamOptions& own) -> Eigen::Index {
+                                 Eigen::Index nodes = 0;  // the clamped one has no freedom
+                                 for (const fem::BeamSpan& span : own.spans) nodes += span.elements;
+                                 return 2 * nodes;
+                               },
+                               [](const fem::MassesOptions& own) { return static_cast<Eigen::Index>(own.mass.size()); },
+                               [](const MatricesSpec& own) { return own.mass.rows(); }},
+                    structure);
 }
 
 fem::Beam build_beam(const Scene& scene) { return fem::Beam(beam_of(scene, "a finite-element beam")); }
 
 dynamics::HybridSystem build_system(const Scene& scene) {
-  if (scene.chain() != nullptr) return assemble(scene, fem::chain(*scene.chain()), nullptr);
-  return build_system(scene, build_beam(scene));
+  return std::visit(
+      Overloaded{[&](const fem::ChainOptions& own) { return assemble(scene, fem::chain(own), nullptr); },
+                 [&](const fem::BeamOptions&) { return build_system(scene, build_beam(scene)); },
+                 [&](const fem::MassesOptions& own) { return assemble(scene, fem::masses(own), nullptr); },
+                 [&](const MatricesSpec& own) { return assemble(scene, structure_of(own), nullptr); }},
+      scene.structure);
 }
 
 dynamics::HybridSystem build_system(const Scene& scene, const fem::Beam& beam) {
@@ -61,12 +105,14 @@ dynamics::HybridSystem build_system(const Scene& scene, const fem::Beam& beam) {
 }
 
 friction::Drive drive_at(const Scene& scene, double speed_or_frequency) {
+  if (const friction::Force* force = scene.drive.force()) return friction::Force{speed_or_frequency, force->harmonics};
   const friction::Shaker* shaker = scene.drive.shaker();
   if (shaker == nullptr) return friction::Belt::constant(speed_or_frequency);
   return friction::Shaker{scene.amplitude.at(speed_or_frequency), speed_or_frequency, shaker->phase};
 }
 
 double drive_parameter(const Scene& scene) {
+  if (const friction::Force* force = scene.drive.force()) return force->omega;
   const friction::Shaker* shaker = scene.drive.shaker();
   return shaker != nullptr ? shaker->frequency_hz : scene.drive.velocity(0.0);
 }

@@ -15,8 +15,10 @@ Scene set_key(const Scene& scene, const std::string& path, double value) {
   return changed;
 }
 
-double get_key(const Scene& scene, const std::string& path) {
-  const TomlDocument document(scene_to_toml(scene), scene.source.path, {});
+namespace {
+
+/// The number at a path of the scene written out in full.
+const toml::node& number_at(const TomlDocument& document, const std::string& scene_path, const std::string& path) {
   const toml::node* node = &document.root();
   std::istringstream parts(path);
   for (std::string part; node != nullptr && std::getline(parts, part, '.');) {
@@ -31,13 +33,35 @@ double get_key(const Scene& scene, const std::string& path) {
   }
   if (node == nullptr) {
     throw InvalidInput(fmt::format("{}: {}: no such key; valid are those of the scene file, for example drive.speed",
-                                   scene.source.path, path));
+                                   scene_path, path));
   }
   if (!node->is_number()) {
     throw InvalidInput(
-        fmt::format("{}: {} = {}: not a number; choose a numeric key", scene.source.path, path, value_text(*node)));
+        fmt::format("{}: {} = {}: not a number; choose a numeric key", scene_path, path, value_text(*node)));
   }
-  return node->value<double>().value();
+  return *node;
+}
+
+TomlDocument written_out(const Scene& scene) { return {scene_to_toml(scene), scene.source.path, {}}; }
+
+}  // namespace
+
+double get_key(const Scene& scene, const std::string& path) {
+  return number_at(written_out(scene), scene.source.path, path).value<double>().value();
+}
+
+double get_continuous_key(const Scene& scene, const std::string& path) {
+  const TomlDocument document = written_out(scene);
+  const toml::node& node = number_at(document, scene.source.path, path);
+  const auto refuse = [&](const std::string& what) {
+    throw InvalidInput(fmt::format(
+        "{}: {} = {}: {}; valid: a real number of [structure], [[contact]] or [drive], for example drive.omega",
+        scene.source.path, path, value_text(node), what));
+  };
+  if (node.is_integer()) refuse("counts something and cannot be varied continuously");
+  const bool model = path.starts_with("structure.") || path.starts_with("contact.") || path.starts_with("drive.");
+  if (!model) refuse("is not part of the model");
+  return node.value<double>().value();
 }
 
 }  // namespace slipmode::scene

@@ -13,7 +13,7 @@ namespace slipmode::scene {
 
 namespace {
 
-TimeSpec read_cycles(TomlReader& in, const friction::Shaker& shaker) {
+TimeSpec read_cycles(TomlReader& in, double frequency_hz) {
   for (const char* key : {"duration", "transient", "sample"}) {
     in.refuse(key, "the time is given in cycles too", "either cycles or seconds");
   }
@@ -27,14 +27,14 @@ TimeSpec read_cycles(TomlReader& in, const friction::Shaker& shaker) {
   if ((cycles.cycles - cycles.transient_cycles) * static_cast<double>(cycles.samples) < 1.0) {
     in.fail("cycles", "no sample fits", "at least one sample after transient_cycles");
   }
-  return in_seconds(cycles, shaker.frequency_hz);
+  return in_seconds(cycles, frequency_hz);
 }
 
-TimeSpec read_seconds(TomlReader& in, bool shaken) {
+TimeSpec read_seconds(TomlReader& in, bool periodic) {
   TimeSpec time;
   time.duration = in.number("duration", kPositive);
   time.transient = in.number_or("transient", time.transient, kNonNegative);
-  time.sample = shaken ? in.number("sample", kPositive) : in.number_or("sample", time.sample, kPositive);
+  time.sample = periodic ? in.number("sample", kPositive) : in.number_or("sample", time.sample, kPositive);
   if (time.transient >= time.duration) {
     in.fail("transient", "nothing is left to keep", fmt::format("less than duration = {}", time.duration));
   }
@@ -48,11 +48,14 @@ TimeSpec read_seconds(TomlReader& in, bool shaken) {
 TimeSpec read_time(TomlReader in, const friction::Drive& drive) {
   constexpr std::array kCycleKeys = {"cycles", "transient_cycles", "samples_per_cycle"};
   TimeSpec time;
-  if (const friction::Shaker* shaker = drive.shaker()) {
+  if (const auto period = drive.period()) {
     const bool counted = std::ranges::any_of(kCycleKeys, [&in](const char* key) { return in.has(key); });
-    time = counted ? read_cycles(in, *shaker) : read_seconds(in, true);
+    const double frequency = drive.shaker() != nullptr ? drive.shaker()->frequency_hz : 1.0 / *period;
+    time = counted ? read_cycles(in, frequency) : read_seconds(in, true);
   } else {
-    for (const char* key : kCycleKeys) in.refuse(key, "counts a shaker's cycles, the drive is a belt", "duration");
+    for (const char* key : kCycleKeys) {
+      in.refuse(key, "counts cycles of a shaker or a force, the drive is a belt", "duration");
+    }
     time = read_seconds(in, false);
   }
   in.finish();
@@ -64,8 +67,15 @@ InitialSpec read_initial(TomlReader in, const Scene& scene) {
   const bool given = in.has("displacement") || in.has("velocity");
   if (given && in.has("at")) in.fail("at", "displacement or velocity is given too", "either at, or arrays");
   initial.at = kStarts[in.choice_or("at", 0, words_of(kStarts))].at;
-  if (initial.at == InitialSpec::At::kStatic && scene.drive.shaker() != nullptr) {
-    in.fail("at", "a shaker has no steady sliding to be in equilibrium with", "\"rest\", or displacement and velocity");
+  if (initial.at == InitialSpec::At::kStatic) {
+    constexpr const char* kValid = "\"rest\", or displacement and velocity";
+    if (scene.drive.belt() == nullptr) {
+      in.fail("at", "a shaker or a force has no steady sliding to be in equilibrium with", kValid);
+    }
+    const auto loose = [](const ContactSpec& own) { return std::holds_alternative<friction::Clearance>(own.law); };
+    if (std::ranges::any_of(scene.contacts, loose)) {
+      in.fail("at", "with a clearance the equilibrium depends on which stops are touched", kValid);
+    }
   }
   if (given) {
     const std::vector<double> zero(static_cast<std::size_t>(scene.size()), 0.0);
@@ -92,7 +102,12 @@ EnsembleSpec read_ensemble(TomlReader in, const Scene& scene) {
   ensemble.members = static_cast<int>(in.integer_or("members", ensemble.members, 1, kMostCount));
   ensemble.seed = static_cast<std::uint64_t>(in.integer_or("seed", 1, 0, std::numeric_limits<std::int64_t>::max()));
   ensemble.spread = in.number_or("spread", ensemble.spread, kNonNegative);
-  if (scene.drive.shaker() != nullptr) {
+  if (scene.force) {
+    for (const char* key : {"speeds", "frequencies"}) {
+      in.refuse(key, "belongs to a belt or a shaker, the drive is a force",
+                "no such key; change drive.omega with --set");
+    }
+  } else if (scene.drive.shaker() != nullptr) {
     in.refuse("speeds", "belongs to a belt, the drive is a shaker", "frequencies");
     ensemble.frequencies = read_frequencies(in, scene.amplitude);
   } else {
@@ -145,13 +160,16 @@ Scene parse_scene(const std::string& text, const std::vector<std::string>& overr
   scene.time = read_time(in.table("time"), scene.drive);
   scene.initial = read_initial(in.table_or_empty("initial"), scene);
   scene.ensemble = read_ensemble(in.table_or_empty("ensemble"), scene);
-  if (scene.chain() != nullptr) {
-    in.refuse("sensors", "sensors are for beams, the structure is a chain", "structure.kind = \"beam\" with it");
+  if (scene.beam() == nullptr) {
+    in.refuse("sensors", "sensors are for beams, the structure has masses", "structure.kind = \"beam\" with it");
   } else if (in.has("sensors")) {
     scene.sensors = read_sensors(in.table("sensors"), scene);
   }
   scene.reduction = read_reduction(in.table_or_empty("reduction"), scene);
-  if (scene.drive.shaker() != nullptr) {
+  if (scene.force) {
+    in.refuse("validation", "compares under a belt or a shaker, the drive is a force",
+              "no such table; find and continue orbits with 'slipmode orbit'");
+  } else if (scene.drive.shaker() != nullptr) {
     scene.shaken = read_shaken_validation(in.table_or_empty("validation"), scene);
   } else {
     scene.validation = read_validation(in.table_or_empty("validation"), scene);

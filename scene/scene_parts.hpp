@@ -17,14 +17,26 @@ inline constexpr double kEndSlack = 1e-12;
 [[nodiscard]] double beam_length(const fem::BeamOptions& beam);
 [[nodiscard]] double beam_reach(const fem::BeamOptions& beam);
 
-/// [structure]: chain or beam.
-[[nodiscard]] std::variant<fem::ChainOptions, fem::BeamOptions> read_structure(TomlReader in, const std::string& units);
+/// [structure] of any kind.
+[[nodiscard]] StructureSpec read_structure(TomlReader in, const std::string& units);
+/// [structure] kind = "masses" and "matrices", the kind read already.
+[[nodiscard]] fem::MassesOptions read_masses(TomlReader& in, const std::string& units);
+[[nodiscard]] MatricesSpec read_matrices(TomlReader& in, const std::string& units);
+/// The structure of matrices that were read.
+[[nodiscard]] fem::Structure structure_of(const MatricesSpec& spec);
+/// `at` or `between` on the structure of `scene`.
+[[nodiscard]] ContactPlace read_place(TomlReader& in, const Scene& scene);
 /// [[contact]] on the structure of `scene`.
 [[nodiscard]] std::vector<ContactSpec> read_contacts(TomlReader& in, const Scene& scene);
 /// The law of one [[contact]] and its keys.
 [[nodiscard]] friction::Law read_law(TomlReader& in);
 /// [drive] into drive and amplitude of `scene`.
 void read_drive(TomlReader in, Scene& scene);
+/// [drive] kind = "force", the kind read already.
+[[nodiscard]] ForceSpec read_force(TomlReader& in, const Scene& scene);
+/// The drive of a force: its harmonics act along force_places, each place once.
+[[nodiscard]] friction::Force force_drive(const ForceSpec& spec);
+[[nodiscard]] std::vector<ForcePlace> force_places(const ForceSpec& spec);
 /// [sensors] on the beam of `scene`.
 [[nodiscard]] SensorSpec read_sensors(TomlReader in, const Scene& scene);
 /// [reduction] with the sensors of `scene`.

@@ -49,6 +49,13 @@ Equilibrium sliding_equilibrium(const Scene& scene, const dynamics::HybridSystem
         "the chain is held by nothing, so there is no equilibrium; valid: \"rest\", or fix an end (structure.ends) or "
         "give ground_stiffness");
   }
+  for (const friction::Contact& contact : system.contacts()) {
+    if (!std::holds_alternative<friction::Clearance>(contact.law)) continue;
+    refuse(
+        fmt::format("contact '{}' is a clearance, whose equilibrium depends on which stops are touched; valid: "
+                    "\"rest\", or displacement and velocity",
+                    contact.name));
+  }
   const Eigen::SimplicialLDLT<fem::SparseMatrix> factors(fem::to_sparse(system.structure().K()));
   if (factors.info() != Eigen::Success) refuse("the stiffness matrix is singular to rounding; valid: \"rest\"");
 

@@ -13,6 +13,9 @@ namespace slipmode::scene {
 
 inline const std::vector<std::string> kUnits = {"dimensionless", "SI"};
 
+/// In the order of StructureSpec's alternatives.
+inline const std::vector<std::string> kStructures = {"chain", "beam", "masses", "matrices"};
+
 struct Ends {
   const char* word;
   bool left_fixed, right_fixed;

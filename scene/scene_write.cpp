@@ -29,10 +29,12 @@ std::string initial_toml(const InitialSpec& initial) {
   return fmt::format("\n[initial]\nat = \"{}\"\n", std::ranges::find(kStarts, initial.at, &StartWord::at)->word);
 }
 
-std::string ensemble_toml(const EnsembleSpec& ensemble, bool shaken) {
-  return fmt::format("\n[ensemble]\nmembers = {}\nseed = {}\nspread = {}\n{} = {}\n", ensemble.members, ensemble.seed,
-                     number_text(ensemble.spread), shaken ? "frequencies" : "speeds",
-                     numbers_text(shaken ? ensemble.frequencies : ensemble.speeds));
+std::string ensemble_toml(const EnsembleSpec& ensemble, const friction::Drive& drive) {
+  std::string out = fmt::format("\n[ensemble]\nmembers = {}\nseed = {}\nspread = {}\n", ensemble.members, ensemble.seed,
+                                number_text(ensemble.spread));
+  if (drive.belt() != nullptr) out += fmt::format("speeds = {}\n", numbers_text(ensemble.speeds));
+  if (drive.shaker() != nullptr) out += fmt::format("frequencies = {}\n", numbers_text(ensemble.frequencies));
+  return out;
 }
 
 std::string sensors_toml(const SensorSpec& sensors) {
@@ -116,15 +118,16 @@ std::string quoted_text(const std::string& text) {
 }
 
 std::string scene_to_toml(const Scene& scene) {
-  const bool shaken = scene.drive.shaker() != nullptr;
   std::string out = fmt::format("title = {}\nunits = \"{}\"\n", quoted_text(scene.title), scene.units);
   out += structure_toml(scene);
   for (const ContactSpec& contact : scene.contacts) out += contact_toml(contact, scene);
   out += drive_toml(scene) + time_toml(scene.time) + initial_toml(scene.initial);
-  out += ensemble_toml(scene.ensemble, shaken);
+  out += ensemble_toml(scene.ensemble, scene.drive);
   if (scene.sensors) out += sensors_toml(*scene.sensors);
   out += reduction_toml(scene.reduction, scene.sensors.has_value());
-  return out + (shaken ? shaken_toml(scene.shaken) : validation_toml(scene.validation)) + flow_toml(scene.flow);
+  if (scene.drive.belt() != nullptr) out += validation_toml(scene.validation);
+  if (scene.drive.shaker() != nullptr) out += shaken_toml(scene.shaken);
+  return out + flow_toml(scene.flow);
 }
 
 }  // namespace slipmode::scene

@@ -10,6 +10,7 @@ namespace slipmode::scene {
 std::string to_string(const ContactPlace& place) {
   if (const int* mass = std::get_if<int>(&place)) return fmt::format("{}", *mass);
   if (const double* x = std::get_if<double>(&place)) return fmt::format("{}", *x);
+  if (const auto* pair = std::get_if<Between>(&place)) return fmt::format("{}-{}", pair->first, pair->second);
   return "tip";
 }
 

@@ -4,6 +4,7 @@
 #include "pod/pomf.hpp"
 #include "pod/sensors.hpp"
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -15,19 +16,51 @@ namespace slipmode::scene {
 /// The end of a beam's rigid extension.
 struct AtTip {};
 
-/// Where a contact is: number of a mass of the chain, 1..N; x on the beam or its extension [m]; or the beam's tip.
-using ContactPlace = std::variant<int, double, AtTip>;
+/// Between two masses: displacement x_second − x_first.
+struct Between {
+  int first = 1, second = 2;  ///< numbers from 1, different
+};
 
-/// The place as a word for tables and axes: "10", "0.35", "tip".
+/// Where a contact is: number of a mass (a degree of freedom), 1..N, to ground; x on the beam or its extension [m]; the
+/// beam's tip; or between two masses.
+using ContactPlace = std::variant<int, double, AtTip, Between>;
+
+/// The place as a word for tables and axes: "10", "0.35", "tip", "2-3".
 [[nodiscard]] std::string to_string(const ContactPlace& place);
 
-/// A friction contact ([[contact]]).
+/// A structure given by its matrices ([structure] kind = "matrices"), each n x n; C may have a skew part.
+struct MatricesSpec {
+  Eigen::MatrixXd mass, damping, stiffness;
+  std::string units = "dimensionless";
+};
+
+/// A contact ([[contact]]).
 struct ContactSpec {
   ContactPlace at = 1;
   friction::Law law;                 ///< law and its keys
-  friction::NormalLoad normal_load;  ///< constant part > 0 [N]
+  friction::NormalLoad normal_load;  ///< constant part > 0 [N]; a clearance has none
   double tilt_deg = 0.0;             ///< of the slider's face (friction::Contact::tilt), |tilt| < 90
   std::string name;                  ///< default "contact 1", "contact 2", ...
+};
+
+/// What a force acts along: a place, or one number per degree of freedom.
+using ForcePlace = std::variant<ContactPlace, std::vector<double>>;
+
+/// A periodic force on the structure ([drive] kind = "force").
+struct ForceSpec {
+  /// amplitude sin(order ω t + phase).
+  struct Harmonic {
+    double amplitude = 0.0;  ///< ≥ 0 [N]
+    double phase = 0.0;      ///< [rad]
+    int order = 1;           ///< ≥ 1
+    ForcePlace at = ContactPlace{1};
+  };
+
+  double omega = 1.0;                  ///< ω > 0 [rad/s]
+  std::optional<double> frequency_hz;  ///< ω/2π, when the scene gives that
+  std::vector<Harmonic> harmonics;     ///< the first is of order 1 and stands in [drive] itself, see read_force
+  /// Mean: a number, acting where the first harmonic does, or one number per degree of freedom [N].
+  std::variant<double, std::vector<double>> mean = 0.0;
 };
 
 /// How long a run is and what is kept ([time]).
@@ -36,7 +69,8 @@ struct TimeSpec {
   double transient = 0.0;  ///< not kept, ≥ 0 [s]
   double sample = 0.5;     ///< sampling interval, > 0 [s]
 
-  /// The same in the shaker's cycles: the three above are then those at the scene's own frequency (see time_at).
+  /// The same in cycles of a shaker or a force: the three above are then those at the scene's own frequency (see
+  /// time_at).
   struct Cycles {
     double cycles = 0.0;            ///< > transient_cycles
     double transient_cycles = 0.0;  ///< ≥ 0

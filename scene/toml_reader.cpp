@@ -207,6 +207,27 @@ std::vector<std::pair<double, double>> TomlReader::pairs(const std::string& key,
   return values;
 }
 
+Eigen::MatrixXd TomlReader::square(const std::string& key, Eigen::Index n) {
+  const toml::node& node = need(key);
+  const std::string valid = n < 0 ? std::string("a square matrix, an array of rows [[...], ...]")
+                                  : fmt::format("a {} x {} matrix, an array of rows [[...], ...]", n, n);
+  if (!node.is_array() || node.as_array()->empty()) fail(key, "wrong type", valid);
+  const toml::array& rows = *node.as_array();
+  const auto size = static_cast<Eigen::Index>(rows.size());
+  if (n >= 0 && size != n) fail(key, fmt::format("{} rows", size), valid);
+  Eigen::MatrixXd matrix(size, size);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const toml::array* row = rows.get(static_cast<std::size_t>(i))->as_array();
+    if (row == nullptr || row->size() != rows.size()) {
+      fail(key, fmt::format("row {} is no array of {} numbers", i + 1, size), valid);
+    }
+    for (Eigen::Index j = 0; j < size; ++j) {
+      matrix(i, j) = checked_number(key, *row->get(static_cast<std::size_t>(j)), kFinite);
+    }
+  }
+  return matrix;
+}
+
 TomlReader TomlReader::table(const std::string& key) {
   const toml::node& node = need(key);
   if (!node.is_table()) fail(key, "wrong type", fmt::format("a table, [{}]", dotted(key)));

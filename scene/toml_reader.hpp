@@ -3,6 +3,7 @@
 // Internal to scene/: the only header that shows toml++.
 
 #include <toml++/toml.h>
+#include <Eigen/Core>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -84,6 +85,8 @@ class TomlReader {
   /// An array of pairs of numbers, [[first, second], ...].
   [[nodiscard]] std::vector<std::pair<double, double>> pairs(const std::string& key, const Limits& first,
                                                              const Limits& second);
+  /// A square matrix as an array of rows, n x n; of any size when n is negative.
+  [[nodiscard]] Eigen::MatrixXd square(const std::string& key, Eigen::Index n = -1);
   /// Indices of the words of an array among `words`, at least one, none twice.
   [[nodiscard]] std::vector<std::size_t> choices(const std::string& key, const std::vector<std::string>& words);
 

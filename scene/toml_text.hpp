@@ -17,6 +17,9 @@ namespace slipmode::scene {
 /// A string in quotes, escaped.
 [[nodiscard]] std::string quoted_text(const std::string& text);
 
+/// A place as its line of keys, `at` or `between`.
+[[nodiscard]] std::string place_toml(const ContactPlace& place);
+
 /// [structure] with its sub-tables; one [[contact]]; [drive].
 [[nodiscard]] std::string structure_toml(const Scene& scene);
 [[nodiscard]] std::string contact_toml(const ContactSpec& contact, const Scene& scene);

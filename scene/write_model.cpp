@@ -66,10 +66,30 @@ std::string beam_toml(const fem::BeamOptions& beam) {
   return out + "\n[structure.damping]\n" + damping_toml(beam.damping);
 }
 
-std::string place_toml(const ContactPlace& place) {
-  return std::visit(Overloaded{[](int mass) { return fmt::format("{}", mass); },
-                               [](double x) { return number_text(x); }, [](AtTip) { return std::string("\"tip\""); }},
-                    place);
+std::string masses_toml(const fem::MassesOptions& masses) {
+  std::string out = fmt::format("\n[structure]\nkind = \"masses\"\nmass = {}\n",
+                                masses.mass.size() == 1 ? number_text(masses.mass.front()) : numbers_text(masses.mass));
+  for (const fem::Link& link : masses.links) {
+    const ContactPlace ends =
+        link.first == 0 ? ContactPlace{link.second} : ContactPlace{Between{link.first, link.second}};
+    out +=
+        "\n[[structure.link]]\n" + place_toml(ends) + line("stiffness", link.stiffness) + line("damping", link.damping);
+  }
+  return out;
+}
+
+std::string matrix_text(const Eigen::MatrixXd& matrix) {
+  std::vector<std::string> rows;
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    const Eigen::VectorXd row = matrix.row(i);
+    rows.push_back(numbers_text({row.begin(), row.end()}));
+  }
+  return fmt::format("[{}]", fmt::join(rows, ", "));
+}
+
+std::string matrices_toml(const MatricesSpec& spec) {
+  return fmt::format("\n[structure]\nkind = \"matrices\"\nmass = {}\ndamping = {}\nstiffness = {}\n",
+                     matrix_text(spec.mass), matrix_text(spec.damping), matrix_text(spec.stiffness));
 }
 
 std::string load_toml(const friction::NormalLoad& load) {
@@ -122,55 +142,25 @@ std::string law_toml(const friction::Law& any) {
       any);
 }
 
-std::string belt_toml(const friction::Belt& belt) {
-  const bool ramp = belt.ramp_end > belt.ramp_begin;
-  const std::string speed =
-      ramp ? fmt::format("{{ from = {}, to = {}, begin = {}, end = {} }}", number_text(belt.speed),
-                         number_text(belt.end_speed), number_text(belt.ramp_begin), number_text(belt.ramp_end))
-           : number_text(belt.speed);
-  return fmt::format("\n[drive]\nkind = \"belt\"\nspeed = {}\n", speed);
-}
-
-std::string amplitude_toml(const friction::AmplitudeCurve& curve) {
-  using Curve = friction::AmplitudeCurve;
-  return std::visit(Overloaded{[](const Curve::Constant& constant) { return number_text(constant.amplitude); },
-                               [](const Curve::Polynomial& polynomial) {
-                                 return fmt::format("{{ polynomial = {} }}", numbers_text(polynomial.coefficients));
-                               },
-                               [](const Curve::Table& table) {
-                                 std::vector<std::string> points;
-                                 for (const auto& [f, amplitude] : table.points)
-                                   points.push_back(numbers_text({f, amplitude}));
-                                 return fmt::format("{{ table = [{}] }}", fmt::join(points, ", "));
-                               },
-                               [](const Curve::Exponential& exponential) {
-                                 return fmt::format("{{ exponential = {{ at = {}, amplitude = {}, decay = {} }} }}",
-                                                    number_text(exponential.at), number_text(exponential.amplitude),
-                                                    number_text(exponential.decay));
-                               }},
-                    curve.kind);
-}
-
 }  // namespace
 
 std::string structure_toml(const Scene& scene) {
-  return scene.chain() != nullptr ? chain_toml(*scene.chain()) : beam_toml(*scene.beam());
+  return std::visit(Overloaded{[](const fem::ChainOptions& own) { return chain_toml(own); },
+                               [](const fem::BeamOptions& own) { return beam_toml(own); },
+                               [](const fem::MassesOptions& own) { return masses_toml(own); },
+                               [](const MatricesSpec& own) { return matrices_toml(own); }},
+                    scene.structure);
 }
 
 std::string contact_toml(const ContactSpec& contact, const Scene& scene) {
-  std::string out =
-      fmt::format("\n[[contact]]\nname = {}\nat = {}\nlaw = \"{}\"\nnormal_load = {}\n", quoted_text(contact.name),
-                  place_toml(contact.at), kLaws[contact.law.index()], load_toml(contact.normal_load));
+  std::string out = fmt::format("\n[[contact]]\nname = {}\n{}law = \"{}\"\n", quoted_text(contact.name),
+                                place_toml(contact.at), kLaws[contact.law.index()]);
+  const bool clearance = std::holds_alternative<friction::Clearance>(contact.law);
+  if (!clearance) out += fmt::format("normal_load = {}\n", load_toml(contact.normal_load));
   out += law_toml(contact.law);
+  if (clearance) return out;
   if (contact.tilt_deg != 0.0 || scene.beam() != nullptr) out += line("tilt_deg", contact.tilt_deg);
   return out;
-}
-
-std::string drive_toml(const Scene& scene) {
-  if (const friction::Belt* belt = scene.drive.belt()) return belt_toml(*belt);
-  const friction::Shaker& shaker = *scene.drive.shaker();
-  return "\n[drive]\nkind = \"shaker\"\n" + line("frequency", shaker.frequency_hz) + line("phase", shaker.phase) +
-         fmt::format("amplitude = {}\n", amplitude_toml(scene.amplitude));
 }
 
 }  // namespace slipmode::scene

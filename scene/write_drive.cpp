@@ -1,0 +1,80 @@
+#include "core/overloaded.hpp"
+#include "scene/toml_text.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace slipmode::scene {
+
+namespace {
+
+std::string line(const char* key, double value) { return fmt::format("{} = {}\n", key, number_text(value)); }
+
+std::string belt_toml(const friction::Belt& belt) {
+  const bool ramp = belt.ramp_end > belt.ramp_begin;
+  const std::string speed =
+      ramp ? fmt::format("{{ from = {}, to = {}, begin = {}, end = {} }}", number_text(belt.speed),
+                         number_text(belt.end_speed), number_text(belt.ramp_begin), number_text(belt.ramp_end))
+           : number_text(belt.speed);
+  return fmt::format("\n[drive]\nkind = \"belt\"\nspeed = {}\n", speed);
+}
+
+std::string force_place_toml(const ForcePlace& place) {
+  if (const auto* at = std::get_if<ContactPlace>(&place)) return place_toml(*at);
+  return fmt::format("direction = {}\n", numbers_text(std::get<1>(place)));
+}
+
+std::string force_toml(const ForceSpec& force) {
+  const ForceSpec::Harmonic& first = force.harmonics.front();
+  std::string out = "\n[drive]\nkind = \"force\"\n";
+  out += force.frequency_hz ? line("frequency", *force.frequency_hz) : line("omega", force.omega);
+  out += line("amplitude", first.amplitude) + line("phase", first.phase) + force_place_toml(first.at);
+  const double* mean = std::get_if<double>(&force.mean);
+  out += fmt::format("mean = {}\n", mean != nullptr ? number_text(*mean) : numbers_text(std::get<1>(force.mean)));
+  for (std::size_t k = 1; k < force.harmonics.size(); ++k) {
+    const ForceSpec::Harmonic& own = force.harmonics[k];
+    out += fmt::format("\n[[drive.harmonic]]\norder = {}\n", own.order) + line("amplitude", own.amplitude) +
+           line("phase", own.phase) + force_place_toml(own.at);
+  }
+  return out;
+}
+
+std::string amplitude_toml(const friction::AmplitudeCurve& curve) {
+  using Curve = friction::AmplitudeCurve;
+  return std::visit(Overloaded{[](const Curve::Constant& constant) { return number_text(constant.amplitude); },
+                               [](const Curve::Polynomial& polynomial) {
+                                 return fmt::format("{{ polynomial = {} }}", numbers_text(polynomial.coefficients));
+                               },
+                               [](const Curve::Table& table) {
+                                 std::vector<std::string> points;
+                                 for (const auto& [f, amplitude] : table.points)
+                                   points.push_back(numbers_text({f, amplitude}));
+                                 return fmt::format("{{ table = [{}] }}", fmt::join(points, ", "));
+                               },
+                               [](const Curve::Exponential& exponential) {
+                                 return fmt::format("{{ exponential = {{ at = {}, amplitude = {}, decay = {} }} }}",
+                                                    number_text(exponential.at), number_text(exponential.amplitude),
+                                                    number_text(exponential.decay));
+                               }},
+                    curve.kind);
+}
+
+}  // namespace
+
+std::string place_toml(const ContactPlace& place) {
+  return std::visit(
+      Overloaded{[](int mass) { return fmt::format("at = {}\n", mass); }, [](double x) { return line("at", x); },
+                 [](AtTip) { return std::string("at = \"tip\"\n"); },
+                 [](const Between& pair) { return fmt::format("between = [{}, {}]\n", pair.first, pair.second); }},
+      place);
+}
+
+std::string drive_toml(const Scene& scene) {
+  if (const friction::Belt* belt = scene.drive.belt()) return belt_toml(*belt);
+  if (scene.force) return force_toml(*scene.force);
+  const friction::Shaker& shaker = *scene.drive.shaker();
+  return "\n[drive]\nkind = \"shaker\"\n" + line("frequency", shaker.frequency_hz) + line("phase", shaker.phase) +
+         fmt::format("amplitude = {}\n", amplitude_toml(scene.amplitude));
+}
+
+}  // namespace slipmode::scene
