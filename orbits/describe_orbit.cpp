@@ -103,17 +103,17 @@ void add_motion(PeriodicOrbit& orbit, ShootingProblem& problem, const ShootingEv
   orbit.monodromy = scale.asDiagonal() * product * scale.cwiseInverse().asDiagonal();
 }
 
-void add_symmetry(PeriodicOrbit& orbit, ShootingProblem& problem, const ShootingOptions& options) {
+void add_symmetry(PeriodicOrbit& orbit, const ShootingProblem& problem, const ShootingEvaluation& at,
+                  const ShootingOptions& options) {
   if (options.half_period) {
     orbit.symmetric = true;
     orbit.asymmetry = orbit.residual;
     return;
   }
-  if (orbit.kind != OrbitKind::kDriven || orbit.order % 2 == 0 || !is_symmetric(problem.system())) return;
-  const Eigen::Index n = orbit.monodromy.rows();
-  const State half = problem.flow().run(orbit.start, 0.5 * orbit.period, Eigen::MatrixXd(n, 0)).end;
-  orbit.asymmetry = problem.scaled(stacked(half) + stacked(orbit.start)).cwiseAbs().maxCoeff();
+  if (at.half_state.size() == 0) return;
+  orbit.asymmetry = (at.half_state + problem.scaled(stacked(orbit.start))).cwiseAbs().maxCoeff();
   orbit.symmetric = orbit.asymmetry <= options.symmetry_tolerance;
+  if (orbit.symmetric) orbit.half_multipliers = sorted_eigenvalues(-at.half_transfer);
 }
 
 }  // namespace
@@ -147,7 +147,7 @@ PeriodicOrbit describe_orbit(ShootingProblem& problem, const ShootingEvaluation&
   orbit.order = problem.kind() == OrbitKind::kDriven ? options.order : 1;
   orbit.residual = at.largest;
   add_motion(orbit, problem, at, options);
-  add_symmetry(orbit, problem, options);
+  add_symmetry(orbit, problem, at, options);
   orbit.repeats = count_repeats(problem, orbit);
   orbit.family = orbit_family(problem, at, orbit);
   if (orbit.family.cols() > 0)

@@ -62,10 +62,12 @@ struct PeriodicOrbit {
   /// The cyclic sequence of regimes, rotated to the lexicographically smallest: comparable between orbits. One letter
   /// per contact (see `regime_symbol`), regimes separated by blanks.
   std::string word;
-  int crossings = 0;  ///< events that change the force law of a contact: a stop's flight → gap is none
+  int crossings = 0;  ///< events that change what force acts at a contact
 
-  bool symmetric = false;  ///< x(T/2) = −x(0) within ShootingOptions::symmetry_tolerance, and the system allows it
-  double asymmetry = 0.0;  ///< mismatch of x(T/2) + x(0), relative as `residual`; 0 where the system is not symmetric
+  /// x(T/2) = −x(0) within ShootingOptions::symmetry_tolerance. Looked at in symmetric systems, driven with odd order
+  /// and one segment.
+  bool symmetric = false;
+  double asymmetry = 0.0;  ///< mismatch of x(T/2) + x(0), relative as `residual`; 0 where it is not looked at
   /// Smallest |ẏ| at which a stop is reached, over the largest |ẏ| of all events; 1 without stops reached.
   double grazing = 1.0;
   bool has_grazing = false;  ///< an event of kind kGrazing, or `grazing` below 1e-4
@@ -80,7 +82,8 @@ struct PeriodicOrbit {
   std::vector<double> residuals;  ///< before each Newton step and after the last
 };
 
-/// A letter per contact mode: + − slip, 0 stick, ~ smooth, x separated, g gap, l r at a stop, L R in flight beyond it.
+/// A letter per contact mode: + − slip, 0 stick, ~ smooth, x separated, g free of both stops (in the gap, or in flight
+/// beyond it), l r at a stop.
 [[nodiscard]] char regime_symbol(dynamics::ContactMode mode);
 
 /// True when the event changes what force acts: not a grazing, a drive's corner, or a flight that is back in the gap.

@@ -33,15 +33,13 @@ char regime_symbol(ContactMode mode) {
     case ContactMode::kSeparated:
       return 'x';
     case ContactMode::kGap:
+    case ContactMode::kLeftFlight:
+    case ContactMode::kRightFlight:
       return 'g';
     case ContactMode::kLeftStop:
       return 'l';
     case ContactMode::kRightStop:
       return 'r';
-    case ContactMode::kLeftFlight:
-      return 'L';
-    case ContactMode::kRightFlight:
-      return 'R';
   }
   return '?';
 }

@@ -237,7 +237,6 @@ ShootingResult shoot(const dynamics::HybridSystem& system, const State& guess, c
   if (start.internal.size() != system.internal_size()) start = advanced(system, start, 0.0);
 
   ShootingProblem problem(system, options, kind);
-  problem.set_scales(start, period);
   ShootingPoint point = problem.initial_point(start, period);
   if (kind == OrbitKind::kSelfExcited) {  // a phase between events is worth one pass
     const ShootingEvaluation first = problem.evaluate(point);

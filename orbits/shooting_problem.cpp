@@ -25,6 +25,8 @@ ShootingProblem::ShootingProblem(const dynamics::HybridSystem& system, const Sho
     : system_(system), options_(options), kind_(kind), flow_(system, options.flow) {
   for (const friction::Contact& contact : system.contacts())
     keeps_modes_ |= std::holds_alternative<friction::CompliantCoulomb>(contact.law);
+  in_halves_ = kind == OrbitKind::kDriven && options.segments == 1 && !options.half_period && options.order % 2 == 1 &&
+               is_symmetric(system);
 }
 
 ShootingPoint ShootingProblem::initial_point(const State& guess, double period) const {
@@ -38,21 +40,19 @@ ShootingPoint ShootingProblem::initial_point(const State& guess, double period) 
   return point;
 }
 
-void ShootingProblem::set_scales(const State& guess, double period) {
-  const State end = advanced(system_, guess, 0.37 * period);
-  double q = std::max(largest(guess.q), largest(end.q)), v = std::max(largest(guess.v), largest(end.v));
+void ShootingProblem::set_scale(const State& start, const State& middle, double period) {
+  const double q = std::max(largest(start.q), largest(middle.q)), v = std::max(largest(start.v), largest(middle.v));
   const double radian = period / (2.0 * std::numbers::pi);
-  const double size = std::max(q, v * radian);
-  q = size > 0 ? size : 1.0;
-  v = std::max(v, q / radian);
+  const double size = std::max(q, v * radian) > 0 ? std::max(q, v * radian) : 1.0;
+  const double speed = std::max(v, q / radian) > 0 ? std::max(v, q / radian) : 1.0;
   const Eigen::Index n = system_.size();
   scale_.resize(2 * n + system_.internal_size());
-  scale_.head(n).setConstant(q);
-  scale_.segment(n, n).setConstant(v);
-  scale_.tail(system_.internal_size()).setConstant(q);
+  scale_.head(n).setConstant(size);
+  scale_.segment(n, n).setConstant(speed);
+  scale_.tail(system_.internal_size()).setConstant(size);
   for (std::size_t c = 0; c < system_.contacts().size(); ++c)  // ż of a normal oscillator
     if (system_.contacts()[c].normal_load.oscillator)
-      scale_[2 * n + system_.internal_begin(static_cast<int>(c)) + internal_states(system_.contacts()[c]) - 1] = v;
+      scale_[2 * n + system_.internal_begin(static_cast<int>(c)) + internal_states(system_.contacts()[c]) - 1] = speed;
 }
 
 ShootingEvaluation ShootingProblem::evaluate(const ShootingPoint& point) {
@@ -60,27 +60,52 @@ ShootingEvaluation ShootingProblem::evaluate(const ShootingPoint& point) {
   out.point = point;
   const std::size_t count = point.nodes.size();
   const double length = covered() * point.period / static_cast<double>(count);
-  const Eigen::VectorXd inverse = scale_.cwiseInverse();
-  double sum = 0.0;
-  out.largest = 0.0;
   for (std::size_t k = 0; k < count; ++k) {
     State& node = out.point.nodes[k];
     node.time = out.point.nodes[0].time + length * static_cast<double>(k);
-    dynamics::TangentResult run = flow_.run(node, length);
-    if (!run.monodromy.allFinite() || !run.end.q.allFinite() || !run.end.v.allFinite())
+    dynamics::TangentResult run = flow_.run(node, in_halves_ ? 0.5 * length : length);
+    if (scale_.size() == 0) set_scale(node, run.end, point.period);
+    out.events.insert(out.events.end(), run.events.begin(), run.events.end());
+    if (in_halves_) {
+      out.half_state = stacked(run.end).cwiseQuotient(scale_);
+      out.half_transfer = in_scale(run.monodromy);
+      run = flow_.run(run.end, 0.5 * length);
+      out.events.insert(out.events.end(), run.events.begin(), run.events.end());
+    }
+    out.transfer.push_back(in_scale(run.monodromy));
+    if (in_halves_) out.transfer.back() *= out.half_transfer;
+    out.rate.push_back(run.rate.cwiseQuotient(scale_));
+    out.ends.push_back(std::move(run.end));
+    if (!out.transfer.back().allFinite() || !out.ends.back().q.allFinite())
       throw NumericalFailure("the tangent flow of a shooting segment is not finite", node.time, stacked(node),
                              std::numeric_limits<double>::quiet_NaN());
-    out.transfer.push_back(inverse.asDiagonal() * run.monodromy * scale_.asDiagonal());
-    out.rate.push_back(inverse.cwiseProduct(run.rate));
-    out.events.insert(out.events.end(), run.events.begin(), run.events.end());
-    out.ends.push_back(std::move(run.end));
+  }
+  double sum = 0.0;
+  out.largest = 0.0;
+  for (std::size_t k = 0; k < count; ++k) {
     const double sign = k + 1 == count && options_.half_period ? -1.0 : 1.0;
-    out.mismatch.push_back(inverse.cwiseProduct(stacked(out.ends[k]) - sign * stacked(point.nodes[(k + 1) % count])));
+    out.mismatch.push_back((stacked(out.ends[k]) - sign * stacked(point.nodes[(k + 1) % count])).cwiseQuotient(scale_));
     sum += out.mismatch.back().squaredNorm();
     out.largest = std::max(out.largest, largest(out.mismatch.back()));
   }
   out.norm = std::sqrt(sum);
   return out;
+}
+
+Eigen::MatrixXd ShootingProblem::in_scale(const Eigen::MatrixXd& transfer) const {
+  return scale_.cwiseInverse().asDiagonal() * transfer * scale_.asDiagonal();
+}
+
+Eigen::MatrixXd ShootingProblem::ends_of(const ShootingPoint& point) {
+  const auto count = static_cast<Eigen::Index>(point.nodes.size());
+  const double length = covered() * point.period / static_cast<double>(count);
+  Eigen::MatrixXd ends(scale_.size(), count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    State node = point.nodes[static_cast<std::size_t>(k)];
+    node.time = point.nodes[0].time + length * static_cast<double>(k);
+    ends.col(k) = scaled(stacked(flow_.run(node, length, Eigen::MatrixXd(scale_.size(), 0)).end));
+  }
+  return ends;
 }
 
 CondensedShooting ShootingProblem::condense(const ShootingEvaluation& at,

@@ -22,6 +22,9 @@ struct ShootingEvaluation {
   std::vector<Eigen::VectorXd> rate;      ///< ẋ at each end [N]
   std::vector<Eigen::VectorXd> mismatch;  ///< end of segment k less start of the next [N]
   std::vector<dynamics::Event> events;
+  /// Half-way state and Φ up to it, where the system is its own mirror image and the order is odd; else empty.
+  Eigen::VectorXd half_state;
+  Eigen::MatrixXd half_transfer;
   double norm = std::numeric_limits<double>::infinity();     ///< root of the sum of squares of all mismatches
   double largest = std::numeric_limits<double>::infinity();  ///< largest entry of all mismatches
 };
@@ -38,17 +41,17 @@ struct CondensedShooting {
 /// Multiple shooting on one system: residuals, Jacobians and steps. For one thread.
 class ShootingProblem {
  public:
-  /// @param like  a state near the orbit: sizes and scales are taken from the first pass from there
   ShootingProblem(const dynamics::HybridSystem& system, const ShootingOptions& options, OrbitKind kind);
 
   /// Segments' starts by simulation from `guess`, or options.segment_guesses.
   [[nodiscard]] ShootingPoint initial_point(const dynamics::State& guess, double period) const;
 
-  /// Sets the scales from this evaluation; residuals of later ones are relative to them.
-  void set_scales(const dynamics::State& guess, double period);
-
+  /// The first evaluation sets the scales, unless `use_scale` has: residuals are relative to them.
   /// @throws NumericalFailure  when the flow fails
   [[nodiscard]] ShootingEvaluation evaluate(const ShootingPoint& point);
+  void use_scale(const Eigen::VectorXd& scale) { scale_ = scale; }
+  /// The ends of all segments alone, one column each, scaled [N x m].
+  [[nodiscard]] Eigen::MatrixXd ends_of(const ShootingPoint& point);
 
   /// @param extra  columns of extra unknowns, one [N x e] matrix per segment, scaled; may be empty
   [[nodiscard]] CondensedShooting condense(const ShootingEvaluation& at,
@@ -75,6 +78,8 @@ class ShootingProblem {
   [[nodiscard]] Eigen::VectorXd scaled(const Eigen::VectorXd& x) const { return x.cwiseQuotient(scale_); }
 
  private:
+  void set_scale(const dynamics::State& start, const dynamics::State& middle, double period);
+  [[nodiscard]] Eigen::MatrixXd in_scale(const Eigen::MatrixXd& transfer) const;
   void put_on_constraint(dynamics::State& node, const std::vector<dynamics::ContactMode>& incoming) const;
 
   dynamics::HybridSystem system_;
@@ -83,6 +88,7 @@ class ShootingProblem {
   dynamics::TangentFlow flow_;
   Eigen::VectorXd scale_;
   bool keeps_modes_ = false;  ///< contacts whose modes do not follow from their states
+  bool in_halves_ = false;    ///< the one segment is run in two halves, to see the symmetry
 };
 
 /// Minimises ‖J d + r‖ for ‖d‖ ≤ radius (Levenberg, Marquardt, Moré), of minimum norm where J has no full rank.
