@@ -316,7 +316,7 @@ ClosedFormFlow::Search ClosedFormFlow::search(int level) const {
           p = p.times(phase_);
           const double c = overlay->outputs.c(k, j), s = overlay->outputs.s(k, j);
           output += (c * p.cosine + s * p.sine) * harmonic.cosine + (s * p.cosine - c * p.sine) * harmonic.sine;
-          remainder += harmonic.remainder * std::hypot(c, s);
+          remainder += harmonic.remainder * overlay->outputs.magnitude(k, j);
           ++j;
         }
       }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <utility>
 
 namespace slipmode::dynamics {
 namespace {
@@ -16,10 +17,6 @@ namespace {
 constexpr double kResonance = 1e-13;
 
 using Amplitudes = DriveOverlay::Amplitudes;
-
-Amplitudes zeros(Eigen::Index rows, Eigen::Index orders) {
-  return {Eigen::MatrixXd::Zero(rows, orders), Eigen::MatrixXd::Zero(rows, orders)};
-}
 
 Amplitudes through(const Eigen::MatrixXd& rows, const Eigen::MatrixXd& coefficients, const Amplitudes& state,
                    const Amplitudes& inputs) {
@@ -30,23 +27,23 @@ Amplitudes through(const Eigen::MatrixXd& rows, const Eigen::MatrixXd& coefficie
 /// The drive's part of a regime's inputs.
 Amplitudes driven_inputs(const Regime& r, const friction::Drive& drive) {
   const Eigen::Index V = r.speed_input();
-  if (const friction::Shaker* shaker = drive.shaker()) {
-    Amplitudes inputs = zeros(r.inputs(), 1);
-    const double A = shaker->amplitude, w = shaker->omega();
-    for (Eigen::Index c = 0; c < V; ++c)
-      if (r.sticks(static_cast<int>(c))) inputs.s(c, 0) = A;
-    inputs.c(V, 0) = A * w;
-    inputs.s(V + 1, 0) = -A * w * w;
-    return inputs;
-  }
   int highest = 1;
-  for (const friction::ForceHarmonic& h : drive.force()->harmonics) highest = std::max(highest, h.order);
-  Amplitudes inputs = zeros(r.inputs(), highest);
-  for (const friction::ForceHarmonic& h : drive.force()->harmonics) {
-    inputs.c(r.force_input(h.direction), h.order - 1) += h.amplitude * std::sin(h.phase);
-    inputs.s(r.force_input(h.direction), h.order - 1) += h.amplitude * std::cos(h.phase);
+  if (drive.force())
+    for (const friction::ForceHarmonic& h : drive.force()->harmonics) highest = std::max(highest, h.order);
+  Eigen::MatrixXd c = Eigen::MatrixXd::Zero(r.inputs(), highest), s = c;
+  if (const friction::Shaker* shaker = drive.shaker()) {
+    const double A = shaker->amplitude, w = shaker->omega();
+    for (Eigen::Index k = 0; k < V; ++k)
+      if (r.sticks(static_cast<int>(k))) s(k, 0) = A;
+    c(V, 0) = A * w;
+    s(V + 1, 0) = -A * w * w;
+  } else {
+    for (const friction::ForceHarmonic& h : drive.force()->harmonics) {
+      c(r.force_input(h.direction), h.order - 1) += h.amplitude * std::sin(h.phase);
+      s(r.force_input(h.direction), h.order - 1) += h.amplitude * std::cos(h.phase);
+    }
   }
-  return inputs;
+  return {std::move(c), std::move(s)};
 }
 
 }  // namespace
@@ -82,9 +79,8 @@ double Amplitudes::bend(Eigen::Index k, DrivePhase first) const {
 }
 
 double Amplitudes::size(Eigen::Index k, int power) const {
-  double sum = 0.0;
-  for (Eigen::Index j = 0; j < c.cols(); ++j)
-    sum += std::pow(static_cast<double>(j + 1), power) * std::hypot(c(k, j), s(k, j));
+  double sum = magnitude(k, 0);
+  for (Eigen::Index j = 1; j < c.cols(); ++j) sum += std::pow(static_cast<double>(j + 1), power) * magnitude(k, j);
   return sum;
 }
 
@@ -110,7 +106,7 @@ DriveOverlay::DriveOverlay(const Regime& r, const friction::Drive& drive) : inpu
   omega_ = drive.shaker() ? drive.shaker()->omega() : drive.force()->omega;
   phase_ = drive.shaker() ? drive.shaker()->phase : 0.0;
   const auto np = r.pairs.np, orders_used = inputs.c.cols();
-  state = zeros(2 * np, orders_used);
+  Eigen::MatrixXd state_c = Eigen::MatrixXd::Zero(2 * np, orders_used), state_s = state_c;
   using Complex = std::complex<double>;
   for (Eigen::Index j = 0; j < orders_used; ++j) {
     const double w = static_cast<double>(j + 1) * omega_;
@@ -127,12 +123,13 @@ DriveOverlay::DriveOverlay(const Regime& r, const friction::Drive& drive) : inpu
                                    "structure damping or change the frequency",
                                std::numeric_limits<double>::quiet_NaN(), {}, std::abs(determinant));
       const Complex x1 = (d * f1 - b * f2) / determinant, x2 = (a * f2 - c * f1) / determinant;
-      state.c(i, j) = x1.real();
-      state.s(i, j) = -x1.imag();
-      state.c(np + i, j) = x2.real();
-      state.s(np + i, j) = -x2.imag();
+      state_c(i, j) = x1.real();
+      state_s(i, j) = -x1.imag();
+      state_c(np + i, j) = x2.real();
+      state_s(np + i, j) = -x2.imag();
     }
   }
+  state = {std::move(state_c), std::move(state_s)};
   outputs = through(r.row, r.coefficient, state, inputs);
   force = through(r.force_row, r.force_coefficient, state, inputs);
   displacement = through(r.displacement_row, r.displacement_coefficient, state, inputs);

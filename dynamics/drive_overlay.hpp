@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <utility>
 #include <vector>
 
 namespace slipmode::dynamics {
@@ -32,13 +33,18 @@ class DriveOverlay {
 
   /// Harmonics of each row: value = Σ_j c_j cos jθ + s_j sin jθ.
   struct Amplitudes {
-    Eigen::MatrixXd c, s;  ///< column j − 1 is of order j
+    Amplitudes() = default;
+    Amplitudes(Eigen::MatrixXd cosines, Eigen::MatrixXd sines)
+        : c(std::move(cosines)), s(std::move(sines)), magnitude((c.cwiseAbs2() + s.cwiseAbs2()).cwiseSqrt()) {}
+
+    Eigen::MatrixXd c, s;       ///< column j − 1 is of order j
+    Eigen::MatrixXd magnitude;  ///< hypot(c, s)
 
     [[nodiscard]] double at(Eigen::Index k, DrivePhase p) const;
     /// d/dθ and d²/dθ².
     [[nodiscard]] double rate(Eigen::Index k, DrivePhase p) const;
     [[nodiscard]] double bend(Eigen::Index k, DrivePhase p) const;
-    /// Σ_j jᵖᵒʷᵉʳ hypot(c_j, s_j): a bound on the derivative of this order.
+    /// Σ_j j^power hypot(c_j, s_j): a bound on the derivative of this order.
     [[nodiscard]] double size(Eigen::Index k, int power = 0) const;
     /// Adds `factor` times all rows at once.
     void add(DrivePhase p, double factor, Eigen::VectorXd& out) const;

@@ -18,7 +18,7 @@ constexpr FlowOptions kTight{.method = FlowMethod::kCollocation, .tolerance = 1e
 constexpr FlowOptions kExact{.method = FlowMethod::kClosedForm};
 
 TEST(Extremes, OnABeltAtRestTheChainSettlesAndStaysStuck) {
-  for (const friction::Law law : {friction::Law(Coulomb{0.4, 0.2}), friction::Law(Stribeck{0.4, 0.2, 8.0})}) {
+  for (const friction::Law& law : {friction::Law(Coulomb{0.4, 0.2}), friction::Law(Stribeck{0.4, 0.2, 8.0})}) {
     const HybridSystem chain = belt_chain(law, Belt::constant(0.0), 10, 0.5);
     const State start = swinging(10, 1, 2.0);
     const Trajectory run = simulate(chain, start, {.duration = 2000.0, .sample = 2.0});
@@ -82,7 +82,7 @@ TEST(Extremes, AHugeBeltOnlyShiftsTheEquilibrium) {
   for (const double speed : {1e6, -1e6}) {
     const double side = speed > 0 ? 1.0 : -1.0;
     const auto moved = free.motion(start.q - side * shift, start.v, 200.0);
-    for (const friction::Law law : {friction::Law(Coulomb{0.4, 0.2}), friction::Law(Stribeck{0.4, 0.2, 8.0})}) {
+    for (const friction::Law& law : {friction::Law(Coulomb{0.4, 0.2}), friction::Law(Stribeck{0.4, 0.2, 8.0})}) {
       const Trajectory run = simulate(belt_chain(law, Belt::constant(speed)), start, {.duration = 200.0});
       EXPECT_TRUE(run.events.empty());
       EXPECT_LT((run.final_state.q - moved.q - side * shift).cwiseAbs().maxCoeff(), 1e-10);
