@@ -14,11 +14,11 @@ namespace {
 
 void check(const Eigen::MatrixXd& points, const ReturnOptions& options) {
   if (options.min_length < 1 || options.max_length < options.min_length || options.per_length < 1 ||
-      !(options.threshold > 0.0)) {
+      !(options.threshold > 0.0) || !(options.apart >= 0.0)) {
     throw InvalidInput(
-        fmt::format("close returns: expected 1 <= min_length <= max_length, per_length >= 1, threshold > 0, found {}, "
-                    "{}, {}, {}",
-                    options.min_length, options.max_length, options.per_length, options.threshold));
+        fmt::format("close returns: expected 1 <= min_length <= max_length, per_length >= 1, threshold > 0, apart >= "
+                    "0, found {}, {}, {}, {}, {}",
+                    options.min_length, options.max_length, options.per_length, options.threshold, options.apart));
   }
   if (points.cols() < 2 || points.rows() < 1) {
     throw InvalidInput(fmt::format("close returns: expected at least two points, found {} of size {}. Record longer",
@@ -49,16 +49,30 @@ bool nearer(const CloseReturn& a, const CloseReturn& b) {
   return std::tie(a.length, a.distance, a.begin) < std::tie(b.length, b.distance, b.begin);
 }
 
-/// Appends the nearest `count` of returns of one length that begin further than that length apart.
-void keep_nearest_apart(std::vector<CloseReturn> returns, Eigen::Index count, std::vector<CloseReturn>& out_kept) {
+/// True when the stretches of two returns of one length, in some phase, are nearer than `apart` at every point.
+bool run_together(const Eigen::MatrixXd& points, const CloseReturn& a, const CloseReturn& b, double apart) {
+  const Eigen::Index p = a.length;
+  for (Eigen::Index shift = 0; shift < p; ++shift) {
+    Eigen::Index k = 0;
+    while (k < p && distance(points, a.begin + k, b.begin + (k + shift) % p) < apart) ++k;
+    if (k == p) return true;
+  }
+  return false;
+}
+
+/// Appends the nearest `per_length` of returns of one length that are not each other's doubles.
+void keep_nearest_apart(const Eigen::MatrixXd& points, std::vector<CloseReturn> returns, const ReturnOptions& options,
+                        std::vector<CloseReturn>& out_kept) {
   std::sort(returns.begin(), returns.end(), nearer);
   const std::size_t first = out_kept.size();
   for (const CloseReturn& candidate : returns) {
-    if (static_cast<Eigen::Index>(out_kept.size() - first) == count) return;
-    const bool apart = std::none_of(
-        out_kept.begin() + static_cast<std::ptrdiff_t>(first), out_kept.end(),
-        [&candidate](const CloseReturn& other) { return std::abs(other.begin - candidate.begin) <= candidate.length; });
-    if (apart) out_kept.push_back(candidate);
+    if (static_cast<Eigen::Index>(out_kept.size() - first) == options.per_length) return;
+    const bool is_new = std::none_of(out_kept.begin() + static_cast<std::ptrdiff_t>(first), out_kept.end(),
+                                     [&](const CloseReturn& other) {
+                                       return std::abs(other.begin - candidate.begin) <= candidate.length ||
+                                              run_together(points, candidate, other, options.apart);
+                                     });
+    if (is_new) out_kept.push_back(candidate);
   }
 }
 
@@ -103,7 +117,7 @@ std::vector<CloseReturn> section_returns(const Eigen::MatrixXd& points, const Re
       const CloseReturn here{i, p, distance(points, i, i + p)};
       if (here.distance <= options.threshold && !divisor_explains(points, here)) returns.push_back(here);
     }
-    keep_nearest_apart(std::move(returns), options.per_length, kept);
+    keep_nearest_apart(points, std::move(returns), options, kept);
   }
   return kept;
 }

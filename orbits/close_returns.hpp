@@ -17,6 +17,9 @@ struct ReturnOptions {
   Eigen::Index max_length = 12;
   double threshold = 0.3;        ///< largest distance of a return, > 0, in the unit of the points
   Eigen::Index per_length = 40;  ///< nearest returns kept of each length, ≥ 1
+  /// Section points: of two stretches of one length that lie nearer to each other than this all along, whatever their
+  /// phase, only the one that closes better is kept, ≥ 0.
+  double apart = 0.0;
 };
 
 /// Close returns of section points: pairs (i, i + p) below the threshold, nearest first. Of a stretch that follows one

@@ -59,6 +59,14 @@ TEST(SectionReturns, OfLengthTwoLeaveOutFixedPoints) {
   }
 }
 
+// The map has two fixed points, 0 and 3/4: of all stretches of length 1 within 0.1 of each other one is kept.
+TEST(SectionReturns, ApartKeepOneStretchOfEachOrbit) {
+  const Eigen::MatrixXd points = logistic_orbit(20000);
+  const auto returns = section_returns(points, {.max_length = 1, .threshold = 1e-3, .per_length = 50, .apart = 0.1});
+  ASSERT_EQ(returns.size(), 2U);
+  EXPECT_GT(std::abs(points(0, returns[0].begin) - points(0, returns[1].begin)), 0.7);
+}
+
 // A sequence that repeats after five points follows one orbit all the time: returns must begin more than five apart.
 TEST(SectionReturns, CountAStretchThatFollowsOneOrbitOnce) {
   Eigen::MatrixXd points(1, 30);
