@@ -1,119 +1,25 @@
 #include "scene/records.hpp"
 
+#include "scene/checked_read.hpp"
+#include "scene/event_record.hpp"
+
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
-#include <limits>
 
 namespace slipmode::scene {
 
 namespace {
 
-constexpr std::int64_t kLastEventKind = static_cast<std::int64_t>(dynamics::EventKind::kDriveCorner);
 constexpr std::array kBasisKinds = {pod::BasisKind::kPom, pod::BasisKind::kLnm, pod::BasisKind::kUser,
                                     pod::BasisKind::kPomf, pod::BasisKind::kLnmStatic};
 constexpr const char* kBasisWords = "pom, lnm, user, pomf or lnm_static";
-constexpr const char* kModeWords = "-1 slip-, 0 stick, 1 slip+, 2 smooth, 3 contact lost";
-constexpr std::int64_t kLastMode = static_cast<std::int64_t>(dynamics::ContactMode::kRightFlight);
-
-template <class Values>
-void require_finite(const StoreReader& store, const std::string& name, const Values& values) {
-  if (!values.allFinite()) {
-    store.fail(name, "holds NaN or an infinity; expected finite numbers, make the file again");
-  }
-}
-
-Eigen::VectorXd finite_vector(const StoreReader& store, const std::string& name,
-                              Eigen::Index size = StoreReader::kAny) {
-  Eigen::VectorXd values = store.vector(name, size);
-  require_finite(store, name, values);
-  return values;
-}
-
-Eigen::MatrixXd finite_columns(const StoreReader& store, const std::string& name, Eigen::Index rows,
-                               Eigen::Index cols) {
-  Eigen::MatrixXd values = store.columns(name, rows, cols);
-  require_finite(store, name, values);
-  return values;
-}
-
-/// One integer per item, each within [low, high].
-std::vector<std::int64_t> codes(const StoreReader& store, const std::string& name, Eigen::Index size, std::int64_t low,
-                                std::int64_t high) {
-  std::vector<std::int64_t> values = store.integers(name, size);
-  for (const std::int64_t value : values) {
-    if (value < low || value > high) {
-      store.fail(name, fmt::format("holds {}; expected {} to {}", value, low, high));
-    }
-  }
-  return values;
-}
 
 pod::BasisKind load_kind(const StoreReader& store, const std::string& name) {
   const std::string kind = store.text(name);
   const auto found = std::ranges::find(kBasisKinds, kind, [](pod::BasisKind known) { return pod::to_string(known); });
   if (found == kBasisKinds.end()) store.fail(name, fmt::format("'{}'; expected {}", kind, kBasisWords));
   return *found;
-}
-
-template <class Get>
-Eigen::VectorXd gather(const std::vector<dynamics::Event>& events, Get get) {
-  Eigen::VectorXd values(static_cast<Eigen::Index>(events.size()));
-  std::ranges::transform(events, values.begin(), get);
-  return values;
-}
-
-template <class Get>
-std::vector<std::int64_t> gather_codes(const std::vector<dynamics::Event>& events, Get get) {
-  std::vector<std::int64_t> values(events.size());
-  std::ranges::transform(events, values.begin(),
-                         [&](const auto& event) { return static_cast<std::int64_t>(get(event)); });
-  return values;
-}
-
-void save_events(StoreWriter& store, const std::string& group, const std::vector<dynamics::Event>& events) {
-  using dynamics::Event;
-  store.describe_group(group, "events in time order, one entry of each dataset per event");
-  store.write(group + "/time", gather(events, [](const Event& e) { return e.time; }), {"s", "time of the event"});
-  store.write(group + "/contact", gather_codes(events, [](const Event& e) { return e.contact; }),
-              {"", "contact, from 0; -1 for a corner of the drive"});
-  store.write(group + "/kind", gather_codes(events, [](const Event& e) { return e.kind; }),
-              {"", "0 stick, 1 release, 2 reversal, 3 grazing, 4 drive corner"});
-  store.write(group + "/before", gather_codes(events, [](const Event& e) { return e.before; }),
-              {"", std::string("mode before: ") + kModeWords});
-  store.write(group + "/after", gather_codes(events, [](const Event& e) { return e.after; }),
-              {"", std::string("mode after: ") + kModeWords});
-  store.write(group + "/displacement", gather(events, [](const Event& e) { return e.displacement; }),
-              {"m", "contact displacement at the event"});
-  store.write(group + "/velocity", gather(events, [](const Event& e) { return e.velocity; }),
-              {"m/s", "contact velocity at the event"});
-  store.write(group + "/force", gather(events, [](const Event& e) { return e.force; }),
-              {"N", "contact force just after the event"});
-}
-
-std::vector<dynamics::Event> load_events(const StoreReader& store, const std::string& group) {
-  const Eigen::VectorXd time = finite_vector(store, group + "/time");
-  const Eigen::Index count = time.size();
-  const auto contact = codes(store, group + "/contact", count, -1, std::numeric_limits<int>::max());
-  const auto kind = codes(store, group + "/kind", count, 0, kLastEventKind);
-  const auto before = codes(store, group + "/before", count, -1, kLastMode);
-  const auto after = codes(store, group + "/after", count, -1, kLastMode);
-  const Eigen::VectorXd displacement = finite_vector(store, group + "/displacement", count);
-  const Eigen::VectorXd velocity = finite_vector(store, group + "/velocity", count);
-  const Eigen::VectorXd force = finite_vector(store, group + "/force", count);
-  std::vector<dynamics::Event> events(static_cast<std::size_t>(count));
-  for (std::size_t i = 0; i < events.size(); ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    events[i] = {time(k),
-                 static_cast<int>(contact[i]),
-                 static_cast<dynamics::EventKind>(kind[i]),
-                 static_cast<dynamics::ContactMode>(before[i]),
-                 static_cast<dynamics::ContactMode>(after[i]),
-                 displacement(k),
-                 velocity(k),
-                 force(k)};
-  }
-  return events;
 }
 
 void save_statistics(StoreWriter& store, const std::string& group, const dynamics::FlowStatistics& statistics) {
@@ -139,12 +45,13 @@ dynamics::FlowStatistics load_statistics(const StoreReader& store, const std::st
 }  // namespace
 
 void save(StoreWriter& store, const std::string& group, const dynamics::EnergyAudit& audit) {
-  store.describe_group(group, "energy balance: end - start = contact_work - viscous_loss");
+  store.describe_group(group, "energy balance: end - start = contact_work + force_work - viscous_loss");
   store.write(group + "/energy_start", audit.energy_start, {"J", "energy at the start"});
   store.write(group + "/energy_end", audit.energy_end, {"J", "energy at the end"});
   store.write(group + "/contact_work", audit.contact_work, {"J", "work of the contact forces on the structure"});
   store.write(group + "/drive_work", audit.drive_work, {"J", "work of the drive"});
   store.write(group + "/friction_loss", audit.friction_loss, {"J", "dissipated by friction"});
+  store.write(group + "/force_work", audit.force_work, {"J", "work of a force drive"});
   store.write(group + "/viscous_loss", audit.viscous_loss, {"J", "dissipated by damping"});
   store.write(group + "/exchanged", audit.exchanged, {"J", "scale of the residual"});
   store.write(group + "/residual", audit.residual(), {"1", "what the balance leaves, over exchanged"});
@@ -157,6 +64,8 @@ dynamics::EnergyAudit load_audit(const StoreReader& store, const std::string& gr
   audit.contact_work = store.number(group + "/contact_work");
   audit.drive_work = store.number(group + "/drive_work");
   audit.friction_loss = store.number(group + "/friction_loss");
+  // Not in files of versions that had no forces.
+  audit.force_work = store.has(group + "/force_work") ? store.number(group + "/force_work") : 0.0;
   audit.viscous_loss = store.number(group + "/viscous_loss");
   audit.exchanged = store.number(group + "/exchanged");
   return audit;
@@ -167,9 +76,7 @@ void save(StoreWriter& store, const std::string& group, const dynamics::State& s
   store.write(group + "/time", state.time, {"s", "time"});
   store.write(group + "/q", state.q, {"m", "displacement of each dof"});
   store.write(group + "/v", state.v, {"m/s", "velocity of each dof"});
-  std::vector<std::int64_t> modes;
-  for (const dynamics::ContactMode mode : state.modes) modes.push_back(static_cast<std::int64_t>(mode));
-  store.write(group + "/modes", modes, {"", fmt::format("per contact: {}; empty: to be derived", kModeWords)});
+  save_modes(store, group + "/modes", state.modes, "per contact; empty: to be derived");
   store.write(group + "/internal", state.internal,
               {"",
                "contacts' own states, contact after contact: spring stretch or bristle deflection [m], normal "
@@ -181,9 +88,7 @@ dynamics::State load_state(const StoreReader& store, const std::string& group) {
   state.time = store.number(group + "/time");
   state.q = finite_vector(store, group + "/q");
   state.v = finite_vector(store, group + "/v", state.q.size());
-  for (const std::int64_t mode : codes(store, group + "/modes", StoreReader::kAny, -1, kLastMode)) {
-    state.modes.push_back(static_cast<dynamics::ContactMode>(mode));
-  }
+  state.modes = load_modes(store, group + "/modes");
   const std::string internal = group + "/internal";
   if (store.has(internal)) state.internal = finite_vector(store, internal);  // files of earlier versions have none
   return state;
@@ -260,8 +165,7 @@ void save(StoreWriter& store, const std::string& group, const pod::Basis& basis)
 pod::Basis load_basis(const StoreReader& store, const std::string& group, Eigen::Index dofs) {
   pod::Basis basis;
   const std::string vectors = group + "/vectors";
-  basis.vectors = store.matrix(vectors, dofs);
-  require_finite(store, vectors, basis.vectors);
+  basis.vectors = finite_matrix(store, vectors, dofs);
   if (basis.vectors.cols() < 1 || basis.vectors.cols() > basis.vectors.rows()) {
     store.fail(vectors, fmt::format("has {} modes of {} dofs; expected 1 to {} modes", basis.vectors.cols(),
                                     basis.vectors.rows(), basis.vectors.rows()));
