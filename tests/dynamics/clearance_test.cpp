@@ -41,8 +41,8 @@ void expect_reference(const HybridSystem& system, const State& start, double dur
 }
 
 TEST(Clearance, SourcesAgreeWithRungeKutta) {
-  // Errors grow along the motion where it is not attracting: at most 1e-7 after these times.
-  expect_reference(backlash_mass(1.4), {0.0, Eigen::VectorXd::Constant(1, 3.0), Eigen::VectorXd::Zero(1)}, 60.0, 1e-9);
+  // Over times within which these transients do not yet multiply the reference's truncation of 1e-13 by more than 1e4.
+  expect_reference(backlash_mass(1.4), {0.0, Eigen::VectorXd::Constant(1, 3.0), Eigen::VectorXd::Zero(1)}, 30.0, 1e-9);
   expect_reference(backlash_mass(0.5, 1.0, ContactLoss::kGap), backlash_mass(0.5).rest(), 40.0, 1e-7);
   expect_reference(backlash_train(0.9), backlash_train(0.9).rest(), 60.0, 1e-8);
   expect_reference(clearance_pair(0.6), clearance_pair(0.6).rest(), 60.0, 1e-8);
