@@ -196,8 +196,8 @@ ShootingResult unconverged(const ShootingProblem& problem, const Descent& d, con
 }
 
 /// The point with its origin `shift` later on the same trajectory.
-ShootingPoint shifted(const dynamics::HybridSystem& system, ShootingPoint point, double shift) {
-  for (State& node : point.nodes) node = advanced(system, node, shift);
+ShootingPoint shifted(const ShootingProblem& problem, ShootingPoint point, double shift) {
+  for (State& node : point.nodes) node = advanced(problem.system(), problem.runnable(node), shift);
   return point;
 }
 
@@ -240,7 +240,7 @@ ShootingResult shoot(const dynamics::HybridSystem& system, const State& guess, c
   ShootingPoint point = problem.initial_point(start, period);
   if (kind == OrbitKind::kSelfExcited) {  // a phase between events is worth one pass
     const ShootingEvaluation first = problem.evaluate(point);
-    point = shifted(system, std::move(point), wanted_shift(problem, first));
+    point = shifted(problem, std::move(point), wanted_shift(problem, first));
   }
   Descent d = descend(problem, point, options);
   int iterations = d.iterations;
@@ -250,7 +250,7 @@ ShootingResult shoot(const dynamics::HybridSystem& system, const State& guess, c
     // self-excited orbit gets its origin from its events.
     const double shift = wanted_shift(problem, d.best);
     if (!(std::abs(shift) > 1e-9 * d.best.point.period)) break;
-    d = descend(problem, shifted(system, d.best.point, shift), options);
+    d = descend(problem, shifted(problem, d.best.point, shift), options);
     iterations += d.iterations;
     residuals.insert(residuals.end(), d.residuals.begin() + 1, d.residuals.end());
   }

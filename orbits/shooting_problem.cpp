@@ -63,7 +63,7 @@ ShootingEvaluation ShootingProblem::evaluate(const ShootingPoint& point) {
   for (std::size_t k = 0; k < count; ++k) {
     State& node = out.point.nodes[k];
     node.time = out.point.nodes[0].time + length * static_cast<double>(k);
-    dynamics::TangentResult run = flow_.run(node, in_halves_ ? 0.5 * length : length);
+    dynamics::TangentResult run = flow_.run(runnable(node), in_halves_ ? 0.5 * length : length);
     if (scale_.size() == 0) set_scale(node, run.end, point.period);
     out.events.insert(out.events.end(), run.events.begin(), run.events.end());
     if (in_halves_) {
@@ -103,7 +103,8 @@ Eigen::MatrixXd ShootingProblem::ends_of(const ShootingPoint& point) {
   for (Eigen::Index k = 0; k < count; ++k) {
     State node = point.nodes[static_cast<std::size_t>(k)];
     node.time = point.nodes[0].time + length * static_cast<double>(k);
-    ends.col(k) = scaled(stacked(flow_.run(node, length, Eigen::MatrixXd(scale_.size(), 0)).end));
+    put_on_constraint(node);
+    ends.col(k) = scaled(stacked(flow_.run(runnable(node), length, Eigen::MatrixXd(scale_.size(), 0)).end));
   }
   return ends;
 }
@@ -140,7 +141,8 @@ ShootingPoint ShootingProblem::moved(const ShootingEvaluation& at, const Eigen::
     State& node = out.nodes[k];
     node = with_coordinates(node, stacked(at.point.nodes[k]) + scale_.cwiseProduct(step));
     node.time = out.nodes[0].time + length * static_cast<double>(k);
-    put_on_constraint(node, at.ends[(k + count - 1) % count].modes);
+    node.modes = at.ends[(k + count - 1) % count].modes;
+    put_on_constraint(node);
     if (k + 1 == count) break;
     step = at.transfer[k] * step + share * at.mismatch[k];
     if (!columns.empty()) step += columns[k] * extra;
@@ -148,29 +150,29 @@ ShootingPoint ShootingProblem::moved(const ShootingEvaluation& at, const Eigen::
   return out;
 }
 
-void ShootingProblem::put_on_constraint(State& node, const std::vector<ContactMode>& incoming) const {
-  std::vector<Eigen::Index> stuck;
-  for (std::size_t c = 0; c < system_.contacts().size(); ++c)
-    if (incoming[c] == ContactMode::kStick && sticks_rigidly(system_.contacts()[c].law))
-      stuck.push_back(static_cast<Eigen::Index>(c));
-  if (!stuck.empty()) {
-    Eigen::MatrixXd W(system_.size(), static_cast<Eigen::Index>(stuck.size()));
-    for (std::size_t k = 0; k < stuck.size(); ++k)
-      W.col(static_cast<Eigen::Index>(k)) = system_.contacts()[static_cast<std::size_t>(stuck[k])].direction;
-    const Eigen::VectorXd missing = (W.transpose() * node.v).array() - system_.drive().velocity(node.time);
-    node.v -= W * (W.transpose() * W).eval().ldlt().solve(missing);
-  }
+State ShootingProblem::runnable(State node) const {
   if (!keeps_modes_) {
     node.modes.clear();
-    return;
+    return node;
   }
   for (std::size_t c = 0; c < node.modes.size(); ++c) {
-    if (!sticks_rigidly(system_.contacts()[c].law)) continue;
+    if (!sticks_rigidly(system_.contacts()[c].law) || node.modes[c] == ContactMode::kStick) continue;
     const double sliding = system_.drive().velocity(node.time) - system_.contacts()[c].direction.dot(node.v);
-    node.modes[c] = incoming[c] == ContactMode::kStick ? ContactMode::kStick
-                    : sliding > 0                      ? ContactMode::kSlipPositive
-                                                       : ContactMode::kSlipNegative;
+    node.modes[c] = sliding > 0 ? ContactMode::kSlipPositive : ContactMode::kSlipNegative;
   }
+  return node;
+}
+
+void ShootingProblem::put_on_constraint(State& node) const {
+  std::vector<std::size_t> stuck;
+  for (std::size_t c = 0; c < node.modes.size(); ++c)
+    if (node.modes[c] == ContactMode::kStick && sticks_rigidly(system_.contacts()[c].law)) stuck.push_back(c);
+  if (stuck.empty()) return;
+  Eigen::MatrixXd W(system_.size(), static_cast<Eigen::Index>(stuck.size()));
+  for (std::size_t k = 0; k < stuck.size(); ++k)
+    W.col(static_cast<Eigen::Index>(k)) = system_.contacts()[stuck[k]].direction;
+  const Eigen::VectorXd missing = (W.transpose() * node.v).array() - system_.drive().velocity(node.time);
+  node.v -= W * Eigen::MatrixXd(W.transpose() * W).ldlt().solve(missing);
 }
 
 }  // namespace slipmode::orbits

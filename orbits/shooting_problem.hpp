@@ -59,7 +59,7 @@ class ShootingProblem {
   /// d(end of each segment)/d(ln period), scaled: the extra column of a period that is unknown.
   [[nodiscard]] std::vector<Eigen::MatrixXd> period_columns(const ShootingEvaluation& at) const;
 
-  /// The point a scaled step away. Nodes that follow a stuck end are put on the stick's constraint.
+  /// The point a scaled step away. Nodes take over the modes of the ends before them, and their constraints.
   /// @param first   δx₁ [N]
   /// @param extra   values of the extra unknowns [e], of which the first is δ ln T when `period_unknown`
   /// @param share   share of the mismatches between inner nodes that the step is to close, 0 … 1
@@ -67,6 +67,11 @@ class ShootingProblem {
                                     const std::vector<Eigen::MatrixXd>& columns, const Eigen::VectorXd& extra,
                                     double share) const;
 
+  /// Gives contacts that stick (node.modes) the velocity of their counterpart, with the least change of velocities.
+  void put_on_constraint(dynamics::State& node) const;
+
+  /// The node as the flow takes it: modes are derived where they follow from the state.
+  [[nodiscard]] dynamics::State runnable(dynamics::State node) const;
   [[nodiscard]] bool period_unknown() const { return kind_ == OrbitKind::kSelfExcited; }
   [[nodiscard]] OrbitKind kind() const { return kind_; }
   [[nodiscard]] const Eigen::VectorXd& scale() const { return scale_; }
@@ -80,7 +85,6 @@ class ShootingProblem {
  private:
   void set_scale(const dynamics::State& start, const dynamics::State& middle, double period);
   [[nodiscard]] Eigen::MatrixXd in_scale(const Eigen::MatrixXd& transfer) const;
-  void put_on_constraint(dynamics::State& node, const std::vector<dynamics::ContactMode>& incoming) const;
 
   dynamics::HybridSystem system_;
   ShootingOptions options_;
