@@ -2,6 +2,7 @@
 #include "bench/beam_cases.hpp"
 #include "bench/cases.hpp"
 #include "bench/library_cases.hpp"
+#include "bench/orbit_cases.hpp"
 #include "bench/report.hpp"
 
 #include <fmt/format.h>
@@ -36,6 +37,7 @@ std::vector<LibraryCase> library_cases() {
   return {{"sweep-stribeck", [](bool quick) { return measure_sweep(false, quick); }},
           {"sweep-coulomb", [](bool quick) { return measure_sweep(true, quick); }},
           {"reduction", measure_reduction},
+          {"orbit", measure_orbits},
           {"pod", measure_pod, true},
           {"beam", measure_beam, true},
           {"beam-sweep-pomf", [](bool quick) { return measure_beam_sweep(0, quick); }, true},
