@@ -1,0 +1,231 @@
+#include "orbits/orbit_map.hpp"
+
+#include "core/decompositions.hpp"
+#include "core/errors.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <mutex>
+#include <utility>
+
+namespace slipmode::orbits {
+
+namespace {
+
+void check(const dynamics::HybridSystem& system, const MapOptions& options) {
+  if (options.max_order < 1 || options.block < 1 || options.max_periods < options.block || !(options.near > 0.0)) {
+    throw InvalidInput(
+        fmt::format("orbit map: expected max_order >= 1, 1 <= block <= max_periods, near > 0, found {}, "
+                    "{}, {}, {}",
+                    options.max_order, options.block, options.max_periods, options.near));
+  }
+  if (!system.drive().period()) {
+    throw InvalidInput(
+        "orbit map: expected a drive with a period, a shaker or a force; found a belt. Its orbits are "
+        "found by 'orbit skeleton'");
+  }
+  if (options.row.size() != 0 && options.row.size() != system.size()) {
+    throw InvalidInput(fmt::format("orbit map: expected a row of {} numbers for the amplitude, found {}", system.size(),
+                                   options.row.size()));
+  }
+}
+
+/// Simulates block after block and looks for the orbit.
+class Settling {
+ public:
+  Settling(const dynamics::HybridSystem& system, const dynamics::State& start, const MapOptions& options)
+      : system_(system), options_(options), period_(system.drive().period().value()), state_(start) {}
+
+  MapPoint run() {
+    MapPoint point;
+    while (point.periods < options_.max_periods) {
+      const int count = std::min(options_.block, options_.max_periods - point.periods);
+      advance(count);
+      point.periods += count;
+      if (const auto orbit = orbit_near()) {
+        describe(*orbit, point);
+        break;
+      }
+    }
+    return point;
+  }
+
+ private:
+  void advance(int count) {
+    const dynamics::Trajectory run = dynamics::simulate(
+        system_, state_,
+        {.duration = count * period_, .sample = period_, .keep_events = false, .flow = options_.shooting.flow});
+    const Eigen::Index n = system_.size();
+    const Eigen::Index kept = std::min<Eigen::Index>(section_.cols(), options_.max_order);
+    Eigen::MatrixXd section(2 * n, kept + count);
+    section.leftCols(kept) = section_.rightCols(kept);
+    // The first sample is the state the block began with; the last may be lost to rounding, the final state is not.
+    section.topRows(n).middleCols(kept, count - 1) = run.q.middleCols(1, count - 1);
+    section.bottomRows(n).middleCols(kept, count - 1) = run.v.middleCols(1, count - 1);
+    section.col(kept + count - 1) << run.final_state.q, run.final_state.v;
+    section_ = std::move(section);
+    reach_ = Eigen::Vector2d(section_.topRows(n).cwiseAbs().maxCoeff(), section_.bottomRows(n).cwiseAbs().maxCoeff());
+    state_ = run.final_state;
+  }
+
+  /// Distance of two states, displacements and velocities each relative to the reach of the motion.
+  [[nodiscard]] double distance(const Eigen::Ref<const Eigen::VectorXd>& a,
+                                const Eigen::Ref<const Eigen::VectorXd>& b) const {
+    const Eigen::Index n = system_.size();
+    const double q = (a.head(n) - b.head(n)).cwiseAbs().maxCoeff();
+    const double v = (a.segment(n, n) - b.segment(n, n)).cwiseAbs().maxCoeff();
+    return std::max(reach_(0) > 0.0 ? q / reach_(0) : 0.0, reach_(1) > 0.0 ? v / reach_(1) : 0.0);
+  }
+
+  /// The stable orbit the motion is about to settle on.
+  [[nodiscard]] std::optional<PeriodicOrbit> orbit_near() const {
+    const Eigen::Index last = section_.cols() - 1;
+    for (int order = 1; order <= options_.max_order && order <= last; ++order) {
+      const double gap = distance(section_.col(last), section_.col(last - order));
+      if (gap > options_.near) continue;
+      ShootingResult found = shoot(order);
+      if (found.converged()) found = least_order(std::move(found));
+      if (!found.converged() || !is_reached(found.orbit, gap)) return std::nullopt;
+      return std::move(found.orbit);
+    }
+    return std::nullopt;
+  }
+
+  [[nodiscard]] ShootingResult shoot(int order) const {
+    ShootingOptions shooting = options_.shooting;
+    shooting.order = order;
+    return orbits::shoot(system_, state_, shooting);
+  }
+
+  /// A motion that alternates on its way to an orbit repeats after two periods first.
+  [[nodiscard]] ShootingResult least_order(ShootingResult found) const {
+    const Eigen::VectorXd start = stacked(found.orbit.start);
+    dynamics::State state = found.orbit.start;
+    for (int order = 1; 2 * order <= found.orbit.order; ++order) {
+      state = advanced(system_, state, period_);
+      if (found.orbit.order % order == 0 && distance(stacked(state), start) < kSame) return shoot(order);
+    }
+    return found;
+  }
+
+  /// True when the motion must end on the orbit: it is stable, and as near as a motion that moves by `gap` in a period
+  /// can be.
+  [[nodiscard]] bool is_reached(const PeriodicOrbit& orbit, double gap) const {
+    if (orbit.stability == Stability::kUnstable || !(orbit.leading_modulus < 1.0)) return false;
+    const double elapsed = orbit.start.time - state_.time;
+    const dynamics::State here = elapsed > 0.0 ? advanced(system_, state_, elapsed) : state_;
+    constexpr double kReserve = 10.0;
+    return distance(stacked(orbit.start), stacked(here)) <= kReserve * gap / (1.0 - orbit.leading_modulus) + kSame;
+  }
+
+  void describe(const PeriodicOrbit& orbit, MapPoint& out_point) const {
+    out_point.order = orbit.order;
+    out_point.crossings = orbit.crossings;
+    out_point.multiplier = orbit.multipliers.size() > 0 ? std::abs(orbit.multipliers(0)) : 0.0;
+    out_point.symmetric = orbit.symmetric;
+    out_point.floating = orbit.family.cols() > 0;
+    out_point.residual = orbit.residual;
+    if (options_.row.size() > 0) out_point.alternating = amplitude(system_, orbit, options_.row).alternating;
+  }
+
+  static constexpr double kSame = 1e-7;
+
+  const dynamics::HybridSystem& system_;
+  const MapOptions& options_;
+  double period_;
+  dynamics::State state_;
+  Eigen::MatrixXd section_;                          ///< (q; q̇) once per period, the last ones
+  Eigen::Vector2d reach_ = Eigen::Vector2d::Zero();  ///< largest |q| and |q̇| among them
+};
+
+/// The sum of harmonics at time 0: real part and time derivative of Σ_m Im(X_m e^{imωt}).
+void add_harmonic(const dynamics::HybridSystem& system, const friction::ForceHarmonic& harmonic, double base,
+                  dynamics::State& out_state) {
+  const double omega = harmonic.order * base;
+  const std::complex<double> i(0.0, 1.0);
+  const Eigen::MatrixXcd stiffness = fem::to_dense(system.structure().K()).cast<std::complex<double>>() +
+                                     i * omega * fem::to_dense(system.structure().C()) -
+                                     omega * omega * fem::to_dense(system.structure().M());
+  const Eigen::VectorXcd force =
+      system.force_directions().col(harmonic.direction) * (harmonic.amplitude * std::exp(i * harmonic.phase));
+  const Eigen::FullPivLU<Eigen::MatrixXcd> factor(stiffness);
+  if (!factor.isInvertible()) {
+    throw InvalidInput(
+        fmt::format("linear response: expected a frequency at which the structure does not resonate, "
+                    "found {} rad/s. Give it damping, or another start",
+                    omega));
+  }
+  const Eigen::VectorXcd response = factor.solve(force);
+  out_state.q += response.imag();
+  out_state.v += (i * omega * response).imag();
+}
+
+}  // namespace
+
+MapPoint settled_orbit(const dynamics::HybridSystem& system, const dynamics::State& start, const MapOptions& options) {
+  check(system, options);
+  return Settling(system, start, options).run();
+}
+
+dynamics::State linear_response(const dynamics::HybridSystem& system) {
+  const friction::Force* force = system.drive().force();
+  if (force == nullptr) {
+    throw InvalidInput("linear response: expected a force drive, found a belt or a shaker. Give the start itself");
+  }
+  dynamics::State state = system.rest();
+  state.modes = {};
+  if (system.load().size() > 0) {
+    state.q = Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(fem::to_dense(system.structure().K()))
+                  .solve(system.load());
+  }
+  for (const friction::ForceHarmonic& harmonic : force->harmonics) add_harmonic(system, harmonic, force->omega, state);
+  return state;
+}
+
+OrbitMap orbit_map(const std::function<dynamics::HybridSystem(double x, double y)>& system,
+                   const std::function<dynamics::State(const dynamics::HybridSystem&)>& start, const MapGrid& grid,
+                   const MapOptions& options, const ParallelOptions& parallel, const MapSink& sink) {
+  if (grid.x.empty() || grid.y.empty()) {
+    throw InvalidInput(fmt::format("orbit map: expected a grid of at least one value each way, found {} x {}",
+                                   grid.x.size(), grid.y.size()));
+  }
+  check(system(grid.x.front(), grid.y.front()), options);
+  OrbitMap map;
+  map.rows.resize(grid.y.size());
+  std::mutex sink_mutex;
+  const BatchResult batch = parallel_for(grid.y.size(), parallel, [&](std::size_t j) {
+    if (sink.recall) {
+      if (auto earlier = sink.recall(j)) {
+        map.rows[j] = std::move(*earlier);
+        return;
+      }
+    }
+    std::vector<MapPoint> row;
+    row.reserve(grid.x.size());
+    for (const double x : grid.x) {
+      MapPoint point;
+      try {
+        const dynamics::HybridSystem here = system(x, grid.y[j]);
+        point = settled_orbit(here, start(here), options);
+      } catch (const NumericalFailure& failure) {
+        point.failure = failure.what();
+      }
+      row.push_back(std::move(point));
+    }
+    if (sink.store) {
+      const std::lock_guard lock(sink_mutex);
+      sink.store(j, row);
+    }
+    map.rows[j] = std::move(row);
+  });
+  for (const std::exception_ptr& error : batch.errors) {
+    if (error) std::rethrow_exception(error);
+  }
+  map.interrupted = batch.interrupted;
+  return map;
+}
+
+}  // namespace slipmode::orbits

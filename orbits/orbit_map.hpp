@@ -1,0 +1,81 @@
+#pragma once
+
+#include "core/parallel.hpp"
+#include "orbits/shooting.hpp"
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace slipmode::orbits {
+
+/// The stable periodic orbit a driven motion settles to, in the numbers a map shows.
+struct MapPoint {
+  int order = 0;      ///< periods of the drive; 0: no periodic motion up to max_order within max_periods
+  int crossings = 0;  ///< PeriodicOrbit::crossings, over the whole period
+  /// Largest |multiplier|, those of a floating family included; NaN without an orbit.
+  double multiplier = std::numeric_limits<double>::quiet_NaN();
+  bool symmetric = false;  ///< x(T/2) = −x(0)
+  bool floating = false;   ///< one of a family of orbits, as those in the gap are
+  double alternating = std::numeric_limits<double>::quiet_NaN();  ///< (max − min)/2 of the row's displacement
+  double residual = std::numeric_limits<double>::quiet_NaN();     ///< of shooting
+  int periods = 0;                                                ///< of the drive simulated before shooting took over
+  std::string failure = {};                                       ///< empty, or why the flow failed there
+
+  [[nodiscard]] bool is_periodic() const { return order > 0; }
+};
+
+struct MapOptions {
+  int max_order = 8;      ///< subharmonics looked for, ≥ 1
+  int block = 16;         ///< periods of the drive between looks at the section, > 0
+  int max_periods = 1000;  ///< simulated at most, ≥ block
+  /// Shooting takes over when section points `order` periods apart differ by less than this, relative to the motion.
+  double near = 1e-3;
+  Eigen::VectorXd row = {};  ///< r of the displacement rᵀq whose amplitude is mapped [n]; empty: no amplitude
+  ShootingOptions shooting = {};
+};
+
+/// The orbit a motion settles to: periods of the drive are simulated until the section nearly repeats, then shooting
+/// finds the orbit. It counts when it is stable (or one of a floating family) and as near as its multipliers say the
+/// motion must be; otherwise the simulation goes on. An orbit of a divisor of the order is recognised.
+/// @throws InvalidInput  for options out of range, a drive without period, and as simulate
+[[nodiscard]] MapPoint settled_orbit(const dynamics::HybridSystem& system, const dynamics::State& start,
+                                     const MapOptions& options);
+
+/// Steady motion of the structure under its force drive with no contact force, at time 0: S0's start in the centre of
+/// the gap. Where the structure floats its place is that of minimum norm.
+/// @throws InvalidInput  for a drive that is no force, or a frequency at which the structure resonates undamped
+[[nodiscard]] dynamics::State linear_response(const dynamics::HybridSystem& system);
+
+/// A grid of two parameters. Row j belongs to y[j], point i of it to x[i].
+struct MapGrid {
+  std::vector<double> x, y;
+};
+
+/// Where finished rows go at once and where earlier ones come from. Calls of `store` come one at a time.
+struct MapSink {
+  std::function<std::optional<std::vector<MapPoint>>(std::size_t row)> recall = {};
+  std::function<void(std::size_t row, const std::vector<MapPoint>&)> store = {};
+};
+
+struct OrbitMap {
+  std::vector<std::vector<MapPoint>> rows;  ///< by y; those not finished when interrupted are empty
+  bool interrupted = false;
+};
+
+/// Settled orbits over a grid. Rows are computed side by side and each point from its own start: the bytes are the same
+/// for any number of threads. A NumericalFailure is recorded in its point.
+/// @param system  the system at (x, y); called from several threads
+/// @param start   where the motion of that system begins
+/// @throws InvalidInput  for an empty grid, options out of range, and what the factory finds wrong
+/// Source: S0 section 4.1.2, Figures 4.8 to 4.12, 4.18, 4.19.
+[[nodiscard]] OrbitMap orbit_map(const std::function<dynamics::HybridSystem(double x, double y)>& system,
+                                 const std::function<dynamics::State(const dynamics::HybridSystem&)>& start,
+                                 const MapGrid& grid, const MapOptions& options, const ParallelOptions& parallel = {},
+                                 const MapSink& sink = {});
+
+}  // namespace slipmode::orbits
