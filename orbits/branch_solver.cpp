@@ -11,8 +11,9 @@ namespace slipmode::orbits {
 namespace {
 
 constexpr int kMaxCorrections = 12;
-/// Relative step of the central difference in the parameter: the cube root of rounding.
-constexpr double kDifferenceStep = 6e-6;
+/// Step of the central difference in the parameter, of its range: a column good to about 1e-7, and near enough not to
+/// reach across the next change of word too often.
+constexpr double kDifferenceStep = 1e-6;
 
 /// time / period without whole periods.
 double share_of(double time, double period) { return time / period - std::floor(time / period); }

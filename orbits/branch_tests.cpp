@@ -90,15 +90,6 @@ Eigen::VectorXd critical_direction(const WatchedPoint& point, SpecialKind kind, 
   return nearest->direction.real();
 }
 
-/// What a change of word is: sticks that come or go, touches, or reversals.
-SpecialKind kind_of_word_change(const std::string& before, const std::string& after) {
-  const auto count = [](const std::string& word, char letter) { return std::count(word.begin(), word.end(), letter); };
-  if (count(before, '0') != count(after, '0')) return SpecialKind::kStickChange;
-  for (const char letter : {'l', 'r', 'g', 'x'})
-    if (count(before, letter) != count(after, letter)) return SpecialKind::kGrazing;
-  return SpecialKind::kWordChange;
-}
-
 SpecialPoint special_of(const Located& found, SpecialKind kind, double tolerance) {
   SpecialPoint out;
   const WatchedPoint& nearest = found.low;
@@ -145,6 +136,14 @@ void add_smooth(const BranchSolver& solver, const WatchedPoint& a, const Watched
 }
 
 }  // namespace
+
+SpecialKind kind_of_word_change(const std::string& before, const std::string& after) {
+  const auto count = [](const std::string& word, char letter) { return std::count(word.begin(), word.end(), letter); };
+  if (count(before, '0') != count(after, '0')) return SpecialKind::kStickChange;
+  for (const char letter : {'l', 'r', 'g', 'x'})
+    if (count(before, letter) != count(after, letter)) return SpecialKind::kGrazing;
+  return SpecialKind::kWordChange;
+}
 
 WatchedPoint watch(const BranchSolver& solver, BranchEvaluation at, const Eigen::VectorXd& along) {
   WatchedPoint out;

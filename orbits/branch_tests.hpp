@@ -28,6 +28,9 @@ struct WatchedPoint {
 /// The point a length s along the tangent of `from`, corrected across it.
 [[nodiscard]] std::optional<WatchedPoint> watched_at(const BranchSolver& solver, const WatchedPoint& from, double s);
 
+/// What a change of word is: sticks that come or go, touches, or reversals.
+[[nodiscard]] SpecialKind kind_of_word_change(const std::string& before, const std::string& after);
+
 /// Special points between two neighbours, in order along the branch. `b` lies at the length `s` along a's tangent.
 /// @param tolerance  of the parameter, absolute
 [[nodiscard]] std::vector<SpecialPoint> special_points_between(const BranchSolver& solver, const WatchedPoint& a,

@@ -74,8 +74,7 @@ class Walk {
       if (next && outside(next->at.at.parameter)) return finish_at_range(*next);
       if (next) {
         const double taken = step_;
-        if (iterations <= 3) step_ = std::min(1.5 * step_, options_.max_step);
-        if (iterations >= 6) step_ = std::max(0.5 * step_, options_.min_step);
+        step_ = std::min((iterations <= 4 ? 1.6 : 1.1) * step_, options_.max_step);
         return accept(std::move(*next), taken);
       }
       step_ *= 0.4;
@@ -149,15 +148,17 @@ class Walk {
     end(BranchEnd::kRange, fmt::format("the parameter left its range at {:.8g}", bound));
   }
 
-  /// No step leads on along the tangent: where the word changes, the branch may turn back on a kink.
+  /// No step leads on along the tangent: where the word changes, the branch may have a kink, or turn back.
   void turn_or_stop() {
-    for (const double s : {1e-6, 1e-5, 1e-4, 1e-3}) {
+    for (const double s : {1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3}) {
       if (!options_.arclength) break;
       for (const double sign : {1.0, -1.0}) {
         auto next = around_corner(s, sign);
         if (!next) continue;
         SpecialPoint corner;
-        corner.kind = SpecialKind::kNonSmoothFold;
+        const double onward = (next->at.at.parameter - current_.at.at.parameter) * current_.fold;
+        corner.kind =
+            onward < 0 ? SpecialKind::kNonSmoothFold : kind_of_word_change(current_.orbit.word, next->orbit.word);
         corner.parameter = current_.at.at.parameter;
         corner.uncertainty = std::abs(next->at.at.parameter - corner.parameter);
         corner.orbit = current_.orbit;
