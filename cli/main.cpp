@@ -4,7 +4,9 @@
 #include "scene/provenance.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <new>
 #include <string_view>
 
@@ -83,10 +85,26 @@ int run_verb(const Session& session, const Verb& verb) {
   }
 }
 
-std::string names_of(const std::vector<Verb>& verbs) {
+/// Names of the verbs right under `parent`.
+std::string names_of(const CLI::App& parent) {
   std::string names;
-  for (const Verb& verb : verbs) names += (names.empty() ? "" : ", ") + verb.command->get_name();
+  for (const CLI::App* verb : parent.get_subcommands({})) names += (names.empty() ? "" : ", ") + verb->get_name();
   return names;
+}
+
+/// What is wrong when words of the command line name no verb; empty when they do.
+std::string unknown_verb(const CLI::App& app, int argc, char** argv) {
+  const CLI::App* parent = &app;
+  std::string said;
+  for (int i = 1; i < argc && argv[i][0] != '-' && !parent->get_subcommands({}).empty(); ++i) {
+    const auto verbs = parent->get_subcommands({});
+    const auto found =
+        std::ranges::find(verbs, std::string(argv[i]), [](const CLI::App* verb) { return verb->get_name(); });
+    said += (said.empty() ? "" : " ") + std::string(argv[i]);
+    if (found == verbs.end()) return fmt::format("{}: no such verb; valid: {}", said, names_of(*parent));
+    parent = *found;
+  }
+  return "";
 }
 
 int run_main(int argc, char** argv) {
@@ -103,8 +121,9 @@ int run_main(int argc, char** argv) {
       "Exit codes: 0 done, 2 bad input, 3 numerical failure, 130 interrupted (the same command goes on).\n"
       "Example:\n  slipmode run datasets/chain10/scene.toml -o out/chain10\n"
       "Help on a verb: slipmode VERB --help");
-  const std::vector<Verb> verbs = {add_run(app),   add_modes(app),    add_simulate(app), add_pod(app), add_reduce(app),
-                                   add_sweep(app), add_validate(app), add_plot(app),     add_info(app)};
+  std::vector<Verb> verbs = {add_run(app),   add_modes(app),    add_simulate(app), add_pod(app), add_reduce(app),
+                             add_sweep(app), add_validate(app), add_plot(app),     add_info(app)};
+  std::ranges::move(add_orbit(app), std::back_inserter(verbs));
   for (const Verb& verb : verbs) add_common_options(*verb.command, session);
 
   try {
@@ -112,9 +131,8 @@ int run_main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
     for (int i = 1; i < argc; ++i) session.json = session.json || std::string_view(argv[i]) == "--json";
-    if (argc > 1 && argv[1][0] != '-' && app.get_subcommands().empty()) {
-      return fail(session, kBadInput, fmt::format("{}: no such verb; valid: {}", argv[1], names_of(verbs)));
-    }
+    const std::string unknown = unknown_verb(app, argc, argv);
+    if (!unknown.empty()) return fail(session, kBadInput, unknown);
     return fail(session, kBadInput, fmt::format("{}\nRun 'slipmode --help' or 'slipmode VERB --help'.", error.what()));
   }
   for (const Verb& verb : verbs) {

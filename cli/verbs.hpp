@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <vector>
 
 namespace slipmode::cli {
 
@@ -23,5 +24,12 @@ struct Verb {
 [[nodiscard]] Verb add_sweep(CLI::App& app);
 [[nodiscard]] Verb add_plot(CLI::App& app);
 [[nodiscard]] Verb add_info(CLI::App& app);
+
+/// `slipmode orbit` and its own verbs, each by its full name.
+[[nodiscard]] std::vector<Verb> add_orbit(CLI::App& app);
+[[nodiscard]] Verb add_orbit_find(CLI::App& orbit);
+[[nodiscard]] Verb add_orbit_continue(CLI::App& orbit);
+[[nodiscard]] Verb add_orbit_map(CLI::App& orbit);
+[[nodiscard]] Verb add_orbit_skeleton(CLI::App& orbit);
 
 }  // namespace slipmode::cli

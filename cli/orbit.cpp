@@ -1,0 +1,12 @@
+#include "cli/verbs.hpp"
+
+namespace slipmode::cli {
+
+std::vector<Verb> add_orbit(CLI::App& app) {
+  CLI::App* orbit = app.add_subcommand("orbit", "periodic orbits: find and follow them");
+  orbit->require_subcommand(1);
+  orbit->footer("Example:\n  slipmode orbit find datasets/backlash_sdof/scene.toml\nHelp: slipmode orbit VERB --help");
+  return {add_orbit_find(*orbit)};
+}
+
+}  // namespace slipmode::cli

@@ -1,0 +1,88 @@
+#include "cli/orbit_report.hpp"
+#include "cli/orbit_search.hpp"
+#include "cli/verbs.hpp"
+#include "scene/orbit_records.hpp"
+#include "scene/provenance.hpp"
+#include "scene/records.hpp"
+
+#include <fmt/format.h>
+
+namespace slipmode::cli {
+namespace {
+
+struct Arguments {
+  OrbitSearch search;
+  std::string output;
+};
+
+/// How far a search came that found nothing; what to try is in its message.
+Report not_found(const orbits::ShootingResult& result) {
+  const orbits::PeriodicOrbit& best = result.orbit;
+  Report report;
+  report.exit_code = kNumericalFailure;
+  report.text = fmt::format("no orbit from this guess ({}): {}", orbits::to_string(result.status), result.message);
+  report.data = {{"verb", "orbit find"},
+                 {"message", report.text},
+                 {"reason", orbits::to_string(result.status)},
+                 {"period", best.period},
+                 {"residual", best.residual},
+                 {"iterations", best.iterations},
+                 {"residuals", best.residuals},
+                 {"best",
+                  {{"displacement", std::vector<double>(best.start.q.begin(), best.start.q.end())},
+                   {"velocity", std::vector<double>(best.start.v.begin(), best.start.v.end())}}}};
+  return report;
+}
+
+/// The orbit and one period of it, sampled.
+void store(const std::string& path, const scene::Scene& scene, const dynamics::HybridSystem& system,
+           const orbits::PeriodicOrbit& orbit) {
+  constexpr double kSamples = 1000.0;
+  const dynamics::Trajectory period = dynamics::simulate(
+      system, orbit.start, {.duration = orbit.period, .sample = orbit.period / kSamples, .flow = {.tolerance = 1e-12}});
+  scene::StoreWriter writer(path);
+  scene::Provenance provenance = scene::provenance_of(scene, "slipmode orbit find");
+  provenance.audit = period.audit;
+  scene::save(writer, provenance);
+  scene::save(writer, scene::kOrbitGroup, orbit);
+  scene::save(writer, scene::kTrajectoryGroup, period);
+  writer.commit();
+}
+
+Report run(const Session& session, const Arguments& arguments) {
+  if (!arguments.output.empty()) require_writable(arguments.output);
+  const scene::Scene scene = session.load(arguments.search.scene);
+  const dynamics::HybridSystem system = scene::build_system(scene);
+  const SearchStart start = search_start(arguments.search, scene, system);
+  session.check_interrupt();
+  const orbits::ShootingResult result = orbits::shoot(system, start.guess, start.options);
+  if (!result.converged()) return not_found(result);
+
+  const std::vector<orbits::Amplitude> amplitudes = contact_amplitudes(system, result.orbit);
+  Report report;
+  report.data = {{"verb", "orbit find"}, {"title", scene.title}};
+  report.data.update(orbit_json(system, result.orbit, amplitudes));
+  report.text = fmt::format("{}: {}", scene.title, orbit_text(system, result.orbit, amplitudes));
+  if (!arguments.output.empty()) {
+    store(arguments.output, scene, system, result.orbit);
+    report.data["file"] = arguments.output;
+    report.text += fmt::format("Orbit: {}\n", arguments.output);
+  }
+  return report;
+}
+
+}  // namespace
+
+Verb add_orbit_find(CLI::App& orbit) {
+  CLI::App* command = orbit.add_subcommand("find", "a periodic orbit, its multipliers and what it does");
+  const auto arguments = std::make_shared<Arguments>();
+  add_search_options(*command, arguments->search);
+  command->add_option("-o,--output", arguments->output, "also store the orbit and one period of it (HDF5)");
+  command->footer(
+      "Example:\n  slipmode orbit find datasets/backlash_sdof/scene.toml --json\n"
+      "  slipmode orbit find datasets/backlash_sdof/scene.toml --start 1.2,0.1 -o orbit.h5\n"
+      "  slipmode orbit find datasets/chain10/scene.toml --set drive.speed=0.45");
+  return {command, [arguments](const Session& session) { return run(session, *arguments); }};
+}
+
+}  // namespace slipmode::cli

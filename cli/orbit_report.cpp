@@ -1,0 +1,149 @@
+#include "cli/orbit_report.hpp"
+
+#include "cli/text_table.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <cmath>
+
+namespace slipmode::cli {
+namespace {
+
+using orbits::PeriodicOrbit;
+
+/// Imaginary parts below this, relative, are a pair's rounding.
+constexpr double kReal = 1e-12;
+
+std::string contact_name(const dynamics::HybridSystem& system, std::size_t c) {
+  const std::string& name = system.contacts()[c].name;
+  return name.empty() ? fmt::format("contact {}", c + 1) : name;
+}
+
+std::vector<double> list(const Eigen::VectorXd& values) { return {values.begin(), values.end()}; }
+
+std::string period_text(const PeriodicOrbit& orbit) {
+  std::string text = fmt::format("{} orbit, period {:.12g}", orbits::to_string(orbit.kind), orbit.period);
+  if (orbit.kind == orbits::OrbitKind::kDriven) {
+    text += orbit.order == 1 ? " (the drive's)" : fmt::format(" ({} of the drive's)", orbit.order);
+  }
+  if (orbit.repeats > 1) text += fmt::format(", a shorter orbit {} times", orbit.repeats);
+  return text;
+}
+
+std::string stability_text(const PeriodicOrbit& orbit) {
+  std::string text =
+      fmt::format("{}, leading |multiplier| {:.8g}", orbits::to_string(orbit.stability), orbit.leading_modulus);
+  if (orbit.trivial_multipliers > 0) text += fmt::format(" besides {} trivial", orbit.trivial_multipliers);
+  if (orbit.superstable) {
+    text += ", superstable";
+  } else if (orbit.zero_multipliers > 0) {
+    text += fmt::format(", {} zero", orbit.zero_multipliers);
+  }
+  return text;
+}
+
+std::string word_text(const PeriodicOrbit& orbit) {
+  constexpr std::size_t kLongest = 80;
+  std::string word = orbit.word;
+  if (word.size() > kLongest) word = word.substr(0, kLongest - 3) + "...";
+  return fmt::format("{} ({} crossings{}{})", word, orbit.crossings, orbit.symmetric ? ", symmetric" : "",
+                     orbit.has_grazing ? ", grazing" : "");
+}
+
+std::string amplitude_table(const dynamics::HybridSystem& system, const std::vector<orbits::Amplitude>& amplitudes) {
+  TextTable table({"contact", "least", "greatest", "mean", "alternating", "effective"});
+  for (std::size_t c = 0; c < amplitudes.size(); ++c) {
+    const orbits::Amplitude& own = amplitudes[c];
+    std::vector<std::string> row = {contact_name(system, c)};
+    for (const double value : {own.min, own.max, own.mean, own.alternating, own.effective}) {
+      row.push_back(fmt::format("{:.10g}", value));
+    }
+    table.add(std::move(row));
+  }
+  return table.str();
+}
+
+}  // namespace
+
+std::vector<orbits::Amplitude> contact_amplitudes(const dynamics::HybridSystem& system, const PeriodicOrbit& orbit) {
+  std::vector<orbits::Amplitude> amplitudes;
+  for (const friction::Contact& contact : system.contacts()) {
+    amplitudes.push_back(orbits::amplitude(system, orbit, contact.direction));
+  }
+  return amplitudes;
+}
+
+std::string multipliers_text(const Eigen::VectorXcd& multipliers) {
+  constexpr std::size_t kShown = 6;
+  std::vector<std::string> texts;
+  for (Eigen::Index k = 0; k < multipliers.size() && texts.size() < kShown; ++k) {
+    const double re = multipliers[k].real(), im = multipliers[k].imag();
+    if (std::abs(im) <= kReal * std::abs(re)) {
+      texts.push_back(fmt::format("{:.8g}", re));
+    } else if (im > 0.0) {  // its conjugate follows
+      texts.push_back(fmt::format("{:.8g} ± {:.8g}i", re, im));
+    }
+  }
+  const bool more = multipliers.size() > static_cast<Eigen::Index>(kShown);
+  return fmt::format("{}{}", fmt::join(texts, ", "), more ? ", ..." : "");
+}
+
+Json complex_json(const Eigen::VectorXcd& values) {
+  Json pairs = Json::array();
+  for (const std::complex<double>& value : values) pairs.push_back({value.real(), value.imag()});
+  return pairs;
+}
+
+Json orbit_json(const dynamics::HybridSystem& system, const PeriodicOrbit& orbit,
+                const std::vector<orbits::Amplitude>& amplitudes) {
+  Json data = {{"kind", orbits::to_string(orbit.kind)},
+               {"period", orbit.period},
+               {"order", orbit.order},
+               {"repeats", orbit.repeats},
+               {"multipliers", complex_json(orbit.multipliers)},
+               {"trivial_multipliers", orbit.trivial_multipliers},
+               {"leading_modulus", orbit.leading_modulus},
+               {"stability", orbits::to_string(orbit.stability)},
+               {"zero_multipliers", orbit.zero_multipliers},
+               {"superstable", orbit.superstable},
+               {"half_multipliers", complex_json(orbit.half_multipliers)},
+               {"word", orbit.word},
+               {"crossings", orbit.crossings},
+               {"symmetric", orbit.symmetric},
+               {"asymmetry", orbit.asymmetry},
+               {"grazing", orbit.grazing},
+               {"has_grazing", orbit.has_grazing},
+               {"family_dimension", orbit.family.cols()},
+               {"family_note", orbit.family_note},
+               {"residual", orbit.residual},
+               {"iterations", orbit.iterations},
+               {"residuals", orbit.residuals}};
+  data["start"] = {{"time", orbit.start.time},
+                   {"displacement", list(orbit.start.q)},
+                   {"velocity", list(orbit.start.v)},
+                   {"internal", list(orbit.start.internal)}};
+  Json sizes = Json::array();
+  for (std::size_t c = 0; c < amplitudes.size(); ++c) {
+    const orbits::Amplitude& own = amplitudes[c];
+    sizes.push_back({{"contact", contact_name(system, c)},
+                     {"min", own.min},
+                     {"max", own.max},
+                     {"mean", own.mean},
+                     {"alternating", own.alternating},
+                     {"effective", own.effective}});
+  }
+  data["amplitudes"] = sizes;
+  return data;
+}
+
+std::string orbit_text(const dynamics::HybridSystem& system, const PeriodicOrbit& orbit,
+                       const std::vector<orbits::Amplitude>& amplitudes) {
+  std::string text = fmt::format(
+      "{}\n  stability    {}\n  multipliers  {}\n  regimes      {}\n  mismatch     {:.2g} after {} Newton steps\n",
+      period_text(orbit), stability_text(orbit), multipliers_text(orbit.multipliers), word_text(orbit), orbit.residual,
+      orbit.iterations);
+  if (!orbit.family_note.empty()) text += fmt::format("  family       {}\n", orbit.family_note);
+  return text + amplitude_table(system, amplitudes);
+}
+
+}  // namespace slipmode::cli

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "cli/session.hpp"
+#include "orbits/periodic_orbit.hpp"
+
+#include <string>
+#include <vector>
+
+namespace slipmode::cli {
+
+/// Sizes of the contacts' displacements along an orbit, one per contact; offsets are not added.
+[[nodiscard]] std::vector<orbits::Amplitude> contact_amplitudes(const dynamics::HybridSystem& system,
+                                                                const orbits::PeriodicOrbit& orbit);
+
+/// "1.42099, 0.148245", "-0.224835 ± 0.226077i": the first few multipliers.
+[[nodiscard]] std::string multipliers_text(const Eigen::VectorXcd& multipliers);
+
+/// Complex numbers as [[real, imaginary], …].
+[[nodiscard]] Json complex_json(const Eigen::VectorXcd& values);
+
+/// Everything about an orbit but its matrix and events; `amplitudes` as contact_amplitudes gives them.
+[[nodiscard]] Json orbit_json(const dynamics::HybridSystem& system, const orbits::PeriodicOrbit& orbit,
+                              const std::vector<orbits::Amplitude>& amplitudes);
+
+/// The same for people.
+[[nodiscard]] std::string orbit_text(const dynamics::HybridSystem& system, const orbits::PeriodicOrbit& orbit,
+                                     const std::vector<orbits::Amplitude>& amplitudes);
+
+}  // namespace slipmode::cli
