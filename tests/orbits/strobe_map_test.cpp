@@ -1,0 +1,176 @@
+#include "orbits/strobe_map.hpp"
+
+#include "core/errors.hpp"
+#include "fixtures/clearance_scenes.hpp"
+#include "fixtures/scenes.hpp"
+#include "orbits/orbit_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+namespace slipmode::orbits {
+namespace {
+
+const auto kFromRest = [](const dynamics::HybridSystem& system) { return system.rest(); };
+
+StrobeOptions watching(Eigen::Index n) {
+  StrobeOptions options;
+  options.rows = Eigen::MatrixXd::Identity(n, n);
+  return options;
+}
+
+/// One damped oscillator under two harmonics, no contact.
+dynamics::HybridSystem two_harmonics(double first, double third) {
+  return {fem::chain({.masses = 1, .damping = 0.3}),
+          {},
+          friction::Force{.omega = 0.6, .harmonics = {{.amplitude = first}, {.amplitude = third, .order = 3}}},
+          {},
+          Eigen::MatrixXd::Ones(1, 1)};
+}
+
+/// Complex amplitude of its displacement at ω: 1/(1 − ω² + 0.3 iω).
+std::complex<double> transfer(double omega) { return 1.0 / std::complex<double>(1.0 - omega * omega, 0.3 * omega); }
+
+// A sine of amplitude a: (max − min)/2 = a = √2 · effective.
+TEST(Strobe, OfASineHasTheAmplitudeOfItsSine) {
+  const auto system = two_harmonics(1.0, 0.0);
+  const StrobePoint point = strobe(system, linear_response(system), watching(1));
+  const double amplitude = std::abs(transfer(0.6));
+  EXPECT_EQ(point.order, 1);
+  EXPECT_NEAR(point.alternating(0), amplitude, 1e-6 * amplitude);
+  EXPECT_NEAR(point.effective(0), amplitude / std::numbers::sqrt2, 1e-6 * amplitude);
+  EXPECT_LT(point.sine_gap(0), 1e-6);
+}
+
+// Two harmonics of amplitudes a, b have the mean square (a² + b²)/2; their extremes are taken from the closed form on a
+// fine grid. Such motion is periodic, and S1's test calls it otherwise.
+TEST(Strobe, OfTwoHarmonicsIsPeriodicButFailsTheTestOfS1) {
+  const auto system = two_harmonics(1.0, 2.0);
+  const StrobePoint point = strobe(system, linear_response(system), watching(1));
+  const std::complex<double> first = transfer(0.6), third = 2.0 * transfer(1.8);
+  double high = 0.0;
+  for (int k = 0; k < 200000; ++k) {
+    const double phase = 2.0 * std::numbers::pi * k / 200000.0;
+    high = std::max(high, std::imag(first * std::polar(1.0, phase) + third * std::polar(1.0, 3.0 * phase)));
+  }
+  EXPECT_EQ(point.order, 1);
+  EXPECT_NEAR(point.alternating(0), high, 2e-5);
+  EXPECT_NEAR(point.effective(0), std::sqrt(0.5 * (std::norm(first) + std::norm(third))), 2e-5);
+  EXPECT_GT(point.sine_gap(0), 0.1);
+}
+
+// The cubic through values and slopes at both ends of a step h misses y by h⁴/384 max |y⁗| at most.
+TEST(Strobe, ExtremesAreWithinTheErrorOfCubics) {
+  const auto system = two_harmonics(1.0, 2.0);
+  const double omega = 0.6;
+  const std::complex<double> first = transfer(omega), third = 2.0 * transfer(3.0 * omega);
+  const auto alternating = [&](int samples) {
+    StrobeOptions options = watching(1);
+    options.samples = samples;
+    return strobe(system, linear_response(system), options).alternating(0);
+  };
+  const double exact = alternating(4096);
+  for (const int samples : {12, 24, 48}) {
+    const double step = 2.0 * std::numbers::pi / omega / samples;
+    const double fourth = std::pow(omega, 4) * std::abs(first) + std::pow(3.0 * omega, 4) * std::abs(third);
+    EXPECT_LE(std::abs(alternating(samples) - exact), std::pow(step, 4) / 384.0 * fourth);
+  }
+}
+
+// S1: no period 1 for 0.77 < η < 0.94; checked by sections: lost between 0.765 and 0.766, regained between 0.944 and
+// 0.945, period 3 from rest near 1.12.
+TEST(StrobeMap, FindsTheBandOfTheThreeMasses) {
+  const std::vector<double> values{0.70, 0.76, 0.77, 0.82, 0.88, 0.94, 0.95, 1.0, 1.12};
+  const StrobeMap map = strobe_map(fixtures::clearance_pair, kFromRest, values, watching(2));
+  const std::vector<int> first_period{1, 1, 0, 0, 0, 0, 1, 1, 0};
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    ASSERT_TRUE(map.points[k]);
+    EXPECT_EQ(map.points[k]->order == 1 ? 1 : 0, first_period[k]) << "eta = " << values[k];
+  }
+  EXPECT_EQ(map.points[8]->order, 3);
+}
+
+// reference: at η = 0.60 to 0.75 the motion has period 1 and alternating and effective amplitudes differ by several per
+// cent: S1's test would call it non-periodic.
+TEST(StrobeMap, ShowsWhereTheTestOfS1Fails) {
+  const StrobeMap map = strobe_map(fixtures::clearance_pair, kFromRest, {0.60, 0.65, 0.70, 0.75}, watching(2));
+  for (const auto& point : map.points) {
+    EXPECT_EQ(point->order, 1);
+    EXPECT_GT(std::max(point->sine_gap(0), point->sine_gap(1)), 0.02);
+  }
+}
+
+// S0 Figure 4.7 and reference: period 1 at 0.65, none between 0.42 and 0.54, where periods 3 and 5 are.
+TEST(StrobeMap, IsTheBifurcationDiagramOfTheSingleMass) {
+  const StrobeMap map =
+      strobe_map([](double omega) { return fixtures::backlash_mass(omega); },
+                 [](const dynamics::HybridSystem&) {
+                   return fixtures::state(Eigen::VectorXd::Constant(1, 3.0), Eigen::VectorXd::Zero(1));
+                 },
+                 {0.47, 0.49, 0.65}, watching(1));
+  EXPECT_EQ(map.points[0]->order, 3);
+  EXPECT_EQ(map.points[1]->order, 5);
+  EXPECT_EQ(map.points[2]->order, 1);
+  EXPECT_EQ(map.points[2]->section.cols(), 100);
+}
+
+// Two runs of 40 periods that follow each other are one of 80.
+TEST(StrobeMap, FollowingValuesStartWhereTheOneBeforeEnded) {
+  StrobeOptions options = watching(2);
+  options.periods = 40;
+  options.kept = 10;
+  options.follow = true;
+  const StrobeMap map = strobe_map(fixtures::clearance_pair, kFromRest, {0.6, 0.6}, options);
+  options.periods = 80;
+  const auto system = fixtures::clearance_pair(0.6);
+  const StrobePoint longer = strobe(system, system.rest(), options);
+  EXPECT_LT((map.points[1]->section - longer.section).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(StrobeMap, HasTheSameBytesForAnyNumberOfThreadsAndTakesOverWhatIsThere) {
+  const std::vector<double> values{0.55, 0.82, 0.9, 1.05};
+  const StrobeMap one = strobe_map(fixtures::clearance_pair, kFromRest, values, watching(2), {.threads = 1});
+  std::size_t stored = 0;
+  const StrobeSink sink{.recall = [&](std::size_t k) { return k == 2 ? one.points[2] : std::nullopt; },
+                        .store = [&](std::size_t, const StrobePoint&) { ++stored; }};
+  const StrobeMap three = strobe_map(fixtures::clearance_pair, kFromRest, values, watching(2), {.threads = 3}, sink);
+  EXPECT_EQ(stored, 3U);
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    EXPECT_EQ(one.points[k]->section, three.points[k]->section);
+    EXPECT_EQ(one.points[k]->alternating, three.points[k]->alternating);
+  }
+}
+
+TEST(StrobeMap, StopsWhenAsked) {
+  const StopFlag stop{true};
+  const StrobeMap map = strobe_map(fixtures::clearance_pair, kFromRest, {0.6}, watching(2), {.stop = &stop});
+  EXPECT_TRUE(map.interrupted);
+  EXPECT_FALSE(map.points[0]);
+}
+
+TEST(StrobeMap, RefusesBadInput) {
+  const auto with = [](auto change) {
+    StrobeOptions options = watching(2);
+    change(options);
+    return options;
+  };
+  const auto run = [](const StrobeOptions& options) {
+    return strobe_map(fixtures::clearance_pair, kFromRest, {0.6}, options);
+  };
+  EXPECT_THROW((void)run(with([](StrobeOptions& o) { o.kept = 0; })), InvalidInput);
+  EXPECT_THROW((void)run(with([](StrobeOptions& o) { o.kept = o.periods; })), InvalidInput);
+  EXPECT_THROW((void)run(with([](StrobeOptions& o) { o.samples = 4; })), InvalidInput);
+  EXPECT_THROW((void)run(with([](StrobeOptions& o) { o.rows = {}; })), InvalidInput);
+  EXPECT_THROW((void)strobe_map(fixtures::clearance_pair, kFromRest, {}, watching(2)), InvalidInput);
+  const auto belt = fixtures::belt_chain(friction::Coulomb{0.4, 0.2}, friction::Belt::constant(0.2), 2);
+  EXPECT_THROW((void)strobe(belt, belt.rest(), watching(2)), InvalidInput);
+  const StrobePoint point = run(watching(2)).points[0].value();
+  EXPECT_THROW((void)point.sine_gap(2), InvalidInput);
+}
+
+}  // namespace
+}  // namespace slipmode::orbits
