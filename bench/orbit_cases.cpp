@@ -12,7 +12,7 @@ namespace slipmode::bench {
 namespace {
 
 /// Periods simulated from (3, 0) before shooting.
-constexpr double kSettle = 10.0;
+constexpr double kSettle = 3.0;
 constexpr double kPeerTolerance = 1e-10;
 
 dynamics::HybridSystem backlash(const BacklashMass& m) {

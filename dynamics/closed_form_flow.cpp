@@ -52,7 +52,7 @@ ClosedFormFlow::ClosedFormFlow(const HybridSystem& system, HybridPoint start, co
 void ClosedFormFlow::restart(HybridPoint start) {
   point_ = std::move(start);
   resolver_.forget();
-  regime_tangents_.resize(0, 0);
+  tangents_.resize(0, 0);
   work_ = {};
   statistics_ = {};
   statistics_.stick_time.assign(static_cast<std::size_t>(nc_), 0.0);
@@ -66,7 +66,7 @@ void ClosedFormFlow::enter_regime() {
   const auto known = std::find_if(visited_.begin(), visited_.end(), [&](const auto& v) { return v.roles == roles; });
   if (known == visited_.end()) {
     const RegimeTables& tables = system_.cache().regime(system_, roles);
-    visited_.push_back({roles, &tables, nullptr, nullptr});
+    visited_.push_back({roles, &tables, nullptr, nullptr, nullptr});
     Visited& now = visited_.back();
     if (resolver_.drive().belt() == nullptr) {
       now.overlay = std::make_unique<DriveOverlay>(tables.regime(), resolver_.drive());
@@ -442,7 +442,7 @@ bool ClosedFormFlow::step(double t_limit) {
   if (!ends) return false;
   if (corner) return settle(-1, false);
   lift_point();
-  if (regime_tangents_.cols() > 0) push_tangents();
+  if (tangents_.cols() > 0) push_tangents();
   return false;
 }
 
@@ -450,16 +450,15 @@ bool ClosedFormFlow::settle(int guard, bool touching) {
   lift_point();
   const double window_end = begin_ + tables_->length(level_);
   const Guard* reached = guard >= 0 ? &guards_[static_cast<std::size_t>(guard)] : nullptr;
-  const bool carries = regime_tangents_.cols() > 0, crossed = reached != nullptr && !touching;
-  Saltation salted;
-  if (carries && crossed) salted = before_event(*reached);
+  const bool salts = tangents_.cols() > 0 && !touching;
+  if (salts) leave_tangents(reached);
   resolver_.settle(point_, reached ? Reached{reached->contact, touching, reached->kind, reached->next} : Reached{});
   statistics_.events += static_cast<std::int64_t>(resolver_.events().size());
   if (touching)
     guards_[static_cast<std::size_t>(guard)].exempt_until = std::max(window_end, std::nextafter(point_.time, 1e300));
   else
     enter_regime();
-  if (carries && crossed) after_event(std::move(salted));
+  if (salts) salt_tangents();
   return true;
 }
 

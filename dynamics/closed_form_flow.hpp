@@ -28,13 +28,13 @@ class ClosedFormFlow {
   /// Starts anew from another point; regimes met so far stay prepared. Drops the tangents.
   void restart(HybridPoint start);
 
-  /// Carries tangents along from here, saltation included. Coordinates: state of the slipping model, contacts' own
-  /// states. @param tangents  columns [2np + internal_size x k]
-  void set_tangents(const Eigen::MatrixXd& tangents);
+  /// Carries tangents along from here, saltation included. Coordinates: the slipping model's state without padding
+  /// (first components, then second ones), then the contacts' own states. @param tangents  [2n + internal_size x k]
+  void set_tangents(Eigen::MatrixXd tangents);
   /// They, at `point().time` (brought up to date at events and at the time asked).
-  [[nodiscard]] Eigen::MatrixXd tangents() const { return lifted_tangents(regime_tangents_, input_tangents_); }
-  /// d/dt of the point in the same coordinates, right limit [2np + internal_size].
-  [[nodiscard]] Eigen::VectorXd point_rate() const;
+  [[nodiscard]] const Eigen::MatrixXd& tangents();
+  /// d/dt of the point in the same coordinates, right limit [2n + internal_size].
+  [[nodiscard]] const Eigen::VectorXd& point_rate();
 
   /// Advances by one step, not beyond t_limit (> time). True if it ended at an event.
   bool step(double t_limit);
@@ -58,11 +58,20 @@ class ClosedFormFlow {
     ContactMode next = ContactMode::kStick;  ///< of a clearance, once the guard is crossed
     double exempt_until = -1e300;            ///< known to be clear up to this time
   };
+  /// What tangents need of a regime, without padding.
+  struct TangentMaps {
+    std::vector<int> follows;              ///< contacts that follow the drive
+    Eigen::MatrixXd enter, enter_follows;  ///< tangents → of x [2m x N], of the inputs of those contacts [nf x N]
+    Eigen::MatrixXd leave, leave_inputs;   ///< back: of x [N x 2m], of all inputs [N x ni]
+    Eigen::MatrixXd row;                   ///< of the outputs [2m x no]
+    Eigen::MatrixXd B;                     ///< [2m x ni]
+  };
   /// A regime met in this run.
   struct Visited {
     std::vector<ContactRole> roles;
     const RegimeTables* tables;
     std::unique_ptr<DriveOverlay> overlay;  ///< null for a belt
+    std::unique_ptr<TangentMaps> maps;      ///< null until tangents are carried
     std::unique_ptr<AuditForms> forms;      ///< null where the audit integrates by quadrature
   };
   /// What a search of one window found.
@@ -104,20 +113,14 @@ class ClosedFormFlow {
   /// The same into `point_`, contacts' own states included.
   void lift_point();
   [[nodiscard]] bool settle(int guard, bool touching);
+  /// Makes the maps of the regime entered, if tangents are carried.
+  void enter_tangents();
   /// Brings the tangents up to the point's time, within a stay.
   void push_tangents();
-  /// What passing an event does to the tangents.
-  struct Saltation {
-    Eigen::MatrixXd tangents;  ///< before, as `tangents()`
-    Eigen::RowVectorXd delay;  ///< δg/ġ: by how much later than the point each tangent reaches the guard
-    Eigen::VectorXd rate;      ///< of the point before
-    std::vector<ContactMode> modes;
-  };
-  [[nodiscard]] Saltation before_event(const Guard& guard);
-  void after_event(Saltation salted);
-  /// Into the coordinates of the regime entered.
-  void enter_tangents(const Eigen::MatrixXd& tangents);
-  [[nodiscard]] Eigen::MatrixXd lifted_tangents(const Eigen::MatrixXd& of_x, const Eigen::MatrixXd& of_inputs) const;
+  /// δ⁺ = R δ⁻ + (f⁺ − R f⁻) δg/ġ: before and after the event is settled. No guard: a corner of the drive, whose time
+  /// is nobody's.
+  void leave_tangents(const Guard* guard);
+  void salt_tangents();
   [[nodiscard]] double drive_velocity(double t, const Eigen::VectorXd& inputs) const;
 
   const HybridSystem& system_;
@@ -127,7 +130,7 @@ class ClosedFormFlow {
   int nc_;
   HybridPoint point_;
 
-  const Visited* regime_ = nullptr;
+  Visited* regime_ = nullptr;
   const RegimeTables* tables_ = nullptr;  ///< its tables
   const Visited* step_regime_ = nullptr;  ///< that of the last step
   std::vector<Guard> guards_;
@@ -138,8 +141,12 @@ class ClosedFormFlow {
   DrivePhase phase_;  ///< at begin_, of a harmonic drive
   int level_ = 0;
 
-  Eigen::MatrixXd regime_tangents_;  ///< of x_ [2np x k]; no columns: none are carried
-  Eigen::MatrixXd input_tangents_;   ///< of inputs_ [ni x k]
+  /// At `point_.time` between stays, empty: none are carried; within a stay, of x and of the inputs that follow.
+  Eigen::MatrixXd tangents_, x_tangents_, follow_tangents_, follow_response_;
+  bool tangents_current_ = false;  ///< tangents_ belongs to point_
+  Eigen::VectorXd rate_, rate_before_, x_rate_, input_rate_;
+  Eigen::RowVectorXd delay_;  ///< δg/ġ
+  std::vector<ContactMode> modes_before_;
   double tangent_time_ = 0.0;
 
   WorkSums work_;

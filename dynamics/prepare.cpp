@@ -13,23 +13,30 @@ namespace {
 /// A clearance this close to a guard, as a share of the sizes at play, is on it.
 constexpr double kOnGuard = 1e-12;
 
-void require(bool condition, const std::string& message) {
-  if (!condition) throw InvalidInput(message);
+/// @param message  called only when the condition fails: runs are too short to compose it each time
+template <class Message>
+void require(bool condition, const Message& message) {
+  if (!condition) throw InvalidInput(message());
 }
 
 void check_start(const HybridSystem& system, const State& start) {
-  require(start.q.size() == system.size() && start.v.size() == system.size(),
-          "start state has " + std::to_string(start.q.size()) + " displacements and " + std::to_string(start.v.size()) +
-              " velocities; the system has " + std::to_string(system.size()) + " degrees of freedom");
+  require(start.q.size() == system.size() && start.v.size() == system.size(), [&] {
+    return "start state has " + std::to_string(start.q.size()) + " displacements and " +
+           std::to_string(start.v.size()) + " velocities; the system has " + std::to_string(system.size()) +
+           " degrees of freedom";
+  });
   require(start.q.allFinite() && start.v.allFinite() && std::isfinite(start.time),
-          "start state holds values that are not finite");
-  require(start.internal.size() == 0 || start.internal.size() == system.internal_size(),
-          "start state has " + std::to_string(start.internal.size()) + " contact states; the contacts have " +
-              std::to_string(system.internal_size()));
-  require(start.internal.allFinite(), "start state holds contact states that are not finite");
-  require(start.modes.empty() || start.modes.size() == system.contacts().size(),
-          "start state names the modes of " + std::to_string(start.modes.size()) + " contacts; the system has " +
-              std::to_string(system.contacts().size()));
+          [&] { return std::string("start state holds values that are not finite"); });
+  require(start.internal.size() == 0 || start.internal.size() == system.internal_size(), [&] {
+    return "start state has " + std::to_string(start.internal.size()) + " contact states; the contacts have " +
+           std::to_string(system.internal_size());
+  });
+  require(start.internal.allFinite(),
+          [&] { return std::string("start state holds contact states that are not finite"); });
+  require(start.modes.empty() || start.modes.size() == system.contacts().size(), [&] {
+    return "start state names the modes of " + std::to_string(start.modes.size()) + " contacts; the system has " +
+           std::to_string(system.contacts().size());
+  });
 }
 
 /// Where a clearance is at the start. On a guard to rounding the mode given decides, else the velocity.
@@ -56,10 +63,11 @@ ContactMode start_mode(const friction::Clearance& law, const friction::Contact& 
   };
   look(law.right, 1.0, ContactMode::kRightStop, ContactMode::kRightFlight);
   if (mode == ContactMode::kGap) look(law.left, -1.0, ContactMode::kLeftStop, ContactMode::kLeftFlight);
-  require(given == ContactMode::kSmooth || given == mode,
-          "start state says the clearance of contact " + std::to_string(c + 1) + " is in mode " +
-              std::to_string(static_cast<int>(given)) + ", but its displacement is " + std::to_string(y) +
-              " and its velocity " + std::to_string(rate) + "; leave the modes empty to have them derived");
+  require(given == ContactMode::kSmooth || given == mode, [&] {
+    return "start state says the clearance of contact " + std::to_string(c + 1) + " is in mode " +
+           std::to_string(static_cast<int>(given)) + ", but its displacement is " + std::to_string(y) +
+           " and its velocity " + std::to_string(rate) + "; leave the modes empty to have them derived";
+  });
   return mode;
 }
 
@@ -92,10 +100,11 @@ std::vector<ContactMode> start_modes(const HybridSystem& system, const State& st
     if (compliant || modes[c] == ContactMode::kSeparated) continue;  // decided by the force and the normal load
     const bool agrees = by_sign == ContactMode::kStick || modes[c] == by_sign ||
                         (modes[c] == ContactMode::kStick && std::abs(sliding) <= 1e-9 * std::max(1.0, scale));
-    require(agrees && modes[c] != ContactMode::kSmooth,
-            "start state says contact " + std::to_string(c + 1) + " is in mode " +
-                std::to_string(static_cast<int>(modes[c])) + ", but its relative velocity is " +
-                std::to_string(sliding) + "; leave the modes empty to have them derived");
+    require(agrees && modes[c] != ContactMode::kSmooth, [&] {
+      return "start state says contact " + std::to_string(c + 1) + " is in mode " +
+             std::to_string(static_cast<int>(modes[c])) + ", but its relative velocity is " + std::to_string(sliding) +
+             "; leave the modes empty to have them derived";
+    });
   }
   return modes;
 }
@@ -128,19 +137,25 @@ FlowMethod choose_method(const HybridSystem& system, FlowMethod asked) {
     if (!law.is_piecewise_linear()) nonlinear = static_cast<int>(c) + 1;
   }
   const auto name = [](int contact) { return "contact " + std::to_string(contact); };
-  require(!forced || nonlinear == 0,
-          "a force drive needs piecewise-linear laws, but " + name(nonlinear) +
-              " has a force that depends on the sliding speed: use Coulomb's law, rigid or compliant");
-  require(!forced || asked != FlowMethod::kCollocation, "a force drive needs the closed-form flow");
-  require(special == 0 || nonlinear == 0, name(special) +
-                                              " has a contact spring, a clearance, a tilt or a varying load, for which "
-                                              "all laws must be piecewise linear, but " +
-                                              name(nonlinear) + " has a force that depends on the sliding speed");
-  require(special == 0 || asked != FlowMethod::kCollocation,
-          name(special) + " has a contact spring, a clearance, a tilt or a varying load: use the closed-form flow");
-  require(nonlinear == 0 || asked != FlowMethod::kClosedForm,
-          "the closed-form flow needs piecewise-linear laws, but " + name(nonlinear) +
-              " has a force that depends on the sliding speed; use the collocation flow, or Coulomb's law");
+  require(!forced || nonlinear == 0, [&] {
+    return "a force drive needs piecewise-linear laws, but " + name(nonlinear) +
+           " has a force that depends on the sliding speed: use Coulomb's law, rigid or compliant";
+  });
+  require(!forced || asked != FlowMethod::kCollocation,
+          [&] { return std::string("a force drive needs the closed-form flow"); });
+  require(special == 0 || nonlinear == 0, [&] {
+    return name(special) +
+           " has a contact spring, a clearance, a tilt or a varying load, for which "
+           "all laws must be piecewise linear, but " +
+           name(nonlinear) + " has a force that depends on the sliding speed";
+  });
+  require(special == 0 || asked != FlowMethod::kCollocation, [&] {
+    return name(special) + " has a contact spring, a clearance, a tilt or a varying load: use the closed-form flow";
+  });
+  require(nonlinear == 0 || asked != FlowMethod::kClosedForm, [&] {
+    return "the closed-form flow needs piecewise-linear laws, but " + name(nonlinear) +
+           " has a force that depends on the sliding speed; use the collocation flow, or Coulomb's law";
+  });
   if (asked != FlowMethod::kAutomatic) return asked;
   if (forced || special > 0 || (nonlinear == 0 && system.size() <= kClosedFormSize)) return FlowMethod::kClosedForm;
   return FlowMethod::kCollocation;
@@ -148,8 +163,9 @@ FlowMethod choose_method(const HybridSystem& system, FlowMethod asked) {
 
 Prepared prepare(const HybridSystem& system, const State& start, FlowOptions options, bool rows_suffice) {
   check_start(system, start);
-  require(options.tolerance > 0 && std::isfinite(options.tolerance), "flow tolerance must be positive");
-  require(options.max_events_per_window > 0, "max_events_per_window must be at least 1");
+  require(options.tolerance > 0 && std::isfinite(options.tolerance),
+          [&] { return std::string("flow tolerance must be positive"); });
+  require(options.max_events_per_window > 0, [&] { return std::string("max_events_per_window must be at least 1"); });
   const bool at_origin = start.q.isZero(0.0) && start.v.isZero(0.0);
   const ModelTables& tables = system.cache().tables(system, rows_suffice && at_origin);
   const ModalModel& m = tables.model;

@@ -14,8 +14,9 @@ struct TangentFlow::Implementation {
   FlowOptions options;
   FlowMethod method;
   std::unique_ptr<ClosedFormFlow> closed_form = {};  ///< from the first run on
+  Eigen::MatrixXd enter = {}, leave = {};            ///< (q, q̇, internal) to its tangents' coordinates and back
 
-  TangentResult run(ClosedFormFlow& flow, const ModalModel& m, double end, const Eigen::MatrixXd& directions) const;
+  TangentResult run(ClosedFormFlow& flow, const ModalModel& m, double end, const Eigen::MatrixXd& directions);
   TangentResult run(CollocationFlow& flow, const ModalModel& m, double end, const Eigen::MatrixXd& directions) const;
   template <class AnyFlow>
   void advance_to(AnyFlow& flow, const ModalModel& m, double end, TangentResult& out) const;
@@ -29,21 +30,20 @@ void TangentFlow::Implementation::advance_to(AnyFlow& flow, const ModalModel& m,
 }
 
 TangentResult TangentFlow::Implementation::run(ClosedFormFlow& flow, const ModalModel& m, double end,
-                                               const Eigen::MatrixXd& directions) const {
-  const Eigen::Index n = m.n, own = system.internal_size();
-  Eigen::MatrixXd start(2 * m.np + own, directions.cols());
-  start.topRows(2 * m.np) = m.from_q * directions.topRows(n) + m.from_v * directions.middleRows(n, n);
-  start.bottomRows(own) = directions.bottomRows(own);
-  flow.set_tangents(start);
+                                               const Eigen::MatrixXd& directions) {
+  if (enter.size() == 0) {
+    const Eigen::Index n = m.n, np = m.np, own = system.internal_size();
+    enter = leave = Eigen::MatrixXd::Identity(2 * n + own, 2 * n + own);
+    enter.topLeftCorner(2 * n, 2 * n) << m.from_q.topRows(n), m.from_v.topRows(n), m.from_q.middleRows(np, n),
+        m.from_v.middleRows(np, n);
+    leave.topLeftCorner(2 * n, 2 * n) << m.to_q.leftCols(n), m.to_q.middleCols(np, n), m.to_v.leftCols(n),
+        m.to_v.middleCols(np, n);
+  }
+  flow.set_tangents(enter * directions);
   TangentResult out;
   advance_to(flow, m, end, out);
-  const auto lifted = [&](const Eigen::MatrixXd& tangents) {
-    Eigen::MatrixXd physical(2 * n + own, tangents.cols());
-    physical << m.to_q * tangents.topRows(2 * m.np), m.to_v * tangents.topRows(2 * m.np), tangents.bottomRows(own);
-    return physical;
-  };
-  out.monodromy = lifted(flow.tangents());
-  out.rate = lifted(flow.point_rate());
+  out.monodromy = leave * flow.tangents();
+  out.rate = leave * flow.point_rate();
   return out;
 }
 
