@@ -26,7 +26,7 @@ void ClosedFormFlow::integrate(double tau) {
   const DriveOverlay* overlay = regime_->overlay.get();
   double contact = 0.0, driven = 0.0, viscous = 0.0, forced = 0.0;
   const auto add = [&](double weight, double t, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs) {
-    const DrivePhase phase = overlay ? overlay->phase(t) : DrivePhase{};
+    const DrivePhase phase = overlay ? phase_at(t) : DrivePhase{};
     const double V = drive_velocity(t, inputs);
     for (int c = 0; c < nc_; ++c) {
       double force = inputs(c), velocity = V;

@@ -80,7 +80,7 @@ void ClosedFormFlow::enter_regime() {
   tables_ = regime_->tables;
   const Regime& r = tables_->regime();
   const DriveOverlay* overlay = regime_->overlay.get();
-  const DrivePhase phase = overlay ? overlay->phase(point_.time) : DrivePhase{};
+  const DrivePhase phase = overlay ? phase_at(point_.time) : DrivePhase{};
 
   inputs_ = Eigen::VectorXd::Zero(r.inputs());
   for (int c = 0; c < nc_; ++c) inputs_(c) = resolver_.regime_input(point_, c);
@@ -193,7 +193,7 @@ ClosedFormFlow::GuardValue ClosedFormFlow::evaluate(const Guard& guard, double t
   double value = r.output(k, x_, inputs_);
   double rate = dot_padded(r.row1.col(k).data(), x_.data(), x_.size()) + r.coefficient1.col(k).dot(inputs_);
   if (const DriveOverlay* overlay = regime_->overlay.get()) {
-    const DrivePhase phase = overlay->phase(t);
+    const DrivePhase phase = phase_at(t);
     value += overlay->outputs.at(k, phase);
     rate += overlay->omega() * overlay->outputs.rate(k, phase);
   }
@@ -204,7 +204,7 @@ double ClosedFormFlow::second_derivative(const Guard& guard, double t) const {
   const Regime& r = tables_->regime();
   double second = r.row2.col(guard.output).dot(x_) + r.coefficient2.col(guard.output).dot(inputs_);
   if (const DriveOverlay* overlay = regime_->overlay.get())
-    second += overlay->omega() * overlay->omega() * overlay->outputs.bend(guard.output, overlay->phase(t));
+    second += overlay->omega() * overlay->omega() * overlay->outputs.bend(guard.output, phase_at(t));
   return guard.sign * second;
 }
 
@@ -370,7 +370,7 @@ bool ClosedFormFlow::step(double t_limit) {
   resolver_.clear();
   begin_ = point_.time;
   step_regime_ = regime_;
-  if (regime_->overlay) phase_ = regime_->overlay->phase(begin_);
+  if (regime_->overlay) phase_ = phase_at(begin_);
   double limit = t_limit;
   bool corner = false;
   if (!resolver_.drive().is_constant()) {
@@ -473,7 +473,7 @@ void ClosedFormFlow::lift(const Visited& in, double t, const Eigen::VectorXd& x,
                        ? inputs(c)
                        : r.force_row.col(c).dot(x) + r.force_coefficient.col(c).dot(inputs);
   if (!in.overlay) return;
-  const DrivePhase phase = in.overlay->phase(t);
+  const DrivePhase phase = phase_at(t);
   in.overlay->slipping.add(phase, 1.0, out_x);
   for (int c = 0; c < nc_; ++c) out_force(c) += in.overlay->force.at(c, phase);
 }
@@ -487,7 +487,7 @@ void ClosedFormFlow::lift_point() {
   const Regime& r = tables_->regime();
   Eigen::VectorXd x = x_;
   if (const DriveOverlay* overlay = regime_->overlay.get()) {
-    overlay->state.add(overlay->phase(point_.time), 1.0, x);
+    overlay->state.add(phase_at(point_.time), 1.0, x);
   }
   point_.internal(oscillator_states_) = r.to_oscillators * x;
 }

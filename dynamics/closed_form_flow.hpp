@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 #include <deque>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -121,6 +122,14 @@ class ClosedFormFlow {
   /// is nobody's.
   void leave_tangents(const Guard* guard);
   void salt_tangents();
+  /// The phase of a periodic drive, remembered: several are asked at an event.
+  [[nodiscard]] DrivePhase phase_at(double t) const {
+    if (t != phase_time_) {
+      phase_then_ = regime_->overlay->phase(t);
+      phase_time_ = t;
+    }
+    return phase_then_;
+  }
   [[nodiscard]] double drive_velocity(double t, const Eigen::VectorXd& inputs) const;
 
   const HybridSystem& system_;
@@ -138,7 +147,9 @@ class ClosedFormFlow {
   std::vector<int> compliant_;                   ///< contacts behind a contact spring
   Eigen::VectorXd x_, inputs_, x_begin_, inputs_begin_, amplitude_;
   double begin_ = 0.0;
-  DrivePhase phase_;  ///< at begin_, of a harmonic drive
+  DrivePhase phase_;  ///< at begin_, of a periodic drive
+  mutable double phase_time_ = std::numeric_limits<double>::quiet_NaN();
+  mutable DrivePhase phase_then_;
   int level_ = 0;
 
   /// At `point_.time` between stays, empty: none are carried; within a stay, of x and of the inputs that follow.

@@ -113,7 +113,7 @@ const Eigen::VectorXd& ClosedFormFlow::point_rate() {
   for (const int c : maps.follows) input_rate_(c) = inputs_(V);
   input_rate_(V) = inputs_(V + 1);
   if (const DriveOverlay* overlay = regime_->overlay.get()) {
-    const DrivePhase phase = overlay->phase(point_.time);
+    const DrivePhase phase = phase_at(point_.time);
     const double w = overlay->omega();
     for (Eigen::Index i = 0; i < n; ++i) {
       x_rate_(i) += w * overlay->state.rate(i, phase);
