@@ -124,6 +124,24 @@ std::string TomlReader::text_or(const std::string& key, const std::string& other
   return node->as_string()->get();
 }
 
+bool TomlReader::flag_or(const std::string& key, bool otherwise) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return otherwise;
+  if (!node->is_boolean()) fail(key, "wrong type", "true or false");
+  return node->as_boolean()->get();
+}
+
+std::vector<std::string> TomlReader::texts(const std::string& key) {
+  const toml::node& node = need(key);
+  std::vector<std::string> found;
+  if (!node.is_array()) fail(key, "wrong type", "an array of strings");
+  for (const toml::node& item : *node.as_array()) {
+    if (!item.is_string()) fail(key, "wrong type", "an array of strings");
+    found.push_back(item.as_string()->get());
+  }
+  return found;
+}
+
 std::size_t TomlReader::checked_word(const std::string& key, const toml::node& node,
                                      const std::vector<std::string>& words) {
   const std::string valid = fmt::format("\"{}\"", fmt::join(words, "\", \""));

@@ -71,6 +71,9 @@ class TomlReader {
   [[nodiscard]] std::int64_t integer_or(const std::string& key, std::int64_t otherwise, std::int64_t low,
                                         std::int64_t high);
   [[nodiscard]] std::string text_or(const std::string& key, const std::string& otherwise);
+  [[nodiscard]] bool flag_or(const std::string& key, bool otherwise);
+  /// An array of strings.
+  [[nodiscard]] std::vector<std::string> texts(const std::string& key);
   /// Index of the word among `words`.
   [[nodiscard]] std::size_t choice(const std::string& key, const std::vector<std::string>& words);
   [[nodiscard]] std::size_t choice_or(const std::string& key, std::size_t otherwise,
