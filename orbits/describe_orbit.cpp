@@ -52,7 +52,7 @@ Eigen::MatrixXd orbit_family(ShootingProblem& problem, const ShootingEvaluation&
     bool closes = true;
     for (const double shift : {1e-4, -1e-4}) {
       const State moved = with_coordinates(orbit.start, stacked(orbit.start) + shift * scale.cwiseProduct(direction));
-      const State end = problem.flow().run(moved, orbit.period, Eigen::MatrixXd(n, 0)).end;
+      const State end = problem.end_of(moved, orbit.period);
       closes &= problem.scaled(stacked(end) - stacked(moved)).cwiseAbs().maxCoeff() <= 1e-9;
     }
     if (closes) found.push_back(scale.cwiseProduct(direction).normalized());
@@ -75,10 +75,9 @@ double closest_to_grazing(const std::vector<Event>& events) {
 /// The largest k for which the state is back after a k-th of the period: a divisor of the order, or of the events.
 int count_repeats(ShootingProblem& problem, const PeriodicOrbit& orbit) {
   const int whole = orbit.kind == OrbitKind::kDriven ? orbit.order : static_cast<int>(orbit.events.size());
-  const Eigen::Index n = orbit.monodromy.rows();
   for (int k = whole; k > 1; --k) {
     if (whole % k != 0) continue;
-    const State part = problem.flow().run(orbit.start, orbit.period / k, Eigen::MatrixXd(n, 0)).end;
+    const State part = problem.end_of(orbit.start, orbit.period / k);
     if (problem.scaled(stacked(part) - stacked(orbit.start)).cwiseAbs().maxCoeff() < 1e-6) return k;
   }
   return 1;

@@ -96,6 +96,10 @@ Eigen::MatrixXd ShootingProblem::in_scale(const Eigen::MatrixXd& transfer) const
   return scale_.cwiseInverse().asDiagonal() * transfer * scale_.asDiagonal();
 }
 
+State ShootingProblem::end_of(const State& start, double duration) {
+  return flow_.run(start, duration, Eigen::MatrixXd::Zero(scale_.size(), 1)).end;
+}
+
 Eigen::MatrixXd ShootingProblem::ends_of(const ShootingPoint& point) {
   const auto count = static_cast<Eigen::Index>(point.nodes.size());
   const double length = covered() * point.period / static_cast<double>(count);
@@ -104,7 +108,7 @@ Eigen::MatrixXd ShootingProblem::ends_of(const ShootingPoint& point) {
     State node = point.nodes[static_cast<std::size_t>(k)];
     node.time = point.nodes[0].time + length * static_cast<double>(k);
     put_on_constraint(node);
-    ends.col(k) = scaled(stacked(flow_.run(runnable(node), length, Eigen::MatrixXd(scale_.size(), 0)).end));
+    ends.col(k) = scaled(stacked(end_of(runnable(node), length)));
   }
   return ends;
 }

@@ -50,6 +50,8 @@ class ShootingProblem {
   /// @throws NumericalFailure  when the flow fails
   [[nodiscard]] ShootingEvaluation evaluate(const ShootingPoint& point);
   void use_scale(const Eigen::VectorXd& scale) { scale_ = scale; }
+  /// The state a time later, by the same flow.
+  [[nodiscard]] dynamics::State end_of(const dynamics::State& start, double duration);
   /// The ends of all segments alone, one column each, scaled [N x m].
   [[nodiscard]] Eigen::MatrixXd ends_of(const ShootingPoint& point);
 
