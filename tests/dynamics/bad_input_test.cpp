@@ -1,5 +1,6 @@
 // What is refused, at the boundary and by name.
 #include "core/errors.hpp"
+#include "fixtures/clearance_scenes.hpp"
 #include "fixtures/scenes.hpp"
 
 #include <gtest/gtest.h>
@@ -29,6 +30,27 @@ TEST(BadInput, ClosedFormRefusesLawsThatAreNotPiecewiseLinear) {
   // Stribeck without a slope is Coulomb: allowed.
   const HybridSystem flat = belt_chain(Stribeck{0.3, 0.3, 8.0}, Belt::constant(0.2));
   EXPECT_NO_THROW((void)simulate(flat, flat.rest(), exact));
+}
+
+TEST(BadInput, ForcesNeedTheirDirectionsAndPiecewiseLinearLaws) {
+  const HybridSystem gap = backlash_mass(1.0);
+  EXPECT_THROW((void)gap.with_drive(friction::Force{1.0, {{.amplitude = 1.0, .direction = 1}}}), InvalidInput);
+  EXPECT_THROW((void)HybridSystem(gap.structure(), gap.contacts(), gap.drive(), {}, Eigen::MatrixXd::Ones(2, 1)),
+               InvalidInput);
+  EXPECT_THROW((void)simulate(gap, gap.rest(), {.duration = 1.0, .flow = {.method = FlowMethod::kCollocation}}),
+               InvalidInput);
+  const friction::Contact pad{Eigen::VectorXd::Ones(1), Stribeck{0.4, 0.2, 8.0}, 3.0};
+  const HybridSystem forced(gap.structure(), {pad}, gap.drive(), {}, gap.force_directions());
+  EXPECT_THROW((void)simulate(forced, forced.rest(), {.duration = 1.0}), InvalidInput);
+}
+
+TEST(BadInput, AClearanceIsWhereItsStateSaysItIs) {
+  const HybridSystem gap = backlash_mass(1.0);
+  State start = gap.rest();
+  start.modes = {ContactMode::kRightStop};
+  EXPECT_THROW((void)simulate(gap, start, {.duration = 1.0}), InvalidInput);
+  start.q(0) = 1.5;
+  EXPECT_NO_THROW((void)simulate(gap, start, {.duration = 1.0}));
 }
 
 TEST(BadInput, SizesTimesAndTolerances) {

@@ -73,9 +73,9 @@ TEST(Reduce, GeneralDampingIsProjected) {
 }
 
 TEST(Reduce, KeepsTheSkewPartOfDamping) {
-  const Eigen::Matrix2d C{{0.0994, -0.033}, {-0.024, 0.0884}};  // S1 (6) in power-conjugate form
-  const fem::Structure structure(Eigen::MatrixXd(Eigen::Matrix2d{{1.21, 0.36}, {0.36, 1.0}}), Eigen::MatrixXd(C),
-                                 Eigen::MatrixXd(Eigen::Matrix2d::Zero()));
+  const Eigen::MatrixXd C{{0.0994, -0.033}, {-0.024, 0.0884}};  // S1 (6) in power-conjugate form
+  const fem::Structure structure(Eigen::MatrixXd{{1.21, 0.36}, {0.36, 1.0}}, C,
+                                 Eigen::MatrixXd(Eigen::MatrixXd::Zero(2, 2)));
   const friction::Contact contact{Eigen::Vector2d::Unit(0), friction::Clearance{{}, friction::Stop{1.0, 0.0, 1.0}}};
   const HybridSystem full(structure, {contact}, friction::Force{});
   const Eigen::MatrixXd Phi{{1.0, 2.0}, {-1.0, 1.0}};
