@@ -2,6 +2,7 @@
 
 #include "core/decompositions.hpp"
 #include "core/errors.hpp"
+#include "orbits/map_waveform.hpp"
 
 #include <fmt/format.h>
 
@@ -128,7 +129,22 @@ class Settling {
     out_point.symmetric = orbit.symmetric;
     out_point.floating = orbit.family.cols() > 0;
     out_point.residual = orbit.residual;
-    if (options_.row.size() > 0) out_point.alternating = amplitude(system_, orbit, options_.row).alternating;
+    if (options_.row.size() > 0) out_point.alternating = alternating(orbit);
+  }
+
+  /// From samples of one run: to 1e-8 of the amplitude where the motion is smooth, at a tenth of orbits::amplitude.
+  [[nodiscard]] double alternating(const PeriodicOrbit& orbit) const {
+    constexpr int kSamples = 256;  // per period of the drive
+    const Eigen::Index steps = Eigen::Index{kSamples} * orbit.order;
+    const double step = orbit.period / static_cast<double>(steps);
+    // A little longer than needed: the last sample must not be lost to rounding.
+    const dynamics::Trajectory run = dynamics::simulate(
+        system_, orbit.start,
+        {.duration = orbit.period + 0.5 * step, .sample = step, .keep_events = false, .flow = options_.shooting.flow});
+    const Eigen::VectorXd y = run.q.transpose() * options_.row, slope = run.v.transpose() * options_.row;
+    detail::Waveform waveform(step);
+    for (Eigen::Index k = 0; k < steps; ++k) waveform.add(y(k), slope(k), y(k + 1), slope(k + 1));
+    return waveform.alternating();
   }
 
   static constexpr double kSame = 1e-7;

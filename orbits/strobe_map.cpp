@@ -1,6 +1,7 @@
 #include "orbits/strobe_map.hpp"
 
 #include "core/errors.hpp"
+#include "orbits/map_waveform.hpp"
 
 #include <fmt/format.h>
 
@@ -34,55 +35,6 @@ void check(const dynamics::HybridSystem& system, const StrobeOptions& options) {
   }
 }
 
-/// Extremes, mean and mean square of one displacement from its values and slopes at equal steps h, by the cubic through
-/// both ends of each step.
-class Waveform {
- public:
-  explicit Waveform(double step) : step_(step) {}
-
-  void add(double y0, double slope0, double y1, double slope1) {
-    if (count_ == 0) reference_ = y0;
-    include(y0);
-    include(y1);
-    include_turning_points(y0, step_ * slope0, y1, step_ * slope1);
-    // ∫f over a step to fourth order from values and slopes.
-    const double a = y0 - reference_, b = y1 - reference_;
-    sum_ += 0.5 * (a + b) + step_ / 12.0 * (slope0 - slope1);
-    square_ += 0.5 * (a * a + b * b) + step_ / 6.0 * (a * slope0 - b * slope1);
-    ++count_;
-  }
-
-  [[nodiscard]] double alternating() const { return 0.5 * (high_ - low_); }
-  [[nodiscard]] double effective() const {
-    const double mean = sum_ / static_cast<double>(count_);
-    return std::sqrt(std::max(0.0, square_ / static_cast<double>(count_) - mean * mean));
-  }
-
- private:
-  void include(double y) {
-    low_ = std::min(low_, y);
-    high_ = std::max(high_, y);
-  }
-
-  /// Roots in (0, 1) of the derivative of the cubic with ends y0, y1 and end slopes d0, d1 per step.
-  void include_turning_points(double y0, double d0, double y1, double d1) {
-    const double c3 = 2.0 * (y0 - y1) + d0 + d1;
-    const double c2 = 3.0 * (y1 - y0) - 2.0 * d0 - d1;
-    const double discriminant = c2 * c2 - 3.0 * c3 * d0;
-    if (discriminant < 0.0) return;
-    const double w = -(c2 + std::copysign(std::sqrt(discriminant), c2));
-    for (const double s : {w / (3.0 * c3), d0 / w}) {
-      if (s > 0.0 && s < 1.0) include(y0 + s * (d0 + s * (c2 + s * c3)));
-    }
-  }
-
-  double step_;
-  double reference_ = 0.0;  ///< subtracted, so that a mean far from zero does not cost digits
-  double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;
-  double sum_ = 0.0, square_ = 0.0;
-  std::int64_t count_ = 0;
-};
-
 /// Relative distance of section states m apart, at most, over the last max(3m, 20) of them.
 double repeat_distance(const Eigen::MatrixXd& q, const Eigen::MatrixXd& v, Eigen::Index m) {
   const Eigen::Index stretch = std::min(q.cols() - m, std::max<Eigen::Index>(3 * m, 20));
@@ -114,7 +66,7 @@ void measure_amplitudes(const dynamics::Trajectory& run, double step, const Stro
   out_point.alternating.resize(y.rows());
   out_point.effective.resize(y.rows());
   for (Eigen::Index r = 0; r < y.rows(); ++r) {
-    Waveform waveform(step);
+    detail::Waveform waveform(step);
     for (Eigen::Index k = 0; k < steps; ++k) waveform.add(y(r, k), slope(r, k), y(r, k + 1), slope(r, k + 1));
     out_point.alternating(r) = waveform.alternating();
     out_point.effective(r) = waveform.effective();

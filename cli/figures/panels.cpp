@@ -65,6 +65,8 @@ std::string style_of(const Series& series) {
       return fmt::format("with lines dashtype 2 linewidth 1.6 linecolor rgb '{}'", series.colour);
     case Series::Look::kDots:
       return fmt::format("with points pointtype 7 pointsize 0.25 linecolor rgb '{}'", series.colour);
+    case Series::Look::kPoints:
+      return fmt::format("with points pointtype 7 pointsize 0.55 linecolor rgb '{}'", series.colour);
     case Series::Look::kMarkedLine:
       break;
   }

@@ -13,7 +13,7 @@ namespace slipmode::figures {
 struct Series {
   std::string title = {};  ///< for the legend; empty: none
   Eigen::VectorXd x, y;
-  enum class Look { kLine, kDashed, kDots, kMarkedLine } look = Look::kLine;
+  enum class Look { kLine, kDashed, kDots, kMarkedLine, kPoints } look = Look::kLine;
   std::string_view colour;
 };
 

@@ -1,0 +1,210 @@
+#include "cli/map_figures.hpp"
+
+#include "cli/figures/bifurcation.hpp"
+#include "cli/figures/heat_map.hpp"
+#include "cli/figures/panels.hpp"
+#include "cli/figures/style.hpp"
+#include "cli/map_store.hpp"
+#include "scene/table.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+namespace slipmode::cli {
+namespace {
+
+using figures::Figure;
+using scene::StoreReader;
+
+/// "scene", "centre": the starts a result holds, in that order of names.
+std::vector<std::string> starts_of(const StoreReader& store, const std::string& group) {
+  constexpr std::string_view kPrefix = "from_";
+  std::vector<std::string> starts;
+  for (const std::string& name : store.names(group)) {
+    if (name.starts_with(kPrefix)) starts.push_back(name.substr(kPrefix.size()));
+  }
+  return starts;
+}
+
+std::string title_of(const std::string& start) {
+  return start == "centre" ? "from the centre of the gap" : "from the scene's start";
+}
+
+std::string axis_text(const StoreReader& store, const std::string& group) {
+  return figures::axis_label(store.text(group + "/label"), store.entry(group + "/values").meaning.units);
+}
+
+/// One panel per start, its values made from datasets of that start.
+std::vector<figures::HeatMapPanel> map_panels(const StoreReader& store,
+                                              const std::function<Eigen::MatrixXd(const std::string& group)>& values) {
+  std::vector<figures::HeatMapPanel> panels;
+  for (const std::string& start : starts_of(store, kMapGroup)) {
+    panels.push_back({title_of(start), store.vector(std::string(kMapGroup) + "/x/values"),
+                      store.vector(std::string(kMapGroup) + "/y/values"),
+                      values(fmt::format("{}/from_{}", kMapGroup, start))});
+  }
+  return panels;
+}
+
+figures::HeatMapLayout map_layout(const StoreReader& store) {
+  return {.x_label = axis_text(store, std::string(kMapGroup) + "/x"),
+          .y_label = axis_text(store, std::string(kMapGroup) + "/y"),
+          .value_label = {}};
+}
+
+/// Crossings of period-1 orbits: those of other orders count more periods and are left out.
+Figure crossings(const StoreReader& store) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  figures::HeatMapLayout layout = map_layout(store);
+  layout.value_label = "regime changes per period";
+  layout.high = 24.0;
+  layout.steps = 13;
+  layout.missing = "no period 1";
+  return figures::heat_maps(
+      map_panels(store,
+                 [&](const std::string& group) -> Eigen::MatrixXd {
+                   const Eigen::MatrixXd order = store.matrix(group + "/order");
+                   return (order.array() == 1.0).select(store.matrix(group + "/crossings").array(), kNone);
+                 }),
+      layout);
+}
+
+Figure multipliers(const StoreReader& store) {
+  figures::HeatMapLayout layout = map_layout(store);
+  layout.value_label = "largest |multiplier|";
+  layout.colours = figures::HeatMapLayout::Colours::kGrey;
+  layout.missing = "not periodic";
+  return figures::heat_maps(
+      map_panels(store, [&](const std::string& group) { return store.matrix(group + "/multiplier"); }), layout);
+}
+
+Figure orders(const StoreReader& store) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  figures::HeatMapLayout layout = map_layout(store);
+  layout.value_label = "period, in periods of the drive";
+  layout.low = 1.0;
+  layout.high = 8.0;
+  layout.steps = 8;
+  layout.missing = "not periodic";
+  return figures::heat_maps(map_panels(store,
+                                       [&](const std::string& group) -> Eigen::MatrixXd {
+                                         const Eigen::MatrixXd order = store.matrix(group + "/order");
+                                         return (order.array() > 0.0).select(order.array(), kNone);
+                                       }),
+                            layout);
+}
+
+Figure amplitudes(const StoreReader& store) {
+  figures::HeatMapLayout layout = map_layout(store);
+  const auto panels = map_panels(store, [&](const std::string& group) { return store.matrix(group + "/alternating"); });
+  layout.high = 1e-300;
+  for (const figures::HeatMapPanel& panel : panels) {
+    for (const double value : panel.value.reshaped()) {
+      if (std::isfinite(value)) layout.high = std::max(layout.high, value);
+    }
+  }
+  const std::string dataset = fmt::format("{}/from_{}/alternating", kMapGroup, starts_of(store, kMapGroup).front());
+  layout.value_label = figures::axis_label("alternating amplitude", store.entry(dataset).meaning.units);
+  layout.missing = "not periodic";
+  return figures::heat_maps(panels, layout);
+}
+
+/// Rows of a table that belong to one contact.
+struct Rows {
+  const scene::Table& table;
+  std::vector<std::size_t> rows;
+
+  Rows(const scene::Table& from, double contact) : table(from) {
+    const auto& contacts = table.numbers("contact");
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      if (contacts[i] == contact) rows.push_back(i);
+    }
+  }
+  [[nodiscard]] Eigen::VectorXd column(const std::string& name) const {
+    const auto& values = table.numbers(name);
+    Eigen::VectorXd picked(static_cast<Eigen::Index>(rows.size()));
+    for (std::size_t k = 0; k < rows.size(); ++k) picked(static_cast<Eigen::Index>(k)) = values[rows[k]];
+    return picked;
+  }
+};
+
+Figure strobe_diagram(const StoreReader& store) {
+  const std::string root = kStrobeGroup;
+  std::vector<figures::BifurcationPanel> panels;
+  std::string unit, value_unit;
+  for (const std::string& start : starts_of(store, root)) {
+    const std::string group = fmt::format("{}/from_{}/sections", root, start);
+    const scene::Table sections = scene::load_table(store, group);
+    const Rows first(sections, 0.0);
+    panels.push_back({title_of(start), first.column("parameter"), first.column("displacement"), figures::kFullColour});
+    unit = store.entry(group + "/parameter").meaning.units;
+    value_unit = store.entry(group + "/displacement").meaning.units;
+  }
+  return figures::bifurcation_diagram(panels, {.parameter = store.text(root + "/label"),
+                                               .parameter_unit = unit,
+                                               .value = "displacement once per period",
+                                               .value_unit = value_unit});
+}
+
+/// Points of a curve whose verdict is, or is not, a period of one drive's period.
+figures::Series verdict_dots(const Rows& rows, const std::string& value, bool period_one, std::string title,
+                             std::string_view colour) {
+  const Eigen::VectorXd order = rows.column("order"), x = rows.column("parameter"), y = rows.column(value);
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index k = 0; k < order.size(); ++k) {
+    if ((order(k) == 1.0) == period_one) kept.push_back(k);
+  }
+  return {std::move(title), x(kept), y(kept), figures::Series::Look::kPoints, colour};
+}
+
+/// Both amplitudes of S1 above, and below how far its test is from its verdict.
+Figure strobe_amplitudes(const StoreReader& store) {
+  const std::string root = kStrobeGroup, start = starts_of(store, root).front();
+  const std::string group = fmt::format("{}/from_{}/values", root, start);
+  const scene::Table values = scene::load_table(store, group);
+  const double contacts = *std::ranges::max_element(values.numbers("contact"));
+  std::vector<figures::Panel> panels;
+  for (double contact = 0.0; contact <= contacts; contact += 1.0) {
+    const Rows rows(values, contact);
+    const Eigen::VectorXd x = rows.column("parameter");
+    panels.push_back(
+        {.title = fmt::format("contact {}", contact + 1.0),
+         .series = {{"alternating", x, rows.column("alternating"), figures::Series::Look::kLine, figures::kFullColour},
+                    {"effective × √2", x, std::numbers::sqrt2 * rows.column("effective"),
+                     figures::Series::Look::kDashed, figures::kPomColour},
+                    verdict_dots(rows, "alternating", false, "not of the drive's period", figures::kLnmColour)}});
+  }
+  for (double contact = 0.0; contact <= contacts; contact += 1.0) {
+    const Rows rows(values, contact);
+    panels.push_back({.title = fmt::format("contact {}: relative difference of the two", contact + 1.0),
+                      .series = {verdict_dots(rows, "sine_gap", true, "", figures::kFullColour),
+                                 verdict_dots(rows, "sine_gap", false, "", figures::kLnmColour)}});
+  }
+  const std::string unit = store.entry(group + "/parameter").meaning.units;
+  return figures::panel_grid(panels, {.columns = static_cast<int>(contacts) + 1,
+                                      .panel_height = 330,
+                                      .x_label = figures::axis_label(store.text(root + "/label"), unit),
+                                      .y_label = {},
+                                      .shared_y = false});
+}
+
+}  // namespace
+
+std::vector<FileFigure> map_figures_of(const StoreReader& store) {
+  std::vector<FileFigure> out;
+  const auto add = [&](const char* group, std::string name, std::string what, auto draw) {
+    if (store.has(group)) out.push_back({std::move(name), std::move(what), [&store, draw] { return draw(store); }});
+  };
+  add(kMapGroup, "crossings", "regime changes of period-1 orbits", crossings);
+  add(kMapGroup, "multipliers", "largest |multiplier|", multipliers);
+  add(kMapGroup, "orders", "periods of the orbits", orders);
+  add(kMapGroup, "amplitudes", "alternating amplitudes", amplitudes);
+  add(kStrobeGroup, "strobe", "motion seen once per period against the key", strobe_diagram);
+  add(kStrobeGroup, "amplitudes", "alternating and effective amplitudes against the key", strobe_amplitudes);
+  return out;
+}
+
+}  // namespace slipmode::cli

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "cli/file_figures.hpp"
+
+#include <vector>
+
+namespace slipmode::cli {
+
+/// Figures of a result of `slipmode orbit map`; none when the file holds no map.
+[[nodiscard]] std::vector<FileFigure> map_figures_of(const scene::StoreReader& store);
+
+}  // namespace slipmode::cli
