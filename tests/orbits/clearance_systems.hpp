@@ -1,0 +1,62 @@
+#pragma once
+
+#include "dynamics/simulate.hpp"
+#include "fem/masses.hpp"
+#include "orbits/continuation.hpp"
+
+#include <Eigen/Core>
+#include <numbers>
+
+namespace slipmode::orbits {
+
+/// Table 2.1 of S0: m = 1, c = 0.05, stops k = 4, c = 0.5, gap 1, force A sin ωt.
+struct Backlash {
+  double amplitude = 1.0, omega = 1.0;
+  friction::ContactLoss loss = friction::ContactLoss::kZeroForce;
+
+  [[nodiscard]] static friction::Drive drive(double amplitude, double omega) {
+    return friction::Force{omega, {{.amplitude = amplitude}}};
+  }
+  [[nodiscard]] dynamics::HybridSystem system() const {
+    const friction::Stop stop{.stiffness = 4.0, .damping = 0.5, .gap = 1.0};
+    return {fem::masses({.links = {{.damping = 0.05}}}),
+            {{Eigen::VectorXd::Ones(1), friction::Clearance{stop, stop, loss}}},
+            drive(amplitude, omega),
+            {},
+            Eigen::MatrixXd::Ones(1, 1)};
+  }
+};
+
+/// Table 2.2 of S0 with c_s = 0.5 (see docs/theory/orbits.md): four masses, backlash between the second and the third.
+[[nodiscard]] inline dynamics::HybridSystem four_masses(double omega) {
+  const friction::Stop stop{.stiffness = 4.0, .damping = 0.5, .gap = 1.0};
+  return {fem::masses({.mass = {0.5, 1.0, 1.0, 0.5},
+                       .links = {{0, 1, 0.2, 0.02}, {1, 2, 0.2, 0.02}, {2, 3, 0.0, 0.05}, {3, 4, 0.2, 0.02}}}),
+          {{Eigen::Vector4d(0.0, -1.0, 1.0, 0.0), friction::Clearance{stop, stop}}},
+          Backlash::drive(1.0, omega),
+          {},
+          Eigen::Vector4d::Unit(0)};
+}
+
+/// S2 (1): x″ + 2ξ x′ + g(x) = a cos ωt, g = x ∓ 1 beyond ±1.
+[[nodiscard]] inline dynamics::HybridSystem play(double xi, double a, double omega) {
+  const friction::Stop stop{.stiffness = 1.0, .gap = 1.0};
+  return {fem::masses({.links = {{.damping = 2.0 * xi}}}),
+          {{Eigen::VectorXd::Ones(1), friction::Clearance{stop, stop, friction::ContactLoss::kGap}}},
+          friction::Force{omega, {{.amplitude = a, .phase = std::numbers::pi / 2.0}}},
+          {},
+          Eigen::MatrixXd::Ones(1, 1)};
+}
+
+/// The same system under A sin ωt at other frequencies: regimes are shared.
+[[nodiscard]] inline SystemFamily over_frequency(const dynamics::HybridSystem& base, double amplitude = 1.0) {
+  return [base, amplitude](double omega) { return base.with_drive(Backlash::drive(amplitude, omega)); };
+}
+
+[[nodiscard]] inline dynamics::State displaced(const dynamics::HybridSystem& system, Eigen::Index dof, double x) {
+  dynamics::State state = system.rest();
+  state.q[dof] = x;
+  return state;
+}
+
+}  // namespace slipmode::orbits
