@@ -40,7 +40,7 @@ EventResolver::EventResolver(const HybridSystem& system, const ModalModel& model
     internal_.push_back(system.internal_begin(c));
     oscillator_.push_back(internal_.back() + friction::internal_states(contact) - 2);
   }
-  for (const ContactForces& law : laws_) frictionless_ &= !law.sticks();
+  for (const ContactForces& law : laws_) clearances_only_ &= law.kind == ContactForces::Kind::kClearance;
   plain_ = laws_.size() == 1 && !laws_[0].needs_closed_form();
 }
 
@@ -208,6 +208,10 @@ bool EventResolver::at_belt_speed(double time, int c, const double* x) const {
 }
 
 void EventResolver::start(HybridPoint& point) const {
+  if (clearances_only_) {
+    for (int c = 0; c < model_.contacts; ++c) point.force(c) = applied_force(point, c);
+    return;
+  }
   for (std::size_t c = 0; c < laws_.size(); ++c) {
     const auto i = static_cast<int>(c);
     if (laws_[c].varies && normal_load(point, i) < 0.0) point.modes[c] = ContactMode::kSeparated;

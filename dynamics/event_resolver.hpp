@@ -130,7 +130,7 @@ class EventResolver {
   std::vector<Eigen::Index> internal_;    ///< of each contact's first own state
   std::vector<Eigen::Index> oscillator_;  ///< of its normal oscillator's, if it has one
   bool plain_ = true;                     ///< one rigid contact, untilted, under constant load
-  bool frictionless_ = true;              ///< no contact ever sticks
+  bool clearances_only_ = true;
   int max_events_per_window_;
   double zeno_window_;
   std::vector<Event> events_;

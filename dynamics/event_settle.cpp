@@ -47,7 +47,7 @@ void EventResolver::settle(HybridPoint& point, const Reached& reached) {
     point.multiplicity[i] = point.modes[i] == ContactMode::kStick ? 0 : 2;
   } else if (plain_ && reached.contact == 0) {
     settle_single(point);
-  } else if (frictionless_ && reached.kind == GuardKind::kStop) {
+  } else if (clearances_only_ && reached.kind == GuardKind::kStop) {
     settle_stop(point, reached);
   } else {
     settle_coupled(point, reached);

@@ -28,7 +28,7 @@ fem::Structure oscillator(double k, double c) {
 void expect_reference(const HybridSystem& system, const State& start, double duration, double tolerance) {
   const Trajectory run = simulate(system, start, {.duration = duration});
   ClearanceReference reference(system, start);
-  reference.run(static_cast<long double>(duration), 5e-4L);
+  reference.run(static_cast<long double>(duration), 1e-3L);
   ASSERT_EQ(run.events.size(), reference.changes().size());
   for (std::size_t k = 0; k < run.events.size(); ++k) {
     EXPECT_NEAR(run.events[k].time, reference.changes()[k].time, tolerance);
@@ -50,13 +50,13 @@ TEST(Clearance, SourcesAgreeWithRungeKutta) {
 
 TEST(Clearance, RandomStructuresAgreeWithRungeKutta) {
   int events = 0;
-  for (unsigned seed = 0; seed < 60; ++seed) {
+  for (unsigned seed = 0; seed < 40; ++seed) {
     SCOPED_TRACE(seed);
     const HybridSystem system = random_clearances(seed);
     expect_reference(system, system.rest(), 12.0, 1e-7);
     events += static_cast<int>(simulate(system, system.rest(), {.duration = 12.0}).statistics.events);
   }
-  EXPECT_GT(events, 400);  // the scenes are not idle
+  EXPECT_GT(events, 250);  // the scenes are not idle
 }
 
 TEST(Clearance, RandomStructuresCloseTheirEnergy) {
