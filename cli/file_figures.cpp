@@ -7,6 +7,8 @@
 #include "cli/figures/phase_portraits.hpp"
 #include "cli/figures/style.hpp"
 #include "cli/figures/time_history.hpp"
+#include "cli/map_figures.hpp"
+#include "cli/orbit_figures.hpp"
 #include "cli/portraits.hpp"
 #include "cli/shaken_figures.hpp"
 #include "cli/shaken_model.hpp"
@@ -238,6 +240,15 @@ std::vector<FileFigure> belt_figures_of(const StoreReader& store) {
 }  // namespace
 
 std::vector<FileFigure> figures_of(const StoreReader& store) {
+  if (std::vector<FileFigure> maps = map_figures_of(store); !maps.empty()) return maps;
+  std::vector<FileFigure> orbits = orbit_figures_of(store);
+  if (!orbits.empty()) {
+    if (store.has(scene::kTrajectoryGroup)) {
+      orbits.push_back(
+          {"history", "displacement, velocity and force of the first contact", [&store] { return history(store); }});
+    }
+    return orbits;
+  }
   if (!store.has("provenance")) return belt_figures_of(store);
   if (!is_shaken(scene::load_scene_of(store))) return belt_figures_of(store);
   std::vector<FileFigure> out = shaken_figures_of(store);

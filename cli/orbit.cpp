@@ -6,7 +6,7 @@ std::vector<Verb> add_orbit(CLI::App& app) {
   CLI::App* orbit = app.add_subcommand("orbit", "periodic orbits: find and follow them");
   orbit->require_subcommand(1);
   orbit->footer("Example:\n  slipmode orbit find datasets/backlash_sdof/scene.toml\nHelp: slipmode orbit VERB --help");
-  return {add_orbit_find(*orbit)};
+  return {add_orbit_find(*orbit), add_orbit_continue(*orbit), add_orbit_map(*orbit)};
 }
 
 }  // namespace slipmode::cli

@@ -15,25 +15,6 @@ struct Arguments {
   std::string output;
 };
 
-/// How far a search came that found nothing; what to try is in its message.
-Report not_found(const orbits::ShootingResult& result) {
-  const orbits::PeriodicOrbit& best = result.orbit;
-  Report report;
-  report.exit_code = kNumericalFailure;
-  report.text = fmt::format("no orbit from this guess ({}): {}", orbits::to_string(result.status), result.message);
-  report.data = {{"verb", "orbit find"},
-                 {"message", report.text},
-                 {"reason", orbits::to_string(result.status)},
-                 {"period", best.period},
-                 {"residual", best.residual},
-                 {"iterations", best.iterations},
-                 {"residuals", best.residuals},
-                 {"best",
-                  {{"displacement", std::vector<double>(best.start.q.begin(), best.start.q.end())},
-                   {"velocity", std::vector<double>(best.start.v.begin(), best.start.v.end())}}}};
-  return report;
-}
-
 /// The orbit and one period of it, sampled.
 void store(const std::string& path, const scene::Scene& scene, const dynamics::HybridSystem& system,
            const orbits::PeriodicOrbit& orbit) {
@@ -56,7 +37,7 @@ Report run(const Session& session, const Arguments& arguments) {
   const SearchStart start = search_start(arguments.search, scene, system);
   session.check_interrupt();
   const orbits::ShootingResult result = orbits::shoot(system, start.guess, start.options);
-  if (!result.converged()) return not_found(result);
+  if (!result.converged()) return not_found("orbit find", result);
 
   const std::vector<orbits::Amplitude> amplitudes = contact_amplitudes(system, result.orbit);
   Report report;

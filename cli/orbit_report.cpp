@@ -146,4 +146,20 @@ std::string orbit_text(const dynamics::HybridSystem& system, const PeriodicOrbit
   return text + amplitude_table(system, amplitudes);
 }
 
+Report not_found(const std::string& verb, const orbits::ShootingResult& result) {
+  const orbits::PeriodicOrbit& best = result.orbit;
+  Report report;
+  report.exit_code = kNumericalFailure;
+  report.text = fmt::format("no orbit from this guess ({}): {}", orbits::to_string(result.status), result.message);
+  report.data = {{"verb", verb},
+                 {"message", report.text},
+                 {"reason", orbits::to_string(result.status)},
+                 {"period", best.period},
+                 {"residual", best.residual},
+                 {"iterations", best.iterations},
+                 {"residuals", best.residuals},
+                 {"best", {{"displacement", list(best.start.q)}, {"velocity", list(best.start.v)}}}};
+  return report;
+}
+
 }  // namespace slipmode::cli

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cli/session.hpp"
-#include "orbits/periodic_orbit.hpp"
+#include "orbits/shooting.hpp"
 
 #include <string>
 #include <vector>
@@ -25,5 +25,8 @@ namespace slipmode::cli {
 /// The same for people.
 [[nodiscard]] std::string orbit_text(const dynamics::HybridSystem& system, const orbits::PeriodicOrbit& orbit,
                                      const std::vector<orbits::Amplitude>& amplitudes);
+
+/// How far a search came that found no orbit; what to try is in its message.
+[[nodiscard]] Report not_found(const std::string& verb, const orbits::ShootingResult& result);
 
 }  // namespace slipmode::cli

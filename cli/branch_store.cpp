@@ -1,0 +1,169 @@
+#include "cli/branch_store.hpp"
+
+#include "cli/orbit_report.hpp"
+
+#include <fmt/format.h>
+#include <array>
+
+namespace slipmode::cli {
+namespace {
+
+using orbits::BranchPoint;
+using orbits::PeriodicOrbit;
+
+template <class Get>
+std::vector<double> gather(const std::vector<BranchPoint>& points, Get get) {
+  std::vector<double> values;
+  values.reserve(points.size());
+  for (const BranchPoint& point : points) values.push_back(get(point));
+  return values;
+}
+
+/// Columns of the contacts' displacements: "alternating_1" and so on.
+std::vector<scene::Column> amplitude_columns(const std::vector<BranchPoint>& points,
+                                             const orbits::SystemFamily& family) {
+  struct Measure {
+    const char* name;
+    const char* what;
+    double orbits::Amplitude::*value;
+  };
+  constexpr std::array<Measure, 5> kMeasures = {
+      {{"min", "least displacement of contact", &orbits::Amplitude::min},
+       {"max", "greatest displacement of contact", &orbits::Amplitude::max},
+       {"mean", "mean displacement of contact", &orbits::Amplitude::mean},
+       {"alternating", "half the range of contact", &orbits::Amplitude::alternating},
+       {"effective", "rms about the mean of contact", &orbits::Amplitude::effective}}};
+  std::vector<std::vector<orbits::Amplitude>> all;
+  for (const BranchPoint& point : points) all.push_back(contact_amplitudes(family(point.parameter), point.orbit));
+  std::vector<scene::Column> columns;
+  const std::size_t contacts = all.empty() ? 0 : all.front().size();
+  for (std::size_t c = 0; c < contacts; ++c) {
+    for (const Measure& measure : kMeasures) {
+      std::vector<double> values;
+      for (const auto& sizes : all) values.push_back(sizes[c].*measure.value);
+      columns.push_back({fmt::format("{}_{}", measure.name, c + 1),
+                         {"m", fmt::format("{} {}", measure.what, c + 1)},
+                         std::move(values)});
+    }
+  }
+  return columns;
+}
+
+scene::Table point_table(const std::string& key, const std::vector<BranchPoint>& points,
+                         const orbits::SystemFamily& family) {
+  const auto add = [&points](const char* name, const char* units, const char* what, auto get) {
+    return scene::Column{name, {units, what}, gather(points, get)};
+  };
+  std::vector<std::string> stability, words;
+  for (const BranchPoint& point : points) {
+    stability.emplace_back(orbits::to_string(point.orbit.stability));
+    words.push_back(point.orbit.word);
+  }
+  scene::Table table{.description = "orbits in order along the branch", .columns = {}};
+  table.columns = {
+      {"parameter", {"", key}, gather(points, [](const BranchPoint& p) { return p.parameter; })},
+      add("arclength", "1", "along the branch, scaled", [](const BranchPoint& p) { return p.arclength; }),
+      add("period", "s", "period", [](const BranchPoint& p) { return p.orbit.period; }),
+      add("leading_modulus", "1", "largest |multiplier| without trivial ones",
+          [](const BranchPoint& p) { return p.orbit.leading_modulus; }),
+      {"stability", {"", "stability"}, stability},
+      add("crossings", "", "events that change a force law", [](const BranchPoint& p) { return p.orbit.crossings; }),
+      add("symmetric", "", "1: x(T/2) = -x(0)", [](const BranchPoint& p) { return p.orbit.symmetric ? 1.0 : 0.0; }),
+      add("family", "", "parameters of the family it is one of",
+          [](const BranchPoint& p) { return static_cast<double>(p.orbit.family.cols()); }),
+      add("residual", "1", "mismatch after a period", [](const BranchPoint& p) { return p.orbit.residual; }),
+      {"word", {"", "regimes"}, words}};
+  for (scene::Column& column : amplitude_columns(points, family)) table.columns.push_back(std::move(column));
+  return table;
+}
+
+scene::Table special_table(const orbits::Branch& branch, const orbits::SystemFamily& family) {
+  std::vector<std::string> kind, note;
+  std::vector<double> before, parameter, uncertainty, real, imaginary, amplitude;
+  for (const orbits::SpecialPoint& point : branch.special) {
+    kind.emplace_back(orbits::to_string(point.kind));
+    before.push_back(static_cast<double>(point.before));
+    note.push_back(point.note);
+    parameter.push_back(point.parameter);
+    uncertainty.push_back(point.uncertainty);
+    real.push_back(point.multiplier.real());
+    imaginary.push_back(point.multiplier.imag());
+    amplitude.push_back(contact_amplitudes(family(point.parameter), point.orbit).front().alternating);
+  }
+  return {.description = "points where the branch changes its kind",
+          .columns = {{"kind", {"", "what happens"}, kind},
+                      {"before", {"", "row of `points` it follows, from 0"}, before},
+                      {"parameter", {"", "where"}, parameter},
+                      {"uncertainty", {"", "width of the last bracket"}, uncertainty},
+                      {"multiplier", {"1", "the critical one, real part"}, real},
+                      {"multiplier_imaginary", {"1", "its imaginary part"}, imaginary},
+                      {"alternating", {"m", "half the range of the first contact's displacement"}, amplitude},
+                      {"note", {"", "what was seen"}, note}}};
+}
+
+/// Multipliers of all points: a row each, real parts, then imaginary ones.
+Eigen::MatrixXd multiplier_rows(const std::vector<BranchPoint>& points) {
+  if (points.empty()) return {};
+  const Eigen::Index n = points.front().orbit.multipliers.size();
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(points.size()), 2 * n);
+  for (Eigen::Index k = 0; k < rows.rows(); ++k) {
+    const Eigen::VectorXcd& own = points[static_cast<std::size_t>(k)].orbit.multipliers;
+    rows.row(k) << own.real().transpose(), own.imag().transpose();
+  }
+  return rows;
+}
+
+/// Starting states of all points, a row each: displacements, then velocities.
+Eigen::MatrixXd start_rows(const std::vector<BranchPoint>& points) {
+  if (points.empty()) return {};
+  const Eigen::Index n = points.front().orbit.start.q.size();
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(points.size()), 2 * n);
+  for (Eigen::Index k = 0; k < rows.rows(); ++k) {
+    const dynamics::State& start = points[static_cast<std::size_t>(k)].orbit.start;
+    rows.row(k) << start.q.transpose(), start.v.transpose();
+  }
+  return rows;
+}
+
+}  // namespace
+
+void store_branches(scene::StoreWriter& writer, const std::string& key, const std::vector<NamedBranch>& branches,
+                    const orbits::SystemFamily& family) {
+  writer.describe_group("branches", "branches of periodic orbits over a parameter");
+  writer.write("branches/key", key, {"", "the parameter: a key of the scene"});
+  for (std::size_t k = 0; k < branches.size(); ++k) {
+    const auto& [title, branch] = branches[k];
+    const std::string group = fmt::format("branches/{}", k);
+    writer.describe_group(group, "one branch");
+    writer.write(group + "/title", title, {"", "which branch"});
+    writer.write(group + "/end", std::string(orbits::to_string(branch.end)), {"", "why it ends"});
+    writer.write(group + "/reason", branch.reason, {"", "the same in a sentence"});
+    scene::save(writer, group + "/points", point_table(key, branch.points, family));
+    scene::save(writer, group + "/special", special_table(branch, family));
+    writer.write(group + "/multipliers", multiplier_rows(branch.points),
+                 {"1", "Floquet multipliers, point x (real parts, imaginary parts)"});
+    writer.write(group + "/start", start_rows(branch.points),
+                 {"", "where each orbit starts, point x (displacements, velocities)"});
+  }
+}
+
+std::vector<StoredBranch> load_branches(const scene::StoreReader& store) {
+  std::vector<StoredBranch> branches;
+  for (std::size_t k = 0; store.has(fmt::format("branches/{}", k)); ++k) {
+    const std::string group = fmt::format("branches/{}", k);
+    StoredBranch branch{.title = store.text(group + "/title"),
+                        .end = store.text(group + "/end"),
+                        .reason = store.text(group + "/reason"),
+                        .points = scene::load_table(store, group + "/points"),
+                        .special = scene::load_table(store, group + "/special"),
+                        .modulus = {}};
+    const Eigen::MatrixXd parts = store.matrix(group + "/multipliers");
+    const Eigen::Index n = parts.cols() / 2;
+    branch.modulus = (parts.leftCols(n).array().square() + parts.rightCols(n).array().square()).sqrt();
+    branches.push_back(std::move(branch));
+  }
+  if (branches.empty()) store.fail("branches", "the file holds no branch; make one with 'slipmode orbit continue'");
+  return branches;
+}
+
+}  // namespace slipmode::cli

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "cli/session.hpp"
+#include "orbits/continuation.hpp"
+#include "scene/table.hpp"
+
+#include <string>
+#include <vector>
+
+namespace slipmode::cli {
+
+/// A followed branch with where it came from.
+struct NamedBranch {
+  std::string title;  ///< "main branch", "from symmetry breaking at 0.7017"
+  orbits::Branch branch;
+};
+
+/// Writes the group `branches`: one sub-group per branch with its points, special points and why it ended.
+/// @param family  gives the systems whose contacts' amplitudes are measured
+void store_branches(scene::StoreWriter& writer, const std::string& key, const std::vector<NamedBranch>& branches,
+                    const orbits::SystemFamily& family);
+
+/// What figures need of a stored branch.
+struct StoredBranch {
+  std::string title, end, reason;
+  scene::Table points, special;
+  Eigen::MatrixXd modulus;  ///< |multiplier| by size [points x N]
+};
+
+/// @throws InvalidInput  when the file holds no branches, or damaged ones
+[[nodiscard]] std::vector<StoredBranch> load_branches(const scene::StoreReader& store);
+
+}  // namespace slipmode::cli

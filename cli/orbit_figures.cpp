@@ -1,0 +1,186 @@
+#include "cli/orbit_figures.hpp"
+
+#include "cli/branch_store.hpp"
+#include "cli/figures/panels.hpp"
+#include "cli/figures/response_diagram.hpp"
+#include "cli/figures/style.hpp"
+#include "cli/units.hpp"
+#include "scene/orbit_records.hpp"
+#include "scene/provenance.hpp"
+#include "scene/records.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+
+namespace slipmode::cli {
+namespace {
+
+using figures::Figure;
+using figures::Panel;
+using figures::Series;
+using scene::StoreReader;
+
+constexpr std::string_view kStopColour = "#999999";
+
+Eigen::VectorXd to_vector(const std::vector<double>& values) {
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+Series straight(double x0, double y0, double x1, double y1, Series::Look look) {
+  return {"", Eigen::VectorXd{{x0, x1}}, Eigen::VectorXd{{y0, y1}}, look, kStopColour};
+}
+
+/// A stop as S0 Figure 2.2 draws its subspace: met at the gap, let go where its force is zero.
+/// @param side  +1 the right stop, −1 the left one
+void add_stop(Panel& panel, const friction::Stop& stop, friction::ContactLoss loss, double side, double top_speed,
+              double reach) {
+  const double gap = side * stop.gap;
+  panel.series.push_back(straight(gap, 0.0, gap, side * top_speed, Series::Look::kLine));
+  if (loss == friction::ContactLoss::kGap || stop.damping == 0.0) {
+    panel.series.push_back(straight(gap, 0.0, gap, -side * top_speed, Series::Look::kLine));
+    return;
+  }
+  const double depth = std::min(reach, top_speed * stop.damping / stop.stiffness);
+  const double speed = depth * stop.stiffness / stop.damping;
+  panel.series.push_back(straight(gap, 0.0, gap + side * depth, -side * speed, Series::Look::kDashed));
+}
+
+Figure orbit_portrait(const StoreReader& store) {
+  const scene::Scene scene = scene::load_scene_of(store);
+  const Units units = Units::of(scene.units);
+  const dynamics::Trajectory run = scene::load_trajectory(store);
+  std::vector<Panel> panels;
+  for (Eigen::Index c = 0; c < run.contact_q.rows(); ++c) {
+    const scene::ContactSpec& contact = scene.contacts[static_cast<std::size_t>(c)];
+    const Eigen::VectorXd y = run.contact_q.row(c), v = run.contact_v.row(c);
+    Panel panel{.title = contact.name, .series = {}};
+    if (const auto* law = std::get_if<friction::Clearance>(&contact.law)) {
+      const double top = v.cwiseAbs().maxCoeff(), widest = y.cwiseAbs().maxCoeff();
+      const auto beyond = [widest](const friction::Stop& stop) { return std::max(0.0, widest - stop.gap); };
+      if (law->left) add_stop(panel, *law->left, law->loss, -1.0, top, beyond(*law->left));
+      if (law->right) add_stop(panel, *law->right, law->loss, 1.0, top, beyond(*law->right));
+    }
+    panel.series.push_back({"", y, v, Series::Look::kLine, figures::kFullColour});
+    panel.x_label = figures::axis_label("displacement at " + scene::to_string(contact.at), units.length);
+    panels.push_back(std::move(panel));
+  }
+  return figures::panel_grid(panels, {.columns = panels.size() > 1 ? 2 : 1,
+                                      .panel_height = 560,
+                                      .y_label = figures::axis_label("velocity", units.velocity),
+                                      .shared_x = false,
+                                      .shared_y = false});
+}
+
+Figure orbit_multipliers(const StoreReader& store) {
+  const orbits::PeriodicOrbit orbit = scene::load_orbit(store);
+  Eigen::MatrixXd parts(orbit.multipliers.size(), 2);
+  parts << orbit.multipliers.real(), orbit.multipliers.imag();
+  return figures::multiplier_plane(parts, scene::load_scene_of(store).title);
+}
+
+/// A branch of a stored table; colours tell the main branch from those that leave it.
+std::string_view colour_of(std::size_t branch) { return branch == 0 ? figures::kFullColour : figures::kPomColour; }
+
+std::vector<bool> stable_points(const scene::Table& points) {
+  std::vector<bool> stable;
+  for (const std::string& word : points.texts("stability")) {
+    stable.push_back(word != orbits::to_string(orbits::Stability::kUnstable));
+  }
+  return stable;
+}
+
+std::string key_label(const scene::Scene& scene, const std::string& key) {
+  if (key == "drive.omega") return figures::axis_label("drive frequency {/Symbol w}", Units::of(scene.units).angular);
+  if (key == "drive.amplitude") return figures::axis_label("drive amplitude", Units::of(scene.units).force);
+  if (key == "drive.speed") return figures::axis_label("belt speed", Units::of(scene.units).velocity);
+  return figures::literal(key);
+}
+
+/// Points and special points of a branch in one sequence: where stability changes, the curve changes its look.
+figures::ResponseBranch response_branch(const StoredBranch& branch, std::string_view colour) {
+  const std::vector<bool> stable = stable_points(branch.points);
+  const auto& before = branch.special.numbers("before");
+  std::vector<double> parameter, value;
+  figures::ResponseBranch curve{.title = branch.title, .parameter = {}, .value = {}, .stable = {}, .colour = colour};
+  for (std::size_t k = 0; k < stable.size(); ++k) {
+    parameter.push_back(branch.points.numbers("parameter")[k]);
+    value.push_back(branch.points.numbers("alternating_1")[k]);
+    curve.stable.push_back(stable[k]);
+    for (std::size_t s = 0; s < before.size() && k + 1 < stable.size(); ++s) {
+      if (before[s] != static_cast<double>(k)) continue;
+      parameter.push_back(branch.special.numbers("parameter")[s]);
+      value.push_back(branch.special.numbers("alternating")[s]);
+      curve.stable.push_back(stable[k]);
+    }
+  }
+  curve.parameter = to_vector(parameter);
+  curve.value = to_vector(value);
+  return curve;
+}
+
+/// Amplitude of the first contact over the key.
+Figure response(const StoreReader& store) {
+  const scene::Scene scene = scene::load_scene_of(store);
+  std::vector<figures::ResponseBranch> curves;
+  std::vector<figures::ResponseMark> marks;
+  const std::vector<StoredBranch> branches = load_branches(store);
+  for (std::size_t k = 0; k < branches.size(); ++k) {
+    const StoredBranch& branch = branches[k];
+    if (branch.points.rows() > 0) curves.push_back(response_branch(branch, colour_of(k)));
+    if (k == 1 && !curves.empty()) curves.back().title = "branches that leave it";
+    if (k > 1 && !curves.empty()) curves.back().title.clear();
+    for (std::size_t i = 0; i < branch.special.rows(); ++i) {
+      marks.push_back({branch.special.texts("kind")[i], branch.special.numbers("parameter")[i],
+                       branch.special.numbers("alternating")[i]});
+    }
+  }
+  const std::string place = scene::to_string(scene.contacts.front().at);
+  return figures::response_diagram(
+      curves, marks,
+      {.parameter = key_label(scene, store.text("branches/key")),
+       .value = figures::axis_label("half the range of displacement at " + place, Units::of(scene.units).length)});
+}
+
+/// |multipliers| over the key, the unit circle's modulus as a line.
+Figure branch_multipliers(const StoreReader& store) {
+  constexpr double kLeast = 1e-4;  // smaller ones are of no account for stability, and would stretch the axis
+  constexpr std::size_t kMost = 6;
+  const scene::Scene scene = scene::load_scene_of(store);
+  std::vector<Panel> panels;
+  const std::vector<StoredBranch> branches = load_branches(store);
+  for (const StoredBranch& branch : branches) {
+    if (branch.points.rows() == 0 || panels.size() == kMost) continue;
+    const Eigen::VectorXd parameter = to_vector(branch.points.numbers("parameter"));
+    Panel panel{.title = branch.title, .series = {}};
+    panel.series.push_back(straight(parameter.minCoeff(), 1.0, parameter.maxCoeff(), 1.0, Series::Look::kDashed));
+    for (Eigen::Index m = 0; m < branch.modulus.cols(); ++m) {
+      const Eigen::ArrayXd own = branch.modulus.col(m);
+      const Eigen::VectorXd shown = (own < kLeast).select(std::nan(""), own);
+      panel.series.push_back({"", parameter, shown, Series::Look::kLine, figures::kFullColour});
+    }
+    panels.push_back(std::move(panel));
+  }
+  return figures::panel_grid(panels, {.columns = 1,
+                                      .panel_height = panels.size() > 1 ? 320 : 560,
+                                      .x_label = key_label(scene, store.text("branches/key")),
+                                      .y_label = "|multiplier| [–]",
+                                      .shared_y = false,
+                                      .log_y = true});
+}
+
+}  // namespace
+
+std::vector<FileFigure> orbit_figures_of(const StoreReader& store) {
+  std::vector<FileFigure> out;
+  const auto add = [&](const std::string& group, std::string name, std::string what, auto draw) {
+    if (store.has(group)) out.push_back({std::move(name), std::move(what), [&store, draw] { return draw(store); }});
+  };
+  add(scene::kOrbitGroup, "orbit", "phase portrait of the orbit, stops drawn", orbit_portrait);
+  add(scene::kOrbitGroup, "multipliers", "Floquet multipliers and the unit circle", orbit_multipliers);
+  add("branches", "response", "amplitude over the key, unstable orbits dashed, special points marked", response);
+  add("branches", "multipliers", "moduli of the Floquet multipliers over the key", branch_multipliers);
+  return out;
+}
+
+}  // namespace slipmode::cli

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "cli/file_figures.hpp"
+
+#include <vector>
+
+namespace slipmode::cli {
+
+/// Figures of a stored orbit ("orbit", "multipliers") or of stored branches ("response", "multipliers"); none for other
+/// files.
+[[nodiscard]] std::vector<FileFigure> orbit_figures_of(const scene::StoreReader& store);
+
+}  // namespace slipmode::cli
