@@ -64,7 +64,7 @@ BranchEvaluation BranchSolver::evaluate(const BranchUnknowns& at) const {
   out.problem->use_scale(scale_);
   for (dynamics::State& node : out.at.point.nodes) out.problem->put_on_constraint(node);
   out.shooting = out.problem->evaluate(out.at.point);
-  out.columns = parameter_columns(out.at);
+  out.columns = parameter_columns(out.at, out.shooting);
   if (period_unknown()) {
     const std::vector<Eigen::MatrixXd> periods = out.problem->period_columns(out.shooting);
     for (std::size_t k = 0; k < out.columns.size(); ++k) {
@@ -84,7 +84,8 @@ BranchEvaluation BranchSolver::evaluate(const BranchUnknowns& at) const {
   return out;
 }
 
-std::vector<Eigen::MatrixXd> BranchSolver::parameter_columns(const BranchUnknowns& at) const {
+std::vector<Eigen::MatrixXd> BranchSolver::parameter_columns(const BranchUnknowns& at,
+                                                             const ShootingEvaluation& here) const {
   const double h = kDifferenceStep * range_;
   const auto ends_at = [&](double parameter) {
     BranchUnknowns moved_to{at.point, parameter, at.phase};
@@ -94,9 +95,15 @@ std::vector<Eigen::MatrixXd> BranchSolver::parameter_columns(const BranchUnknown
     problem.use_scale(scale_);
     return problem.ends_of(moved_to.point);
   };
-  const Eigen::MatrixXd slope = (ends_at(at.parameter + h) - ends_at(at.parameter - h)) * (range_ / (2.0 * h));
+  const Eigen::MatrixXd above = ends_at(at.parameter + h), below = ends_at(at.parameter - h);
   std::vector<Eigen::MatrixXd> columns;
-  for (Eigen::Index k = 0; k < slope.cols(); ++k) columns.emplace_back(slope.col(k));
+  for (Eigen::Index k = 0; k < above.cols(); ++k) {
+    const Eigen::VectorXd end = stacked(here.ends[static_cast<std::size_t>(k)]).cwiseQuotient(scale_);
+    const Eigen::VectorXd up = (above.col(k) - end) / kDifferenceStep, down = (end - below.col(k)) / kDifferenceStep;
+    // Where an event comes or goes within the step one side jumps: the other is right.
+    const bool jumps = (up - down).norm() > 0.1 * std::max(up.norm(), down.norm());
+    columns.emplace_back(!jumps ? Eigen::VectorXd(0.5 * (up + down)) : up.norm() < down.norm() ? up : down);
+  }
   return columns;
 }
 

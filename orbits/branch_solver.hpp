@@ -67,7 +67,8 @@ class BranchSolver {
 
  private:
   void set_times(BranchUnknowns& at, const dynamics::HybridSystem& system) const;
-  [[nodiscard]] std::vector<Eigen::MatrixXd> parameter_columns(const BranchUnknowns& at) const;
+  [[nodiscard]] std::vector<Eigen::MatrixXd> parameter_columns(const BranchUnknowns& at,
+                                                               const ShootingEvaluation& here) const;
 
   SystemFamily family_;
   ContinuationOptions options_;

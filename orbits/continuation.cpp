@@ -85,9 +85,8 @@ class Walk {
   /// The next point at a length s, if it is one of this branch.
   [[nodiscard]] std::optional<WatchedPoint> attempt(double s, int& out_iterations) const {
     const double share = current_.tangent[current_.tangent.size() - 1];
-    const double length = options_.arclength ? s : s / std::max(std::abs(share), 1e-12);
+    const double length = options_.arclength ? s : s / std::max(std::abs(share), 1e-9);
     const Eigen::VectorXd row = options_.arclength ? current_.tangent : solver_.parameter_row();
-    if (!options_.arclength && length > 100.0 * s) return std::nullopt;  // a fold: the parameter cannot be stepped
     const auto corrected = solver_.correct(solver_.moved(current_.at, length * current_.tangent, 0.0), row);
     if (!corrected) return std::nullopt;
     out_iterations = corrected->iterations;
