@@ -60,8 +60,8 @@ Figure crossings(const StoreReader& store) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   figures::HeatMapLayout layout = map_layout(store);
   layout.value_label = "regime changes per period";
-  layout.high = 24.0;
-  layout.steps = 13;
+  layout.high = 16.0;
+  layout.steps = 9;
   layout.missing = "no period 1";
   return figures::heat_maps(
       map_panels(store,
@@ -175,7 +175,7 @@ Figure strobe_amplitudes(const StoreReader& store) {
          .series = {{"alternating", x, rows.column("alternating"), figures::Series::Look::kLine, figures::kFullColour},
                     {"effective × √2", x, std::numbers::sqrt2 * rows.column("effective"),
                      figures::Series::Look::kDashed, figures::kPomColour},
-                    verdict_dots(rows, "alternating", false, "not of the drive's period", figures::kLnmColour)}});
+                    verdict_dots(rows, "alternating", false, "not period 1", figures::kLnmColour)}});
   }
   for (double contact = 0.0; contact <= contacts; contact += 1.0) {
     const Rows rows(values, contact);

@@ -76,7 +76,7 @@ std::string colour_tics(const HeatMapLayout& layout, const Scale& scale) {
   for (int k = 0; k <= count; k += every) {
     const double value = layout.low + k * (layout.high - layout.low) / count;
     const bool open = k + every > count && layout.steps > 1;
-    tics += fmt::format(", \"{}{:g}\" {:.9g}", open ? "≥ " : "", value, value);
+    tics += fmt::format(", \"{}{:.3g}\" {:.9g}", open ? "≥ " : "", value, value);
   }
   return tics + ")";
 }
@@ -117,7 +117,7 @@ Figure heat_maps(const std::vector<HeatMapPanel>& panels, const HeatMapLayout& l
   figure.command(fmt::format("set cbrange [{:.9g}:{:.9g}]", scale.bottom(), scale.colour_high()));
   figure.command(colour_tics(layout, scale));
   const double height = figure.height();
-  figure.command(fmt::format("set multiplot layout 1,{} margins 0.075,0.86,{:.4f},{:.4f} spacing 0.03,0", count,
+  figure.command(fmt::format("set multiplot layout 1,{} margins 0.075,0.83,{:.4f},{:.4f} spacing 0.03,0", count,
                              85.0 / height, 1.0 - 45.0 / height));
   for (int i = 0; i < count; ++i) {
     const HeatMapPanel& panel = panels[static_cast<std::size_t>(i)];
@@ -126,7 +126,11 @@ Figure heat_maps(const std::vector<HeatMapPanel>& panels, const HeatMapLayout& l
     figure.command(fmt::format("set xlabel \"{}\"", layout.x_label));
     figure.command(i == 0 ? fmt::format("set ylabel \"{}\"", layout.y_label) : std::string("unset ylabel"));
     figure.command(i == 0 ? "set format y '%g'" : "set format y ''");
-    figure.command(last ? fmt::format("set colorbox; set cblabel \"{}\"", layout.value_label) : "unset colorbox");
+    figure.command(last ? "set colorbox user origin screen 0.845,graph 0 size 0.022,graph 1" : "unset colorbox");
+    if (last) {
+      figure.command(
+          fmt::format("set label 1 \"{}\" at screen 0.99,{:.4f} right", layout.value_label, 1.0 - 22.0 / height));
+    }
     figure.command(fmt::format("set xrange {}; set yrange {}", cell_range(panel.x), cell_range(panel.y)));
     figure.command(fmt::format("plot {} using 1:2:3 with image", image_data(figure, panel, scale)));
   }
