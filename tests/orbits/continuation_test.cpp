@@ -2,6 +2,7 @@
 #include "clearance_systems.hpp"
 #include "core/errors.hpp"
 #include "fixtures/belt_oscillator.hpp"
+#include "fixtures/den_hartog.hpp"
 #include "fixtures/scenes.hpp"
 #include "orbits/floquet.hpp"
 
@@ -245,6 +246,36 @@ TEST(Continuation, NeimarkSackerBoundsTheNonPeriodicBandOfS1) {
   }
   const PeriodicOrbit inside = find_orbit(over_eta(0.85), branch.points[branch.points.size() / 2].orbit.start);
   EXPECT_EQ(inside.stability, Stability::kUnstable);
+}
+
+TEST(Continuation, StickAppearsWhereDenHartogsOscillatorFirstStops) {
+  // At the turning point the mass stays when spring and base pull less than friction: |−k x₀ + P sin ψ| = F, by
+  // bisection over the closed form without stops (valid down to there).
+  const auto excess = [](double base) {
+    const fixtures::DenHartog d{.base = base};
+    const double P = base * (d.mass * d.omega() * d.omega() - d.stiffness);
+    return std::abs(-d.stiffness * d.amplitude() + P * std::sin(d.shaker().phase)) - d.friction;
+  };
+  const fixtures::DenHartog start;
+  double low = 1.0001 * std::abs(start.deviation()), high = start.base;
+  ASSERT_LT(excess(low) * excess(high), 0.0);
+  for (int k = 0; k < 100; ++k) {
+    const double middle = 0.5 * (low + high);
+    (excess(middle) < 0 ? low : high) = middle;
+  }
+  const friction::Shaker shaker = start.shaker();
+  const HybridSystem base = fixtures::oscillator(start.mass, start.stiffness, 0.0,
+                                                 friction::Coulomb{start.friction, start.friction}, 1.0, shaker);
+  const auto over_amplitude = [&](double amplitude) {
+    return base.with_drive(friction::Shaker{amplitude, shaker.frequency_hz, 0.3});
+  };
+  const HybridSystem first = over_amplitude(1.0);
+  const PeriodicOrbit orbit = find_orbit(first, settle_guess(first, first.rest(), 60.0));
+  const Branch branch = continue_orbit(over_amplitude, orbit, 1.0, {.from = 0.8 * low, .to = 1.0, .direction = -1});
+  const std::vector<SpecialPoint> changes = of_kind(branch, SpecialKind::kStickChange);
+  ASSERT_GE(changes.size(), 1u);
+  EXPECT_NEAR(changes[0].parameter, low, 1e-8);
+  EXPECT_THAT(branch.points.back().orbit.word, testing::HasSubstr("0"));
 }
 
 /// The belt speed at which the free swing after a release just reaches the belt's speed again: an oscillator about the
