@@ -159,7 +159,7 @@ LyapunovExponent largest_exponent(const dynamics::HybridSystem& system, const dy
   check(options);
   dynamics::FlowOptions flow = options.flow;
   flow.audit = false;
-  dynamics::State reference = system.drive().shaker() != nullptr ? start : restarted(start);
+  dynamics::State reference = system.drive().period() ? start : restarted(start);
   if (options.transient > 0.0) reference = advance(system, reference, options.transient, flow);
 
   Random random(options.seed);
