@@ -23,7 +23,7 @@ struct Arguments {
 struct ModeSets {
   fem::Modes slipping;
   fem::Modes sticking;                    ///< every contact held; empty when nothing is left to move
-  fem::Modes compliant;                   ///< every contact held by its spring; empty unless each has one
+  fem::Modes compliant;                   ///< every contact held by its spring or stop; empty unless each has one
   std::vector<fem::TheoryEffect> theory;  ///< of a beam
 };
 
@@ -34,8 +34,9 @@ Eigen::MatrixXd contact_directions(const dynamics::HybridSystem& system) {
   return w;
 }
 
-/// Stiffness that holds a stuck contact; 0 for a law without a spring.
+/// Stiffness that holds a stuck contact, or one at its stop; 0 for a law without a spring.
 double contact_stiffness(const friction::Law& law) {
+  if (const auto* own = std::get_if<friction::Clearance>(&law)) return (own->right ? own->right : own->left)->stiffness;
   if (const auto* own = std::get_if<friction::CompliantCoulomb>(&law)) return own->stiffness;
   if (const auto* own = std::get_if<friction::Dahl>(&law)) return own->stiffness;
   if (const auto* own = std::get_if<friction::LuGre>(&law)) return own->stiffness;
@@ -47,7 +48,10 @@ ModeSets compute(const scene::Scene& scene, const dynamics::HybridSystem& system
   const Eigen::Index free = system.size() - w.cols();
   ModeSets sets{
       .slipping = fem::natural_modes(system.structure(), count), .sticking = {}, .compliant = {}, .theory = {}};
-  if (free > 0 && w.cols() > 0) {
+  const bool can_stick = std::ranges::none_of(system.contacts(), [](const friction::Contact& contact) {
+    return std::holds_alternative<friction::Clearance>(contact.law);
+  });
+  if (can_stick && free > 0 && w.cols() > 0) {
     sets.sticking = fem::constrained_modes(system.structure(), w, std::min(count, free));
   }
   Eigen::VectorXd stiffness(w.cols());
@@ -94,7 +98,7 @@ void store(const std::filesystem::path& path, const scene::Scene& scene, const M
   write("modes/slipping", sets.slipping, "natural modes with every contact slipping");
   if (sets.sticking.omega.size() > 0) write("modes/sticking", sets.sticking, "natural modes with every contact stuck");
   if (sets.compliant.omega.size() > 0) {
-    write("modes/compliant", sets.compliant, "natural modes with every contact held by its spring");
+    write("modes/compliant", sets.compliant, "natural modes with every contact held by its spring or stop");
   }
   writer.commit();
 }

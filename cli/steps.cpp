@@ -20,6 +20,14 @@ diagnostics::Model scene_model(const scene::Scene& scene, const dynamics::Hybrid
   return {.system = [system](double) { return system; }};
 }
 
+void refuse_force(const scene::Scene& scene, const std::string& verb) {
+  if (!scene.force) return;
+  throw InvalidInput(fmt::format(
+      "{}: drive.kind = \"force\": {} compares motions by their slips or by a shaker's cycles; valid: a belt "
+      "or a shaker, or 'slipmode orbit find', 'orbit continue', 'orbit map' for this scene",
+      scene.source.path, verb));
+}
+
 namespace {
 
 /// One run after the other, in order.
@@ -86,8 +94,11 @@ void store_ensemble(const std::filesystem::path& path, const scene::Scene& scene
     failure.push_back(member.failure);
   }
   const bool shaken = scene.drive.shaker() != nullptr;
-  members.columns = {shaken ? scene::Column{"frequency", {"Hz", "shaker frequency"}, parameter}
-                            : scene::Column{"speed", {units.velocity, "belt speed"}, parameter},
+  const scene::Column driven = shaken ? scene::Column{"frequency", {"Hz", "shaker frequency"}, parameter}
+                               : scene.force
+                                   ? scene::Column{"omega", {units.angular, "frequency of the force"}, parameter}
+                                   : scene::Column{"speed", {units.velocity, "belt speed"}, parameter};
+  members.columns = {driven,
                      {"start", {"", "number of the initial state"}, start},
                      {"snapshots", {"", "snapshots it gave"}, columns},
                      {"events", {"", "events located"}, events},

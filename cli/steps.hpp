@@ -13,6 +13,10 @@ namespace slipmode::cli {
 /// constant keeps its own speed.
 [[nodiscard]] diagnostics::Model scene_model(const scene::Scene& scene, const dynamics::HybridSystem& system);
 
+/// Verbs that compare motions by their slips, or at upward zeros of a shaker, have nothing to go by under a force.
+/// @throws InvalidInput  for a scene with a force, naming what to use
+void refuse_force(const scene::Scene& scene, const std::string& verb);
+
 /// Runs what [ensemble] asks for: `members` starts (the scene's initial state plus `spread` times standard normal
 /// numbers in every displacement and velocity) at each of its belt speeds or shaker frequencies; see
 /// scene::ensemble_states.

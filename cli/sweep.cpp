@@ -85,6 +85,7 @@ Report run(const Session& session, const SweepRequest& request) {
   require_writable(request.output);
   const Over over = parse_over(request.over);
   const scene::Scene scene = session.load(request.scene);
+  refuse_force(scene, "sweep");
   if (is_shaken(scene)) return run_shaken_sweep(session, request, over, scene);
   require_belt_request(request);
   const Subject swept = subject(scene, over.key, request.model);

@@ -3,6 +3,7 @@
 #include "cli/shaken_bases.hpp"
 #include "cli/shaken_model.hpp"
 #include "cli/shaken_validation.hpp"
+#include "cli/steps.hpp"
 #include "cli/validate_run.hpp"
 #include "cli/validation_setup.hpp"
 #include "cli/validation_store.hpp"
@@ -36,6 +37,7 @@ Report run_shaken(const Session& session, const Arguments& arguments, scene::Sce
 Report run(const Session& session, const Arguments& arguments) {
   require_writable(arguments.output);
   const scene::Scene scene = session.load(arguments.scene);
+  refuse_force(scene, "validate");
   const dynamics::HybridSystem full = scene::build_system(scene);
   if (is_shaken(scene)) return run_shaken(session, arguments, scene, full);
   const auto candidates = load_candidates(scene, full.structure(), arguments.input);

@@ -1,0 +1,183 @@
+// slipmode orbit find and continue: what they say, store and draw, and what they refuse.
+
+#include "cli/slipmode_process.hpp"
+#include "scene/orbit_records.hpp"
+#include "scene/store.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <cmath>
+#include <numbers>
+
+namespace {
+
+using namespace slipmode;
+using namespace slipmode::tests;
+using testing::HasSubstr;
+
+const std::string kSdof = SLIPMODE_SOURCE_DIR "/datasets/backlash_sdof/scene.toml";
+
+class OrbitVerbs : public testing::Test {
+ protected:
+  Outcome call(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), "orbit");
+    return slipmode_in(folder, arguments);
+  }
+  nlohmann::json json_of(std::vector<std::string> arguments, int exit_code = 0) const {
+    arguments.emplace_back("--json");
+    const Outcome outcome = call(arguments);
+    EXPECT_EQ(outcome.exit_code, exit_code) << outcome.err;
+    return outcome.json();
+  }
+  /// The call must be refused as bad input, naming these.
+  void expect_refused(const std::vector<std::string>& arguments, const std::vector<std::string>& said) const {
+    const Outcome outcome = call(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
+    for (const std::string& part : said) EXPECT_THAT(outcome.err, HasSubstr(part));
+  }
+
+  TemporaryFolder folder;
+};
+
+TEST_F(OrbitVerbs, EachHasHelpWithAnExample) {
+  for (const std::string verb : {"find", "continue", "map"}) {
+    const Outcome outcome = call({verb, "--help"});
+    EXPECT_EQ(outcome.exit_code, 0) << verb;
+    EXPECT_THAT(outcome.out, HasSubstr("slipmode orbit " + verb)) << verb;
+    for (const char* option : {"--json", "--set", "--threads", "--seed", "--quiet"}) {
+      EXPECT_THAT(outcome.out, HasSubstr(option)) << verb;
+    }
+  }
+}
+
+TEST_F(OrbitVerbs, FindsTheOrbitsOfTheSource) {
+  const auto unstable = json_of({"find", kSdof, "--start", "2.0,0.0"});
+  // S0 Table 4.1, orbit B, to the digits printed
+  EXPECT_NEAR(unstable["multipliers"][0][0], 1.4210, 5e-5);
+  EXPECT_NEAR(unstable["multipliers"][1][0], 0.1482, 5e-5);
+  EXPECT_EQ(unstable["stability"], "unstable");
+  EXPECT_EQ(unstable["word"], "g l g r");
+  EXPECT_TRUE(unstable["symmetric"]);
+  EXPECT_LE(unstable["residual"], 1e-11);
+  EXPECT_DOUBLE_EQ(unstable["period"], 2.0 * std::numbers::pi / 1.4);
+  const auto gap = json_of({"find", kSdof});
+  EXPECT_EQ(gap["family_dimension"], 1);
+  EXPECT_THAT(gap["family_note"].get<std::string>(), HasSubstr("family"));
+  // In the gap the motion is linear: amplitude A / (ω sqrt(ω² + c²)).
+  EXPECT_NEAR(gap["amplitudes"][0]["alternating"], 1.0 / (1.4 * std::sqrt(1.4 * 1.4 + 0.05 * 0.05)), 1e-10);
+}
+
+TEST_F(OrbitVerbs, PeriodIsAMultipleOfTheDrives) {
+  const auto third = json_of(
+      {"find", kSdof, "--set", "drive.omega=0.47", "--period", std::to_string(6.0 * std::numbers::pi / 0.47)}, 2);
+  EXPECT_THAT(third["message"].get<std::string>(), HasSubstr("no multiple"));  // six decimals are too few
+  const auto found = json_of({"find", kSdof, "--set", "drive.omega=0.47", "--order", "3"});
+  EXPECT_EQ(found["order"], 3);
+  EXPECT_EQ(found["stability"], "stable");
+  expect_refused({"find", kSdof, "--period", "5.0"}, {"--period 5", "no multiple of the drive's", "--order 1"});
+  expect_refused({"find", kSdof, "--period", "8.97597901026", "--order", "3"}, {"--order 3", "order 2"});
+}
+
+TEST_F(OrbitVerbs, StoresTheOrbitAndOnePeriodOfIt) {
+  const auto said = json_of({"find", kSdof, "--start", "2.5,0", "-o", "orbit.h5"});
+  const scene::StoreReader store(folder.path() / "orbit.h5");
+  const orbits::PeriodicOrbit orbit = scene::load_orbit(store);
+  EXPECT_EQ(orbit.period, said["period"]);
+  EXPECT_EQ(orbit.multipliers[0].real(), said["multipliers"][0][0]);
+  EXPECT_EQ(orbit.crossings, 4);
+  EXPECT_EQ(orbit.regimes.front().modes.size(), 1U);
+  const Eigen::MatrixXd q = store.matrix("trajectory/q");  // time x dof
+  EXPECT_NEAR(q(0, 0), q(q.rows() - 1, 0), 1e-9);
+  for (const char* figure : {"orbit", "multipliers"}) {
+    const std::string file = std::string(figure) + ".svg";
+    EXPECT_EQ(slipmode_in(folder, {"plot", "orbit.h5", "--figure", figure, "-o", file}).exit_code, 0);
+    EXPECT_TRUE(is_figure(folder.path() / file));
+  }
+}
+
+TEST_F(OrbitVerbs, SaysHowFarItCameWithoutAnOrbit) {
+  const auto said = json_of({"find", kSdof, "--start", "2.0,0.0", "--iterations", "2"}, 3);
+  EXPECT_EQ(said["status"], "failed");
+  EXPECT_EQ(said["residuals"].size(), 3U);
+  EXPECT_THAT(said["message"].get<std::string>(), HasSubstr("no orbit from this guess"));
+  EXPECT_EQ(said["best"]["displacement"].size(), 1U);
+}
+
+TEST_F(OrbitVerbs, ContinueFollowsTheResponseCurve) {
+  const auto said =
+      json_of({"continue", kSdof, "--over", "drive.omega=1.8:0.65", "--start", "2.5,0", "--switch", "-o", "branch.h5"});
+  ASSERT_EQ(said["branches"].size(), 2U);
+  const auto& main = said["branches"][0];
+  EXPECT_TRUE(main["complete"]);
+  std::vector<double> folds, breakings;
+  for (const auto& point : main["special"]) {
+    if (point["kind"] == "fold") folds.push_back(point["parameter"]);
+    if (point["kind"] == "symmetry breaking") breakings.push_back(point["parameter"]);
+  }
+  // S0, text to Figures 4.1 and 4.2: folds near 1 and 1.42, symmetry breaking near 0.7; half a unit of their digits
+  ASSERT_EQ(folds.size(), 2U);
+  EXPECT_NEAR(*std::min_element(folds.begin(), folds.end()), 1.0, 0.05);
+  EXPECT_NEAR(*std::max_element(folds.begin(), folds.end()), 1.42, 0.005);
+  ASSERT_EQ(breakings.size(), 1U);
+  EXPECT_NEAR(breakings[0], 0.7, 0.05);
+  for (const char* figure : {"response", "multipliers"}) {
+    const std::string file = std::string(figure) + ".png";
+    EXPECT_EQ(slipmode_in(folder, {"plot", "branch.h5", "--figure", figure, "-o", file}).exit_code, 0);
+    EXPECT_TRUE(is_figure(folder.path() / file));
+  }
+}
+
+TEST_F(OrbitVerbs, SequentialContinuationEndsAtAFoldAndKeepsWhatItFound) {
+  const auto said = json_of(
+      {"continue", kSdof, "--over", "drive.omega=1.2:1.8", "--start", "2.5,0", "--sequential", "-o", "branch.h5"}, 3);
+  EXPECT_TRUE(said["incomplete"]);
+  EXPECT_EQ(said["branches"][0]["end"], "lost");
+  const scene::StoreReader store(folder.path() / "branch.h5");
+  const Eigen::VectorXd parameter = store.vector("branches/0/points/parameter");
+  EXPECT_NEAR(parameter.maxCoeff(), 1.4208, 2e-3);  // the fold that arclength finds
+}
+
+TEST_F(OrbitVerbs, ContinueRefusesWhatIsNotContinuous) {
+  const auto over = [&](const std::string& range, const std::vector<std::string>& said) {
+    expect_refused({"continue", kSdof, "--over", range, "-o", "b.h5"}, said);
+  };
+  over("contact.0.loss=0:1", {"contact.0.loss", "not a number"});
+  over("time.samples_per_cycle=1:3", {"time.samples_per_cycle", "counts something"});
+  over("time.cycles=300:500", {"time.cycles", "not part of the model"});
+  over("drive.omega=1.2", {"drive.omega=1.2", "no range FROM:TO"});
+  over("drive.omega=1.2:1.2", {"no length"});
+  over("drive.omega=1.2:-1", {"drive.omega = -1", "a number > 0"});
+  over("drive.omeag=1.2:1", {"drive.omeag", "no such key"});
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "b.h5"));
+}
+
+TEST_F(OrbitVerbs, FindsTheChainsOwnPeriod) {
+  const std::string chain = SLIPMODE_SOURCE_DIR "/datasets/chain10/scene.toml";
+  const auto said = json_of({"find", chain, "--set", "drive.speed=0.45"});
+  // datasets/chain10/expected.toml: event-driven fixed-step integration by another program
+  EXPECT_NEAR(said["period"], 45.10211, 1e-5);
+  EXPECT_EQ(said["kind"], "self-excited");
+  EXPECT_EQ(said["trivial_multipliers"], 1);
+  EXPECT_GE(said["zero_multipliers"], 1);
+  expect_refused({"find", chain, "--order", "2"}, {"--order 2", "--period"});
+  expect_refused({"find", chain, "--start", "initial"}, {"--start initial", "--period"});
+  expect_refused({"find", chain, "--start", "1,2", "--period", "45"}, {"2 values for 10 degrees of freedom", "20"});
+}
+
+TEST_F(OrbitVerbs, OtherVerbsSayWhatToUseUnderAForce) {
+  const Outcome sweep = slipmode_in(folder, {"sweep", kSdof, "--over", "drive.omega=1:2:1", "-o", "s.h5"});
+  EXPECT_EQ(sweep.exit_code, 2);
+  EXPECT_THAT(sweep.err, HasSubstr("slipmode orbit"));
+  const Outcome typing = call({"fnd"});
+  EXPECT_EQ(typing.exit_code, 2);
+  EXPECT_THAT(typing.err, HasSubstr("orbit fnd: no such verb; valid: find, continue"));
+}
+
+TEST_F(OrbitVerbs, ModesAtTheStopsAreThoseOfTheirSprings) {
+  const Outcome outcome = slipmode_in(folder, {"modes", kSdof, "--json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.json()["slipping"]["omega"][0], 0.0);                // it floats
+  EXPECT_DOUBLE_EQ(outcome.json()["held_by_springs"]["omega"][0], 2.0);  // sqrt(4/1)
+}
+
+}  // namespace
