@@ -54,7 +54,7 @@ TimeSpec read_time(TomlReader in, const friction::Drive& drive) {
     time = counted ? read_cycles(in, frequency) : read_seconds(in, true);
   } else {
     for (const char* key : kCycleKeys) {
-      in.refuse(key, "counts cycles of a shaker or a force, the drive is a belt", "duration");
+      in.refuse(key, "counts a shaker's cycles or a force's, the drive is a belt", "duration");
     }
     time = read_seconds(in, false);
   }
@@ -70,7 +70,8 @@ InitialSpec read_initial(TomlReader in, const Scene& scene) {
   if (initial.at == InitialSpec::At::kStatic) {
     constexpr const char* kValid = "\"rest\", or displacement and velocity";
     if (scene.drive.belt() == nullptr) {
-      in.fail("at", "a shaker or a force has no steady sliding to be in equilibrium with", kValid);
+      const char* kind = scene.force ? "force" : "shaker";
+      in.fail("at", fmt::format("a {} has no steady sliding to be in equilibrium with", kind), kValid);
     }
     const auto loose = [](const ContactSpec& own) { return std::holds_alternative<friction::Clearance>(own.law); };
     if (std::ranges::any_of(scene.contacts, loose)) {
