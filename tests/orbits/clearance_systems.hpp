@@ -50,14 +50,13 @@ struct Backlash {
 
 /// S1 (6): q″ + Z q′ + Ω h(q) = f_m + f_a cos ηt, multiplied by adj Ω so that stops press along e₁, e₂ with det Ω.
 [[nodiscard]] inline dynamics::HybridSystem three_masses(double eta) {
-  Eigen::Matrix2d omega, zeta, adjugate;
+  Eigen::MatrixXd omega(2, 2), zeta(2, 2), adjugate(2, 2);
   omega << 1.0, -0.36, -0.36, 1.21;
   zeta << 0.1, -0.06, -0.06, 0.11;
   adjugate << 1.21, 0.36, 0.36, 1.0;
-  const friction::Stop stop{.stiffness = omega.determinant(), .gap = 1.0};
+  const friction::Stop stop{.stiffness = 1.0 * 1.21 - 0.36 * 0.36, .gap = 1.0};
   const friction::Clearance law{stop, stop, friction::ContactLoss::kGap};
-  return {fem::Structure(Eigen::MatrixXd(adjugate), Eigen::MatrixXd(adjugate * zeta),
-                         Eigen::MatrixXd(Eigen::Matrix2d::Zero())),
+  return {fem::Structure(adjugate, Eigen::MatrixXd(adjugate * zeta), Eigen::MatrixXd(0.0 * adjugate)),
           {{Eigen::Vector2d(1.0, 0.0), law}, {Eigen::Vector2d(0.0, 1.0), law}},
           friction::Force{eta, {{.amplitude = 1.0, .phase = std::numbers::pi / 2.0}}},
           adjugate * Eigen::Vector2d(0.5, 0.25),
