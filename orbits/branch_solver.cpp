@@ -58,6 +58,11 @@ void BranchSolver::set_times(BranchUnknowns& at, const dynamics::HybridSystem& s
 }
 
 BranchEvaluation BranchSolver::evaluate(const BranchUnknowns& at) const {
+  const double slack = 1e-12 * range_;
+  if (at.parameter < std::min(options_.from, options_.to) - slack ||
+      at.parameter > std::max(options_.from, options_.to) + slack)
+    throw NumericalFailure(fmt::format("the parameter {:.9g} is outside the range of the branch", at.parameter),
+                           at.point.nodes[0].time, stacked(at.point.nodes[0]), 0.0);
   const dynamics::HybridSystem system = family_(at.parameter);
   BranchEvaluation out{at, {}, std::make_shared<ShootingProblem>(system, options_.shooting, kind_), {}, {}, {}};
   set_times(out.at, system);
@@ -95,11 +100,24 @@ std::vector<Eigen::MatrixXd> BranchSolver::parameter_columns(const BranchUnknown
     problem.use_scale(scale_);
     return problem.ends_of(moved_to.point);
   };
-  const Eigen::MatrixXd above = ends_at(at.parameter + h), below = ends_at(at.parameter - h);
+  // At the ends of the range the family need not go further.
+  const double high = std::max(options_.from, options_.to), low = std::min(options_.from, options_.to);
+  const Eigen::MatrixXd above = ends_at(std::min(at.parameter + h, high)),
+                        below = ends_at(std::max(at.parameter - h, low));
+  const double up_step = (std::min(at.parameter + h, high) - at.parameter) / range_;
+  const double down_step = (at.parameter - std::max(at.parameter - h, low)) / range_;
   std::vector<Eigen::MatrixXd> columns;
   for (Eigen::Index k = 0; k < above.cols(); ++k) {
     const Eigen::VectorXd end = stacked(here.ends[static_cast<std::size_t>(k)]).cwiseQuotient(scale_);
-    const Eigen::VectorXd up = (above.col(k) - end) / kDifferenceStep, down = (end - below.col(k)) / kDifferenceStep;
+    if (up_step < 0.1 * kDifferenceStep) {
+      columns.emplace_back((end - below.col(k)) / down_step);
+      continue;
+    }
+    if (down_step < 0.1 * kDifferenceStep) {
+      columns.emplace_back((above.col(k) - end) / up_step);
+      continue;
+    }
+    const Eigen::VectorXd up = (above.col(k) - end) / up_step, down = (end - below.col(k)) / down_step;
     // Where an event comes or goes within the step one side jumps: the other is right.
     const bool jumps = (up - down).norm() > 0.1 * std::max(up.norm(), down.norm());
     columns.emplace_back(!jumps ? Eigen::VectorXd(0.5 * (up + down)) : up.norm() < down.norm() ? up : down);

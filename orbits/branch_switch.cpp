@@ -3,7 +3,7 @@
 #include "orbits/continuation.hpp"
 
 #include <fmt/format.h>
-#include <cmath>
+#include <algorithm>
 
 namespace slipmode::orbits {
 namespace {
@@ -32,6 +32,9 @@ std::vector<BranchPoint> switch_branch(const SystemFamily& family, const Special
   if (!doubling && special.kind != SpecialKind::kSymmetryBreaking)
     throw InvalidInput(fmt::format("branches are switched at a symmetry breaking or a period doubling, not at a {}",
                                    to_string(special.kind)));
+  if (special.parameter < std::min(options.from, options.to) || special.parameter > std::max(options.from, options.to))
+    throw InvalidInput(fmt::format("the {} at {:.9g} is outside the range {} … {}", to_string(special.kind),
+                                   special.parameter, options.from, options.to));
   PeriodicOrbit base = special.orbit;
   ContinuationOptions own = options;
   own.shooting.half_period = false;

@@ -1,8 +1,8 @@
 #include "orbits/continuation.hpp"
 
 #include "core/errors.hpp"
-#include "orbits/branch_tests.hpp"
-#include "orbits/describe_orbit.hpp"
+#include "orbits/branch_solver.hpp"
+#include "orbits/branch_walk.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -10,9 +10,6 @@
 
 namespace slipmode::orbits {
 namespace {
-
-/// Steps are rejected where the tangent turns by more than this (cosine), unless the word changes.
-constexpr double kLeastCosine = 0.9;
 
 void check(const PeriodicOrbit& orbit, double parameter, const ContinuationOptions& options) {
   const double low = std::min(options.from, options.to), high = std::max(options.from, options.to);
@@ -27,212 +24,6 @@ void check(const PeriodicOrbit& orbit, double parameter, const ContinuationOptio
   if (orbit.monodromy.size() == 0)
     throw InvalidInput("continuation starts from an orbit that was found, with monodromy");
 }
-
-/// One way along a branch.
-class Walk {
- public:
-  Walk(const BranchSolver& solver, const ContinuationOptions& options)
-      : solver_(solver),
-        options_(options),
-        low_(std::min(options.from, options.to)),
-        high_(std::max(options.from, options.to)) {}
-
-  [[nodiscard]] Branch follow(const PeriodicOrbit& orbit, double parameter, int direction) {
-    const auto first = solver_.correct(solver_.unknowns_of(orbit, parameter), solver_.parameter_row());
-    if (!first) {
-      branch_.end = BranchEnd::kLost;
-      branch_.reason =
-          fmt::format("the orbit handed in does not close at parameter {:.8g}: solve it there first", parameter);
-      return std::move(branch_);
-    }
-    current_ = watch(solver_, first->at, static_cast<double>(direction) * solver_.parameter_row());
-    add(current_, 0.0);
-    step_ = options_.step;
-    while (!ended_) advance();
-    return std::move(branch_);
-  }
-
- private:
-  void add(const WatchedPoint& point, double step) {
-    const double arclength = branch_.points.empty() ? 0.0 : branch_.points.back().arclength + step;
-    branch_.points.push_back({point.at.at.parameter, point.orbit, arclength});
-  }
-
-  void end(BranchEnd how, std::string reason) {
-    ended_ = true;
-    branch_.end = how;
-    branch_.reason = std::move(reason);
-  }
-
-  /// One accepted step, or the end.
-  void advance() {
-    if (static_cast<int>(branch_.points.size()) >= options_.max_points)
-      return end(BranchEnd::kMaxPoints, fmt::format("{} points were asked", options_.max_points));
-    while (true) {
-      int iterations = 0;
-      std::optional<WatchedPoint> next = attempt(step_, iterations);
-      if (next && outside(next->at.at.parameter)) return finish_at_range(*next);
-      if (next) {
-        const double taken = step_;
-        step_ = std::min((iterations <= 4 ? 1.6 : 1.1) * step_, options_.max_step);
-        return accept(std::move(*next), taken);
-      }
-      step_ *= 0.4;
-      if (step_ < options_.min_step) return turn_or_stop();
-    }
-  }
-
-  /// The next point at a length s, if it is one of this branch.
-  [[nodiscard]] std::optional<WatchedPoint> attempt(double s, int& out_iterations) const {
-    const double share = current_.tangent[current_.tangent.size() - 1];
-    const double length = options_.arclength ? s : s / std::max(std::abs(share), 1e-9);
-    const Eigen::VectorXd row = options_.arclength ? current_.tangent : solver_.parameter_row();
-    const auto corrected = solver_.correct(solver_.moved(current_.at, length * current_.tangent, 0.0), row);
-    if (!corrected) return std::nullopt;
-    out_iterations = corrected->iterations;
-    const Eigen::VectorXd way = solver_.difference(corrected->at.at, current_.at.at);
-    if ((way - length * current_.tangent).norm() > 0.5 * length + 1e-7) return std::nullopt;  // another branch
-    WatchedPoint next = watch(solver_, corrected->at, way);
-    const bool kink = next.orbit.word != current_.orbit.word && length < 1e-3;
-    if (next.tangent.dot(current_.tangent) < kLeastCosine && !kink) return std::nullopt;
-    return next;
-  }
-
-  [[nodiscard]] bool outside(double parameter) const { return parameter < low_ || parameter > high_; }
-
-  void accept(WatchedPoint next, double taken) {
-    const bool lands = !current_.orbit.symmetric && next.orbit.symmetric;
-    if (options_.locate) locate(next, taken);
-    add(next, taken);
-    if (lands || reached_symmetric())
-      return end(BranchEnd::kMerged,
-                 fmt::format("the orbits became symmetric near parameter {:.8g}: the branch joins that "
-                             "of symmetric orbits there",
-                             next.at.at.parameter));
-    current_ = std::move(next);
-    keep_off_guards();
-    if (branch_.points.size() > 10 && back_at_start(taken))
-      end(BranchEnd::kClosed, "the branch is back where it began");
-  }
-
-  [[nodiscard]] bool reached_symmetric() const {
-    return !branch_.special.empty() && branch_.special.back().before + 2 == branch_.points.size() &&
-           branch_.special.back().kind == SpecialKind::kSymmetryBreaking && !current_.orbit.symmetric;
-  }
-
-  void locate(const WatchedPoint& next, double length) {
-    const double tolerance = std::min(options_.locate_tolerance * solver_.range(), 1e-8);
-    for (SpecialPoint& special : special_points_between(solver_, current_, next, length, tolerance)) {
-      special.before = branch_.points.size() - 1;
-      branch_.special.push_back(std::move(special));
-    }
-  }
-
-  /// The point on the end of the range, between the last one and one outside.
-  void finish_at_range(const WatchedPoint& beyond) {
-    const double bound = beyond.at.at.parameter < low_ ? low_ : high_;
-    const double here = current_.at.at.parameter;
-    if (std::abs(bound - here) > 1e-12 * solver_.range()) {
-      const double share = (bound - here) / (beyond.at.at.parameter - here);
-      BranchUnknowns guess = solver_.moved(current_.at, share * solver_.difference(beyond.at.at, current_.at.at), 0.0);
-      guess.parameter = bound;
-      if (const auto corrected = solver_.correct(guess, solver_.parameter_row())) {
-        const Eigen::VectorXd way = solver_.difference(corrected->at.at, current_.at.at);
-        WatchedPoint last = watch(solver_, corrected->at, way);
-        const double length = current_.tangent.dot(way);
-        if (options_.locate && length > 0) locate(last, length);
-        add(last, way.norm());
-      }
-    }
-    end(BranchEnd::kRange, fmt::format("the parameter left its range at {:.8g}", bound));
-  }
-
-  /// No step leads on along the tangent: where the word changes, the branch may have a kink, or turn back.
-  void turn_or_stop() {
-    for (const double s : {1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3}) {
-      if (!options_.arclength) break;
-      for (const double sign : {1.0, -1.0}) {
-        auto next = around_corner(s, sign);
-        if (!next) continue;
-        SpecialPoint corner;
-        const double onward = (next->at.at.parameter - current_.at.at.parameter) * current_.fold;
-        corner.kind =
-            onward < 0 ? SpecialKind::kNonSmoothFold : kind_of_word_change(current_.orbit.word, next->orbit.word);
-        corner.parameter = current_.at.at.parameter;
-        corner.uncertainty = std::abs(next->at.at.parameter - corner.parameter);
-        corner.orbit = current_.orbit;
-        corner.before = branch_.points.size() - 1;
-        corner.note = fmt::format("word \"{}\" before, \"{}\" after", current_.orbit.word, next->orbit.word);
-        branch_.special.push_back(std::move(corner));
-        add(*next, s);
-        current_ = std::move(*next);
-        step_ = std::max(s, options_.min_step);
-        return;
-      }
-    }
-    const PeriodicOrbit& last = branch_.points.back().orbit;
-    std::string seen = fmt::format("no orbit is found beyond parameter {:.9g}, with steps down to {:.1e}",
-                                   current_.at.at.parameter, options_.min_step);
-    if (!options_.arclength && std::abs(current_.fold) < 0.1)
-      seen += "; the branch turns back there (fold): follow it with arclength";
-    else if (last.has_grazing || last.grazing < 0.05)
-      seen += fmt::format("; a stop is met at {:.1e} of the top speed there: a grazing at which the orbit ends",
-                          last.grazing);
-    else
-      seen += "; see whether an event meets the orbit's origin, or the family is not continuous there";
-    end(BranchEnd::kLost, std::move(seen));
-  }
-
-  [[nodiscard]] std::optional<WatchedPoint> around_corner(double s, double sign) const {
-    try {
-      const BranchEvaluation across = solver_.evaluate(solver_.moved(current_.at, s * current_.tangent, 0.0));
-      const Eigen::VectorXd tangent = sign * solver_.tangent(across, current_.tangent);
-      const auto corrected = solver_.correct(solver_.moved(current_.at, s * tangent, 0.0), tangent);
-      if (!corrected) return std::nullopt;
-      WatchedPoint next = watch(solver_, corrected->at, solver_.difference(corrected->at.at, current_.at.at));
-      const bool near = solver_.difference(next.at.at, current_.at.at).norm() < 3.0 * s;
-      return near && next.orbit.word != current_.orbit.word ? std::optional(std::move(next)) : std::nullopt;
-    } catch (const NumericalFailure&) {
-      return std::nullopt;
-    }
-  }
-
-  /// An orbit's origin may drift onto an event as the branch goes on, where derivatives jump: it is then set anew.
-  void keep_off_guards() {
-    const PeriodicOrbit& orbit = current_.orbit;
-    const double distance = distance_to_events(orbit.start.time, orbit.period, orbit.events);
-    if (distance > 0.01 * orbit.period) return;
-    const double shift = middle_of_longest_stretch(orbit.start.time, orbit.period, orbit.events);
-    if (distance_to_events(orbit.start.time + shift, orbit.period, orbit.events) < 2.0 * distance) return;
-    try {
-      const double share = shift / orbit.period;
-      const BranchEvaluation later = solver_.shifted(current_.at, share);
-      BranchEvaluation ahead = solver_.evaluate(solver_.moved(current_.at, 1e-4 * current_.tangent, 0.0));
-      ahead = solver_.shifted(ahead, share);
-      current_ = watch(solver_, later, solver_.difference(ahead.at, later.at));
-    } catch (const NumericalFailure&) {
-      return;  // the origin stays where it is
-    }
-  }
-
-  [[nodiscard]] bool back_at_start(double taken) const {
-    const BranchPoint& first = branch_.points.front();
-    if (std::abs(first.parameter - current_.at.at.parameter) > taken * solver_.range()) return false;
-    const BranchUnknowns began = solver_.unknowns_of(first.orbit, first.parameter);
-    double share = (began.phase - current_.at.at.phase) / current_.orbit.order;
-    if (share < 0) share += 1.0 / current_.orbit.order;
-    const BranchEvaluation here = share > 0 ? solver_.shifted(current_.at, share) : current_.at;
-    return solver_.difference(began, here.at).norm() < taken;
-  }
-
-  const BranchSolver& solver_;
-  const ContinuationOptions& options_;
-  double low_, high_;
-  Branch branch_;
-  WatchedPoint current_;
-  double step_ = 0.0;
-  bool ended_ = false;
-};
 
 /// The second way's points behind the first's start, in order along the branch.
 Branch joined(Branch backward, Branch forward) {
@@ -308,9 +99,9 @@ Branch continue_orbit(const SystemFamily& family, const PeriodicOrbit& orbit, do
   own.shooting.half_period = orbit.symmetric;  // regular where the symmetry breaks
   const BranchSolver solver(family, orbit, parameter, own);
   const int direction = options.direction < 0 ? -1 : 1;
-  Branch first = Walk(solver, own).follow(orbit, parameter, direction);
+  Branch first = walk_branch(solver, own, orbit, parameter, direction);
   if (!options.both_ways) return first;
-  return joined(Walk(solver, own).follow(orbit, parameter, -direction), std::move(first));
+  return joined(walk_branch(solver, own, orbit, parameter, -direction), std::move(first));
 }
 
 }  // namespace slipmode::orbits

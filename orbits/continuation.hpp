@@ -11,8 +11,9 @@
 
 namespace slipmode::orbits {
 
-/// A system for each value of a parameter. With HybridSystem::with_drive inside, modal data and regimes are shared.
-/// It must be continuous in the parameter, and of the same size and kind of drive everywhere.
+/// A system for each value of a parameter; asked only within the range of a branch. With HybridSystem::with_drive
+/// inside, modal data and regimes are shared. It must be continuous in the parameter, and of the same size and kind of
+/// drive everywhere.
 using SystemFamily = std::function<dynamics::HybridSystem(double parameter)>;
 
 enum class SpecialKind : std::uint8_t {
@@ -95,7 +96,7 @@ struct Branch {
 /// (twice the period), at a distance from the special point along its critical direction.
 /// @param distance  in units of the orbit's size; tried again at a half, a quarter … when no orbit is found
 /// @return          one or two points to continue from (with `order` doubled in the options after a period doubling)
-/// @throws InvalidInput      for a special point of another kind
+/// @throws InvalidInput      for a special point of another kind, or outside the range of the options
 /// @throws NumericalFailure  when no orbit is found
 [[nodiscard]] std::vector<BranchPoint> switch_branch(const SystemFamily& family, const SpecialPoint& special,
                                                      const ContinuationOptions& options, double distance = 0.02);

@@ -344,6 +344,32 @@ TEST(Continuation, AFamilyWithAJumpKeepsThePartialBranch) {
   EXPECT_THAT(branch.reason, testing::HasSubstr("not continuous"));
 }
 
+TEST(Continuation, TheFamilyIsNotAskedBeyondTheRange) {
+  const HybridSystem base = Backlash{.omega = 1.1}.system();
+  double lowest = 2.0, highest = 0.0;
+  const auto family = [&](double omega) {
+    lowest = std::min(lowest, omega), highest = std::max(highest, omega);
+    return base.with_drive(Backlash::drive(1.0, omega));
+  };
+  const Branch branch = continue_orbit(family, settled(base, -2.0), 1.1, {.from = 1.0, .to = 1.2, .both_ways = true});
+  EXPECT_EQ(branch.end, BranchEnd::kRange);
+  EXPECT_DOUBLE_EQ(lowest, 1.0);
+  EXPECT_DOUBLE_EQ(highest, 1.2);
+  EXPECT_NEAR(std::abs(branch.points.front().parameter - branch.points.back().parameter), 0.2, 1e-12);
+}
+
+TEST(Continuation, AParameterTheFamilyRefusesKeepsThePartialBranch) {
+  const HybridSystem base = Backlash{.omega = 1.1}.system();
+  const auto family = [&](double omega) {
+    if (omega > 1.15) throw InvalidInput("no such amplifier");
+    return base.with_drive(Backlash::drive(1.0, omega));
+  };
+  const Branch branch = continue_orbit(family, settled(base, -2.0), 1.1, {.from = 1.0, .to = 1.3});
+  EXPECT_EQ(branch.end, BranchEnd::kLost);
+  EXPECT_GT(branch.points.size(), 1u);
+  EXPECT_THAT(branch.reason, testing::HasSubstr("no such amplifier"));
+}
+
 TEST(Continuation, BadInputIsNamed) {
   const HybridSystem base = Backlash{.omega = 1.1}.system();
   const PeriodicOrbit orbit = settled(base, -2.0);
