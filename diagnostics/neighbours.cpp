@@ -1,0 +1,202 @@
+#include "diagnostics/neighbours.hpp"
+
+#include "core/errors.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <limits>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+namespace slipmode::diagnostics {
+
+namespace {
+
+constexpr Eigen::Index kLeaf = 12;
+constexpr std::size_t kDeepest = 128;  // twice the bits of an index: halves can never nest deeper
+
+bool nearer(const Neighbour& a, const Neighbour& b) {
+  return std::tie(a.distance, a.index) < std::tie(b.distance, b.index);
+}
+
+bool may_be(Eigen::Index i, Eigen::Index j, const NeighbourTree::Allowed& allowed) {
+  return (allowed.limit < 0 || j < allowed.limit) && std::abs(i - j) > allowed.window;
+}
+
+}  // namespace
+
+NeighbourTree::NeighbourTree(Eigen::MatrixXd points, Metric metric)
+    : points_(std::move(points)), euclidean_(metric == Metric::kEuclidean) {
+  if (points_.size() == 0 || !points_.allFinite()) {
+    throw InvalidInput(fmt::format("neighbour search: expected finite points, found {} of dimension {}{}",
+                                   points_.cols(), points_.rows(),
+                                   points_.size() == 0 ? "" : ", one of them not finite"));
+  }
+  order_.resize(static_cast<std::size_t>(points_.cols()));
+  std::iota(order_.begin(), order_.end(), Eigen::Index{0});
+  build(0, points_.cols());
+  sorted_.resize(points_.rows(), points_.cols());
+  for (Eigen::Index k = 0; k < points_.cols(); ++k) sorted_.col(k) = points_.col(order_[static_cast<std::size_t>(k)]);
+}
+
+std::int32_t NeighbourTree::build(Eigen::Index begin, Eigen::Index end) {
+  const auto node = static_cast<std::int32_t>(nodes_.size());
+  nodes_.push_back({.begin = begin, .end = end});
+  Eigen::VectorXd low = points_.col(order_[static_cast<std::size_t>(begin)]), high = low;
+  for (Eigen::Index k = begin + 1; k < end; ++k) {
+    low = low.cwiseMin(points_.col(order_[static_cast<std::size_t>(k)]));
+    high = high.cwiseMax(points_.col(order_[static_cast<std::size_t>(k)]));
+  }
+  boxes_.insert(boxes_.end(), low.begin(), low.end());
+  boxes_.insert(boxes_.end(), high.begin(), high.end());
+  if (end - begin <= kLeaf) return node;
+  Eigen::Index axis = 0;
+  (high - low).maxCoeff(&axis);
+  const Eigen::Index middle = begin + (end - begin) / 2;
+  std::nth_element(
+      order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
+      [&](Eigen::Index a, Eigen::Index b) { return std::pair(points_(axis, a), a) < std::pair(points_(axis, b), b); });
+  const std::int32_t left = build(begin, middle);
+  const std::int32_t right = build(middle, end);
+  nodes_[static_cast<std::size_t>(node)].left = left;
+  nodes_[static_cast<std::size_t>(node)].right = right;
+  return node;
+}
+
+double NeighbourTree::from_power(double value) const { return euclidean_ ? std::sqrt(value) : value; }
+
+double NeighbourTree::power(const double* a, const double* b) const {
+  double value = 0.0;
+  if (euclidean_) {
+    for (Eigen::Index k = 0; k < points_.rows(); ++k) value += (a[k] - b[k]) * (a[k] - b[k]);
+  } else {
+    for (Eigen::Index k = 0; k < points_.rows(); ++k) value = std::max(value, std::abs(a[k] - b[k]));
+  }
+  return value;
+}
+
+double NeighbourTree::least(std::int32_t node, const double* x) const {
+  const double* low = boxes_.data() + 2 * points_.rows() * node;
+  const double* high = low + points_.rows();
+  double value = 0.0;
+  for (Eigen::Index k = 0; k < points_.rows(); ++k) {
+    const double gap = std::max(0.0, std::max(low[k] - x[k], x[k] - high[k]));
+    value = euclidean_ ? value + gap * gap : std::max(value, gap);
+  }
+  return value;
+}
+
+double NeighbourTree::most(std::int32_t node, const double* x) const {
+  const double* low = boxes_.data() + 2 * points_.rows() * node;
+  const double* high = low + points_.rows();
+  double value = 0.0;
+  for (Eigen::Index k = 0; k < points_.rows(); ++k) {
+    const double gap = std::max(std::abs(x[k] - low[k]), std::abs(high[k] - x[k]));
+    value = euclidean_ ? value + gap * gap : std::max(value, gap);
+  }
+  return value;
+}
+
+double NeighbourTree::distance(Eigen::Index i, Eigen::Index j) const {
+  return from_power(power(points_.col(i).data(), points_.col(j).data()));
+}
+
+/// Leaves that may hold points within `reach` (a power of a distance, which the visitor may lower), the nearer child
+/// of a node first.
+template <typename Visit>
+void NeighbourTree::visit(const double* x, const Visit& visit_leaf, double& reach) const {
+  std::pair<std::int32_t, double> stack[kDeepest];
+  std::size_t depth = 0;
+  stack[depth++] = {0, least(0, x)};
+  while (depth > 0) {
+    const auto [id, gap] = stack[--depth];
+    if (gap > reach) continue;
+    const Node& node = nodes_[static_cast<std::size_t>(id)];
+    if (node.left < 0) {
+      visit_leaf(node);
+      continue;
+    }
+    const double left = least(node.left, x), right = least(node.right, x);
+    const bool left_first = left <= right;
+    stack[depth++] = left_first ? std::pair(node.right, right) : std::pair(node.left, left);
+    stack[depth++] = left_first ? std::pair(node.left, left) : std::pair(node.right, right);
+  }
+}
+
+std::vector<Neighbour> NeighbourTree::nearest(Eigen::Index i, std::size_t count, const Allowed& allowed) const {
+  std::vector<Neighbour> found;
+  if (count == 0) return found;
+  found.reserve(count + 1);
+  const double* x = points_.col(i).data();
+  double reach = std::numeric_limits<double>::infinity();
+  const auto take_leaf = [&](const Node& node) {
+    for (Eigen::Index k = node.begin; k < node.end; ++k) {
+      const Neighbour candidate{.index = order_[static_cast<std::size_t>(k)],
+                                .distance = power(x, sorted_.col(k).data())};
+      if (candidate.distance > reach || !may_be(i, candidate.index, allowed)) continue;
+      found.insert(std::upper_bound(found.begin(), found.end(), candidate, nearer), candidate);
+      if (found.size() > count) found.pop_back();
+      if (found.size() == count) reach = found.back().distance;
+    }
+  };
+  visit(x, take_leaf, reach);
+  for (Neighbour& neighbour : found) neighbour.distance = from_power(neighbour.distance);
+  return found;
+}
+
+std::vector<Neighbour> NeighbourTree::within(Eigen::Index i, double radius, const Allowed& allowed) const {
+  std::vector<Neighbour> found;
+  const double* x = points_.col(i).data();
+  double reach = to_power(radius);
+  const auto take_leaf = [&](const Node& node) {
+    for (Eigen::Index k = node.begin; k < node.end; ++k) {
+      const double value = power(x, sorted_.col(k).data());
+      const Eigen::Index j = order_[static_cast<std::size_t>(k)];
+      if (value <= reach && may_be(i, j, allowed)) found.push_back({.index = j, .distance = from_power(value)});
+    }
+  };
+  visit(x, take_leaf, reach);
+  std::sort(found.begin(), found.end(), [](const Neighbour& a, const Neighbour& b) { return a.index < b.index; });
+  return found;
+}
+
+void NeighbourTree::add_counts(Eigen::Index i, std::span<const double> radii,
+                               std::span<std::int64_t> out_counts) const {
+  std::vector<double> powers(radii.size());
+  std::transform(radii.begin(), radii.end(), powers.begin(), [&](double r) { return to_power(r); });
+  std::vector<std::int64_t> shells(radii.size() + 1, 0);
+  count(0, points_.col(i).data(), powers, 0, powers.size(), shells);
+  std::partial_sum(shells.begin(), shells.end(), shells.begin());
+  for (std::size_t r = 0; r < radii.size(); ++r) out_counts[r] += shells[r];
+}
+
+/// Adds the points of a node to the shell of the smallest radius that holds each; the answer is known to lie among
+/// shells low … high.
+void NeighbourTree::count(std::int32_t id, const double* x, std::span<const double> powers, std::size_t low,
+                          std::size_t high, std::span<std::int64_t> out_shells) const {
+  const auto shell = [&](double value, std::size_t from, std::size_t to) {
+    return static_cast<std::size_t>(std::lower_bound(powers.begin() + static_cast<std::ptrdiff_t>(from),
+                                                     powers.begin() + static_cast<std::ptrdiff_t>(to), value) -
+                                    powers.begin());
+  };
+  low = shell(least(id, x), low, high);
+  if (low == powers.size()) return;
+  const Node& node = nodes_[static_cast<std::size_t>(id)];
+  high = shell(most(id, x), low, high);
+  if (low == high) {
+    out_shells[low] += node.end - node.begin;
+  } else if (node.left < 0) {
+    for (Eigen::Index k = node.begin; k < node.end; ++k)
+      ++out_shells[shell(power(x, sorted_.col(k).data()), low, high)];
+  } else {
+    count(node.left, x, powers, low, high, out_shells);
+    count(node.right, x, powers, low, high, out_shells);
+  }
+}
+
+}  // namespace slipmode::diagnostics
