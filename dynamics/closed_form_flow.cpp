@@ -52,7 +52,7 @@ ClosedFormFlow::ClosedFormFlow(const HybridSystem& system, HybridPoint start, co
 void ClosedFormFlow::restart(HybridPoint start) {
   point_ = std::move(start);
   resolver_.forget();
-  tangents_.resize(0, 0);
+  carries_ = false;
   work_ = {};
   statistics_ = {};
   statistics_.stick_time.assign(static_cast<std::size_t>(nc_), 0.0);
@@ -442,7 +442,7 @@ bool ClosedFormFlow::step(double t_limit) {
   if (!ends) return false;
   if (corner) return settle(-1, false);
   lift_point();
-  if (tangents_.cols() > 0) push_tangents();
+  if (carries_) push_tangents();
   return false;
 }
 
@@ -450,7 +450,7 @@ bool ClosedFormFlow::settle(int guard, bool touching) {
   lift_point();
   const double window_end = begin_ + tables_->length(level_);
   const Guard* reached = guard >= 0 ? &guards_[static_cast<std::size_t>(guard)] : nullptr;
-  const bool salts = tangents_.cols() > 0 && !touching;
+  const bool salts = carries_ && !touching;
   if (salts) leave_tangents(reached);
   resolver_.settle(point_, reached ? Reached{reached->contact, touching, reached->kind, reached->next} : Reached{});
   statistics_.events += static_cast<std::int64_t>(resolver_.events().size());

@@ -152,8 +152,9 @@ class ClosedFormFlow {
   mutable DrivePhase phase_then_;
   int level_ = 0;
 
-  /// At `point_.time` between stays, empty: none are carried; within a stay, of x and of the inputs that follow.
+  /// At `point_.time` between stays; within a stay, of x and of the inputs that follow.
   Eigen::MatrixXd tangents_, x_tangents_, follow_tangents_, follow_response_;
+  bool carries_ = false;           ///< tangents are carried, be they none
   bool tangents_current_ = false;  ///< tangents_ belongs to point_
   Eigen::VectorXd rate_, rate_before_, x_rate_, input_rate_;
   Eigen::RowVectorXd delay_;  ///< δg/ġ

@@ -62,6 +62,7 @@ void ClosedFormFlow::enter_tangents() {
 
 void ClosedFormFlow::set_tangents(Eigen::MatrixXd tangents) {
   tangents_ = std::move(tangents);
+  carries_ = true;
   enter_tangents();
   tangents_current_ = false;
 }

@@ -6,12 +6,15 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace slipmode::dynamics {
 namespace {
 
 /// A clearance this close to a guard, as a share of the sizes at play, is on it.
 constexpr double kOnGuard = 1e-12;
+/// The same where the state says its mode: it may come from a run that ended at an event, whose time was rounded.
+constexpr double kOnGuardAsGiven = 1e-9;
 
 /// @param message  called only when the condition fails: runs are too short to compose it each time
 template <class Message>
@@ -39,36 +42,75 @@ void check_start(const HybridSystem& system, const State& start) {
   });
 }
 
-/// Where a clearance is at the start. On a guard to rounding the mode given decides, else the velocity.
+/// How far a clearance is past one of its stops, and what that stop presses with or would.
+struct AtStop {
+  const friction::Stop& stop;
+  double past, press, rate;
+  double size, press_size;  ///< which rounding is measured by
+
+  AtStop(const friction::Stop& own, double side, const friction::Contact& contact, const State& start) : stop(own) {
+    const double y = contact.direction.dot(start.q) + contact.offset;
+    rate = side * contact.direction.dot(start.v);
+    past = side * y - stop.gap;
+    press = stop.stiffness * past + stop.damping * rate;
+    size = contact.direction.cwiseAbs().dot(start.q.cwiseAbs()) + std::abs(contact.offset) + std::abs(stop.gap);
+    press_size = stop.stiffness * size + stop.damping * contact.direction.cwiseAbs().dot(start.v.cwiseAbs());
+  }
+};
+
+bool agrees(const friction::Clearance& law, ContactMode mode, const std::optional<AtStop>& left,
+            const std::optional<AtStop>& right) {
+  const auto beyond = [](const AtStop& at) { return at.past >= -kOnGuardAsGiven * at.size; };
+  const auto pressed = [&](const std::optional<AtStop>& at) {
+    return at && beyond(*at) &&
+           (law.loss == friction::ContactLoss::kGap || at->press >= -kOnGuardAsGiven * at->press_size);
+  };
+  const auto flies = [&](const std::optional<AtStop>& at) {
+    return at && beyond(*at) && law.loss == friction::ContactLoss::kZeroForce &&
+           at->press <= kOnGuardAsGiven * at->press_size;
+  };
+  const auto free = [](const std::optional<AtStop>& at) { return !at || at->past <= kOnGuardAsGiven * at->size; };
+  switch (mode) {
+    case ContactMode::kGap:
+      return free(left) && free(right);
+    case ContactMode::kLeftStop:
+      return pressed(left);
+    case ContactMode::kRightStop:
+      return pressed(right);
+    case ContactMode::kLeftFlight:
+      return flies(left);
+    case ContactMode::kRightFlight:
+      return flies(right);
+    default:
+      return false;
+  }
+}
+
+/// Where a clearance is at the start: as given, or by position and force; on a guard to rounding by the velocity.
 ContactMode start_mode(const friction::Clearance& law, const friction::Contact& contact, const State& start,
                        std::size_t c) {
-  const double y = contact.direction.dot(start.q) + contact.offset, rate = contact.direction.dot(start.v);
-  const double size = contact.direction.cwiseAbs().dot(start.q.cwiseAbs()) + std::abs(contact.offset);
-  const ContactMode given = start.modes.empty() ? ContactMode::kSmooth : start.modes[c];
-  ContactMode mode = ContactMode::kGap;
-  const auto look = [&](const std::optional<friction::Stop>& stop, double side, ContactMode pressed,
-                        ContactMode flight) {
-    if (!stop) return;
-    const double past = side * y - stop->gap, press = stop->stiffness * past + stop->damping * side * rate;
-    const double near = kOnGuard * (size + std::abs(stop->gap));
-    const bool at_gap = std::abs(past) <= near;
-    const double near_press = kOnGuard * (stop->stiffness * (size + std::abs(stop->gap)) +
-                                          stop->damping * contact.direction.cwiseAbs().dot(start.v.cwiseAbs()));
-    if (at_gap ? (given == pressed || (given != ContactMode::kGap && given != flight && side * rate > 0.0))
-               : past > 0.0)
-      mode = pressed;
-    if (mode != pressed || law.loss == friction::ContactLoss::kGap) return;
-    const bool at_zero = std::abs(press) <= near_press;
-    if (at_zero ? given == flight : press < 0.0) mode = at_gap ? ContactMode::kGap : flight;
+  std::optional<AtStop> left, right;
+  if (law.left) left.emplace(*law.left, -1.0, contact, start);
+  if (law.right) right.emplace(*law.right, 1.0, contact, start);
+  if (!start.modes.empty()) {
+    const ContactMode given = start.modes[c];
+    require(agrees(law, given, left, right), [&] {
+      return "start state says the clearance of contact " + std::to_string(c + 1) + " is in mode " +
+             std::to_string(static_cast<int>(given)) + ", but its displacement is " +
+             std::to_string(contact.direction.dot(start.q) + contact.offset) + " and its velocity " +
+             std::to_string(contact.direction.dot(start.v)) + "; leave the modes empty to have them derived";
+    });
+    return given;
+  }
+  const auto reached = [](const std::optional<AtStop>& at) {
+    return at && (std::abs(at->past) <= kOnGuard * at->size ? at->rate > 0.0 : at->past > 0.0);
   };
-  look(law.right, 1.0, ContactMode::kRightStop, ContactMode::kRightFlight);
-  if (mode == ContactMode::kGap) look(law.left, -1.0, ContactMode::kLeftStop, ContactMode::kLeftFlight);
-  require(given == ContactMode::kSmooth || given == mode, [&] {
-    return "start state says the clearance of contact " + std::to_string(c + 1) + " is in mode " +
-           std::to_string(static_cast<int>(given)) + ", but its displacement is " + std::to_string(y) +
-           " and its velocity " + std::to_string(rate) + "; leave the modes empty to have them derived";
-  });
-  return mode;
+  const auto lets_go = [&](const AtStop& at) {
+    return law.loss == friction::ContactLoss::kZeroForce && at.press < -kOnGuard * at.press_size;
+  };
+  if (reached(right)) return lets_go(*right) ? ContactMode::kRightFlight : ContactMode::kRightStop;
+  if (reached(left)) return lets_go(*left) ? ContactMode::kLeftFlight : ContactMode::kLeftStop;
+  return ContactMode::kGap;
 }
 
 /// Modes at the start: as given, or by the sign of the sliding speed with zero speed left to consistency.

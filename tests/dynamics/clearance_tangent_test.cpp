@@ -121,6 +121,34 @@ TEST(ClearanceTangent, RateIsWhatAnInstantMoreAdds) {
   EXPECT_LT(((later - earlier) / (2.0 * h) - at.rate).cwiseAbs().maxCoeff(), 1e-8);
 }
 
+TEST(ClearanceTangent, NoTangentsAtAllCarryNothing) {
+  const HybridSystem system = backlash_mass(0.65);
+  TangentFlow flow(system);
+  const State start{0.0, Eigen::VectorXd::Constant(1, 2.0), Eigen::VectorXd::Zero(1)};
+  const TangentResult none = flow.run(start, 50.0, Eigen::MatrixXd(2, 0)), all = flow.run(start, 50.0);
+  EXPECT_EQ(none.monodromy.cols(), 0);
+  EXPECT_EQ(stacked(none.end), stacked(all.end));
+  EXPECT_EQ(none.rate, all.rate);
+}
+
+TEST(ClearanceTangent, AStateOnItsGuardIsTakenUpAgain) {
+  // A run that ends at an event leaves y off the guard by the rounding of the time; its end is a start again.
+  const HybridSystem system = backlash_mass(0.3);
+  State at = simulate(system, {900.0, Eigen::VectorXd::Constant(1, 2.0), Eigen::VectorXd::Zero(1)}, {.duration = 50.0})
+                 .final_state;
+  int events = 0;
+  for (const Event& e : simulate(system, at, {.duration = 60.0}).events) {
+    State end = simulate(system, at, {.duration = e.time - at.time}).final_state;
+    const Trajectory direct = simulate(system, at, {.duration = e.time + 1.0 - at.time});
+    const Trajectory onward = simulate(system, end, {.duration = 1.0});
+    EXPECT_LT((direct.final_state.q - onward.final_state.q).norm(), 1e-9);
+    end.modes.clear();
+    EXPECT_LT((simulate(system, end, {.duration = 1.0}).final_state.q - direct.final_state.q).norm(), 1e-9);
+    ++events;
+  }
+  EXPECT_GE(events, 10);
+}
+
 TEST(ClearanceTangent, ARunLeavesNoTraceInTheNext) {
   const HybridSystem system = backlash_mass(0.65);
   TangentFlow flow(system);
