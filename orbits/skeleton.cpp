@@ -40,13 +40,17 @@ void check(const dynamics::HybridSystem& system, const Attractor& attractor, con
 class Search {
  public:
   Search(const dynamics::HybridSystem& system, const Attractor& attractor, const SkeletonOptions& options,
-         std::vector<Candidate> candidates)
-      : system_(system), attractor_(attractor), options_(options) {
-    skeleton_.candidates = std::move(candidates);
+         Skeleton known)
+      : system_(system), attractor_(attractor), options_(options), skeleton_(std::move(known)) {
     skeleton_.radius = options.radius;
+    for (const SkeletonOrbit& member : skeleton_.orbits) {
+      listed_.push_back({attractor.metric.scaled(member.points), member.orbit.period});
+    }
   }
 
-  Skeleton run() {
+  Skeleton run(const std::vector<Candidate>& candidates) {
+    first_ = skeleton_.candidates.size();
+    skeleton_.candidates.insert(skeleton_.candidates.end(), candidates.begin(), candidates.end());
     refine_all();
     gather();
     describe_all();
@@ -68,7 +72,7 @@ class Search {
   }
 
   void refine_all() {
-    refined_.resize(skeleton_.candidates.size());
+    refined_.resize(skeleton_.candidates.size() - first_);
     for_each(
         refined_.size(), [this](std::size_t k) { refine(k); }, options_.parallel);
   }
@@ -76,7 +80,7 @@ class Search {
   void refine(std::size_t k) {
     Refined& out = refined_[k];
     out.tried = true;
-    const Candidate& candidate = skeleton_.candidates[k];
+    const Candidate& candidate = skeleton_.candidates[first_ + k];
     try {
       accept(polished(shoot(system_, candidate.state, shooting(candidate, candidate.length)), candidate.length), out);
       if (!out.refusal.empty()) return;
@@ -128,27 +132,35 @@ class Search {
 
   /// One entry per orbit, in the order of the candidates.
   void gather() {
+    const std::size_t known = listed_.size();
     for (std::size_t k = 0; k < refined_.size(); ++k) {
       if (!refined_[k].tried) continue;
       if (!refined_[k].refusal.empty()) {
-        skeleton_.refusals.push_back({.candidate = k, .reason = refined_[k].refusal});
+        skeleton_.refusals.push_back({.candidate = first_ + k, .reason = refined_[k].refusal});
         continue;
       }
-      const auto known = std::find_if(firsts_.begin(), firsts_.end(),
-                                      [&](std::size_t first) { return is_same(refined_[first], refined_[k]); });
-      if (known != firsts_.end()) {
-        ++skeleton_.orbits[static_cast<std::size_t>(known - firsts_.begin())].hits;
+      const Listed found{refined_[k].scaled, refined_[k].orbit.period};
+      const auto same =
+          std::find_if(listed_.begin(), listed_.end(), [&](const Listed& one) { return is_same(one, found); });
+      if (same != listed_.end()) {
+        ++skeleton_.orbits[static_cast<std::size_t>(same - listed_.begin())].hits;
         continue;
       }
-      firsts_.push_back(k);
+      listed_.push_back(found);
       skeleton_.orbits.push_back(
-          {.orbit = refined_[k].orbit, .length = refined_[k].scaled.cols(), .candidate = k, .hits = 1});
+          {.orbit = refined_[k].orbit, .length = refined_[k].scaled.cols(), .candidate = first_ + k, .hits = 1});
     }
+    described_ = known;
   }
 
-  [[nodiscard]] bool is_same(const Refined& a, const Refined& b) const {
-    return a.scaled.cols() == b.scaled.cols() &&
-           std::abs(a.orbit.period - b.orbit.period) <= options_.same * a.orbit.period &&
+  /// An orbit as it is told from others.
+  struct Listed {
+    Eigen::MatrixXd scaled;  ///< its passages in the attractor's metric
+    double period = 0.0;
+  };
+
+  [[nodiscard]] bool is_same(const Listed& a, const Listed& b) const {
+    return a.scaled.cols() == b.scaled.cols() && std::abs(a.period - b.period) <= options_.same * a.period &&
            detail::cyclic_distance(a.scaled, b.scaled) <= options_.same;
   }
 
@@ -160,10 +172,10 @@ class Search {
     parallel.stop = nullptr;
     parallel.progress = {};
     for_each(
-        skeleton_.orbits.size(),
+        skeleton_.orbits.size() - described_,
         [&](std::size_t k) {
-          SkeletonOrbit& member = skeleton_.orbits[k];
-          const Refined& from = refined_[firsts_[k]];
+          SkeletonOrbit& member = skeleton_.orbits[described_ + k];
+          const Refined& from = refined_[member.candidate - first_];
           member.points = from.passages.points;
           member.intervals = detail::intervals_of(from.passages, member.orbit.period);
           member.path = detail::path_of(system_, member.orbit, from.passages, options_.samples, attractor_.basis);
@@ -177,7 +189,9 @@ class Search {
   const Attractor& attractor_;
   const SkeletonOptions& options_;
   std::vector<Refined> refined_;
-  std::vector<std::size_t> firsts_;  ///< by orbit: the candidate it is from
+  std::vector<Listed> listed_;  ///< by orbit of the skeleton, before it is sorted
+  std::size_t first_ = 0;       ///< candidate that refined_ begins with
+  std::size_t described_ = 0;   ///< orbits that were known before
   Skeleton skeleton_;
 };
 
@@ -202,7 +216,13 @@ Skeleton find_skeleton(const dynamics::HybridSystem& system, const Attractor& at
   check(system, attractor, options);
   std::vector<Candidate> candidates = close_return_candidates(attractor, options.returns);
   candidates.insert(candidates.end(), more.begin(), more.end());
-  return Search(system, attractor, options, std::move(candidates)).run();
+  return Search(system, attractor, options, {}).run(candidates);
+}
+
+Skeleton extended_skeleton(const dynamics::HybridSystem& system, const Attractor& attractor, Skeleton known,
+                           const SkeletonOptions& options, const std::vector<Candidate>& more) {
+  check(system, attractor, options);
+  return Search(system, attractor, options, std::move(known)).run(more);
 }
 
 }  // namespace slipmode::orbits

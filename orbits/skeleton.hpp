@@ -45,7 +45,7 @@ struct Refusal {
 };
 
 struct SkeletonOptions {
-  ReturnOptions returns = {.max_length = 24, .threshold = 0.5, .per_length = 8, .apart = 0.5};
+  ReturnOptions returns = {.max_length = 12, .threshold = 0.5, .per_length = 16, .apart = 0.5};
   /// Of multiple shooting, all candidates: tolerance, iterations, flow. Period, order, segments are set for each.
   ShootingOptions shooting = {.tolerance = 5e-11};
   /// Passages per shooting segment, ≥ 1. Few are needed where multipliers are large; elsewhere long segments converge
@@ -54,7 +54,7 @@ struct SkeletonOptions {
   /// Orbits whose passages are nearer than this, in the attractor's metric, are one orbit, > 0.
   double same = 1e-6;
   double radius = 0.4;  ///< of SkeletonOrbit::share, in the attractor's metric, > 0
-  int samples = 64;      ///< of the path between passages, ≥ 1
+  int samples = 64;     ///< of the path between passages, ≥ 1
   ParallelOptions parallel = {};
 };
 
@@ -79,5 +79,12 @@ struct Skeleton {
 /// Source: S4 section 3.5.4, whose approximate orbits are the candidates here.
 [[nodiscard]] Skeleton find_skeleton(const dynamics::HybridSystem& system, const Attractor& attractor,
                                      const SkeletonOptions& options, const std::vector<Candidate>& more = {});
+
+/// A skeleton with the orbits that further candidates lead to; those known keep their place by period.
+/// @param known  of the same system and attractor, found with the same radius and number of samples
+/// @throws InvalidInput  as find_skeleton
+[[nodiscard]] Skeleton extended_skeleton(const dynamics::HybridSystem& system, const Attractor& attractor,
+                                         Skeleton known, const SkeletonOptions& options,
+                                         const std::vector<Candidate>& more);
 
 }  // namespace slipmode::orbits

@@ -61,6 +61,20 @@ TEST(Skeleton, RecognisesAMultipleOfAShorterOrbit) {
   EXPECT_NEAR(skeleton.orbits.front().orbit.period, o.period(), 1e-9);
 }
 
+// What is known stays, what further candidates lead to is told from it.
+TEST(Skeleton, ExtendedByItsOwnOrbitIsTheSame) {
+  const BeltOscillator o;
+  const Attractor attractor = limit_cycle(o);
+  const SkeletonOptions options{.returns = {.max_length = 1}};
+  const Skeleton once = find_skeleton(tests::system_of(o), attractor, options);
+  const Candidate again{.state = tests::released(o), .period = o.period(), .length = 1};
+  const Skeleton twice = extended_skeleton(tests::system_of(o), attractor, once, options, {again, again});
+  ASSERT_EQ(twice.orbits.size(), 1U);
+  EXPECT_EQ(twice.orbits.front().hits, once.orbits.front().hits + 2);
+  EXPECT_EQ(twice.candidates.size(), once.candidates.size() + 2);
+  EXPECT_EQ(twice.orbits.front().path, once.orbits.front().path);
+}
+
 TEST(Skeleton, SaysWhyACandidateIsRefused) {
   // Below the kinetic level, without the speed to come back to the belt: it slides about 0.2 for ever.
   const BeltOscillator o;

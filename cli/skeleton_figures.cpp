@@ -1,0 +1,184 @@
+#include "cli/skeleton_figures.hpp"
+
+#include "cli/figures/panels.hpp"
+#include "cli/figures/phase_portraits.hpp"
+#include "cli/figures/style.hpp"
+#include "cli/skeleton_store.hpp"
+#include "scene/provenance.hpp"
+#include "scene/scene.hpp"
+#include "scene/table.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace slipmode::cli {
+namespace {
+
+using figures::Figure;
+using figures::Series;
+using scene::StoreReader;
+
+std::string group_of(const std::string& model) { return fmt::format("{}/{}", kSkeletonGroup, model); }
+
+std::string_view colour_of(const std::string& model) {
+  return model == "full" ? figures::kFullColour : figures::kPomColour;
+}
+
+/// "full", "reduced": the models a result holds.
+std::vector<std::string> models_of(const StoreReader& store) {
+  std::vector<std::string> models;
+  for (const std::string model : {"full", "reduced"}) {
+    if (store.has(group_of(model))) models.push_back(model);
+  }
+  return models;
+}
+
+Eigen::VectorXd to_vector(const std::vector<double>& values) {
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+/// The first contact's displacement and velocity from points of the full model.
+class ContactView {
+ public:
+  explicit ContactView(const StoreReader& store)
+      : scene_(scene::load_scene_of(store)), contact_(scene::build_system(scene_).contacts().front()) {}
+
+  [[nodiscard]] figures::PhasePortrait attractor(const StoreReader& store, const std::string& model) const {
+    const Eigen::MatrixXd portrait = store.columns(group_of(model) + "/portrait", 2);
+    return {model + " model", portrait.row(0), portrait.row(1), colour_of(model)};
+  }
+
+  /// @param index  of the orbit, from 0
+  [[nodiscard]] figures::PhasePortrait orbit(const StoreReader& store, const std::string& model,
+                                             std::size_t index) const {
+    const scene::Table orbits = scene::load_table(store, group_of(model) + "/orbits");
+    const Eigen::MatrixXd path = store.columns(fmt::format("{}/orbit_{:03}/path", group_of(model), index + 1));
+    const Eigen::Index n = path.rows() / 2, count = path.cols();
+    Eigen::VectorXd y(count + 1), rate(count + 1);
+    y.head(count) = (path.topRows(n).transpose() * contact_.direction).array() + contact_.offset;
+    rate.head(count) = path.bottomRows(n).transpose() * contact_.direction;
+    y(count) = y(0);
+    rate(count) = rate(0);
+    return {
+        fmt::format("T = {:.3f}, {:.1f} %", orbits.numbers("period")[index], 100.0 * orbits.numbers("share")[index]), y,
+        rate, colour_of(model)};
+  }
+
+  [[nodiscard]] figures::PortraitLayout layout(int columns, figures::PortraitLayout::Axes axes) const {
+    const Units units = Units::of(scene_.units);
+    return {.columns = columns,
+            .displacement = "displacement",
+            .displacement_unit = units.length,
+            .velocity = "velocity",
+            .velocity_unit = units.velocity,
+            .axes = axes};
+  }
+
+ private:
+  scene::Scene scene_;
+  friction::Contact contact_;
+};
+
+/// The attractor, then its orbits with the largest share in the order of their periods.
+Figure portraits(const StoreReader& store) {
+  constexpr std::size_t kShown = 11;
+  const std::string model = models_of(store).front();
+  const ContactView view(store);
+  const std::vector<double> share = scene::load_table(store, group_of(model) + "/orbits").numbers("share");
+  std::vector<std::size_t> order(share.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return share[a] > share[b]; });
+  order.resize(std::min(order.size(), kShown));
+  std::ranges::sort(order);
+  std::vector<figures::PhasePortrait> panels{view.attractor(store, model)};
+  for (const std::size_t index : order) panels.push_back(view.orbit(store, model, index));
+  return figures::phase_portraits(panels, view.layout(4, figures::PortraitLayout::Axes::kShared));
+}
+
+/// S4 Figure 3.10: both attractors, and orbits that both have, one above the other.
+Figure comparison(const StoreReader& store) {
+  constexpr std::size_t kShown = 3;
+  const scene::Table matched = scene::load_table(store, group_of("comparison") + "/matched");
+  const std::vector<double> share = scene::load_table(store, group_of("full") + "/orbits").numbers("share");
+  std::vector<std::size_t> rows(matched.rows());
+  std::iota(rows.begin(), rows.end(), std::size_t{0});
+  const auto index = [&](const char* model, std::size_t row) {
+    return static_cast<std::size_t>(matched.numbers(model)[row]) - 1;
+  };
+  std::ranges::stable_sort(
+      rows, [&](std::size_t a, std::size_t b) { return share[index("full", a)] > share[index("full", b)]; });
+  rows.resize(std::min(rows.size(), kShown));
+  std::ranges::sort(rows);
+  const ContactView view(store);
+  std::vector<figures::PhasePortrait> panels;
+  for (const char* model : {"full", "reduced"}) {
+    panels.push_back(view.attractor(store, model));
+    for (const std::size_t row : rows) panels.push_back(view.orbit(store, model, index(model, row)));
+  }
+  return figures::phase_portraits(
+      panels, view.layout(static_cast<int>(rows.size()) + 1, figures::PortraitLayout::Axes::kPerColumn));
+}
+
+/// Orbits of one model as points over their periods.
+struct OrbitPoints {
+  Eigen::VectorXd period, exponent, share;
+
+  OrbitPoints(const StoreReader& store, const std::string& model) {
+    const scene::Table orbits = scene::load_table(store, group_of(model) + "/orbits");
+    period = to_vector(orbits.numbers("period"));
+    exponent = to_vector(orbits.numbers("leading_modulus")).array().log() / period.array();
+    share = 100.0 * to_vector(orbits.numbers("share"));
+  }
+};
+
+/// Every orbit of every model: growth rate and share against period; orbits that match are joined.
+Figure spectrum(const StoreReader& store) {
+  const std::vector<std::string> models = models_of(store);
+  std::vector<OrbitPoints> points;
+  for (const std::string& model : models) points.emplace_back(store, model);
+  const auto panel = [&](const std::string& title, Eigen::VectorXd OrbitPoints::*value) {
+    figures::Panel out{.title = title, .series = {}};
+    if (store.has(group_of("comparison"))) {
+      const scene::Table matched = scene::load_table(store, group_of("comparison") + "/matched");
+      for (std::size_t row = 0; row < matched.rows(); ++row) {
+        const auto f = static_cast<Eigen::Index>(matched.numbers("full")[row]) - 1;
+        const auto r = static_cast<Eigen::Index>(matched.numbers("reduced")[row]) - 1;
+        out.series.push_back({.title = row == 0 ? "the same orbit" : "",
+                              .x = Eigen::Vector2d(points[0].period(f), points[1].period(r)),
+                              .y = Eigen::Vector2d((points[0].*value)(f), (points[1].*value)(r)),
+                              .look = Series::Look::kLine,
+                              .colour = figures::kLnmColour});
+      }
+    }
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      out.series.push_back(
+          {models[k] + " model", points[k].period, points[k].*value, Series::Look::kPoints, colour_of(models[k])});
+    }
+    return out;
+  };
+  const std::string unit = store.entry(group_of(models.front()) + "/orbits/period").meaning.units;
+  return figures::panel_grid({panel("growth rate ln |multiplier| / T", &OrbitPoints::exponent),
+                              panel("share of the attractor near the orbit [%]", &OrbitPoints::share)},
+                             {.columns = 1,
+                              .panel_height = 330,
+                              .x_label = figures::axis_label("period T", unit),
+                              .y_label = {},
+                              .shared_y = false});
+}
+
+}  // namespace
+
+std::vector<FileFigure> skeleton_figures_of(const StoreReader& store) {
+  std::vector<FileFigure> out;
+  if (models_of(store).empty()) return out;
+  if (store.has(group_of("comparison"))) {
+    out.push_back({"comparison", "both attractors and orbits that both have", [&store] { return comparison(store); }});
+  }
+  out.push_back({"orbits", "the attractor and its orbits", [&store] { return portraits(store); }});
+  out.push_back({"spectrum", "growth rates and shares against period", [&store] { return spectrum(store); }});
+  return out;
+}
+
+}  // namespace slipmode::cli
