@@ -65,6 +65,7 @@ std::vector<NamedBranch> follow(const orbits::SystemFamily& family, const orbits
   const std::vector<orbits::SpecialPoint> special = branches.front().branch.special;
   for (const orbits::SpecialPoint& point : special) {
     if (point.kind != SpecialKind::kSymmetryBreaking && point.kind != SpecialKind::kPeriodDoubling) continue;
+    if (point.orbit.crossings == 0) continue;  // in one regime: a floating structure's shift, which breaks nothing
     branches.push_back(switched(family, point, options));
   }
   return branches;
@@ -127,11 +128,11 @@ Report run(const Session& session, const Arguments& arguments) {
   scene::Scene scene = session.load(arguments.search.scene);
   const double own = scene::get_continuous_key(scene, range.key);
   const double start = range.holds(own) ? own : range.from;
-  const orbits::SystemFamily family = orbit_family(scene, range, session);
   if (start != own) scene = scene::set_key(scene, range.key, start);
-  const dynamics::HybridSystem system = family(start);
-  const SearchStart search = search_start(arguments.search, scene, system);
-  const orbits::ShootingResult found = orbits::shoot(system, search.guess, search.options);
+  const SearchModel model = search_model(arguments.search, scene);
+  const orbits::SystemFamily family = orbit_family(scene, range, session, model.basis);
+  const SearchStart search = search_start(arguments.search, scene, model);
+  const orbits::ShootingResult found = orbits::shoot(family(start), search.guess, search.options);
   if (!found.converged()) return not_found("orbit continue", found);
 
   const orbits::ContinuationOptions options = continuation_options(arguments, range, start, search.options);
@@ -147,8 +148,8 @@ Report run(const Session& session, const Arguments& arguments) {
     list.push_back(branch_json(branch));
     report.text += branch_text(branch);
   }
-  report.data = {{"verb", "orbit continue"}, {"file", arguments.output}, {"key", range.key}, {"from", range.from},
-                 {"to", range.to},           {"start", start},           {"branches", list}};
+  report.data = {{"verb", "orbit continue"}, {"model", model.title()}, {"file", arguments.output}, {"key", range.key},
+                 {"from", range.from},       {"to", range.to},         {"start", start},           {"branches", list}};
   report.text += fmt::format("Branches: {}\n", arguments.output);
   if (branches.front().branch.end == orbits::BranchEnd::kLost) {
     report.exit_code = kNumericalFailure;

@@ -1,5 +1,7 @@
 #include "cli/orbit_family.hpp"
 
+#include "rom/reduce.hpp"
+
 #include <fmt/format.h>
 #include <charconv>
 #include <cmath>
@@ -55,9 +57,14 @@ OrbitRange parse_range(const std::string& text) {
   return range;
 }
 
-orbits::SystemFamily orbit_family(const scene::Scene& scene, const OrbitRange& range, const Session& session) {
+orbits::SystemFamily orbit_family(const scene::Scene& scene, const OrbitRange& range, const Session& session,
+                                  const std::optional<pod::Basis>& basis) {
+  const auto build = [basis](const scene::Scene& own) {
+    dynamics::HybridSystem full = scene::build_system(own);
+    return basis ? rom::reduce(full, *basis) : full;
+  };
   (void)scene::get_continuous_key(scene, range.key);
-  for (const double end : {range.from, range.to}) (void)scene::build_system(scene::set_key(scene, range.key, end));
+  for (const double end : {range.from, range.to}) (void)build(scene::set_key(scene, range.key, end));
   const auto polled = [&session](const auto& make) {
     return [&session, make](double value) {
       session.check_interrupt();
@@ -65,16 +72,14 @@ orbits::SystemFamily orbit_family(const scene::Scene& scene, const OrbitRange& r
     };
   };
   if (const auto drive = drive_over(scene, range.key)) {
-    return polled(
-        [system = scene::build_system(scene), drive](double value) { return system.with_drive(drive(value)); });
+    return polled([system = build(scene), drive](double value) { return system.with_drive(drive(value)); });
   }
   if (range.key.starts_with("drive.") && !range.key.starts_with("drive.mean")) {
-    return polled([scene, key = range.key, system = scene::build_system(scene)](double value) {
+    return polled([scene, key = range.key, system = build(scene)](double value) {
       return system.with_drive(scene::set_key(scene, key, value).drive);
     });
   }
-  return polled(
-      [scene, key = range.key](double value) { return scene::build_system(scene::set_key(scene, key, value)); });
+  return polled([scene, key = range.key, build](double value) { return build(scene::set_key(scene, key, value)); });
 }
 
 }  // namespace slipmode::cli

@@ -2,7 +2,9 @@
 
 #include "cli/session.hpp"
 #include "orbits/continuation.hpp"
+#include "pod/basis.hpp"
 
+#include <optional>
 #include <string>
 
 namespace slipmode::cli {
@@ -20,10 +22,11 @@ struct OrbitRange {
 /// @throws InvalidInput  saying what is wrong with the text, or that the range has no length
 [[nodiscard]] OrbitRange parse_range(const std::string& text);
 
-/// Systems over one key of a scene. Under a key of the drive alone all share modal data and regimes.
+/// Systems over one key of a scene, projected when a basis is given. Under a key of the drive alone all share modal
+/// data and regimes.
 /// @throws InvalidInput  for a key that cannot be varied continuously (scene::get_continuous_key), or a scene that
 ///                       refuses an end of the range
 [[nodiscard]] orbits::SystemFamily orbit_family(const scene::Scene& scene, const OrbitRange& range,
-                                                const Session& session);
+                                                const Session& session, const std::optional<pod::Basis>& basis = {});
 
 }  // namespace slipmode::cli

@@ -33,17 +33,18 @@ void store(const std::string& path, const scene::Scene& scene, const dynamics::H
 Report run(const Session& session, const Arguments& arguments) {
   if (!arguments.output.empty()) require_writable(arguments.output);
   const scene::Scene scene = session.load(arguments.search.scene);
-  const dynamics::HybridSystem system = scene::build_system(scene);
-  const SearchStart start = search_start(arguments.search, scene, system);
+  const SearchModel model = search_model(arguments.search, scene);
+  const dynamics::HybridSystem system = model.of(model.full);
+  const SearchStart start = search_start(arguments.search, scene, model);
   session.check_interrupt();
   const orbits::ShootingResult result = orbits::shoot(system, start.guess, start.options);
   if (!result.converged()) return not_found("orbit find", result);
 
   const std::vector<orbits::Amplitude> amplitudes = contact_amplitudes(system, result.orbit);
   Report report;
-  report.data = {{"verb", "orbit find"}, {"title", scene.title}};
+  report.data = {{"verb", "orbit find"}, {"title", scene.title}, {"model", model.title()}};
   report.data.update(orbit_json(system, result.orbit, amplitudes));
-  report.text = fmt::format("{}: {}", scene.title, orbit_text(system, result.orbit, amplitudes));
+  report.text = fmt::format("{}, {}: {}", scene.title, model.title(), orbit_text(system, result.orbit, amplitudes));
   if (!arguments.output.empty()) {
     store(arguments.output, scene, system, result.orbit);
     report.data["file"] = arguments.output;

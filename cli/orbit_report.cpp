@@ -68,7 +68,11 @@ std::string amplitude_table(const dynamics::HybridSystem& system, const std::vec
 std::vector<orbits::Amplitude> contact_amplitudes(const dynamics::HybridSystem& system, const PeriodicOrbit& orbit) {
   std::vector<orbits::Amplitude> amplitudes;
   for (const friction::Contact& contact : system.contacts()) {
-    amplitudes.push_back(orbits::amplitude(system, orbit, contact.direction));
+    orbits::Amplitude own = orbits::amplitude(system, orbit, contact.direction);
+    own.min += contact.offset;
+    own.max += contact.offset;
+    own.mean += contact.offset;
+    amplitudes.push_back(own);
   }
   return amplitudes;
 }

@@ -8,7 +8,7 @@
 
 namespace slipmode::cli {
 
-/// Sizes of the contacts' displacements along an orbit, one per contact; offsets are not added.
+/// Sizes of the contacts' displacements along an orbit, one per contact.
 [[nodiscard]] std::vector<orbits::Amplitude> contact_amplitudes(const dynamics::HybridSystem& system,
                                                                 const orbits::PeriodicOrbit& orbit);
 

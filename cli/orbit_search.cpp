@@ -1,5 +1,8 @@
 #include "cli/orbit_search.hpp"
 
+#include "rom/reduce.hpp"
+#include "scene/records.hpp"
+
 #include <fmt/format.h>
 #include <charconv>
 #include <cmath>
@@ -48,30 +51,29 @@ dynamics::State given_state(const std::string& text, Eigen::Index n) {
 
 /// Under a periodic drive the guess settles for whole periods.
 dynamics::State settled(const OrbitSearch& search, const scene::Scene& scene, const dynamics::HybridSystem& system,
-                        double drive) {
-  const dynamics::State start = scene::initial_state(scene, system);
+                        const dynamics::State& start, double drive) {
   const double periods = search.settle > 0.0 ? search.settle : scene.time.transient / drive;
   return orbits::settle_guess(system, start, std::round(periods));
 }
 
-SearchStart self_excited(const OrbitSearch& search, const scene::Scene& scene, const dynamics::HybridSystem& system,
+SearchStart self_excited(const OrbitSearch& search, const scene::Scene& scene, const SearchModel& model,
                          orbits::ShootingOptions options) {
   if (search.order != 1) {
     throw InvalidInput(
         fmt::format("--order {}: counts periods of the drive, and this drive has none; valid: --period", search.order));
   }
   options.period = search.period;
-  const dynamics::State start = scene::initial_state(scene, system);
+  const dynamics::State start = model.of(scene::initial_state(scene, model.full));
   if (search.start != "settle") {
     if (search.period <= 0.0) {
       throw InvalidInput(
           fmt::format("--start {}: the drive has no period, so --period is needed with it", search.start));
     }
-    return {search.start == "initial" ? start : given_state(search.start, system.size()), options};
+    return {search.start == "initial" ? start : model.of(given_state(search.start, model.full.size())), options};
   }
   const double transient = search.settle > 0.0 ? search.settle : scene.time.transient;
   const double duration = scene.time.duration - scene.time.transient;
-  const orbits::RecurrenceGuess guess = orbits::recurrence_guess(system, start, transient, duration);
+  const orbits::RecurrenceGuess guess = orbits::recurrence_guess(model.of(model.full), start, transient, duration);
   if (options.period <= 0.0) options.period = guess.period;
   return {guess.state, options};
 }
@@ -80,6 +82,7 @@ SearchStart self_excited(const OrbitSearch& search, const scene::Scene& scene, c
 
 void add_search_options(CLI::App& command, OrbitSearch& search) {
   command.add_option("SCENE", search.scene, "scene file (TOML)")->required();
+  command.add_option("--model", search.model, "full, or rom:FILE with a result of 'slipmode reduce'");
   command.add_option("--order", search.order, "period in periods of the drive")->check(CLI::PositiveNumber);
   command.add_option("--period", search.period, "period: a multiple of the drive's; on a belt a guess")
       ->check(CLI::PositiveNumber);
@@ -97,15 +100,44 @@ void add_search_options(CLI::App& command, OrbitSearch& search) {
   command.add_flag("--symmetric", search.half, "look for a symmetric orbit by its half period");
 }
 
-SearchStart search_start(const OrbitSearch& search, const scene::Scene& scene, const dynamics::HybridSystem& system) {
+dynamics::HybridSystem SearchModel::of(const dynamics::HybridSystem& system) const {
+  return basis ? rom::reduce(system, *basis) : system;
+}
+
+dynamics::State SearchModel::of(const dynamics::State& state) const {
+  return basis ? rom::restrict_state(full.structure(), *basis, state) : state;
+}
+
+std::string SearchModel::title() const {
+  return basis ? fmt::format("reduced model, {} modes", basis->modes())
+               : fmt::format("full model, {} degrees of freedom", full.size());
+}
+
+SearchModel search_model(const OrbitSearch& search, const scene::Scene& scene) {
+  constexpr std::string_view kPrefix = "rom:";
+  SearchModel model{.full = scene::build_system(scene)};
+  if (search.model == "full") return model;
+  if (!search.model.starts_with(kPrefix)) {
+    throw InvalidInput(
+        fmt::format("--model {}: expected full, or rom:FILE with a result of 'slipmode reduce'", search.model));
+  }
+  const scene::StoreReader store(search.model.substr(kPrefix.size()));
+  if (!store.has(scene::kReducedGroup)) {
+    store.fail(scene::kReducedGroup, "the file holds no reduced model; make one with 'slipmode reduce'");
+  }
+  model.basis = scene::load_basis(store, std::string(scene::kReducedGroup) + "/basis", model.full.size());
+  return model;
+}
+
+SearchStart search_start(const OrbitSearch& search, const scene::Scene& scene, const SearchModel& model) {
   orbits::ShootingOptions options{.order = search.order,
                                   .segments = search.segments,
                                   .tolerance = search.tolerance,
                                   .max_iterations = search.iterations,
                                   .half_period = search.half};
   options.flow.method = scene.flow.method;
-  const std::optional<double> drive = system.drive().period();
-  if (!drive) return self_excited(search, scene, system, options);
+  const std::optional<double> drive = model.full.drive().period();
+  if (!drive) return self_excited(search, scene, model, options);
   if (search.period > 0.0) {
     const int order = order_of(search.period, *drive);
     if (search.order != 1 && search.order != order) {
@@ -114,9 +146,12 @@ SearchStart search_start(const OrbitSearch& search, const scene::Scene& scene, c
     }
     options.order = order;
   }
-  if (search.start == "settle") return {settled(search, scene, system, *drive), options};
-  if (search.start == "initial") return {scene::initial_state(scene, system), options};
-  return {given_state(search.start, system.size()), options};
+  if (search.start != "settle" && search.start != "initial") {
+    return {model.of(given_state(search.start, model.full.size())), options};
+  }
+  const dynamics::State start = model.of(scene::initial_state(scene, model.full));
+  if (search.start == "initial") return {start, options};
+  return {settled(search, scene, model.of(model.full), start, *drive), options};
 }
 
 }  // namespace slipmode::cli

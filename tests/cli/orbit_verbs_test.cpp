@@ -164,6 +164,26 @@ TEST_F(OrbitVerbs, FindsTheChainsOwnPeriod) {
   expect_refused({"find", chain, "--start", "1,2", "--period", "45"}, {"2 values for 10 degrees of freedom", "20"});
 }
 
+TEST_F(OrbitVerbs, ReducedModelWithAllModesHasTheSameOrbit) {
+  const std::string four = SLIPMODE_SOURCE_DIR "/datasets/backlash_4mass/scene.toml";
+  ASSERT_EQ(slipmode_in(folder, {"simulate", four, "-o", "run.h5"}).exit_code, 0);
+  ASSERT_EQ(slipmode_in(folder, {"pod", "run.h5", "-o", "pod.h5"}).exit_code, 0);
+  ASSERT_EQ(slipmode_in(folder, {"reduce", four, "pod.h5", "--modes", "4", "-o", "rom.h5"}).exit_code, 0);
+  const auto full = json_of({"find", four});
+  const auto reduced = json_of({"find", four, "--model", "rom:rom.h5"});
+  // A basis of all modes is a change of coordinates.
+  EXPECT_EQ(reduced["model"], "reduced model, 4 modes");
+  EXPECT_NEAR(reduced["leading_modulus"], full["leading_modulus"], 1e-9);
+  for (const char* size : {"min", "max", "mean"}) {
+    EXPECT_NEAR(reduced["amplitudes"][0][size], full["amplitudes"][0][size], 1e-9) << size;
+  }
+  const auto branch =
+      json_of({"continue", four, "--model", "rom:rom.h5", "--over", "drive.omega=0.93:0.95", "-o", "b.h5"});
+  EXPECT_EQ(branch["branches"][0]["end"], "range");
+  expect_refused({"find", four, "--model", "pod.h5"}, {"--model pod.h5", "rom:FILE"});
+  expect_refused({"find", four, "--model", "rom:pod.h5"}, {"pod.h5", "no reduced model", "slipmode reduce"});
+}
+
 TEST_F(OrbitVerbs, OtherVerbsSayWhatToUseUnderAForce) {
   const Outcome sweep = slipmode_in(folder, {"sweep", kSdof, "--over", "drive.omega=1:2:1", "-o", "s.h5"});
   EXPECT_EQ(sweep.exit_code, 2);
