@@ -17,8 +17,7 @@ Scene set_key(const Scene& scene, const std::string& path, double value) {
 
 namespace {
 
-/// The number at a path of the scene written out in full.
-const toml::node& number_at(const TomlDocument& document, const std::string& scene_path, const std::string& path) {
+const toml::node* node_at(const TomlDocument& document, const std::string& path) {
   const toml::node* node = &document.root();
   std::istringstream parts(path);
   for (std::string part; node != nullptr && std::getline(parts, part, '.');) {
@@ -31,6 +30,23 @@ const toml::node& number_at(const TomlDocument& document, const std::string& sce
       node = nullptr;
     }
   }
+  return node;
+}
+
+/// Where a side's key stands when both stops of a clearance are alike: contact.0.left.gap is contact.0.stop.gap.
+std::string shared_stop(const std::string& path) {
+  for (const std::string side : {".left.", ".right."}) {
+    const std::size_t at = path.find(side);
+    if (at != std::string::npos && path.starts_with("contact."))
+      return path.substr(0, at) + ".stop." + path.substr(at + side.size());
+  }
+  return path;
+}
+
+/// The number at a path of the scene written out in full.
+const toml::node& number_at(const TomlDocument& document, const std::string& scene_path, const std::string& path) {
+  const toml::node* node = node_at(document, path);
+  if (node == nullptr) node = node_at(document, shared_stop(path));
   if (node == nullptr) {
     throw InvalidInput(fmt::format("{}: {}: no such key; valid are those of the scene file, for example drive.speed",
                                    scene_path, path));

@@ -122,8 +122,8 @@ Figure multiplier_plane(const Eigen::MatrixXd& parts, const std::string& title) 
   figure.command("set xlabel 'real part [–]'; set ylabel 'imaginary part [–]'");
   figure.command(fmt::format("set title \"{}\"", literal(title)));
   figure.command(
-      fmt::format("plot cos(t), sin(t) with lines linecolor rgb '#888888' title 'unit circle', {} using 1:2 "
-                  "with points pointtype 7 pointsize 1.1 linecolor rgb '{}' title 'multipliers'",
+      fmt::format("plot cos(t), sin(t) with lines linecolor rgb '#888888' notitle, {} using 1:2 "
+                  "with points pointtype 7 pointsize 1.1 linecolor rgb '{}' notitle",
                   data, kFullColour));
   return figure;
 }

@@ -127,6 +127,16 @@ TEST_F(OrbitVerbs, ContinueFollowsTheResponseCurve) {
   }
 }
 
+TEST_F(OrbitVerbs, ContinueMeetsTheGrazingOfTheLinearMotion) {
+  const std::string play = SLIPMODE_SOURCE_DIR "/datasets/play_oscillator/scene.toml";
+  const auto said = json_of({"continue", play, "--over", "drive.amplitude=1.2:0.9", "-o", "branch.h5"});
+  // In the gap |x| = a / (w sqrt(w² + 4ξ²)): it reaches 1 at a = sqrt(1 + 0.04²), with w = 1, ξ = 0.02.
+  const auto& special = said["branches"][0]["special"];
+  ASSERT_EQ(special.size(), 1U);
+  EXPECT_EQ(special[0]["kind"], "grazing");
+  EXPECT_NEAR(special[0]["parameter"], std::sqrt(1.0 + 0.04 * 0.04), 1e-8);
+}
+
 TEST_F(OrbitVerbs, SequentialContinuationEndsAtAFoldAndKeepsWhatItFound) {
   const auto said = json_of(
       {"continue", kSdof, "--over", "drive.omega=1.2:1.8", "--start", "2.5,0", "--sequential", "-o", "branch.h5"}, 3);

@@ -127,6 +127,14 @@ TEST(ClearanceScene, SideKeysOverrideWhatBothStopsShare) {
   EXPECT_EQ(law.right->gap, 1.0);
 }
 
+TEST(ClearanceScene, SideOfSharedStopsCanBeReadAndSet) {
+  const Scene shared = parse_scene(replaced(kPair, "left = { stiffness = 3.0, gap = 0.5 }\nright =", "stop ="));
+  EXPECT_EQ(get_continuous_key(shared, "contact.0.left.gap"), 1.0);
+  const Scene other = set_key(shared, "contact.0.left.gap", 0.75);
+  EXPECT_EQ(get_key(other, "contact.0.left.gap"), 0.75);
+  EXPECT_EQ(get_key(other, "contact.0.right.gap"), 1.0);
+}
+
 TEST(ClearanceScene, OneStopIsEnough) {
   const Scene scene = parse_scene(replaced(kPair, "left = { stiffness = 3.0, gap = 0.5 }\n", ""));
   EXPECT_FALSE(std::get<friction::Clearance>(scene.contacts[0].law).left.has_value());
