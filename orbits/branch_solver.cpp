@@ -10,9 +10,12 @@
 namespace slipmode::orbits {
 namespace {
 
-constexpr int kMaxCorrections = 12;
-/// Step of the central difference in the parameter, of its range: a column good to about 1e-7, and near enough not to
-/// reach across the next change of word too often.
+constexpr int kMaxCorrections = 20;
+constexpr double kTrustRadius = 0.2;  // in units of the orbit's size
+/// What a pass leaves of a relative error, before Φ stretches it: a residual that stalls below this × ‖Φ‖ is zero.
+constexpr double kRoundingOfPass = 1e-12;
+/// Step of the difference in the parameter, of its range, where Φ stretches nothing. Second derivatives grow like ‖Φ‖²,
+/// what rounding leaves like ‖Φ‖: the step is divided by √‖Φ‖.
 constexpr double kDifferenceStep = 1e-6;
 
 /// time / period without whole periods.
@@ -91,7 +94,9 @@ BranchEvaluation BranchSolver::evaluate(const BranchUnknowns& at) const {
 
 std::vector<Eigen::MatrixXd> BranchSolver::parameter_columns(const BranchUnknowns& at,
                                                              const ShootingEvaluation& here) const {
-  const double h = kDifferenceStep * range_;
+  double stretch = 1.0;
+  for (const Eigen::MatrixXd& transfer : here.transfer) stretch = std::max(stretch, transfer.norm());
+  const double h = kDifferenceStep * range_ / std::sqrt(stretch);
   const auto ends_at = [&](double parameter) {
     BranchUnknowns moved_to{at.point, parameter, at.phase};
     const dynamics::HybridSystem system = family_(parameter);
@@ -101,26 +106,20 @@ std::vector<Eigen::MatrixXd> BranchSolver::parameter_columns(const BranchUnknown
     return problem.ends_of(moved_to.point);
   };
   // At the ends of the range the family need not go further.
-  const double high = std::max(options_.from, options_.to), low = std::min(options_.from, options_.to);
-  const Eigen::MatrixXd above = ends_at(std::min(at.parameter + h, high)),
-                        below = ends_at(std::max(at.parameter - h, low));
-  const double up_step = (std::min(at.parameter + h, high) - at.parameter) / range_;
-  const double down_step = (at.parameter - std::max(at.parameter - h, low)) / range_;
+  const double high = std::min(at.parameter + h, std::max(options_.from, options_.to));
+  const double low = std::max(at.parameter - h, std::min(options_.from, options_.to));
+  const bool has_above = high - at.parameter > 0.1 * h, has_below = at.parameter - low > 0.1 * h;
+  const Eigen::MatrixXd above = ends_at(high), below = ends_at(low);
   std::vector<Eigen::MatrixXd> columns;
   for (Eigen::Index k = 0; k < above.cols(); ++k) {
     const Eigen::VectorXd end = stacked(here.ends[static_cast<std::size_t>(k)]).cwiseQuotient(scale_);
-    if (up_step < 0.1 * kDifferenceStep) {
-      columns.emplace_back((end - below.col(k)) / down_step);
-      continue;
-    }
-    if (down_step < 0.1 * kDifferenceStep) {
-      columns.emplace_back((above.col(k) - end) / up_step);
-      continue;
-    }
-    const Eigen::VectorXd up = (above.col(k) - end) / up_step, down = (end - below.col(k)) / down_step;
+    const Eigen::VectorXd up = (above.col(k) - end) * (range_ / std::max(high - at.parameter, 1e-300));
+    const Eigen::VectorXd down = (end - below.col(k)) * (range_ / std::max(at.parameter - low, 1e-300));
     // Where an event comes or goes within the step one side jumps: the other is right.
     const bool jumps = (up - down).norm() > 0.1 * std::max(up.norm(), down.norm());
-    columns.emplace_back(!jumps ? Eigen::VectorXd(0.5 * (up + down)) : up.norm() < down.norm() ? up : down);
+    const bool take_up = !has_below || (has_above && jumps && up.norm() < down.norm());
+    const bool take_down = !has_above || (has_below && jumps && !take_up);
+    columns.emplace_back(take_up ? up : take_down ? down : Eigen::VectorXd(0.5 * (up + down)));
   }
   return columns;
 }
@@ -152,25 +151,33 @@ BranchUnknowns BranchSolver::moved(const BranchEvaluation& from, const Eigen::Ve
   return out;
 }
 
+std::optional<BranchEvaluation> BranchSolver::shortened(const BranchEvaluation& from,
+                                                        const Eigen::VectorXd& step) const {
+  for (double share = 1.0; share > 0.05; share *= 0.5) {
+    BranchEvaluation next = evaluate(moved(from, share * step, share));
+    if (next.shooting.norm <= (1.0 - 0.1 * share) * from.shooting.norm) return next;
+    const bool at_rounding = next.shooting.largest <= kRoundingOfPass * std::max(1.0, next.J.norm());
+    if (at_rounding) return next;
+  }
+  return std::nullopt;
+}
+
 std::optional<BranchSolver::Corrected> BranchSolver::correct(const BranchUnknowns& guess,
                                                              const Eigen::VectorXd& row) const {
   try {
     Corrected out{evaluate(guess), 0};
-    double radius = 0.2;
     while (out.at.shooting.largest > options_.shooting.tolerance) {
       if (out.iterations++ == kMaxCorrections) return std::nullopt;
       Eigen::MatrixXd J(out.at.J.rows() + 1, out.at.J.cols());
       J << out.at.J, row.transpose();
       Eigen::VectorXd r(J.rows());
       r << out.at.r, row.dot(difference(out.at.at, guess));
-      const BoundedLeastSquares solved = bounded_least_squares(J, r, radius);
-      BranchEvaluation next = evaluate(moved(out.at, solved.step, 1.0));
-      if (next.shooting.norm > 2.0 * out.at.shooting.norm) {
-        radius = 0.25 * std::min(radius, solved.step.norm());
-        if (radius < 1e-10) return std::nullopt;
-        continue;
-      }
-      out.at = std::move(next);
+      const Eigen::VectorXd step = bounded_least_squares(J, r, kTrustRadius).step;
+      std::optional<BranchEvaluation> next = shortened(out.at, step);
+      if (!next) return std::nullopt;
+      const bool stalls = next->shooting.norm > 0.3 * out.at.shooting.norm;
+      out.at = std::move(*next);
+      if (stalls && out.at.shooting.largest <= kRoundingOfPass * std::max(1.0, out.at.J.norm())) return out;
     }
     return out;
   } catch (const NumericalFailure&) {
@@ -194,6 +201,12 @@ Eigen::VectorXd BranchSolver::difference(const BranchUnknowns& b, const BranchUn
   if (period_unknown()) out[n] = std::log(b.point.period / a.point.period);
   out[out.size() - 1] = (b.parameter - a.parameter) / range_;
   return out;
+}
+
+BranchSolver BranchSolver::by_half_periods(const PeriodicOrbit& orbit, double parameter) const {
+  ContinuationOptions halves = options_;
+  halves.shooting.half_period = true;
+  return {family_, orbit, parameter, halves};
 }
 
 PeriodicOrbit BranchSolver::describe(const BranchEvaluation& at) const {

@@ -57,6 +57,9 @@ class BranchSolver {
   /// b − a, scaled [N + e]; both at the same phase of the drive.
   [[nodiscard]] Eigen::VectorXd difference(const BranchUnknowns& b, const BranchUnknowns& a) const;
 
+  /// The same family solved by half periods, for the symmetric orbits near `orbit` (symmetric itself, or nearly).
+  [[nodiscard]] BranchSolver by_half_periods(const PeriodicOrbit& orbit, double parameter) const;
+
   [[nodiscard]] PeriodicOrbit describe(const BranchEvaluation& at) const;
   /// The unit vector of the parameter [N + e].
   [[nodiscard]] Eigen::VectorXd parameter_row() const;
@@ -66,6 +69,10 @@ class BranchSolver {
   [[nodiscard]] bool period_unknown() const { return kind_ == OrbitKind::kSelfExcited; }
 
  private:
+  /// The step, or a half, a quarter … of it, that lowers the residual. Where Φ jumps (a stop touched) full steps
+  /// alternate between both sides for ever.
+  [[nodiscard]] std::optional<BranchEvaluation> shortened(const BranchEvaluation& from,
+                                                          const Eigen::VectorXd& step) const;
   void set_times(BranchUnknowns& at, const dynamics::HybridSystem& system) const;
   [[nodiscard]] std::vector<Eigen::MatrixXd> parameter_columns(const BranchUnknowns& at,
                                                                const ShootingEvaluation& here) const;

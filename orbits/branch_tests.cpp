@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <utility>
 
 namespace slipmode::orbits {
 namespace {
@@ -50,6 +51,15 @@ struct Located {
   double s = 0.0;          ///< along a's tangent
 };
 
+/// The point a share of the way from the low side to the high one, corrected across a's tangent.
+std::optional<WatchedPoint> between(const BranchSolver& solver, const Eigen::VectorXd& tangent, const Located& sides,
+                                    double share) {
+  const Eigen::VectorXd chord = solver.difference(sides.high.at.at, sides.low.at.at);
+  const auto corrected = solver.correct(solver.moved(sides.low.at, share * chord, 0.0), tangent);
+  if (!corrected) return std::nullopt;
+  return watch(solver, corrected->at, tangent);
+}
+
 /// Narrows [low at s = 0, high at s] until the sides are the same to rounding or the parameter is known.
 /// `value` must have opposite signs at both; steps by Illinois' rule where it is smooth, else halves.
 Located narrow(const BranchSolver& solver, const WatchedPoint& a, const WatchedPoint& b, double s, double tolerance,
@@ -65,7 +75,12 @@ Located narrow(const BranchSolver& solver, const WatchedPoint& a, const WatchedP
       const double margin = 1e-3 * (high - low);
       middle = std::clamp(secant, low + margin, high - margin);
     }
-    std::optional<WatchedPoint> next = watched_at(solver, a, middle);
+    std::optional<WatchedPoint> next;
+    for (const double at : {middle, low + 0.5 * (high - low), low + 0.2 * (high - low), low + 0.8 * (high - low)}) {
+      next = between(solver, a.tangent, found, (at - low) / (high - low));
+      middle = at;
+      if (next) break;
+    }
     if (!next) break;
     const double here = value(*next);
     if ((here < 0) == (at_low < 0)) {
@@ -125,13 +140,60 @@ void add_smooth(const BranchSolver& solver, const WatchedPoint& a, const Watched
   } else {
     special.multiplier = critical.multiplier;
     special.direction = critical_direction(at.low, kind, critical.multiplier);
-    const bool onto_symmetric = kind == SpecialKind::kFold && !at.low.orbit.symmetric && at.low.orbit.asymmetry > 0.0 &&
-                                at.low.orbit.asymmetry < 1e-3 && a.orbit.asymmetry > 2.0 * at.low.orbit.asymmetry;
-    if (onto_symmetric) {
-      special.kind = SpecialKind::kSymmetryBreaking;
-      special.note += "reached from the asymmetric side";
-    }
   }
+  out_found.push_back({at.s, std::move(special)});
+}
+
+/// True when the branch passed through a symmetric orbit to the mirror images of its own: a pitchfork from its side.
+bool turns_over(const WatchedPoint& a, const WatchedPoint& b) {
+  const bool asymmetric = !a.orbit.symmetric && !b.orbit.symmetric;
+  return asymmetric && a.skew.size() > 0 && b.skew.size() > 0 && a.skew.dot(b.skew) < 0;
+}
+
+/// Where the symmetric orbits beside a nearly symmetric one lose their symmetry, by secants on ∏(1 + μ) of half
+/// periods: regular, where the asymmetric branch is not.
+std::optional<WatchedPoint> breaking_beside(const BranchSolver& solver, const WatchedPoint& near) {
+  const Eigen::VectorXd& scale = solver.scale();
+  PeriodicOrbit middle = near.orbit;
+  middle.start.modes.clear();
+  middle.start = with_coordinates(middle.start, stacked(middle.start) - 0.5 * scale.cwiseProduct(near.skew));
+  const double start = near.at.at.parameter, reach = 1e-2 * solver.range();
+  const BranchSolver halves = solver.by_half_periods(middle, start);
+  const auto orbit_at = [&](double parameter) -> std::optional<WatchedPoint> {
+    const auto corrected = halves.correct(halves.unknowns_of(middle, parameter), halves.parameter_row());
+    if (!corrected) return std::nullopt;
+    return watch(halves, corrected->at, halves.parameter_row());
+  };
+  double last = start, here = start + 1e-3 * reach;
+  std::optional<WatchedPoint> found = orbit_at(last);
+  if (!found) return std::nullopt;
+  double at_last = found->breaking;
+  for (int k = 0; k < 20; ++k) {
+    found = orbit_at(here);
+    if (!found || found->breaking == at_last) return std::nullopt;
+    const double next = here - found->breaking * (here - last) / (found->breaking - at_last);
+    if (std::abs(next - here) <= 1e-12 * solver.range()) return found;
+    if (std::abs(next - start) > reach) return std::nullopt;
+    at_last = found->breaking;
+    last = std::exchange(here, next);
+  }
+  return std::nullopt;
+}
+
+void add_turning_over(const BranchSolver& solver, const WatchedPoint& a, const WatchedPoint& b, double s,
+                      double tolerance, std::vector<Found>& out_found) {
+  const Located at = narrow(
+      solver, a, b, s, tolerance, [&](const WatchedPoint& p) { return p.skew.dot(a.skew); }, true);
+  SpecialPoint special = special_of(at, SpecialKind::kSymmetryBreaking, tolerance);
+  if (const auto exact = breaking_beside(solver, at.low)) {
+    special.parameter = exact->at.at.parameter;
+    special.uncertainty = 1e-12 * solver.range();
+    special.orbit = exact->orbit;
+    special.multiplier = critical_multiplier(exact->orbit, SpecialKind::kSymmetryBreaking).multiplier;
+    special.direction = critical_direction(*exact, SpecialKind::kSymmetryBreaking, special.multiplier);
+    special.note.clear();
+  }
+  special.note += "reached from the asymmetric side";
   out_found.push_back({at.s, std::move(special)});
 }
 
@@ -155,6 +217,8 @@ WatchedPoint watch(const BranchSolver& solver, BranchEvaluation at, const Eigen:
   if (solver.half_period())
     out.half_map = scale.asDiagonal() * (Eigen::MatrixXd::Identity(n, n) - out.at.J.topLeftCorner(n, n)) *
                    scale.cwiseInverse().asDiagonal();
+  if (const Eigen::VectorXd& half = out.at.shooting.half_state; half.size() > 0)
+    out.skew = half + out.at.problem->scaled(stacked(out.at.at.point.nodes[0]));
   out.fold = out.tangent[out.tangent.size() - 1];
   const std::vector<std::complex<double>> multipliers = watched_multipliers(out.orbit);
   std::complex<double> plus = 1.0, pairs = 1.0;
@@ -168,23 +232,21 @@ WatchedPoint watch(const BranchSolver& solver, BranchEvaluation at, const Eigen:
   return out;
 }
 
-std::optional<WatchedPoint> watched_at(const BranchSolver& solver, const WatchedPoint& from, double s) {
-  const auto corrected = solver.correct(solver.moved(from.at, s * from.tangent, 0.0), from.tangent);
-  if (!corrected) return std::nullopt;
-  return watch(solver, corrected->at, from.tangent);
-}
-
 std::vector<SpecialPoint> special_points_between(const BranchSolver& solver, const WatchedPoint& a,
                                                  const WatchedPoint& b, double s, double tolerance) {
   std::vector<Found> found;
-  add_smooth(solver, a, b, s, tolerance, SpecialKind::kFold, &WatchedPoint::fold, found);
+  if (turns_over(a, b)) {
+    add_turning_over(solver, a, b, s, tolerance, found);
+  } else {
+    add_smooth(solver, a, b, s, tolerance, SpecialKind::kFold, &WatchedPoint::fold, found);
+  }
   const bool same_symmetry = a.orbit.symmetric == b.orbit.symmetric;
   if (same_symmetry) {
     add_smooth(solver, a, b, s, tolerance, SpecialKind::kSymmetryBreaking, &WatchedPoint::breaking, found);
     add_smooth(solver, a, b, s, tolerance, SpecialKind::kPeriodDoubling, &WatchedPoint::doubling, found);
     add_smooth(solver, a, b, s, tolerance, SpecialKind::kNeimarkSacker, &WatchedPoint::torus, found);
   }
-  if (a.orbit.word != b.orbit.word) {
+  if (a.orbit.word != b.orbit.word && !turns_over(a, b)) {
     const Located at = narrow(
         solver, a, b, s, tolerance, [&](const WatchedPoint& p) { return p.orbit.word == a.orbit.word ? -1.0 : 1.0; },
         false);

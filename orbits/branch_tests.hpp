@@ -15,6 +15,8 @@ struct WatchedPoint {
   Eigen::VectorXd tangent;   ///< scaled [N + e]
   Eigen::MatrixXd half_map;  ///< −Φ(T/2), where the branch is solved by half periods; else empty
 
+  Eigen::VectorXd skew;  ///< x(T/2) + x(0), scaled [N], where the passes are run in halves; else empty
+
   /// Test functions: each changes sign where its kind of special point lies.
   double fold = 1.0;      ///< the parameter's share of the tangent
   double breaking = 1.0;  ///< ∏ (1 + μ) over half-period multipliers; 1 for orbits that are not symmetric
@@ -24,9 +26,6 @@ struct WatchedPoint {
 
 /// @param along  direction of travel, scaled [N + e]
 [[nodiscard]] WatchedPoint watch(const BranchSolver& solver, BranchEvaluation at, const Eigen::VectorXd& along);
-
-/// The point a length s along the tangent of `from`, corrected across it.
-[[nodiscard]] std::optional<WatchedPoint> watched_at(const BranchSolver& solver, const WatchedPoint& from, double s);
 
 /// What a change of word is: sticks that come or go, touches, or reversals.
 [[nodiscard]] SpecialKind kind_of_word_change(const std::string& before, const std::string& after);

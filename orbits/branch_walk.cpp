@@ -13,6 +13,10 @@ namespace {
 
 /// Steps are rejected where the tangent turns by more than this (cosine), unless the word changes.
 constexpr double kLeastCosine = 0.9;
+constexpr double kLandingStep = 1e-4;
+/// Points looked back upon, and how near counts as the same place (in steps), when a corner is rounded.
+constexpr std::size_t kRemembered = 40;
+constexpr double kSamePlace = 5.0;
 
 /// One way along a branch.
 class Walk {
@@ -84,6 +88,8 @@ class Walk {
     const Eigen::VectorXd way = solver_.difference(corrected->at.at, current_.at.at);
     if ((way - length * current_.tangent).norm() > 0.5 * length + 1e-7) return std::nullopt;  // another branch
     WatchedPoint next = watch(solver_, corrected->at, way);
+    const bool lands = !current_.orbit.symmetric && next.orbit.symmetric;
+    if (lands && length > kLandingStep) return std::nullopt;  // symmetric orbits are joined in small steps
     const bool kink = next.orbit.word != current_.orbit.word && length < 1e-3;
     if (next.tangent.dot(current_.tangent) < kLeastCosine && !kink) return std::nullopt;
     return next;
@@ -193,10 +199,26 @@ class Walk {
       if (!corrected) return std::nullopt;
       WatchedPoint next = watch(solver_, corrected->at, solver_.difference(corrected->at.at, current_.at.at));
       const bool near = solver_.difference(next.at.at, current_.at.at).norm() < 3.0 * s;
-      return near && next.orbit.word != current_.orbit.word ? std::optional(std::move(next)) : std::nullopt;
+      const bool goes_on = near && next.orbit.word != current_.orbit.word && !was_here(next, s);
+      return goes_on ? std::optional(std::move(next)) : std::nullopt;
     } catch (const NumericalFailure&) {
       return std::nullopt;
     }
+  }
+
+  /// True when one of the last points is the same orbit within s: the way round a corner led back.
+  [[nodiscard]] bool was_here(const WatchedPoint& next, double s) const {
+    const std::size_t count = branch_.points.size();
+    for (std::size_t k = count > kRemembered ? count - kRemembered : 0; k < count; ++k) {
+      const BranchPoint& old = branch_.points[k];
+      const double modulus = std::max(old.orbit.leading_modulus, next.orbit.leading_modulus);
+      if (old.orbit.word == next.orbit.word &&
+          std::abs(old.parameter - next.at.at.parameter) <= kSamePlace * s * solver_.range() &&
+          std::abs(old.orbit.period - next.orbit.period) <= kSamePlace * s * old.orbit.period &&
+          std::abs(old.orbit.leading_modulus - next.orbit.leading_modulus) <= 0.05 * modulus)
+        return true;
+    }
+    return false;
   }
 
   /// An orbit's origin may drift onto an event as the branch goes on, where derivatives jump: it is then set anew.

@@ -166,6 +166,12 @@ std::string advice(const Descent& d, const ShootingOptions& options) {
           "another parameter, or continuation past the fold",
           where, d.smallest_singular);
     case ShootingStatus::kStalled:
+      if (d.best.largest < 1e-8)
+        return fmt::format(
+            "no orbit found to the tolerance asked: {}; an orbit that stretches deviations as much as this one leaves "
+            "more "
+            "than that of rounding. Use more segments, or a larger tolerance",
+            where);
       return fmt::format(
           "no orbit found: {}; no shorter step lowers it. Simulate longer before shooting, use more segments, another "
           "order or period, or see whether a contact only grazes",

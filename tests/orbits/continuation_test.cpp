@@ -194,6 +194,20 @@ TEST(Continuation, SwitchesToAsymmetricOrbits) {
   EXPECT_NEAR(doublings[1].parameter, 0.54, 0.005);
 }
 
+TEST(Continuation, AnAsymmetricBranchEndsWhereTheSymmetricOneBreaks) {
+  // Both branches locate the point in their own way: by a multiplier −1 of the half-period map, by the asymmetry.
+  const HybridSystem base = Backlash{.omega = 1.2}.system();
+  const std::vector<SpecialPoint> breakings = of_kind(backlash_branch(-1, 1.3), SpecialKind::kSymmetryBreaking);
+  ASSERT_GE(breakings.size(), 2u);
+  const ContinuationOptions options{.from = 0.3, .to = 1.3, .direction = -1, .max_points = 300};
+  const BranchPoint side = switch_branch(over_frequency(base), breakings[0], options).front();
+  const Branch branch = continue_orbit(over_frequency(base), side.orbit, side.parameter, options);
+  EXPECT_EQ(branch.end, BranchEnd::kMerged) << branch.reason;
+  const std::vector<SpecialPoint> met = of_kind(branch, SpecialKind::kSymmetryBreaking);
+  ASSERT_EQ(met.size(), 1u);
+  EXPECT_NEAR(met[0].parameter, breakings[1].parameter, 1e-8);
+}
+
 TEST(Continuation, SwitchesToTwiceThePeriod) {
   const HybridSystem base = Backlash{.omega = 0.65}.system();
   const Branch branch =
