@@ -1,0 +1,136 @@
+#include "diagnostics/correlation_dimension.hpp"
+
+#include "core/errors.hpp"
+#include "diagnostics/neighbours.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+namespace slipmode::diagnostics {
+
+namespace {
+
+using Counts = std::vector<std::int64_t>;
+
+CorrelationOptions checked(const Series& series, CorrelationOptions options) {
+  const bool fits = options.radii >= 8 && options.smallest > 0.0 && options.largest > options.smallest &&
+                    options.window >= 0 && options.references >= 0 && options.least_pairs >= 1.0 &&
+                    options.most_share > 0.0 && options.least_decades > 0.0;
+  if (!fits) {
+    throw InvalidInput(
+        fmt::format("correlation dimension: expected radii >= 8, 0 < smallest < largest, window and references >= 0, "
+                    "least_pairs >= 1, most_share and least_decades > 0, found {}, {}, {}, {}, {}, {}, {} and {}",
+                    options.radii, options.smallest, options.largest, options.window, options.references,
+                    options.least_pairs, options.most_share, options.least_decades));
+  }
+  check_series(series, 2, "correlation dimension");
+  if (options.window == 0) options.window = theiler_window(series);
+  check_series(series, options.embedding.span() + 2 * options.window + 500,
+               fmt::format("correlation dimension in dimension {}", options.embedding.dimension));
+  return options;
+}
+
+/// Pairs of a block of references with all points outside the window, per radius.
+Counts count_block(const NeighbourTree& tree, const std::vector<double>& radii, Eigen::Index window, Eigen::Index begin,
+                   Eigen::Index end, Eigen::Index references) {
+  Counts counts(radii.size(), 0);
+  for (Eigen::Index r = begin; r < end; ++r) {
+    const Eigen::Index i = r * tree.size() / references;
+    tree.add_counts(i, radii, counts);
+    for (Eigen::Index j = std::max<Eigen::Index>(0, i - window); j <= std::min(tree.size() - 1, i + window); ++j) {
+      const auto from = std::lower_bound(radii.begin(), radii.end(), tree.distance(i, j));
+      for (auto at = from; at != radii.end(); ++at) --counts[static_cast<std::size_t>(at - radii.begin())];
+    }
+  }
+  return counts;
+}
+
+Eigen::VectorXd local_slopes(const Eigen::VectorXd& log_radius, const Eigen::VectorXd& log_sum) {
+  const Eigen::Index n = log_radius.size();
+  Eigen::VectorXd slopes(n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const Eigen::Index begin = std::max<Eigen::Index>(0, k - 2), end = std::min(n, k + 3);
+    const bool known = std::isfinite(log_sum(begin));
+    slopes(k) = known ? fit_line(log_radius, log_sum, begin, end).slope : std::numeric_limits<double>::quiet_NaN();
+  }
+  return slopes;
+}
+
+/// Allowed pairs of the references begin … end − 1.
+double pairs_of(const NeighbourTree& tree, Eigen::Index window, Eigen::Index begin, Eigen::Index end,
+                Eigen::Index references) {
+  double pairs = 0.0;
+  for (Eigen::Index r = begin; r < end; ++r) {
+    const Eigen::Index i = r * tree.size() / references;
+    const Eigen::Index inside = std::min(tree.size() - 1, i + window) - std::max<Eigen::Index>(0, i - window) + 1;
+    pairs += static_cast<double>(tree.size() - inside);
+  }
+  return pairs;
+}
+
+}  // namespace
+
+CorrelationDimension correlation_dimension(const Series& series, const CorrelationOptions& options) {
+  CorrelationDimension out;
+  out.settings = checked(series, options);
+  const auto& settings = out.settings;
+  const NeighbourTree tree(delay_vectors(series, settings.embedding), Metric::kMaximum);
+  out.references = settings.references == 0 ? tree.size() : std::min(settings.references, tree.size());
+  const double range = series.values.maxCoeff() - series.values.minCoeff();
+  const Eigen::VectorXd log_radius = Eigen::VectorXd::LinSpaced(settings.radii, std::log(settings.smallest * range),
+                                                                std::log(settings.largest * range));
+  out.radius = log_radius.array().exp();
+  const std::vector<double> radii(out.radius.begin(), out.radius.end());
+
+  constexpr Eigen::Index kBlocks = 64;  // even, so that the halves of the references are whole blocks
+  std::vector<Counts> counts(kBlocks);
+  const auto edge = [&](Eigen::Index block) { return block * out.references / kBlocks; };
+  rethrow_first(parallel_for(counts.size(), settings.run, [&](std::size_t b) {
+    const auto block = static_cast<Eigen::Index>(b);
+    counts[b] = count_block(tree, radii, settings.window, edge(block), edge(block + 1), out.references);
+  }));
+  const auto sum_over = [&](Eigen::Index from, Eigen::Index to) {
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(settings.radii);
+    for (Eigen::Index b = from; b < to; ++b) {
+      for (Eigen::Index k = 0; k < sum.size(); ++k) {
+        sum(k) += static_cast<double>(counts[static_cast<std::size_t>(b)][static_cast<std::size_t>(k)]);
+      }
+    }
+    return sum;
+  };
+  const Eigen::VectorXd close = sum_over(0, kBlocks);
+  out.C = close / pairs_of(tree, settings.window, 0, out.references, out.references);
+  const Eigen::VectorXd log_sum = out.C.array().log();
+  out.local_slope = local_slopes(log_radius, log_sum);
+
+  Eigen::Index begin = 0, end = settings.radii;
+  while (begin < end && close(begin) < settings.least_pairs) ++begin;
+  while (end > begin && out.C(end - 1) > settings.most_share) --end;
+  const RegionOptions region{.least_rise = 0.05, .least_width = settings.least_decades * std::numbers::ln10};
+  if (end - begin < region.least_points || log_radius(end - 1) - log_radius(begin) < region.least_width) {
+    throw NumericalFailure(
+        fmt::format(
+            "correlation dimension of {}: expected at least {} radii over {} decades with {} pairs or more and a "
+            "share of pairs of at most {}, found {}; use a longer record, a lower dimension or more radii",
+            series.name, region.least_points, settings.least_decades, settings.least_pairs, settings.most_share,
+            end - begin),
+        std::numeric_limits<double>::quiet_NaN(), {}, std::numeric_limits<double>::quiet_NaN());
+  }
+  const LinearFit local =
+      linear_region(log_radius.segment(begin, end - begin), log_sum.segment(begin, end - begin), region);
+  out.plateau = fit_line(log_radius, log_sum, begin + local.begin, begin + local.end);
+  out.dimension = out.plateau.slope;
+  for (const int h : {0, 1}) {
+    const Eigen::VectorXd half = sum_over(h == 0 ? 0 : kBlocks / 2, h == 0 ? kBlocks / 2 : kBlocks).cwiseMax(0.5);
+    out.of_halves[h] = fit_line(log_radius, half.array().log(), out.plateau.begin, out.plateau.end).slope;
+  }
+  out.error = std::hypot(0.5 * (out.of_halves[0] - out.of_halves[1]), out.plateau.curvature);
+  return out;
+}
+
+}  // namespace slipmode::diagnostics
