@@ -273,12 +273,19 @@ struct PlayOrbit {
 };
 
 TEST(ClearanceOrbits, TableTwoOfS2) {
-  // Printed coefficients of cos((2k − 1)ωt), sin((2k − 1)ωt) are of a truncated harmonic balance: up to 8.2e-3 off.
+  // Printed coefficients of cos((2k − 1)ωt), sin((2k − 1)ωt) are of a truncated harmonic balance: up to 8e-3 off.
   const std::vector<PlayOrbit> table = {
       {"7a", 0.02, 1.08330, 1.0, {-1.1456, -0.0057, -0.0013, -0.0002}, {0.0486, 0.0008, 0.0003, 0.0001}},
       {"7b", 0.02, 1.19940, 1.0, {-1.7795, -0.0280, 0.0005, 0.0007}, {0.1062, 0.0055, -0.0002, -0.0003}},
       {"8a", 0.05063, 0.1, 0.3, {1.0900, 0.0686, -0.0219}, {0.5780, 0.1811, 0.0351}},
       {"8b", 0.13058, 0.1, 0.3, {0.1049, -0.0795, 0.0235, -0.0065}, {1.1516, -0.0781, 0.0140, -0.0014}},
+      {"9a",
+       0.2,
+       0.3,
+       0.11246,
+       {1.2191, 0.2520, -0.1086, -0.1208, -0.0854, -0.0324},
+       {0.8708, -0.2744, -0.1503, -0.0074, 0.0052, 0.0125}},
+      {"9b", 0.2, 0.3, 0.16260, {1.0653, 0.3389, 0.1647, 0.0879}, {1.0019, -0.0759, -0.1151, 0.0074}},
       {"9c", 0.2, 0.3, 0.40022, {0.6888, -0.1486, 0.0028}, {1.3429, 0.0599, -0.0188}},
       {"9d", 0.2, 0.3, 0.50050, {-0.3535, 0.0306, -0.0072, -0.0010}, {1.3663, -0.0705, 0.0054, -0.0001}}};
   for (const PlayOrbit& row : table) {
@@ -302,8 +309,11 @@ TEST(ClearanceOrbits, TableTwoOfS2) {
         c += 2.0 / kPoints * points[static_cast<std::size_t>(j)].q[0] * std::cos(angle);
         s += 2.0 / kPoints * points[static_cast<std::size_t>(j)].q[0] * std::sin(angle);
       }
-      EXPECT_NEAR(c, row.cosine[static_cast<std::size_t>(k)], 8.5e-3) << k;
-      EXPECT_NEAR(s, row.sine[static_cast<std::size_t>(k)], 8.5e-3) << k;
+      const double printed_c = row.cosine[static_cast<std::size_t>(k)],
+                   printed_s = row.sine[static_cast<std::size_t>(k)];
+      if (printed_c == 0.0 && printed_s == 0.0) continue;  // left out of the print; up to 0.019 in 9b
+      EXPECT_NEAR(c, printed_c, 8e-3) << k;
+      EXPECT_NEAR(s, printed_s, 8e-3) << k;
     }
   }
 }
