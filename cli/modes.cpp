@@ -1,5 +1,6 @@
 #include "fem/modes.hpp"
 
+#include "cli/steps.hpp"
 #include "cli/text_table.hpp"
 #include "cli/units.hpp"
 #include "cli/verbs.hpp"
@@ -48,10 +49,7 @@ ModeSets compute(const scene::Scene& scene, const dynamics::HybridSystem& system
   const Eigen::Index free = system.size() - w.cols();
   ModeSets sets{
       .slipping = fem::natural_modes(system.structure(), count), .sticking = {}, .compliant = {}, .theory = {}};
-  const bool can_stick = std::ranges::none_of(system.contacts(), [](const friction::Contact& contact) {
-    return std::holds_alternative<friction::Clearance>(contact.law);
-  });
-  if (can_stick && free > 0 && w.cols() > 0) {
+  if (can_stick(system) && free > 0 && w.cols() > 0) {
     sets.sticking = fem::constrained_modes(system.structure(), w, std::min(count, free));
   }
   Eigen::VectorXd stiffness(w.cols());

@@ -54,7 +54,7 @@ class Pipeline {
     constexpr Eigen::Index kShown = 20;
     const Eigen::Index n = full_.size(), contacts = static_cast<Eigen::Index>(full_.contacts().size());
     result_.slipping = fem::natural_modes(full_.structure(), std::min(kShown, n)).omega;
-    if (n <= contacts) return;
+    if (n <= contacts || !can_stick(full_)) return;
     Eigen::MatrixXd w(n, contacts);
     for (Eigen::Index c = 0; c < contacts; ++c) w.col(c) = full_.contacts()[c].direction;
     result_.sticking = fem::constrained_modes(full_.structure(), w, std::min(kShown, n - contacts)).omega;

@@ -7,6 +7,7 @@
 #include "scene/table.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -26,6 +27,12 @@ void refuse_force(const scene::Scene& scene, const std::string& verb) {
       "{}: drive.kind = \"force\": {} compares motions by their slips or by a shaker's cycles; valid: a belt "
       "or a shaker, or 'slipmode orbit find', 'orbit continue', 'orbit map' for this scene",
       scene.source.path, verb));
+}
+
+bool can_stick(const dynamics::HybridSystem& system) {
+  return std::ranges::none_of(system.contacts(), [](const friction::Contact& contact) {
+    return std::holds_alternative<friction::Clearance>(contact.law);
+  });
 }
 
 namespace {

@@ -17,6 +17,9 @@ namespace slipmode::cli {
 /// @throws InvalidInput  for a scene with a force, naming what to use
 void refuse_force(const scene::Scene& scene, const std::string& verb);
 
+/// True when every contact is a frictional one: with clearances there are no sticking modes.
+[[nodiscard]] bool can_stick(const dynamics::HybridSystem& system);
+
 /// Runs what [ensemble] asks for: `members` starts (the scene's initial state plus `spread` times standard normal
 /// numbers in every displacement and velocity) at each of its belt speeds or shaker frequencies; see
 /// scene::ensemble_states.
