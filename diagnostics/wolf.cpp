@@ -64,15 +64,15 @@ class Pair {
   std::optional<Eigen::Index> replacement(Eigen::Index i, Eigen::Index j) const {
     const auto& x = tree_.points();
     const Eigen::VectorXd direction = (x.col(j) - x.col(i)).normalized();
-    std::optional<Eigen::Index> best;
-    double distance = std::numeric_limits<double>::infinity();
-    for (const Neighbour& n : tree_.within(i, largest_, allowed_)) {
-      if (n.distance >= distance || n.distance < smallest_ || n.distance == 0.0) continue;
-      if ((x.col(n.index) - x.col(i)).dot(direction) < cosine_ * n.distance) continue;
-      best = n.index;
-      distance = n.distance;
+    for (std::size_t count = 32;; count *= 8) {
+      const auto near = tree_.nearest(i, count, allowed_);
+      for (const Neighbour& n : near) {
+        if (n.distance > largest_) return std::nullopt;
+        if (n.distance < smallest_ || n.distance == 0.0) continue;
+        if ((x.col(n.index) - x.col(i)).dot(direction) >= cosine_ * n.distance) return n.index;
+      }
+      if (near.size() < count) return std::nullopt;
     }
-    return best;
   }
 
   bool may_stay(Eigen::Index i, Eigen::Index j) const {

@@ -47,7 +47,7 @@ TEST(CorrelationDimension, OfASineIsOneOfATorusTwoOfNoiseTheEmbeddings) {
   const auto torus = correlation_dimension(fixtures::two_torus(20000, 1.37), {.embedding = {.dimension = 4}});
   EXPECT_NEAR(torus.dimension, 2.0, 0.1);
   const auto noise =
-      correlation_dimension(fixtures::white_noise(10000, 4), {.embedding = {.dimension = 2}, .references = 3000});
+      correlation_dimension(fixtures::white_noise(5000, 4), {.embedding = {.dimension = 2}, .references = 2000});
   EXPECT_NEAR(noise.dimension, 2.0, 0.05);
 }
 

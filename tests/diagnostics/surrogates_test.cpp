@@ -83,7 +83,7 @@ TEST(SurrogateTest, RejectsNoiseForChaosAndNotForNoise) {
   EXPECT_TRUE(lorenz.rejected);
   int rejected = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    const Series noise = fixtures::autoregressive(1000, 0.7, seed);
+    const Series noise = fixtures::autoregressive(500, 0.7, seed);
     rejected += surrogate_test(noise, {.embedding = {.dimension = 2}, .references = 200}).rejected ? 1 : 0;
   }
   EXPECT_LE(rejected, 4);  // expected 1 of 20; more than 4 has probability 0.3 %
