@@ -151,6 +151,21 @@ BranchUnknowns BranchSolver::moved(const BranchEvaluation& from, const Eigen::Ve
   return out;
 }
 
+Eigen::VectorXd BranchSolver::newton_step(const BranchEvaluation& at, const BranchUnknowns& guess,
+                                          const Eigen::VectorXd& row) const {
+  Eigen::MatrixXd J(at.J.rows() + 1, at.J.cols());
+  J << at.J, row.transpose();
+  Eigen::VectorXd r(J.rows());
+  r << at.r, row.dot(difference(at.at, guess));
+  return bounded_least_squares(J, r, kTrustRadius).step;
+}
+
+BranchEvaluation BranchSolver::polished(BranchEvaluation at, const BranchUnknowns& guess,
+                                        const Eigen::VectorXd& row) const {
+  BranchEvaluation next = evaluate(moved(at, newton_step(at, guess, row), 1.0));
+  return next.shooting.norm < at.shooting.norm ? next : at;
+}
+
 std::optional<BranchEvaluation> BranchSolver::shortened(const BranchEvaluation& from,
                                                         const Eigen::VectorXd& step) const {
   for (double share = 1.0; share > 0.05; share *= 0.5) {
@@ -168,12 +183,7 @@ std::optional<BranchSolver::Corrected> BranchSolver::correct(const BranchUnknown
     Corrected out{evaluate(guess), 0};
     while (out.at.shooting.largest > options_.shooting.tolerance) {
       if (out.iterations++ == kMaxCorrections) return std::nullopt;
-      Eigen::MatrixXd J(out.at.J.rows() + 1, out.at.J.cols());
-      J << out.at.J, row.transpose();
-      Eigen::VectorXd r(J.rows());
-      r << out.at.r, row.dot(difference(out.at.at, guess));
-      const Eigen::VectorXd step = bounded_least_squares(J, r, kTrustRadius).step;
-      std::optional<BranchEvaluation> next = shortened(out.at, step);
+      std::optional<BranchEvaluation> next = shortened(out.at, newton_step(out.at, guess, row));
       if (!next) return std::nullopt;
       const bool stalls = next->shooting.norm > 0.3 * out.at.shooting.norm;
       out.at = std::move(*next);

@@ -51,6 +51,10 @@ class BranchSolver {
   /// Newton from `guess` with row · (unknowns − guess) = 0 as the last condition; nothing when it does not converge.
   [[nodiscard]] std::optional<Corrected> correct(const BranchUnknowns& guess, const Eigen::VectorXd& row) const;
 
+  /// One more step, kept if it lowers the residual: what locating points to 1e-9 needs where Φ − 1 is nearly singular.
+  [[nodiscard]] BranchEvaluation polished(BranchEvaluation at, const BranchUnknowns& guess,
+                                          const Eigen::VectorXd& row) const;
+
   /// The same orbit with its origin a share of its period later.
   [[nodiscard]] BranchEvaluation shifted(const BranchEvaluation& at, double share) const;
 
@@ -69,6 +73,8 @@ class BranchSolver {
   [[nodiscard]] bool period_unknown() const { return kind_ == OrbitKind::kSelfExcited; }
 
  private:
+  [[nodiscard]] Eigen::VectorXd newton_step(const BranchEvaluation& at, const BranchUnknowns& guess,
+                                            const Eigen::VectorXd& row) const;
   /// The step, or a half, a quarter … of it, that lowers the residual. Where Φ jumps (a stop touched) full steps
   /// alternate between both sides for ever.
   [[nodiscard]] std::optional<BranchEvaluation> shortened(const BranchEvaluation& from,

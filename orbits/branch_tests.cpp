@@ -55,9 +55,10 @@ struct Located {
 std::optional<WatchedPoint> between(const BranchSolver& solver, const Eigen::VectorXd& tangent, const Located& sides,
                                     double share) {
   const Eigen::VectorXd chord = solver.difference(sides.high.at.at, sides.low.at.at);
-  const auto corrected = solver.correct(solver.moved(sides.low.at, share * chord, 0.0), tangent);
+  const BranchUnknowns guess = solver.moved(sides.low.at, share * chord, 0.0);
+  auto corrected = solver.correct(guess, tangent);
   if (!corrected) return std::nullopt;
-  return watch(solver, corrected->at, tangent);
+  return watch(solver, solver.polished(std::move(corrected->at), guess, tangent), tangent);
 }
 
 /// Narrows [low at s = 0, high at s] until the sides are the same to rounding or the parameter is known.

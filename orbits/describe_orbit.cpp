@@ -14,6 +14,10 @@ namespace {
 using dynamics::Event;
 using dynamics::State;
 
+bool is_flight(dynamics::ContactMode mode) {
+  return mode == dynamics::ContactMode::kLeftFlight || mode == dynamics::ContactMode::kRightFlight;
+}
+
 /// Event times after the start, in [0, period), ascending.
 std::vector<double> event_phases(double start_time, double period, const std::vector<Event>& events) {
   std::vector<double> phases;
@@ -33,6 +37,14 @@ State reflected(State state) {
   return state;
 }
 
+/// True when the orbit keeps to one linear regime: then all of Φ's fixed directions lead to orbits, as far as there is
+/// room.
+bool stays_linear(const dynamics::HybridSystem& system, const PeriodicOrbit& orbit) {
+  return orbit.events.empty() &&
+         std::all_of(system.contacts().begin(), system.contacts().end(),
+                     [](const friction::Contact& contact) { return is_piecewise_linear(contact.law); });
+}
+
 /// Directions along which neighbours of the orbit are orbits too: null space of (Φ − 1), less the flow direction, as
 /// far as a finite shift along it closes as well.
 Eigen::MatrixXd orbit_family(ShootingProblem& problem, const ShootingEvaluation& at, const PeriodicOrbit& orbit) {
@@ -46,11 +58,13 @@ Eigen::MatrixXd orbit_family(ShootingProblem& problem, const ShootingEvaluation&
   }
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(J, Eigen::ComputeFullV);
   const Eigen::VectorXd& sigma = svd.singularValues();
+  const bool linear = stays_linear(problem.system(), orbit);
   std::vector<Eigen::VectorXd> found;
   for (Eigen::Index i = n; i-- > 0 && sigma[i] <= 1e-9 * sigma[0];) {
     const Eigen::VectorXd direction = svd.matrixV().col(i);
     bool closes = true;
     for (const double shift : {1e-4, -1e-4}) {
+      if (linear) break;
       const State moved = with_coordinates(orbit.start, stacked(orbit.start) + shift * scale.cwiseProduct(direction));
       const State end = problem.end_of(moved, orbit.period);
       closes &= problem.scaled(stacked(end) - stacked(moved)).cwiseAbs().maxCoeff() <= 1e-9;
@@ -141,6 +155,9 @@ PeriodicOrbit describe_orbit(ShootingProblem& problem, const ShootingEvaluation&
   PeriodicOrbit orbit;
   orbit.start = at.point.nodes[0];
   orbit.start.modes = at.ends.back().modes;
+  if (std::any_of(orbit.start.modes.begin(), orbit.start.modes.end(),
+                  is_flight))  // beyond the gap at the end, maybe not here
+    orbit.start.modes = advanced(problem.system(), problem.runnable(orbit.start), 0.0).modes;
   orbit.period = at.point.period;
   orbit.kind = problem.kind();
   orbit.order = problem.kind() == OrbitKind::kDriven ? options.order : 1;

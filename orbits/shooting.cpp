@@ -95,6 +95,9 @@ Descent descend(ShootingProblem& problem, const ShootingPoint& from, const Shoot
       return problem.evaluate(point);
     } catch (const NumericalFailure& failure) {
       d.failure = failure.what();
+    } catch (const InvalidInput& refused) {
+      if (d.best.ends.empty()) throw;  // the caller's guess or system
+      d.failure = refused.what();
     }
     return std::nullopt;
   };
@@ -245,8 +248,11 @@ ShootingResult shoot(const dynamics::HybridSystem& system, const State& guess, c
   ShootingProblem problem(system, options, kind);
   ShootingPoint point = problem.initial_point(start, period);
   if (kind == OrbitKind::kSelfExcited) {  // a phase between events is worth one pass
-    const ShootingEvaluation first = problem.evaluate(point);
-    point = shifted(problem, std::move(point), wanted_shift(problem, first));
+    try {
+      const ShootingEvaluation first = problem.evaluate(point);
+      point = shifted(problem, std::move(point), wanted_shift(problem, first));
+    } catch (const NumericalFailure&) {  // met again, and reported, by the search
+    }
   }
   Descent d = descend(problem, point, options);
   int iterations = d.iterations;

@@ -69,7 +69,7 @@ ShootingEvaluation ShootingProblem::evaluate(const ShootingPoint& point) {
     if (in_halves_) {
       out.half_state = stacked(run.end).cwiseQuotient(scale_);
       out.half_transfer = in_scale(run.monodromy);
-      run = flow_.run(run.end, 0.5 * length);
+      run = flow_.run(runnable(run.end), 0.5 * length);
       out.events.insert(out.events.end(), run.events.begin(), run.events.end());
     }
     out.transfer.push_back(in_scale(run.monodromy));
@@ -97,7 +97,7 @@ Eigen::MatrixXd ShootingProblem::in_scale(const Eigen::MatrixXd& transfer) const
 }
 
 State ShootingProblem::end_of(const State& start, double duration) {
-  return flow_.run(start, duration, Eigen::MatrixXd::Zero(scale_.size(), 1)).end;
+  return flow_.run(runnable(start), duration, Eigen::MatrixXd::Zero(scale_.size(), 1)).end;
 }
 
 Eigen::MatrixXd ShootingProblem::ends_of(const ShootingPoint& point) {
@@ -108,7 +108,7 @@ Eigen::MatrixXd ShootingProblem::ends_of(const ShootingPoint& point) {
     State node = point.nodes[static_cast<std::size_t>(k)];
     node.time = point.nodes[0].time + length * static_cast<double>(k);
     put_on_constraint(node);
-    ends.col(k) = scaled(stacked(end_of(runnable(node), length)));
+    ends.col(k) = scaled(stacked(end_of(node, length)));
   }
   return ends;
 }

@@ -131,6 +131,18 @@ TEST(Continuation, GrazingOfFloatingOrbitsInClosedForm) {
   EXPECT_EQ(branch.points.back().orbit.family.cols(), 1);
 }
 
+TEST(Continuation, FloatingOrbitsHaveNoSymmetryToLose) {
+  // Up to the stops the float's half-period multiplier −1 belongs to its family, however little room there is.
+  const HybridSystem base = four_masses(1.3);
+  State guess = base.rest();
+  const PeriodicOrbit orbit = find_orbit(base, guess, {.half_period = true});
+  ASSERT_EQ(orbit.word, "g");
+  const Branch branch =
+      continue_orbit(over_frequency(base), orbit, 1.3, {.from = 1.1, .to = 1.4, .direction = -1, .max_points = 60});
+  EXPECT_EQ(of_kind(branch, SpecialKind::kGrazing).size(), 1u);
+  EXPECT_TRUE(of_kind(branch, SpecialKind::kSymmetryBreaking).empty());
+}
+
 TEST(Continuation, GrazingOfTheOscillatorWithPlayInClosedForm) {
   // S2: √(ω⁴ + 4ξ²ω²) = 1.00080 for ξ = 0.02, ω = 1; the text's 1.00330 is wrong.
   const HybridSystem base = play(0.02, 1.0833, 1.0);
