@@ -14,8 +14,17 @@ namespace {
 using dynamics::Event;
 using dynamics::State;
 
-bool is_flight(dynamics::ContactMode mode) {
-  return mode == dynamics::ContactMode::kLeftFlight || mode == dynamics::ContactMode::kRightFlight;
+/// A flight that is back in the gap is the gap: the flow passes that without an event.
+void name_gaps(const dynamics::HybridSystem& system, State& state) {
+  for (std::size_t c = 0; c < state.modes.size(); ++c) {
+    const bool left = state.modes[c] == dynamics::ContactMode::kLeftFlight;
+    if (!left && state.modes[c] != dynamics::ContactMode::kRightFlight) continue;
+    const friction::Contact& contact = system.contacts()[c];
+    const auto& law = std::get<friction::Clearance>(contact.law);
+    const double y = contact.direction.dot(state.q) + contact.offset;
+    const bool beyond = left ? -y >= law.left->gap : y >= law.right->gap;
+    if (!beyond) state.modes[c] = dynamics::ContactMode::kGap;
+  }
 }
 
 /// Event times after the start, in [0, period), ascending.
@@ -155,9 +164,7 @@ PeriodicOrbit describe_orbit(ShootingProblem& problem, const ShootingEvaluation&
   PeriodicOrbit orbit;
   orbit.start = at.point.nodes[0];
   orbit.start.modes = at.ends.back().modes;
-  if (std::any_of(orbit.start.modes.begin(), orbit.start.modes.end(),
-                  is_flight))  // beyond the gap at the end, maybe not here
-    orbit.start.modes = advanced(problem.system(), problem.runnable(orbit.start), 0.0).modes;
+  name_gaps(problem.system(), orbit.start);
   orbit.period = at.point.period;
   orbit.kind = problem.kind();
   orbit.order = problem.kind() == OrbitKind::kDriven ? options.order : 1;
