@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <algorithm>
 
 namespace {
 
@@ -74,6 +75,28 @@ TEST_F(OrbitSkeleton, OfAModelWithAllModesMissesNothing) {
   }
   ASSERT_EQ(slipmode_in(folder, {"plot", "both.h5", "-o", "comparison.svg"}).exit_code, 0);
   EXPECT_TRUE(is_figure(folder.path() / "comparison.svg"));
+}
+
+// At belt speed 0.45 the chain settles to T = 45.10211 (reference: checked orbit p1): 90.2 samples of 0.5.
+TEST_F(OrbitSkeleton, ReturnsOfASeriesFindItsPeriod) {
+  ASSERT_EQ(slipmode_in(folder, {"simulate", kChain, "--single", "--set", "drive.speed=0.45", "--set",
+                                 "time.duration=21000.0", "-o", "run.h5"})
+                .exit_code,
+            0);
+  const Outcome outcome =
+      slipmode_in(folder, {"orbit", "returns", "run.h5:trajectory/v", "--column", "1", "--delay", "11", "--dimension",
+                           "6", "--threshold", "0.2", "--max-length", "120", "-o", "returns.h5", "--json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json orbits = outcome.json()["orbits"];
+  ASSERT_FALSE(orbits.empty());
+  const auto nearest = std::min_element(orbits.begin(), orbits.end(), [](const auto& a, const auto& b) {
+    return a["distance"].template get<double>() < b["distance"].template get<double>();
+  });
+  EXPECT_EQ((*nearest)["length"], 90);
+  EXPECT_EQ(scene::load_table(scene::StoreReader(folder.path() / "returns.h5"), "returns/orbits").rows(),
+            orbits.size());
+  EXPECT_EQ(slipmode_in(folder, {"orbit", "returns", "run.h5:trajectory/v"}).exit_code, 2);
+  EXPECT_EQ(slipmode_in(folder, {"orbit", "returns", "run.h5"}).exit_code, 2);
 }
 
 TEST_F(OrbitSkeleton, SaysWhatIsWrong) {
