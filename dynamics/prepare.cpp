@@ -4,6 +4,7 @@
 #include "dynamics/load_form.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -203,6 +204,28 @@ FlowMethod choose_method(const HybridSystem& system, FlowMethod asked) {
   return FlowMethod::kCollocation;
 }
 
+namespace {
+
+/// The fastest rate of the slipping structure, or of a contact on its own spring or stop [1/s].
+double fastest_rate(const HybridSystem& system, const ModalModel& m) {
+  double fastest = m.fastest;
+  for (std::size_t c = 0; c < system.contacts().size(); ++c) {
+    const auto i = static_cast<Eigen::Index>(c);
+    const double mobility = m.mobility(i, i);
+    const auto look = [&](double stiffness, double damping) {
+      fastest = std::max({fastest, std::sqrt(stiffness * mobility), damping * mobility});
+    };
+    const friction::Law& law = system.contacts()[c].law;
+    if (const auto* spring = std::get_if<friction::CompliantCoulomb>(&law)) look(spring->stiffness, 0.0);
+    if (const auto* clearance = std::get_if<friction::Clearance>(&law))
+      for (const auto& stop : {clearance->left, clearance->right})
+        if (stop) look(stop->stiffness, stop->damping);
+  }
+  return fastest;
+}
+
+}  // namespace
+
 Prepared prepare(const HybridSystem& system, const State& start, FlowOptions options, bool rows_suffice) {
   check_start(system, start);
   require(options.tolerance > 0 && std::isfinite(options.tolerance),
@@ -213,7 +236,8 @@ Prepared prepare(const HybridSystem& system, const State& start, FlowOptions opt
   const ModalModel& m = tables.model;
   Eigen::VectorXd x = Eigen::VectorXd::Zero(2 * m.np);
   if (!at_origin) x = m.from_q * start.q + m.from_v * start.v;
-  if (options.zeno_window == 0.0) options.zeno_window = 0.01 * 2.0 * std::numbers::pi / std::max(m.fastest, 1e-300);
+  if (options.zeno_window == 0.0)
+    options.zeno_window = 0.01 * 2.0 * std::numbers::pi / std::max(fastest_rate(system, m), 1e-300);
   const auto nc = static_cast<Eigen::Index>(system.contacts().size());
   HybridPoint point{start.time,
                     std::move(x),

@@ -87,6 +87,21 @@ TEST(Clearance, WithoutAGapItIsTheStiffLinearOscillator) {
   }
 }
 
+TEST(Clearance, QuickContactsAtStiffStopsAreNotTakenForZeno) {
+  // Without a gap and damping the mass swings at √k: an event each half period, far more often than 200 within what is
+  // short for a mass that floats in the gap.
+  const Stop stop{.stiffness = 1e10, .damping = 0.0, .gap = 0.0};
+  const HybridSystem system(oscillator(0.0, 0.01),
+                            {Contact{.direction = Eigen::VectorXd::Ones(1), .law = Clearance{stop, stop}}},
+                            Force{1.0, {{.amplitude = 1.0}}}, {}, Eigen::MatrixXd::Ones(1, 1));
+  const State start{0.0, Eigen::VectorXd::Zero(1), Eigen::VectorXd::Ones(1)};
+  const double half = std::numbers::pi / 1e5;
+  const Trajectory run = simulate(system, start, {.duration = 1000.5 * half});
+  // Each end of contact is a beginning on the other side; the gap between them has no width.
+  EXPECT_NEAR(static_cast<double>(run.events.size()), 2000.0, 2.0);
+  EXPECT_LT(std::abs(run.audit.residual()), 1e-11);
+}
+
 TEST(Clearance, AnUndampedStopReturnsTheSpeedItWasHitWith) {
   // No force but the stop's: the mass flies back with its speed after half a period of the contact's own vibration.
   const Stop stop{.stiffness = 9.0, .damping = 0.0, .gap = 0.5};
