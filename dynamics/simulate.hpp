@@ -66,7 +66,8 @@ struct FlowOptions {
   double tolerance = 1e-9;
   bool audit = true;                ///< integrate the energy balance along
   int max_events_per_window = 200;  ///< more events than this within `zeno_window` is reported as Zeno
-  double zeno_window = 0.0;         ///< [s]; 0: one hundredth of the shortest natural period
+  /// [s]; 0: one hundredth of the shortest natural period, of contacts on their own springs and stops too
+  double zeno_window = 0.0;
 };
 
 /// What a run counted; costs and reports are made of these.
