@@ -66,7 +66,9 @@ Recorded record(const Session& session, const Arguments& arguments, const scene:
   orbits::Attractor attractor = orbits::record_attractor(system, start, options);
 
   const auto& passages = attractor.passages;
-  const double interval = (passages.back().time - passages.front().time) / static_cast<double>(passages.size() - 1);
+  const double interval = attractor.section.is_stroboscopic() ? attractor.period
+                                                              : (passages.back().time - passages.front().time) /
+                                                                    static_cast<double>(passages.size() - 1);
   constexpr double kShown = 150.0;  // passages
   constexpr double kPerPassage = 60.0;
   const dynamics::Trajectory run = dynamics::simulate(system, start,

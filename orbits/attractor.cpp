@@ -63,6 +63,7 @@ void record_events(const dynamics::HybridSystem& system, const dynamics::State& 
 void record_periods(const dynamics::HybridSystem& system, const dynamics::State& start, const AttractorOptions& options,
                     Attractor& out_attractor) {
   const double period = system.drive().period().value();
+  out_attractor.period = period;
   const auto dropped = static_cast<Eigen::Index>(std::ceil(options.transient / period - 1e-9));
   const auto kept = static_cast<Eigen::Index>(std::max(1.0, std::floor(options.duration / period + 1e-9)));
   // A whole number of samples per period keeps them equally spaced over the whole record.
@@ -81,6 +82,7 @@ void record_periods(const dynamics::HybridSystem& system, const dynamics::State&
       out_attractor.samples.middleCols(k * per_period, per_period) = part;
     }
     state = motion.final_state;
+    state.time = start.time;
   }
 }
 

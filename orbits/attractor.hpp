@@ -50,9 +50,12 @@ struct AttractorOptions {
 /// A long motion, seen at a section and at equal intervals. n counts degrees of freedom of the full model.
 struct Attractor {
   Section section;
-  std::vector<dynamics::State> passages = {};  ///< the model's states at the section, in time order, just after events
-  Eigen::MatrixXd points = {};                 ///< (q; q̇) of the passages [2n x T]
-  Eigen::MatrixXd samples = {};                ///< (q; q̇), `sample` apart [2n x S]
+  /// The model's states at the section, in order, just after events. Stroboscopic ones all bear the time of the start,
+  /// which is the same phase of the drive: late times would cost digits.
+  std::vector<dynamics::State> passages = {};
+  double period = 0.0;           ///< between stroboscopic passages; 0 for events [s]
+  Eigen::MatrixXd points = {};   ///< (q; q̇) of the passages [2n x T]
+  Eigen::MatrixXd samples = {};  ///< (q; q̇), `sample` apart [2n x S]
   Metric metric = {};
   std::optional<pod::Basis> basis = {};  ///< AttractorOptions::basis
 };

@@ -69,7 +69,9 @@ class Settling {
     section.col(kept + count - 1) << run.final_state.q, run.final_state.v;
     section_ = std::move(section);
     reach_ = Eigen::Vector2d(section_.topRows(n).cwiseAbs().maxCoeff(), section_.bottomRows(n).cwiseAbs().maxCoeff());
+    const double begin = state_.time;
     state_ = run.final_state;
+    state_.time = begin;  // the same phase of the drive: late times would cost digits
   }
 
   /// Distance of two states, displacements and velocities each relative to the reach of the motion.

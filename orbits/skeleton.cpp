@@ -203,7 +203,9 @@ std::vector<Candidate> close_return_candidates(const Attractor& attractor, const
     const dynamics::State& state = attractor.passages[static_cast<std::size_t>(found.begin)];
     const dynamics::State& back = attractor.passages[static_cast<std::size_t>(found.begin + found.length)];
     candidates.push_back({.state = state,
-                          .period = back.time - state.time,
+                          .period = attractor.section.is_stroboscopic()
+                                        ? static_cast<double>(found.length) * attractor.period
+                                        : back.time - state.time,
                           .length = found.length,
                           .distance = found.distance,
                           .origin = fmt::format("passage {}", found.begin)});

@@ -2,12 +2,14 @@
 
 #include "core/errors.hpp"
 #include "diagnostics/models.hpp"
+#include "fixtures/clearance_scenes.hpp"
 #include "fixtures/shaken_scenes.hpp"
 #include "orbits/skeleton_orbit.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -138,6 +140,37 @@ TEST(Skeleton, UnderAShakerCountsPeriodsOfTheDrive) {
   EXPECT_NEAR(skeleton.orbits.front().orbit.period, period, 1e-12);
   EXPECT_DOUBLE_EQ(skeleton.orbits.front().share, 1.0);
   EXPECT_EQ(skeleton.orbits.front().hits, static_cast<int>(skeleton.candidates.size()));
+}
+
+// The mass between equal stops under A sin ωt: x → −x half a period later maps orbits to orbits. So the mirror image of
+// each orbit of the chaotic motion at ω = 0.5 is an orbit with the same multipliers.
+TEST(Skeleton, OfASymmetricSystemComesInMirrorImages) {
+  const dynamics::HybridSystem system = fixtures::backlash_mass(0.5);
+  const double period = system.drive().period().value();
+  const Attractor attractor =
+      record_attractor(system, fixtures::state(Eigen::VectorXd::Constant(1, 3.0), Eigen::VectorXd::Zero(1)),
+                       {.transient = 200.0 * period, .duration = 3000.0 * period, .sample = period / 16.0});
+  const SkeletonOptions options{.returns = {.max_length = 4, .threshold = 0.5, .per_length = 8, .apart = 0.1}};
+  const Skeleton found = find_skeleton(system, attractor, options);
+  ASSERT_GE(found.orbits.size(), 6U);
+  std::vector<Candidate> mirrored;
+  for (const SkeletonOrbit& member : found.orbits) {
+    dynamics::State image = member.orbit.start;
+    image.time += 0.5 * period;
+    image.q = -image.q;
+    image.v = -image.v;
+    image.modes.clear();
+    mirrored.push_back({.state = image, .period = member.orbit.period, .length = member.length});
+  }
+  const Skeleton both = extended_skeleton(system, attractor, found, options, mirrored);
+  EXPECT_EQ(both.refusals.size(), found.refusals.size());
+  for (const SkeletonOrbit& member : both.orbits) {
+    const auto alike = std::count_if(both.orbits.begin(), both.orbits.end(), [&](const SkeletonOrbit& other) {
+      return other.length == member.length &&
+             std::abs(other.orbit.leading_modulus / member.orbit.leading_modulus - 1.0) < 1e-7;
+    });
+    EXPECT_EQ(alike, member.orbit.symmetric ? 1 : 2) << "length " << member.length;
+  }
 }
 
 TEST(Skeleton, StopsWhenAsked) {
