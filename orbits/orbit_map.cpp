@@ -38,7 +38,11 @@ void check(const dynamics::HybridSystem& system, const MapOptions& options) {
 class Settling {
  public:
   Settling(const dynamics::HybridSystem& system, const dynamics::State& start, const MapOptions& options)
-      : system_(system), options_(options), period_(system.drive().period().value()), state_(start) {}
+      : system_(system),
+        options_(options),
+        period_(system.drive().period().value()),
+        state_(start),
+        section_(2 * system.size(), 0) {}
 
   MapPoint run() {
     MapPoint point;
