@@ -30,8 +30,8 @@ struct MapPoint {
 };
 
 struct MapOptions {
-  int max_order = 8;      ///< subharmonics looked for, ≥ 1
-  int block = 16;         ///< periods of the drive between looks at the section, > 0
+  int max_order = 8;       ///< subharmonics looked for, ≥ 1
+  int block = 16;          ///< periods of the drive between looks at the section, > 0
   int max_periods = 1000;  ///< simulated at most, ≥ block
   /// Shooting takes over when section points `order` periods apart differ by less than this, relative to the motion.
   double near = 1e-3;
