@@ -141,8 +141,9 @@ std::vector<ContactMode> start_modes(const HybridSystem& system, const State& st
     }
     modes[c] = start.modes[c];
     if (compliant || modes[c] == ContactMode::kSeparated) continue;  // decided by the force and the normal load
-    const bool agrees = by_sign == ContactMode::kStick || modes[c] == by_sign ||
-                        (modes[c] == ContactMode::kStick && std::abs(sliding) <= 1e-9 * std::max(1.0, scale));
+    // A run that ended at an event leaves a sliding speed of rounding, of either sign.
+    const bool agrees =
+        by_sign == ContactMode::kStick || modes[c] == by_sign || std::abs(sliding) <= 1e-9 * std::max(1.0, scale);
     require(agrees && modes[c] != ContactMode::kSmooth, [&] {
       return "start state says contact " + std::to_string(c + 1) + " is in mode " +
              std::to_string(static_cast<int>(modes[c])) + ", but its relative velocity is " + std::to_string(sliding) +

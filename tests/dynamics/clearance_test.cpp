@@ -102,6 +102,25 @@ TEST(Clearance, QuickContactsAtStiffStopsAreNotTakenForZeno) {
   EXPECT_LT(std::abs(run.audit.residual()), 1e-11);
 }
 
+TEST(Clearance, ASlipThatBeginsUnderAForceIsTakenUpThere) {
+  // The counterpart rests, so at the start of a slip both speeds are rounding alone.
+  const HybridSystem gap = backlash_train(0.9);
+  std::vector<Contact> contacts = gap.contacts();
+  contacts.push_back(
+      {.direction = Eigen::VectorXd::Unit(4, 0), .law = friction::Coulomb{0.3, 0.2}, .normal_load = 0.5});
+  const HybridSystem system(gap.structure(), contacts, gap.drive(), {}, gap.force_directions());
+  const Trajectory run = simulate(system, system.rest(), {.duration = 60.0});
+  int slips = 0;
+  for (const Event& e : run.events) {
+    if (e.contact != 1) continue;
+    const State at = simulate(system, system.rest(), {.duration = e.time}).final_state;
+    const State onward = simulate(system, at, {.duration = 60.0 - e.time}).final_state;
+    EXPECT_LT((onward.q - run.final_state.q).norm(), 1e-7);
+    ++slips;
+  }
+  EXPECT_GE(slips, 10);
+}
+
 TEST(Clearance, AnUndampedStopReturnsTheSpeedItWasHitWith) {
   // No force but the stop's: the mass flies back with its speed after half a period of the contact's own vibration.
   const Stop stop{.stiffness = 9.0, .damping = 0.0, .gap = 0.5};
