@@ -4,6 +4,7 @@
 #include "cli/figures/deviation.hpp"
 #include "cli/figures/energy_shares.hpp"
 #include "cli/figures/mode_shapes.hpp"
+#include "cli/figures/panels.hpp"
 #include "cli/figures/phase_portraits.hpp"
 #include "cli/figures/style.hpp"
 #include "cli/figures/time_history.hpp"
@@ -27,15 +28,12 @@ namespace slipmode::cli {
 namespace {
 
 using figures::Figure;
+using figures::to_vector;
 using scene::StoreReader;
 
 std::string_view colour_of(const std::string& role) {
   if (role == "full") return figures::kFullColour;
   return role == "LNM" ? figures::kLnmColour : figures::kPomColour;
-}
-
-Eigen::VectorXd to_vector(const std::vector<double>& values) {
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
 /// "x_{10}": the displacement of the scene's first contact as the figures call it.

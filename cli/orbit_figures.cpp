@@ -19,13 +19,10 @@ namespace {
 using figures::Figure;
 using figures::Panel;
 using figures::Series;
+using figures::to_vector;
 using scene::StoreReader;
 
 constexpr std::string_view kStopColour = "#999999";
-
-Eigen::VectorXd to_vector(const std::vector<double>& values) {
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-}
 
 Series straight(double x0, double y0, double x1, double y1, Series::Look look) {
   return {"", Eigen::VectorXd{{x0, x1}}, Eigen::VectorXd{{y0, y1}}, look, kStopColour};

@@ -1,5 +1,6 @@
 #include "cli/orbit_search.hpp"
 
+#include "cli/reduced_file.hpp"
 #include "rom/reduce.hpp"
 #include "scene/records.hpp"
 
@@ -114,18 +115,14 @@ std::string SearchModel::title() const {
 }
 
 SearchModel search_model(const OrbitSearch& search, const scene::Scene& scene) {
-  constexpr std::string_view kPrefix = "rom:";
   SearchModel model{.full = scene::build_system(scene)};
   if (search.model == "full") return model;
-  if (!search.model.starts_with(kPrefix)) {
+  const std::optional<std::string> file = reduced_file(search.model);
+  if (!file) {
     throw InvalidInput(
         fmt::format("--model {}: expected full, or rom:FILE with a result of 'slipmode reduce'", search.model));
   }
-  const scene::StoreReader store(search.model.substr(kPrefix.size()));
-  if (!store.has(scene::kReducedGroup)) {
-    store.fail(scene::kReducedGroup, "the file holds no reduced model; make one with 'slipmode reduce'");
-  }
-  model.basis = scene::load_basis(store, std::string(scene::kReducedGroup) + "/basis", model.full.size());
+  model.basis = reduced_basis(*file, model.full.size());
   return model;
 }
 

@@ -1,3 +1,4 @@
+#include "cli/reduced_file.hpp"
 #include "cli/skeleton_store.hpp"
 #include "cli/verbs.hpp"
 #include "rom/reduce.hpp"
@@ -28,16 +29,12 @@ struct Recorded {
 
 /// The basis of a reduced model's file. @param option  for messages
 pod::Basis basis_of(const std::string& model, const std::string& option, Eigen::Index size) {
-  constexpr std::string_view kPrefix = "rom:";
-  if (!model.starts_with(kPrefix)) {
+  const std::optional<std::string> file = reduced_file(model);
+  if (!file) {
     throw InvalidInput(fmt::format("{} {}: expected {}rom:FILE with a result of 'slipmode reduce'", option, model,
                                    option == "--model" ? "full, or " : ""));
   }
-  const scene::StoreReader store(model.substr(kPrefix.size()));
-  if (!store.has(scene::kReducedGroup)) {
-    store.fail(scene::kReducedGroup, "the file holds no reduced model; make one with 'slipmode reduce'");
-  }
-  return scene::load_basis(store, std::string(scene::kReducedGroup) + "/basis", size);
+  return reduced_basis(*file, size);
 }
 
 /// How long is recorded: two hundred times what a run of the scene keeps, unless the user says.

@@ -24,11 +24,8 @@ namespace {
 using figures::Figure;
 using figures::Panel;
 using figures::Series;
+using figures::to_vector;
 using scene::StoreReader;
-
-Eigen::VectorXd to_vector(const std::vector<double>& values) {
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-}
 
 std::string_view colour_of_basis(const std::string& basis) {
   if (basis == "pomf") return figures::kPomColour;

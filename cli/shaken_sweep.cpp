@@ -1,4 +1,5 @@
 #include "cli/driven_store.hpp"
+#include "cli/reduced_file.hpp"
 #include "cli/shaken_bases.hpp"
 #include "cli/shaken_model.hpp"
 #include "cli/steps.hpp"
@@ -66,17 +67,12 @@ Subject subject(const Session& session, const scene::Scene& scene, const dynamic
   if (model == "full") {
     return {.basis = {}, .title = fmt::format("full model, {} degrees of freedom", system.size())};
   }
-  constexpr std::string_view kPrefix = "rom:";
-  if (!model.starts_with(kPrefix)) return basis_subject(session, scene, system, model);
-  const std::string file = model.substr(kPrefix.size());
-  const scene::StoreReader store(file);
-  if (!store.has(scene::kReducedGroup)) {
-    store.fail(scene::kReducedGroup, "the file holds no reduced model; make one with 'slipmode reduce'");
-  }
-  const pod::Basis basis = scene::load_basis(store, std::string(scene::kReducedGroup) + "/basis", system.size());
+  const std::optional<std::string> file = reduced_file(model);
+  if (!file) return basis_subject(session, scene, system, model);
+  const pod::Basis basis = reduced_basis(*file, system.size());
   return {.basis = basis,
           .title = fmt::format("reduced model, {} modes", basis.modes()),
-          .identity = "rom " + file_fingerprint(file)};
+          .identity = "rom " + file_fingerprint(*file)};
 }
 
 /// The shaker's frequency is special: modal data are then shared by all values.

@@ -18,6 +18,7 @@ namespace {
 
 using figures::Figure;
 using figures::Series;
+using figures::to_vector;
 using scene::StoreReader;
 
 std::string group_of(const std::string& model) { return fmt::format("{}/{}", kSkeletonGroup, model); }
@@ -33,10 +34,6 @@ std::vector<std::string> models_of(const StoreReader& store) {
     if (store.has(group_of(model))) models.push_back(model);
   }
   return models;
-}
-
-Eigen::VectorXd to_vector(const std::vector<double>& values) {
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
 /// The first contact's displacement and velocity from points of the full model.

@@ -1,5 +1,6 @@
 #include "diagnostics/sweep.hpp"
 
+#include "cli/reduced_file.hpp"
 #include "cli/shaken_model.hpp"
 #include "cli/steps.hpp"
 #include "cli/sweep_report.hpp"
@@ -47,11 +48,7 @@ Subject full_subject(const scene::Scene& scene, const std::string& key) {
 
 Subject reduced_subject(const scene::Scene& scene, const std::string& key, const std::string& file) {
   const dynamics::HybridSystem system = scene::build_system(scene);
-  const scene::StoreReader store(file);
-  if (!store.has(scene::kReducedGroup)) {
-    store.fail(scene::kReducedGroup, "the file holds no reduced model; make one with 'slipmode reduce'");
-  }
-  const pod::Basis basis = scene::load_basis(store, std::string(scene::kReducedGroup) + "/basis", system.size());
+  const pod::Basis basis = reduced_basis(file, system.size());
   const diagnostics::Model belt = diagnostics::reduced_belt_model(system, basis);
   return {.model = {.system = system_factory(scene, key, basis),
                     .basis = basis,
@@ -63,8 +60,7 @@ Subject reduced_subject(const scene::Scene& scene, const std::string& key, const
 
 Subject subject(const scene::Scene& scene, const std::string& key, const std::string& model) {
   if (model == "full") return full_subject(scene, key);
-  constexpr std::string_view kPrefix = "rom:";
-  if (model.starts_with(kPrefix)) return reduced_subject(scene, key, model.substr(kPrefix.size()));
+  if (const auto file = reduced_file(model)) return reduced_subject(scene, key, *file);
   throw InvalidInput(fmt::format("--model {}: expected full, or rom:FILE with a result of 'slipmode reduce'", model));
 }
 

@@ -9,6 +9,11 @@
 
 namespace slipmode::figures {
 
+/// A list as a curve's coordinates.
+[[nodiscard]] inline Eigen::VectorXd to_vector(const std::vector<double>& values) {
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
 /// A curve or a cloud of points in a panel.
 struct Series {
   std::string title = {};  ///< for the legend; empty: none
