@@ -45,11 +45,13 @@ std::vector<std::size_t> pareto_front(std::span<const Offer> offers) {
 }
 
 std::optional<std::size_t> cheapest_within_error(std::span<const Offer> offers, double limit) {
-  return least(offers, [limit](const Offer& offer) { return offer.assured() <= limit; }, kByCost);
+  return least(
+      offers, [limit](const Offer& offer) { return offer.assured() <= limit; }, kByCost);
 }
 
 std::optional<std::size_t> best_within_budget(std::span<const Offer> offers, double budget) {
-  return least(offers, [budget](const Offer& offer) { return offer.cost <= budget; }, kByError);
+  return least(
+      offers, [budget](const Offer& offer) { return offer.cost <= budget; }, kByError);
 }
 
 std::optional<std::size_t> cheapest(std::span<const Offer> offers) { return least(offers, kAny, kByCost); }

@@ -1,0 +1,129 @@
+#include "trade/advice.hpp"
+
+#include "core/errors.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace slipmode::trade {
+
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+const Row* as_it_stands(const Study& study) {
+  const auto found = std::ranges::find(study.rows, Axis::kScene, [](const Row& row) { return row.variant.axis; });
+  return found == study.rows.end() ? nullptr : &*found;
+}
+
+std::string error_text(const Row& row, Measure measure) {
+  return fmt::format("{} {} ± {} %", to_string(measure), percent_text(at(row.error, measure)),
+                     percent_text(at(row.noise, measure)));
+}
+
+/// "23 times faster than", "as fast as", "1.4 times slower than the scene as it stands".
+std::string speed_text(double ratio) {
+  constexpr double kSame = 0.1;
+  if (!std::isfinite(ratio)) return "not compared with the scene as it stands";
+  if (std::abs(ratio - 1.0) < kSame) return "about as fast as the scene as it stands";
+  const double factor = ratio > 1.0 ? ratio : 1.0 / ratio;
+  return fmt::format("{} times {} than the scene as it stands", percent_text(factor),
+                     ratio > 1.0 ? "faster" : "slower");
+}
+
+std::string use_text(const Study& study, const Row& row, Measure measure) {
+  if (row.variant.axis == Axis::kScene) {
+    return fmt::format("use the scene as it stands: nothing cheaper that was tried will do ({})",
+                       error_text(row, measure));
+  }
+  return fmt::format("use {}: {} ({})", row.variant.name, speed_text(speed_up(study, row)), error_text(row, measure));
+}
+
+std::vector<Offer> offers_of_run(const Study& study, const Wish& wish) {
+  std::vector<Offer> offers = study.offers(wish.measure);
+  for (std::size_t i = 0; i < offers.size(); ++i) offers[i].cost = study.rows[i].cost.of_run(wish.duration);
+  return offers;
+}
+
+[[noreturn]] void refuse_limit(const Study& study, const Wish& wish, const std::vector<Offer>& offers) {
+  const auto best = most_accurate(offers);
+  const std::string nearest =
+      best ? fmt::format("{} ({})", study.rows[*best].variant.name, error_text(study.rows[*best], wish.measure))
+           : std::string("none, all failed");
+  throw InvalidInput(fmt::format(
+      "no configuration is assured to keep {} under {} %; the most accurate that exists: {}. Ask for more, for another "
+      "--measure, or record longer where the noise is what is too large",
+      to_string(wish.measure), percent_text(*wish.limit), nearest));
+}
+
+[[noreturn]] void refuse_budget(const Study& study, const Wish& wish, const std::vector<Offer>& offers) {
+  const auto least = cheapest(offers);
+  const std::string nearest = least ? fmt::format("{}, {:.3g} s ({})", study.rows[*least].variant.name,
+                                                  offers[*least].cost, error_text(study.rows[*least], wish.measure))
+                                    : std::string("none, all failed");
+  const std::string within =
+      wish.limit ? fmt::format(" that keeps {} under {} %", to_string(wish.measure), percent_text(*wish.limit))
+                 : std::string();
+  throw InvalidInput(
+      fmt::format("no configuration{} runs {:g} time units within a budget of {:.3g} s; the cheapest that "
+                  "exists: {}",
+                  within, wish.duration, *wish.budget, nearest));
+}
+
+}  // namespace
+
+std::string percent_text(double value) {
+  if (std::isnan(value)) return "–";
+  if (value >= 10.0) return fmt::format("{:.0f}", value);
+  if (value >= 0.01) return fmt::format("{:.2g}", value);
+  return value > 0.0 ? fmt::format("{:.1e}", value) : "0";
+}
+
+double speed_up(const Study& study, const Row& row) {
+  const Row* own = as_it_stands(study);
+  return own == nullptr ? kNone : own->cost.cpu / row.cost.cpu;
+}
+
+double break_even(const Study& study, const Row& row, double duration) {
+  const Row* own = as_it_stands(study);
+  if (own == nullptr || !std::isfinite(row.cost.cpu)) return kNone;
+  const double saved = (own->cost.cpu - row.cost.cpu) * duration / row.cost.simulated;
+  if (!(saved > 0.0)) return std::numeric_limits<double>::infinity();
+  return row.basis_seconds > 0.0 ? (row.basis_seconds + row.cost.setup) / saved : 0.0;
+}
+
+Choice choose(const Study& study, const Wish& wish) {
+  std::vector<Offer> offers = offers_of_run(study, wish);
+  std::optional<std::size_t> picked;
+  std::string asked;
+  if (wish.limit) {
+    picked = cheapest_within_error(offers, *wish.limit);
+    if (!picked) refuse_limit(study, wish, offers);
+    if (wish.budget && offers[*picked].cost > *wish.budget) refuse_budget(study, wish, offers);
+    asked = fmt::format("for {} under {} %", to_string(wish.measure), percent_text(*wish.limit));
+    if (wish.budget) asked += fmt::format(" within {:.3g} s", *wish.budget);
+  } else if (wish.budget) {
+    picked = best_within_budget(offers, *wish.budget);
+    if (!picked) refuse_budget(study, wish, offers);
+    asked = fmt::format("within {:.3g} s a run", *wish.budget);
+  } else {
+    throw InvalidInput("choose: expected a limit or a budget, found neither");
+  }
+  return {.row = *picked, .sentence = fmt::format("{} {}", asked, use_text(study, study.rows[*picked], wish.measure))};
+}
+
+std::string recommendation(const Study& study, Measure measure, double limit) {
+  const std::vector<Offer> offers = study.offers(measure);
+  const std::string asked = fmt::format("for {} under {} %", to_string(measure), percent_text(limit));
+  if (const auto picked = cheapest_within_error(offers, limit)) {
+    return fmt::format("{} {}", asked, use_text(study, study.rows[*picked], measure));
+  }
+  const auto best = most_accurate(offers);
+  if (!best) return fmt::format("{} nothing can be said: the measure has no value here", asked);
+  return fmt::format("{} nothing that was tried is assured; nearest is {} ({})", asked, study.rows[*best].variant.name,
+                     error_text(study.rows[*best], measure));
+}
+
+}  // namespace slipmode::trade

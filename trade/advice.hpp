@@ -1,0 +1,43 @@
+#pragma once
+
+#include "trade/study.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+namespace slipmode::trade {
+
+/// What a user asks for.
+struct Wish {
+  Measure measure = Measure::kDe;
+  std::optional<double> limit = {};   ///< largest error [%]
+  std::optional<double> budget = {};  ///< largest processor time of one run, set-up included [s]
+  double duration = 0.0;              ///< length of that run ([time].duration) [s]
+};
+
+/// A configuration picked, and why, in one sentence.
+struct Choice {
+  std::size_t row = 0;  ///< of the study
+  std::string sentence;
+};
+
+/// With a limit the cheapest configuration that is assured to keep to it; with a budget the most accurate one within;
+/// with both the cheapest that keeps to both. "Assured": error and its noise are both below the limit.
+/// @throws InvalidInput  when there is none: the message says the most accurate, or the cheapest, that exists
+[[nodiscard]] Choice choose(const Study& study, const Wish& wish);
+
+/// One sentence for a limit, whether or not it can be met.
+[[nodiscard]] std::string recommendation(const Study& study, Measure measure, double limit);
+
+/// Processor time of the scene as it stands over that of a row; NaN where either is not known.
+[[nodiscard]] double speed_up(const Study& study, const Row& row);
+
+/// Runs of that length after which basis and projection are paid for, against the scene as it stands; infinite when the
+/// row is not faster, 0 for a full model that is.
+[[nodiscard]] double break_even(const Study& study, const Row& row, double duration);
+
+/// "0.43", "12", "3.1e-07": two or three digits.
+[[nodiscard]] std::string percent_text(double value);
+
+}  // namespace slipmode::trade

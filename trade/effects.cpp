@@ -1,0 +1,252 @@
+#include "trade/effects.hpp"
+
+#include "core/errors.hpp"
+#include "diagnostics/model.hpp"
+#include "rom/reduce.hpp"
+#include "trade/advice.hpp"
+#include "trade/laws.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+
+namespace slipmode::trade {
+
+namespace {
+
+using friction::Law;
+
+constexpr Eigen::Index kModesTried = 10;
+constexpr Eigen::Index kMostModes = 60;
+constexpr Eigen::Index kSmall = 200;
+
+class Effects {
+ public:
+  explicit Effects(const scene::Scene& scene) : scene_(scene) {}
+
+  std::vector<Effect> list() {
+    of_beam();
+    of_contacts();
+    of_damping();
+    of_modes();
+    return std::move(all_);
+  }
+
+ private:
+  void offer(const std::string& name, const std::optional<scene::Scene>& without) {
+    if (!without || !can_run(*without)) return;
+    all_.push_back({name, {.name = "without " + name, .axis = Axis::kEffect, .scene = *without}});
+  }
+
+  /// @param change  of a contact; says whether the contact had the effect
+  template <class Change>
+  void offer_contacts(const std::string& name, const Change& change) {
+    offer(name, with_contacts(scene_, change));
+  }
+
+  void of_beam() {
+    if (scene_.beam() == nullptr) return;
+    if (scene_.beam()->theory == fem::BeamTheory::kTimoshenko) {
+      offer("shear", with_spans([](fem::BeamSpan& span) { span.shear_coefficient *= 1e9; }));
+      offer("rotary inertia", with_spans([](fem::BeamSpan& span) {
+              constexpr double kThinner = 1e3;
+              span.width *= kThinner;
+              span.thickness /= kThinner;
+              span.youngs_modulus *= kThinner * kThinner;
+              span.shear_coefficient /= kThinner * kThinner;
+            }));
+    }
+    if (scene_.beam()->tip.inertia > 0.0) {
+      scene::Scene other = scene_;
+      std::get<fem::BeamOptions>(other.structure).tip.inertia = 0.0;
+      offer("tip inertia", other);
+    }
+  }
+
+  template <class Change>
+  [[nodiscard]] scene::Scene with_spans(const Change& change) const {
+    scene::Scene other = scene_;
+    std::ranges::for_each(std::get<fem::BeamOptions>(other.structure).spans, change);
+    return other;
+  }
+
+  void of_contacts() {
+    const auto has = [this](const auto& is) {
+      return std::ranges::any_of(scene_.contacts, [&](const scene::ContactSpec& contact) { return is(contact.law); });
+    };
+    if (has([](const Law& law) { return std::holds_alternative<friction::CompliantCoulomb>(law); })) {
+      offer("contact compliance", with_rigid_contacts(scene_));
+    }
+    if (has([](const Law& law) {
+          return std::holds_alternative<friction::Dahl>(law) || std::holds_alternative<friction::LuGre>(law);
+        })) {
+      offer("bristles", with_rigid_contacts(scene_));
+    }
+    offer_contacts("static friction peak", [](scene::ContactSpec& contact) { return level(contact.law); });
+    offer_contacts("Stribeck slope", [](scene::ContactSpec& contact) {
+      const auto* stribeck = std::get_if<friction::Stribeck>(&contact.law);
+      if (stribeck == nullptr || stribeck->alpha == 0.0 || stribeck->mu_s == stribeck->mu_k) return false;
+      contact.law = friction::Coulomb{stribeck->mu_s, stribeck->mu_k};
+      return true;
+    });
+    offer("position-dependent load", with_constant_load(scene_));
+    offer("normal vibration", without_normal_vibration(scene_));
+    offer_contacts("tilt of the slider", [](scene::ContactSpec& contact) {
+      if (contact.tilt_deg == 0.0) return false;
+      contact.tilt_deg = 0.0;
+      return true;
+    });
+    offer_contacts("damping of the stops", [](scene::ContactSpec& contact) {
+      auto* play = std::get_if<friction::Clearance>(&contact.law);
+      if (play == nullptr) return false;
+      bool any = false;
+      for (std::optional<friction::Stop>* stop : {&play->left, &play->right}) {
+        if (!*stop || (*stop)->damping == 0.0) continue;
+        (*stop)->damping = 0.0;
+        any = true;
+      }
+      return any;
+    });
+  }
+
+  /// μ_s = μ_k. @return false where it is so already
+  static bool level(Law& law) {
+    return std::visit(
+        [](auto& own) {
+          if constexpr (requires { own.mu_s; }) {
+            const bool peak = own.mu_s > own.mu_k;
+            own.mu_s = own.mu_k;
+            return peak;
+          } else {
+            return false;
+          }
+        },
+        law);
+  }
+
+  void of_damping() {
+    scene::Scene other = scene_;
+    const bool any = std::visit([](auto& structure) { return undamped(structure); }, other.structure);
+    if (any) offer("structural damping", other);
+  }
+
+  static bool undamped(fem::ChainOptions& chain) {
+    const bool any = chain.damping > 0.0 || chain.mass_damping > 0.0;
+    chain.damping = chain.mass_damping = 0.0;
+    return any;
+  }
+  static bool undamped(fem::BeamOptions& beam) {
+    const auto* rayleigh = std::get_if<fem::Rayleigh>(&beam.damping);
+    const bool any = rayleigh == nullptr || rayleigh->mass > 0.0 || rayleigh->stiffness > 0.0;
+    beam.damping = fem::Rayleigh{};
+    return any;
+  }
+  static bool undamped(fem::MassesOptions& masses) {
+    bool any = false;
+    for (auto& link : masses.links) {
+      any = any || link.damping > 0.0;
+      link.damping = 0.0;
+    }
+    return any;
+  }
+  static bool undamped(scene::MatricesSpec& matrices) {
+    const bool any = matrices.damping.size() > 0 && !matrices.damping.isZero(0.0);
+    matrices.damping.setZero();
+    return any;
+  }
+
+  void of_modes() {
+    const dynamics::HybridSystem system = scene::build_system(scene_);
+    const Eigen::Index n = system.size();
+    if (n < 2) return;
+    const Eigen::Index count = n <= kSmall ? n : kMostModes;
+    pod::Basis all = rom::lnm_basis(system.structure(), count);
+    all.mean = resting_place(system);
+    for (Eigen::Index k = 0; k < std::min(kModesTried, count); ++k) {
+      std::vector<Eigen::Index> kept;
+      for (Eigen::Index i = 0; i < count; ++i) {
+        if (i != k) kept.push_back(i);
+      }
+      offer_basis(fmt::format("mode {}", k + 1), all, all.vectors(Eigen::all, kept));
+    }
+    if (count > kModesTried) {
+      offer_basis(fmt::format("modes above {}", kModesTried), all, all.vectors.leftCols(kModesTried));
+    }
+  }
+
+  void offer_basis(const std::string& name, pod::Basis like, const Eigen::MatrixXd& vectors) {
+    like.vectors = vectors;
+    like.energy.resize(0);
+    all_.push_back(
+        {name, {.name = "without " + name, .axis = Axis::kEffect, .scene = scene_, .basis = std::move(like)}});
+  }
+
+  /// Where belts hold the structure on average; elsewhere zero.
+  [[nodiscard]] Eigen::VectorXd resting_place(const dynamics::HybridSystem& system) const {
+    if (scene_.drive.belt() == nullptr) return Eigen::VectorXd::Zero(system.size());
+    try {
+      return diagnostics::sliding_equilibrium(system).q;
+    } catch (const InvalidInput&) {
+      return Eigen::VectorXd::Zero(system.size());
+    }
+  }
+
+  const scene::Scene& scene_;
+  std::vector<Effect> all_;
+};
+
+/// Change of an output in units of what it may change by.
+double weight(double error, double noise, double limit) { return error / std::max(limit, 2.0 * noise); }
+
+std::string time_text(double share) {
+  constexpr double kSame = 0.05;
+  if (!std::isfinite(share)) return "its time is not known";
+  if (std::abs(share - 1.0) < kSame) return "a run takes as long";
+  return fmt::format("a run takes {:.2g} of the time", share);
+}
+
+}  // namespace
+
+std::string_view to_string(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kNeeded:
+      return "needed";
+    case Verdict::kUnclear:
+      return "unclear";
+    case Verdict::kSpare:
+      return "can be left out";
+    case Verdict::kFailed:
+      return "cannot be run without";
+  }
+  return "";
+}
+
+std::vector<Effect> effects_of(const scene::Scene& scene) { return Effects(scene).list(); }
+
+EffectAdvice advise(const Effect& effect, const Row& full, const Row& without, double limit) {
+  EffectAdvice out{.time_share = without.cost.cpu / full.cost.cpu};
+  if (!without.failure.empty()) {
+    out.verdict = Verdict::kFailed;
+    out.sentence = fmt::format("{}: the scene cannot be run without it: {}", effect.name, without.failure);
+    return out;
+  }
+  double largest = -1.0;
+  bool above = false;
+  for (std::size_t m = 0; m < kMeasures; ++m) {
+    const double error = without.error[m], noise = without.noise[m];
+    if (std::isnan(error)) continue;
+    above = above || error > limit;
+    if (const double found = weight(error, noise, limit); found > largest) {
+      largest = found;
+      out.measure = static_cast<Measure>(m);
+    }
+  }
+  out.verdict = largest > 1.0 ? Verdict::kNeeded : above ? Verdict::kUnclear : Verdict::kSpare;
+  out.sentence =
+      fmt::format("{}: {}; without it {} changes most, by {} % (scatter {} %), and {}", effect.name,
+                  to_string(out.verdict), to_string(out.measure), percent_text(at(without.error, out.measure)),
+                  percent_text(at(without.noise, out.measure)), time_text(out.time_share));
+  return out;
+}
+
+}  // namespace slipmode::trade

@@ -1,0 +1,72 @@
+#pragma once
+
+#include "core/parallel.hpp"
+#include "trade/clock.hpp"
+#include "trade/measures.hpp"
+#include "trade/pareto.hpp"
+#include "trade/schedule.hpp"
+#include "trade/variant.hpp"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace slipmode::trade {
+
+/// One configuration, measured.
+struct Row {
+  Variant variant;
+  Values error = {};  ///< against the reference [%]
+  /// Scatter of each error [%]: of kDx and kDe the standard error over the starts, of the others how far independent
+  /// runs of the reference are from each other.
+  Values noise = {};
+  RunCost cost = {};
+  double basis_seconds = 0.0;  ///< what its basis took to make; 0 for a full model [s of clock]
+  std::string failure = {};    ///< empty, or why there are no errors
+
+  [[nodiscard]] Offer offer(Measure measure) const {
+    return {.cost = cost.cpu, .error = at(error, measure), .noise = at(noise, measure)};
+  }
+};
+
+/// Errors of one configuration, as a resumed study takes them over.
+struct Finished {
+  Values error = {}, noise = {};
+  std::string failure = {};
+};
+
+struct StudyOptions {
+  Schedule schedule = {};
+  /// More configurations, once the first ones are measured; empty function: none.
+  std::function<std::vector<Variant>(const std::vector<Row>&)> more = {};
+  ParallelOptions parallel = {};  ///< parallel.progress counts configurations, then timed runs
+  /// What an earlier study found, by name, and where to keep what is found now; empty functions: nothing kept.
+  /// Times are always taken anew: those of another process compare with nothing.
+  std::function<std::optional<Finished>(const std::string& name)> recall = {};
+  std::function<void(const std::string& name, const Finished&)> store = {};
+};
+
+struct Study {
+  Row reference;          ///< its errors are zero, its noise is that between its own runs
+  std::vector<Row> rows;  ///< in the order given, then those of `more`
+  Schedule schedule;
+  int regimes = 0;  ///< built by the reference's first run
+
+  [[nodiscard]] std::vector<Offer> offers(Measure measure) const;
+};
+
+/// Measures configurations against a reference.
+///
+/// The reference runs schedule.runs times, from the scene's start and from others about it. Each configuration starts
+/// from the first run's end, settles, and is compared as an attractor; and it runs beside the reference from shared
+/// starts along all runs. Errors in parallel; then times, one thread alone, by turns. The errors are the same bytes for
+/// any number of threads.
+/// @param scene  whose start the reference takes; `reference` may have another mesh
+/// @throws InvalidInput      as build_case of the reference
+/// @throws NumericalFailure  if the reference fails; other failures are recorded in their rows
+/// @throws Interrupted       if the stop flag was set
+[[nodiscard]] Study study(const scene::Scene& scene, const Variant& reference, const std::vector<Variant>& variants,
+                          const std::vector<OfferedBasis>& bases, const StudyOptions& options);
+
+}  // namespace slipmode::trade

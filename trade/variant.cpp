@@ -1,0 +1,66 @@
+#include "trade/variant.hpp"
+
+#include "core/errors.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+#include <algorithm>
+#include <array>
+
+namespace slipmode::trade {
+
+namespace {
+
+constexpr std::array<std::string_view, 9> kAxes = {"scene", "modes", "flow",     "theory", "elements",
+                                                   "law",   "load",  "combined", "effect"};
+
+/// True when the scene, or an override of it, has that table.
+bool has_table(const scene::Scene& scene, const std::string& name) {
+  if (toml::parse(scene.source.text).contains(name)) return true;
+  return std::ranges::any_of(scene.source.overrides, [&](const std::string& override) {
+    return override.starts_with(name + ".") || override.starts_with(name + "=");
+  });
+}
+
+/// A table of scene_to_toml's text cut out: it goes from its head to the next one.
+void cut_table(std::string& text, const std::string& name) {
+  const std::size_t begin = text.find("\n[" + name + "]\n");
+  if (begin == std::string::npos) return;
+  const std::size_t end = text.find("\n[", begin + 1);
+  text.erase(begin, end == std::string::npos ? std::string::npos : end - begin);
+}
+
+}  // namespace
+
+std::string_view to_string(Axis axis) { return kAxes[static_cast<std::size_t>(axis)]; }
+
+std::optional<pod::Basis> basis_of(const Variant& variant, const std::vector<OfferedBasis>& bases) {
+  if (variant.basis) return variant.basis;
+  if (!variant.reduction) return std::nullopt;
+  const auto found = std::ranges::find(bases, variant.reduction->basis, &OfferedBasis::choice);
+  if (found == bases.end()) {
+    throw InvalidInput(fmt::format("{}: basis \"{}\" is not on offer for this scene", variant.name,
+                                   scene::to_string(variant.reduction->basis)));
+  }
+  return found->basis.truncated(variant.reduction->modes);
+}
+
+std::string scene_text(const Variant& variant) {
+  if (variant.basis) {
+    throw InvalidInput(fmt::format("{}: no scene can say this basis; valid: a basis of [reduction]", variant.name));
+  }
+  scene::Scene scene = variant.scene;
+  if (variant.reduction) {
+    scene.reduction.basis = variant.reduction->basis;
+    scene.reduction.choice.modes = variant.reduction->modes;
+  }
+  std::string text = scene::scene_to_toml(scene);
+  for (const char* table : {"initial", "ensemble", "reduction", "validation"}) {
+    const bool said = std::string_view(table) == "reduction" && variant.reduction;
+    if (!said && !has_table(scene, table)) cut_table(text, table);
+  }
+  (void)scene::parse_scene(text);
+  return text;
+}
+
+}  // namespace slipmode::trade
