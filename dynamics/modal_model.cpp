@@ -94,6 +94,7 @@ void fill_general(ModalModel& m, const fem::Modes& modes, const Eigen::MatrixXd&
   const auto n = m.n, np = m.np;
   const BalancedState balanced = balanced_state(modes.omega, D);
   const PairForm form = pair_form(balanced.A);
+  check_pair_form(form, balanced.scale);
   size_arrays(m);
   m.proportional = false;
   m.g11.head(n) = form.g11;

@@ -3,6 +3,7 @@
 #include "core/decompositions.hpp"
 #include "core/errors.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <limits>
 #include <numeric>
@@ -15,6 +16,9 @@ namespace {
 constexpr double kLargestCondition = 1e10;
 /// Modes slower than this share of the fastest are scaled like it: their displacement needs no finer balance.
 constexpr double kSmallestScale = 1e-8;
+
+/// Largest error of a state that is turned into pairs and back.
+constexpr double kLargestGap = 1e-7;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -90,10 +94,29 @@ PairForm pair_form(const Eigen::MatrixXd& A) {
   return form;
 }
 
-BalancedState balanced_state(const Eigen::VectorXd& omega, const Eigen::MatrixXd& damping) {
+void check_pair_form(const PairForm& form, const Eigen::VectorXd& scale) {
+  const Eigen::Index n = scale.size();
+  const double fastest = scale.maxCoeff();
+  Eigen::MatrixXd gap = form.T * form.T_inverse - Eigen::MatrixXd::Identity(2 * n, 2 * n);
+  gap.topRows(n).array().colwise() *= fastest / scale.array();
+  gap.leftCols(n).array().rowwise() *= scale.transpose().array() / fastest;
+  const double error = gap.cwiseAbs().maxCoeff();
+  if (!(error <= kLargestGap))
+    throw NumericalFailure(
+        fmt::format(
+            "modes of the damped structure give a state back with an error of {:.2g}, at most {:.0g} is workable: "
+            "parts that float and hardly feel their damping; remove what no force reaches, or damp or hold it "
+            "more",
+            error, kLargestGap),
+        kNaN, {}, error);
+}
+
+BalancedState balanced_state(const Eigen::VectorXd& omega, const Eigen::MatrixXd& damping,
+                             const Eigen::VectorXd& coupling) {
   const Eigen::Index n = omega.size();
   const double fastest = std::max({omega.maxCoeff(), damping.diagonal().maxCoeff(), 1e-300});
   BalancedState state{omega.cwiseMax(kSmallestScale * fastest), Eigen::MatrixXd::Zero(2 * n, 2 * n)};
+  if (coupling.size() > 0) state.scale = state.scale.cwiseMax(coupling);
   state.A.topRightCorner(n, n).diagonal() = state.scale;
   state.A.bottomLeftCorner(n, n).diagonal() = -omega.cwiseAbs2().cwiseQuotient(state.scale);
   state.A.bottomRightCorner(n, n) = -damping;

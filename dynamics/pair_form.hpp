@@ -24,6 +24,14 @@ struct BalancedState {
   Eigen::VectorXd scale;  ///< of η [n]
   Eigen::MatrixXd A;      ///< [2n x 2n]
 };
-[[nodiscard]] BalancedState balanced_state(const Eigen::VectorXd& omega, const Eigen::MatrixXd& damping);
+/// @param coupling  rates by which other terms, still to be put into A, act on the displacements [n], or empty: a scale
+///                  is at least that, or those terms would be large over a small scale
+[[nodiscard]] BalancedState balanced_state(const Eigen::VectorXd& omega, const Eigen::MatrixXd& damping,
+                                           const Eigen::VectorXd& coupling = {});
+
+/// Checks that a state turned into pairs and back is the same state.
+/// @param scale  of the displacements in the balanced state [n]
+/// @throws NumericalFailure  with the error: displacements and velocities over the fastest rate, relative
+void check_pair_form(const PairForm& form, const Eigen::VectorXd& scale);
 
 }  // namespace slipmode::dynamics

@@ -54,7 +54,9 @@ struct AtStop {
     rate = side * contact.direction.dot(start.v);
     past = side * y - stop.gap;
     press = stop.stiffness * past + stop.damping * rate;
-    size = contact.direction.cwiseAbs().dot(start.q.cwiseAbs()) + std::abs(contact.offset) + std::abs(stop.gap);
+    // An event's time is rounded, and where it is not small that may be more than the displacements' own rounding.
+    size = contact.direction.cwiseAbs().dot(start.q.cwiseAbs() + std::abs(start.time) * start.v.cwiseAbs()) +
+           std::abs(contact.offset) + std::abs(stop.gap);
     press_size = stop.stiffness * size + stop.damping * contact.direction.cwiseAbs().dot(start.v.cwiseAbs());
   }
 };

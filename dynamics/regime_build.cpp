@@ -180,6 +180,7 @@ void RegimeBuilder::make_symmetric_pairs(Regime& out) {
   }
   const BalancedState balanced = balanced_state(omega, D);
   const PairForm form = pair_form(balanced.A);
+  check_pair_form(form, balanced.scale);
   set_blocks(pairs, form);
   const Eigen::VectorXd inverse_scale = balanced.scale.cwiseInverse();
   at_.to_y = spread_columns(shapes * inverse_scale.asDiagonal() * form.T.topRows(m), pairs.np);
@@ -200,7 +201,13 @@ void RegimeBuilder::make_general_pairs(Regime& out) {
   Eigen::MatrixXd damping = Eigen::MatrixXd::Zero(N, N);
   const Eigen::MatrixXd ZS = Z_ * shapes;
   damping.topLeftCorner(m, m) = ZS.transpose() * C_ * ZS;
-  BalancedState state = balanced_state(omega, damping);
+  Eigen::VectorXd coupling = Eigen::VectorXd::Zero(N);  // squared
+  for (Eigen::Index c = 0; c < nc_; ++c) {
+    const Eigen::VectorXd w = (ZS.transpose() * modal_.directions.col(c)).cwiseAbs();
+    if (spring_(c) < 0.0) coupling.head(m) = coupling.head(m).cwiseMax(-spring_(c) * w.norm() * w);
+    if (load(c).oscillates()) coupling.head(m) = coupling.head(m).cwiseMax(std::abs(load(c).lift) * w);
+  }
+  BalancedState state = balanced_state(omega, damping, coupling.cwiseSqrt());
   Eigen::MatrixXd& A = state.A;
   for (Eigen::Index c = 0; c < nc_; ++c) {
     if (spring_(c) >= 0.0) continue;
@@ -218,6 +225,7 @@ void RegimeBuilder::make_general_pairs(Regime& out) {
     A.block(N, N + m + j, m, 1) += friction_(c) * own.z_rate * w;
   }
   const PairForm form = pair_form(A);
+  check_pair_form(form, state.scale);
   ModalModel& pairs = out.pairs;
   set_blocks(pairs, form);
   const Eigen::VectorXd inverse_scale = state.scale.cwiseInverse();

@@ -59,7 +59,7 @@ void RegimeBuilder::make_contact_rows(Regime& out) const {
       }
     } else {
       out.velocity_coefficient(V_, c) = 1.0;
-      row = (eta.transpose() * K_ + eta_rate.transpose() * C_) * P_.col(c);
+      row = (eta.transpose() * K_ + eta_rate.transpose() * C_.transpose()) * P_.col(c);
       coefficient = P_.transpose() * (K_ * P_.col(c));
       coefficient(V_) += P_.col(c).dot(C_ * P_all_);
       coefficient(V_ + 1) += P_.col(c).dot(P_all_);

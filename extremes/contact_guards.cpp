@@ -16,7 +16,8 @@ double tilted(double mu, double tilt, double sign) {
   return (mu * c + s) / (c - mu * s);
 }
 
-/// What a law with stick is made of: the coefficient of sliding at the present speed, and the contact spring, 0 if rigid.
+/// What a law with stick is made of: the coefficient of sliding at the present speed, and the contact spring, 0 if
+/// rigid.
 struct Sticking {
   double mu_s = 0.0, sliding = 0.0, spring = 0.0;
 };
@@ -74,8 +75,8 @@ LawCheck check_clearance(const friction::Clearance& law, ContactMode mode, const
   const Side left = side_of(law.left, -now.y, -now.v), right = side_of(law.right, now.y, now.v);
   const bool lets_go_at_gap = law.loss == friction::ContactLoss::kGap;
   if (mode == ContactMode::kGap || mode == ContactMode::kLeftFlight || mode == ContactMode::kRightFlight) {
-    // Free, and so it stays within the gap, and beyond it where the stop, having let go, would pull. The end of a flight
-    // changes no force and is no event.
+    // Free, and so it stays within the gap, and beyond it where the stop, having let go, would pull. The end of a
+    // flight changes no force and is no event.
     const auto free = [&](const Side& side) {
       return lets_go_at_gap ? -side.x / scales.way : std::max(-side.x / scales.way, -side.press / scales.force);
     };
@@ -95,16 +96,19 @@ LawCheck check_law(const friction::Contact& contact, ContactMode mode, const Con
   // Sliding speeds keep the sign of their mode; rounding may not.
   const double speed = (mode == ContactMode::kSlipPositive ? 1.0 : -1.0) * now.slip;
   return std::visit(
-      Overloaded{
-          [&](const friction::Coulomb& law) { return friction_of({law.mu_s, law.mu_k, 0.0}); },
-          [&](const friction::Stribeck& law) {
-            return friction_of({law.mu_s, law.mu_k + (law.mu_s - law.mu_k) * std::exp(-law.alpha * speed), 0.0});
-          },
-          [&](const friction::CompliantCoulomb& law) { return friction_of({law.mu_s, law.mu_k, law.stiffness}); },
-          [&](const friction::TanhRegularised& law) { return check_tanh(law, now, scales); },
-          [&](const friction::Dahl&) { return check_bristle(mode, now, scales); },
-          [&](const friction::LuGre&) { return check_bristle(mode, now, scales); },
-          [&](const friction::Clearance& law) { return check_clearance(law, mode, now, scales); }},
+      Overloaded{[&](const friction::Coulomb& law) {
+                   return friction_of({law.mu_s, law.mu_k, 0.0});
+                 },
+                 [&](const friction::Stribeck& law) {
+                   return friction_of({law.mu_s, law.mu_k + (law.mu_s - law.mu_k) * std::exp(-law.alpha * speed), 0.0});
+                 },
+                 [&](const friction::CompliantCoulomb& law) {
+                   return friction_of({law.mu_s, law.mu_k, law.stiffness});
+                 },
+                 [&](const friction::TanhRegularised& law) { return check_tanh(law, now, scales); },
+                 [&](const friction::Dahl&) { return check_bristle(mode, now, scales); },
+                 [&](const friction::LuGre&) { return check_bristle(mode, now, scales); },
+                 [&](const friction::Clearance& law) { return check_clearance(law, mode, now, scales); }},
       contact.law);
 }
 

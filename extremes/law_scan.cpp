@@ -69,7 +69,7 @@ class LoadHistory {
     if (!load_.oscillator || h <= 0.0) return;
     const double ym = 0.5 * (y0 + y1) + h / 8.0 * (v0 - v1), vm = 1.5 * (y1 - y0) / h - 0.25 * (v0 + v1);
     const Eigen::Vector2d x(z_, z_rate_), a = rate(x, y0, v0), b = rate(x + 0.5 * h * a, ym, vm),
-                             c = rate(x + 0.5 * h * b, ym, vm), d = rate(x + h * c, y1, v1);
+                                          c = rate(x + 0.5 * h * b, ym, vm), d = rate(x + h * c, y1, v1);
     const Eigen::Vector2d end = x + h / 6.0 * (a + 2.0 * b + 2.0 * c + d);
     z_ = end(0);
     z_rate_ = end(1);
@@ -171,9 +171,12 @@ class Scan {
   /// Momentum and displacement from sample to sample by Simpson's rule.
   void check_motion(const Eigen::MatrixXd& force) {
     const Eigen::MatrixXd momentum = fem::multiply(system_.structure().M(), run_.v);
-    const double h = options_.sample, tiny = 1e-300;
-    const Eigen::VectorXd speed_scale = run_.v.cwiseAbs().rowwise().maxCoeff().array() + tiny;
-    const Eigen::VectorXd scale = force_scale_.array() + 1e-9 * force_scale_.maxCoeff() + tiny;
+    const double h = options_.sample;
+    // Rows have units of their own; one in which nothing happens is measured by the others.
+    const auto floored = [](const Eigen::VectorXd& x) -> Eigen::VectorXd {
+      return x.array() + 1e-6 * x.maxCoeff() + 1e-300;
+    };
+    const Eigen::VectorXd speed_scale = floored(run_.v.cwiseAbs().rowwise().maxCoeff()), scale = floored(force_scale_);
     for (Index k = 0; k + 2 < run_.times.size(); ++k) {
       if (!quiet(run_.times(k), run_.times(k + 2)) || !smooth_drive(run_.times(k), run_.times(k + 2))) continue;
       const Eigen::VectorXd impulse =
@@ -185,9 +188,16 @@ class Scan {
                               (2.0 * h);
       figures_.motion = std::max(figures_.motion, residual);
       if (residual > limits_.motion)
-        violate("motion", fmt::format("residual {:.2g} of the equations of motion at t = {:.9g}", residual,
-                                      run_.times(k + 1)));
+        violate("motion", fmt::format("residual {:.2g} of the equations of motion at t = {:.9g}, modes {}", residual,
+                                      run_.times(k + 1), modes_at(run_.times(k + 1))));
     }
+  }
+
+  [[nodiscard]] std::string modes_at(double t) const {
+    std::string text;
+    for (const Timeline& timeline : timelines_)
+      text += fmt::format("{}{}", text.empty() ? "" : " ", static_cast<int>(timeline.at(t)));
+    return text;
   }
 
   [[nodiscard]] bool smooth_drive(double from, double to) const {
@@ -202,7 +212,8 @@ class Scan {
       drive = std::max(drive, std::abs(system_.drive().velocity(run_.times(k))));
     ContactScales scales;
     scales.way = run_.contact_q.row(c).cwiseAbs().maxCoeff();
-    scales.speed = run_.v.rows() > 0 ? run_.contact_v.cwiseAbs().maxCoeff() + drive : drive;
+    const Eigen::VectorXd speeds = run_.v.cwiseAbs().rowwise().maxCoeff();
+    scales.speed = W_.col(c).cwiseAbs().dot(speeds) + 1e-3 * speeds.maxCoeff() + drive;
     const double static_limit = friction::static_coefficient(law.law) * law.normal_load.constant;
     scales.force = std::max(static_limit, run_.lambda.row(c).cwiseAbs().maxCoeff());
     if (!law.normal_load.is_constant()) scales.force = std::max(scales.force, law.normal_load.constant);
@@ -252,7 +263,8 @@ class Scan {
     figures_.guard = std::max(figures_.guard, -check.guard);
     figures_.law = std::max(figures_.law, check.law);
     if (-check.guard > limits_.guard)
-      violate("missed event", fmt::format("contact {}: a guard is {:.2g} below zero at t = {:.9g}", c, -check.guard, t));
+      violate("missed event",
+              fmt::format("contact {}: a guard is {:.2g} below zero at t = {:.9g}", c, -check.guard, t));
     if (check.law > limits_.law)
       violate("law", fmt::format("contact {}: off its law by {:.2g} at t = {:.9g}", c, check.law, t));
   }
@@ -278,7 +290,8 @@ class Scan {
   void look_between(int c, const Samples& s, Index k, const Eigen::VectorXd& guards, const LoadHistory& load,
                     const ContactScales& scales) {
     const double a = guards(k - 2), b = guards(k - 1), d = guards(k), curvature = a - 2.0 * b + d;
-    if (b > a || b > d || b <= 0.0 || curvature <= 0.0 || b - (a - d) * (a - d) / (8.0 * curvature) > limits_.guard) return;
+    if (b > a || b > d || b <= 0.0 || curvature <= 0.0 || b - (a - d) * (a - d) / (8.0 * curvature) > limits_.guard)
+      return;
     if (!quiet(s.times(k - 2), s.times(k))) return;
     ++figures_.minima;
     dynamics::SimulateOptions options = options_;
@@ -307,7 +320,8 @@ class Scan {
           !smooth_drive(s.times(k - 4), t) || t - s.times(k) < 1e-9 * h)
         continue;
       const double x = (t - s.times(k)) / h;
-      const double at = guards(k) * (1 + x) * (2 + x) / 2 - guards(k - 1) * x * (2 + x) + guards(k - 2) * x * (1 + x) / 2;
+      const double at =
+          guards(k) * (1 + x) * (2 + x) / 2 - guards(k - 1) * x * (2 + x) + guards(k - 2) * x * (1 + x) / 2;
       const double third = std::abs(guards(k) - 3 * guards(k - 1) + 3 * guards(k - 2) - guards(k - 3));
       const double excess = std::max(0.0, std::abs(at) - 4.0 * third);
       figures_.spurious = std::max(figures_.spurious, excess);

@@ -17,10 +17,10 @@ struct Violation {
 
 /// How near to zero each thing was that must be zero, or not negative; shares of the run's own scales.
 struct ScanFigures {
-  double guard = 0.0;      ///< deepest a guard was below zero while its regime lasted
-  double law = 0.0;        ///< largest distance of a contact force from its law, of a stick's speed from the drive's
-  double motion = 0.0;     ///< largest residual of M q̈ + C q̇ + K q = p + Σ d u + Σ w λ between samples
-  double spurious = 0.0;   ///< largest value of the guard of an event, extrapolated to its time
+  double guard = 0.0;     ///< deepest a guard was below zero while its regime lasted
+  double law = 0.0;       ///< largest distance of a contact force from its law, of a stick's speed from the drive's
+  double motion = 0.0;    ///< largest residual of M q̈ + C q̇ + K q = p + Σ d u + Σ w λ between samples
+  double spurious = 0.0;  ///< largest value of the guard of an event, extrapolated to its time
   std::int64_t samples = 0;
   std::int64_t minima = 0;  ///< minima of guards between samples that were looked at 256 times finer
   std::int64_t events = 0;  ///< changes of a contact's mode
@@ -39,8 +39,8 @@ struct ScanLimits {
 
 /// Certifies a run from its samples alone: that every contact obeys the law of its mode, that no guard was passed
 /// unnoticed, that modes change only where a guard is reached, and that the samples solve the equations of motion, in
-/// the structure's own matrices by Simpson's rule. Shares no code with the flow. A run that passes at this resolution is
-/// a solution with no event missed and none too many.
+/// the structure's own matrices by Simpson's rule. Shares no code with the flow. A run that passes at this resolution
+/// is a solution with no event missed and none too many.
 ///
 /// Guards are evaluated at every sample; where three samples show a minimum whose parabola goes below zero, the run is
 /// sampled again there, 256 times finer.

@@ -268,11 +268,12 @@ class SceneWriter {
       line("normal_load = {{ constant = {}, slope = {} }}", number(constant), number(stiffness_ * uniform(-1.5, 1.5)));
       return;
     }
-    fill("normal_load = { constant = #, oscillator = { mass = #, support_stiffness = #, support_damping = #, "
-         "spring_stiffness = #, spring_damping = #, slope = # } }",
-         {constant, stiffness_ / (rate_ * rate_) * uniform(0.2, 2.0), stiffness_ * uniform(0.0, 3.0),
-          stiffness_ / rate_ * uniform(0.0, 0.2), stiffness_ * uniform(0.5, 3.0),
-          chance(0.5) ? 0.0 : stiffness_ / rate_ * uniform(0.0, 0.2), uniform(-0.5, 0.5)});
+    fill(
+        "normal_load = { constant = #, oscillator = { mass = #, support_stiffness = #, support_damping = #, "
+        "spring_stiffness = #, spring_damping = #, slope = # } }",
+        {constant, stiffness_ / (rate_ * rate_) * uniform(0.2, 2.0), stiffness_ * uniform(0.0, 3.0),
+         stiffness_ / rate_ * uniform(0.0, 0.2), stiffness_ * uniform(0.5, 3.0),
+         chance(0.5) ? 0.0 : stiffness_ / rate_ * uniform(0.0, 0.2), uniform(-0.5, 0.5)});
   }
 
   void drive() {

@@ -49,16 +49,17 @@ class Digest {
 double fastest_rate(const dynamics::HybridSystem& system, const dynamics::State& start) {
   const dynamics::ModalModel model = dynamics::build_modal_model(system, false);
   double rate = std::max(model.fastest, 1e-3);
-  double speed = start.v.cwiseAbs().maxCoeff() + start.q.cwiseAbs().maxCoeff() * rate + system.drive().velocity_scale(0.0);
+  double speed =
+      start.v.cwiseAbs().maxCoeff() + start.q.cwiseAbs().maxCoeff() * rate + system.drive().velocity_scale(0.0);
   for (std::size_t c = 0; c < system.contacts().size(); ++c) {
     const friction::Contact& contact = system.contacts()[c];
     const auto at = static_cast<Index>(c);
     const double mobility = model.mobility(at, at), load = contact.normal_load.constant;
     const auto spring = [&](double k) { return std::sqrt(k * mobility); };
     if (const auto* law = std::get_if<friction::Stribeck>(&contact.law))
-      rate += law->alpha * (law->mu_s - law->mu_k) * load * mobility;
+      rate += law->alpha * ((law->mu_s - law->mu_k) * load * mobility + speed * model.fastest);
     if (const auto* law = std::get_if<friction::TanhRegularised>(&contact.law))
-      rate += (1.0 / law->epsilon + law->alpha) * law->mu_s * load * mobility;
+      rate += (1.0 / law->epsilon + law->alpha) * (law->mu_s * load * mobility + speed * model.fastest);
     if (const auto* law = std::get_if<friction::CompliantCoulomb>(&contact.law)) rate += spring(law->stiffness);
     if (const auto* law = std::get_if<friction::Dahl>(&contact.law))
       rate += spring(law->stiffness) + law->stiffness * speed / (law->mu * load);

@@ -13,11 +13,11 @@ namespace slipmode::extremes {
 struct SceneCheck {
   std::uint64_t index = 0;
   ScanFigures scan;
-  double energy = 0.0;         ///< |residual| of the energy audit
-  double restart = 0.0;        ///< distance at the end between the run and one taken up at an event, mode and all
-  double reduction = 0.0;      ///< distance at the end between full and all-modes reduced model, as a share of sizes
-  bool refused = false;        ///< reported as beyond the method (undamped resonance), with a message that says so
-  std::uint64_t digest = 0;    ///< of final state and event times
+  double energy = 0.0;       ///< |residual| of the energy audit
+  double restart = 0.0;      ///< distance at the end between the run and one taken up at an event, mode and all
+  double reduction = 0.0;    ///< distance at the end between full and all-modes reduced model, as a share of sizes
+  bool refused = false;      ///< reported as beyond the method (undamped resonance), with a message that says so
+  std::uint64_t digest = 0;  ///< of final state and event times
   std::vector<Violation> violations;
 };
 

@@ -3,6 +3,7 @@
 #include "core/errors.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -19,10 +20,20 @@ double stiffness_to_mass(const Structure& structure) {
   return (std::visit(diagonal, structure.K()).array() / std::visit(diagonal, structure.M()).array()).maxCoeff();
 }
 
+// What the share of an elastic mode in a rigid-body shape adds to φᵀKφ. Solvers err by a few ε λ_max in K, which turns
+// a rigid-body shape towards a mode of λ by that over λ: in φᵀKφ its square times λ, most for the softest mode.
+double quotient_of_impurity(const Eigen::VectorXd& values, double largest) {
+  constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+  double softest = largest;
+  for (const double value : values)
+    if (value > 1e3 * kEpsilon * largest) softest = std::min(softest, value);
+  return std::pow(4.0 * kEpsilon * largest, 2) / softest;
+}
+
 // λ of a shape whose computed λ is so small that the eigensolver's own rounding may hide it.
-double reconsider(const Structure& structure, double lambda, const Eigen::VectorXd& shape) {
+double reconsider(const Structure& structure, double lambda, const Eigen::VectorXd& shape, double impurity) {
   const double quotient = shape.dot(multiply(structure.K(), shape).col(0));
-  const double rounding = rounding_of_quotient(structure.K(), shape);
+  const double rounding = rounding_of_quotient(structure.K(), shape) + impurity;
   if (quotient < -rounding) {
     throw InvalidInput(
         fmt::format("natural modes: K is not positive semi-definite, a shape has φᵀKφ = {:.3g}; check "
@@ -53,9 +64,9 @@ void fix_signs(Eigen::MatrixXd& shapes) {
 }
 
 Modes conventional_modes(const Structure& structure, EigenPairs pairs) {
-  const double suspicious = kSuspiciouslySmall * stiffness_to_mass(structure);
-  for (Eigen::Index k = 0; k < pairs.values.size() && pairs.values(k) <= suspicious; ++k) {
-    pairs.values(k) = reconsider(structure, pairs.values(k), pairs.vectors.col(k));
+  const double largest = stiffness_to_mass(structure), impurity = quotient_of_impurity(pairs.values, largest);
+  for (Eigen::Index k = 0; k < pairs.values.size() && pairs.values(k) <= kSuspiciouslySmall * largest; ++k) {
+    pairs.values(k) = reconsider(structure, pairs.values(k), pairs.vectors.col(k), impurity);
   }
   fix_signs(pairs.vectors);
   return {pairs.values.cwiseSqrt(), std::move(pairs.vectors)};
