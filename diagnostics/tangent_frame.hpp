@@ -8,7 +8,7 @@
 namespace slipmode::diagnostics {
 
 /// Remainders below this share of what they came from are rounding.
-inline constexpr double kCollapse = 1e-11;
+inline constexpr double kCollapse = 1e-10;
 
 /// Directions made orthonormal again after a stretch of motion.
 struct Orthonormalised {

@@ -29,6 +29,13 @@ bool is_event_of_modes(const Event& event) {
   return event.kind != EventKind::kGrazing && event.kind != EventKind::kDriveCorner;
 }
 
+/// The first column that is not among the first `kept` of those that remain.
+Eigen::Index first_missing(const std::vector<Eigen::Index>& columns, Eigen::Index kept) {
+  Eigen::Index k = 0;
+  while (k < kept && columns[static_cast<std::size_t>(k)] == k) ++k;
+  return k;
+}
+
 Eigen::Index directions_of(const dynamics::HybridSystem& system) { return 2 * system.size() + system.internal_size(); }
 
 }  // namespace
@@ -100,6 +107,7 @@ std::vector<Event> TangentWalk::push(double duration) {
     }
     shortest_ = std::min(shortest_, longest_);
     if (contracted || least > 0.25 * std::log(kContraction)) longest_ = std::min(interval_, 2.0 * longest_);
+    dropped_ = first_missing(next.columns, kept);
     frame_ = next.directions.leftCols(kept);
     growth_.head(kept) += next.log_growth.head(kept);
     lost_ = std::max(lost_, kept < expected ? directions_of(system_) - kept : most);
@@ -109,19 +117,19 @@ std::vector<Event> TangentWalk::push(double duration) {
   return events;
 }
 
-std::optional<double> TangentWalk::next_event(double within) const {
-  std::optional<double> time;
+std::optional<Event> TangentWalk::next_event(double within) const {
+  std::optional<Event> found;
   dynamics::SimulateOptions run{.duration = within,
                                 .keep_events = false,
                                 .output = dynamics::SimulateOptions::Output::kContacts,
                                 .flow = options_};
-  run.on_event = [&time](const Event& event, const dynamics::State&) {
+  run.on_event = [&found](const Event& event, const dynamics::State&) {
     if (!is_event_of_modes(event)) return true;
-    time = event.time;
+    found = event;
     return false;
   };
   static_cast<void>(dynamics::simulate(system_, state_, run));
-  return time;
+  return found;
 }
 
 void TangentWalk::quiet(double duration) {
@@ -129,6 +137,20 @@ void TangentWalk::quiet(double duration) {
   balance_->viscous += part.viscous;
   balance_->friction += part.friction;
   push(duration);
+}
+
+void TangentWalk::offer(const Eigen::VectorXd& normal) {
+  const Eigen::Index lasting = directions_of(system_) - lost_, given_back = frame_.cols() - lasting;
+  if (given_back < 2) return;
+  auto extra = frame_.rightCols(given_back);
+  Eigen::VectorXd axis = (extra.transpose() * normal).normalized();
+  if (!axis.allFinite()) return;
+  // Householder's reflection that swaps the axis and the last column, the sign without cancellation.
+  if (axis[given_back - 1] > 0.0) axis = -axis;
+  axis[given_back - 1] -= 1.0;
+  axis.normalize();
+  const Eigen::VectorXd along = extra * axis;
+  extra -= 2.0 * along * axis.transpose();
 }
 
 void TangentWalk::append(const Eigen::VectorXd& normal) {
@@ -144,17 +166,19 @@ void TangentWalk::append(const Eigen::VectorXd& normal) {
 void TangentWalk::cross(double duration) {
   const std::vector<ContactMode> before = state_.modes;
   const dynamics::State just_before = state_;
-  const Eigen::VectorXd last = frame_.rightCols(1);
+  const Eigen::MatrixXd frame = frame_;
   const std::vector<Event> events = push(duration);
+  // A direction that had lasted is gone, though one that slip gave back is left: it takes its place in the frame only.
+  if (dropped_ < frame.cols() && dropped_ < directions_of(system_) - lost_) ++lost_;
   const auto relevant = std::ranges::count_if(events, changes_volume);
   if (relevant == 1) {
     const Event event = *std::ranges::find_if(events, changes_volume);
-    if (event.kind == EventKind::kStick) {
+    if (event.kind == EventKind::kStick && dropped_ < frame.cols()) {
       const Eigen::VectorXd normal = metric_.enter(volume_->normal(before, event.contact));
-      balance_->events += std::log(std::abs(normal.dot(last)));
+      balance_->events += std::log(std::abs(normal.dot(frame.col(dropped_))));
     } else if (event.kind == EventKind::kRelease) {
       append(metric_.enter(volume_->normal(state_.modes, event.contact)));
-    } else {
+    } else if (event.kind == EventKind::kReversal) {
       dynamics::State at = just_before;
       at.modes = state_.modes;
       balance_->events += volume_->reversal(at, event.contact, event.before);
@@ -172,14 +196,15 @@ void TangentWalk::advance_to(double time) {
   }
   const double rounding = 4e-16 * std::abs(time);
   for (double left = time - state_.time; left > rounding; left = time - state_.time) {
-    const std::optional<double> event = next_event(left);
+    const std::optional<Event> event = next_event(left);
     if (!event) {
       quiet(left);
       continue;
     }
-    const double reach = *event - state_.time;
+    const double reach = event->time - state_.time;
     if (reach > 2.0 * margin_) quiet(reach - margin_);
-    cross(*event + margin_ - state_.time);
+    if (event->kind == EventKind::kStick) offer(metric_.enter(volume_->normal(state_.modes, event->contact)));
+    cross(event->time + margin_ - state_.time);
   }
 }
 

@@ -45,7 +45,10 @@ class TangentWalk {
   std::vector<dynamics::Event> push(double duration);
   void quiet(double duration);
   void cross(double duration);
-  [[nodiscard]] std::optional<double> next_event(double within) const;
+  [[nodiscard]] std::optional<dynamics::Event> next_event(double within) const;
+  /// Turns the directions that slip gave back so that the last one holds what a stick is about to take.
+  void offer(const Eigen::VectorXd& normal);
+  /// Takes up the direction that slip gives back, along the contact's impulse.
   void append(const Eigen::VectorXd& normal);
 
   dynamics::HybridSystem system_;
@@ -56,6 +59,7 @@ class TangentWalk {
   Eigen::MatrixXd frame_;  ///< in the metric's coordinates
   Eigen::VectorXd growth_;
   Eigen::Index lost_ = 0;
+  Eigen::Index dropped_ = 0;  ///< the first column that the last piece took out of the frame; their number: none
   double interval_, longest_, shortest_, margin_;
   std::optional<PhaseVolume> volume_ = {};
   std::optional<VolumeBalance> balance_ = {};
