@@ -14,6 +14,7 @@
 #include "cli/shaken_figures.hpp"
 #include "cli/shaken_model.hpp"
 #include "cli/skeleton_figures.hpp"
+#include "cli/trade_figures.hpp"
 #include "cli/validation_setup.hpp"
 #include "rom/reduce.hpp"
 #include "scene/provenance.hpp"
@@ -241,6 +242,7 @@ std::vector<FileFigure> belt_figures_of(const StoreReader& store) {
 std::vector<FileFigure> figures_of(const StoreReader& store) {
   if (std::vector<FileFigure> maps = map_figures_of(store); !maps.empty()) return maps;
   if (std::vector<FileFigure> skeletons = skeleton_figures_of(store); !skeletons.empty()) return skeletons;
+  if (std::vector<FileFigure> fronts = trade_figures_of(store); !fronts.empty()) return fronts;
   std::vector<FileFigure> orbits = orbit_figures_of(store);
   if (!orbits.empty()) {
     if (store.has(scene::kTrajectoryGroup)) {

@@ -24,6 +24,8 @@ struct Verb {
 [[nodiscard]] Verb add_sweep(CLI::App& app);
 [[nodiscard]] Verb add_plot(CLI::App& app);
 [[nodiscard]] Verb add_info(CLI::App& app);
+[[nodiscard]] Verb add_trade(CLI::App& app);
+[[nodiscard]] Verb add_advise(CLI::App& app);
 
 /// `slipmode orbit` and its own verbs, each by its full name.
 [[nodiscard]] std::vector<Verb> add_orbit(CLI::App& app);

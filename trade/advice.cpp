@@ -1,11 +1,14 @@
 #include "trade/advice.hpp"
 
 #include "core/errors.hpp"
+#include "trade/variants.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 
 namespace slipmode::trade {
 
@@ -41,8 +44,18 @@ std::string use_text(const Study& study, const Row& row, Measure measure) {
   return fmt::format("use {}: {} ({})", row.variant.name, speed_text(speed_up(study, row)), error_text(row, measure));
 }
 
+/// Offers of a measure without those that agree by chance.
+std::vector<Offer> sound_offers(const Study& study, Measure measure, double limit) {
+  std::vector<Offer> offers = study.offers(measure);
+  for (std::size_t i = 0; i < offers.size(); ++i) {
+    if (!is_alike(study.rows[i], limit)) offers[i].error = kNone;
+  }
+  return offers;
+}
+
+/// With a budget alone any error may have to do.
 std::vector<Offer> offers_of_run(const Study& study, const Wish& wish) {
-  std::vector<Offer> offers = study.offers(wish.measure);
+  std::vector<Offer> offers = wish.limit ? sound_offers(study, wish.measure, *wish.limit) : study.offers(wish.measure);
   for (std::size_t i = 0; i < offers.size(); ++i) offers[i].cost = study.rows[i].cost.of_run(wish.duration);
   return offers;
 }
@@ -73,6 +86,15 @@ std::vector<Offer> offers_of_run(const Study& study, const Wish& wish) {
 }
 
 }  // namespace
+
+bool is_alike(const Row& row, double limit) {
+  constexpr double kFar = 10.0, kBeyondScatter = 3.0;
+  return std::ranges::none_of(std::array{Measure::kPoints, Measure::kSpread, Measure::kEnergy, Measure::kStick},
+                              [&](Measure measure) {
+                                const double error = at(row.error, measure), noise = at(row.noise, measure);
+                                return error > kFar * limit && error > kBeyondScatter * noise;
+                              });
+}
 
 std::string percent_text(double value) {
   if (std::isnan(value)) return "–";
@@ -114,14 +136,45 @@ Choice choose(const Study& study, const Wish& wish) {
   return {.row = *picked, .sentence = fmt::format("{} {}", asked, use_text(study, study.rows[*picked], wish.measure))};
 }
 
+std::vector<Variant> worth_combining(const std::vector<Row>& rows, double limit) {
+  constexpr std::size_t kLoosest = 2;
+  std::vector<Variant> all;
+  const auto add = [&](const Variant& reduced, const std::vector<const Variant*>& flows) {
+    for (std::size_t k = 0; k < std::min(kLoosest, flows.size()); ++k) {
+      Variant both = combined(reduced, *flows[k]);
+      if (std::ranges::find(all, both.name, &Variant::name) == all.end()) all.push_back(std::move(both));
+    }
+  };
+  for (std::size_t m = 0; m < kMeasures; ++m) {
+    const auto measure = static_cast<Measure>(m);
+    const auto keeps = [&](const Row& row) {
+      const Offer offer{.cost = 0.0, .error = at(row.error, measure), .noise = at(row.noise, measure)};
+      return offer.known() && offer.assured() <= limit;
+    };
+    std::vector<const Variant*> flows;
+    for (const Row& row : rows) {
+      if (row.variant.axis == Axis::kFlow && keeps(row)) flows.push_back(&row.variant);
+    }
+    std::map<scene::BasisChoice, const Variant*> smallest;
+    for (const Row& row : rows) {
+      if (row.variant.axis != Axis::kModes || !keeps(row) || !is_alike(row, limit)) continue;
+      if (row.variant.reduction->modes == row.variant.scene.size()) continue;
+      const Variant*& known = smallest[row.variant.reduction->basis];
+      if (known == nullptr || row.variant.reduction->modes < known->reduction->modes) known = &row.variant;
+    }
+    for (const auto& [basis, reduced] : smallest) add(*reduced, flows);
+  }
+  return all;
+}
+
 std::string recommendation(const Study& study, Measure measure, double limit) {
-  const std::vector<Offer> offers = study.offers(measure);
+  const std::vector<Offer> offers = sound_offers(study, measure, limit);
   const std::string asked = fmt::format("for {} under {} %", to_string(measure), percent_text(limit));
   if (const auto picked = cheapest_within_error(offers, limit)) {
     return fmt::format("{} {}", asked, use_text(study, study.rows[*picked], measure));
   }
   const auto best = most_accurate(offers);
-  if (!best) return fmt::format("{} nothing can be said: the measure has no value here", asked);
+  if (!best) return fmt::format("{} nothing that was tried will do, or the measure has no value here", asked);
   return fmt::format("{} nothing that was tried is assured; nearest is {} ({})", asked, study.rows[*best].variant.name,
                      error_text(study.rows[*best], measure));
 }

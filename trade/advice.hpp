@@ -8,6 +8,10 @@
 
 namespace slipmode::trade {
 
+/// False where some number of the settled motion (kPoints … kStick) is further off than ten times the limit and three
+/// times its scatter: then another one that is within the limit is so by chance. No such row is chosen.
+[[nodiscard]] bool is_alike(const Row& row, double limit);
+
 /// What a user asks for.
 struct Wish {
   Measure measure = Measure::kDe;
@@ -29,6 +33,11 @@ struct Choice {
 
 /// One sentence for a limit, whether or not it can be met.
 [[nodiscard]] std::string recommendation(const Study& study, Measure measure, double limit);
+
+/// Reduced models with a looser flow, worth trying: for each measure and each basis the smallest model that is assured
+/// to keep to the limit, with the two loosest flows that do. Each once; with all modes there is nothing to combine.
+/// @param rows  measured already, without their costs
+[[nodiscard]] std::vector<Variant> worth_combining(const std::vector<Row>& rows, double limit);
 
 /// Processor time of the scene as it stands over that of a row; NaN where either is not known.
 [[nodiscard]] double speed_up(const Study& study, const Row& row);

@@ -243,7 +243,7 @@ EffectAdvice advise(const Effect& effect, const Row& full, const Row& without, d
   }
   out.verdict = largest > 1.0 ? Verdict::kNeeded : above ? Verdict::kUnclear : Verdict::kSpare;
   out.sentence =
-      fmt::format("{}: {}; without it {} changes most, by {} % (scatter {} %), and {}", effect.name,
+      fmt::format("{}: {}; without it {} is off most, by {} % (scatter {} %), and {}", effect.name,
                   to_string(out.verdict), to_string(out.measure), percent_text(at(without.error, out.measure)),
                   percent_text(at(without.noise, out.measure)), time_text(out.time_share));
   return out;

@@ -159,10 +159,11 @@ Variant reference_of(const scene::Scene& scene) {
   return reference;
 }
 
-std::vector<Axis> axes_of(const scene::Scene& scene, const std::vector<OfferedBasis>& bases) {
+std::vector<Axis> axes_of(const scene::Scene& scene) {
   std::vector<Axis> axes;
-  for (const Axis axis : {Axis::kModes, Axis::kFlow, Axis::kTheory, Axis::kElements, Axis::kLaw, Axis::kLoad}) {
-    if (!along(axis, scene, bases).empty()) axes.push_back(axis);
+  if (scene.size() > 1) axes.push_back(Axis::kModes);
+  for (const Axis axis : {Axis::kFlow, Axis::kTheory, Axis::kElements, Axis::kLaw, Axis::kLoad}) {
+    if (!along(axis, scene, {}).empty()) axes.push_back(axis);
   }
   return axes;
 }
@@ -212,6 +213,17 @@ Variant combined(const Variant& reduced, const Variant& flow) {
   both.axis = Axis::kCombined;
   both.scene.flow = flow.scene.flow;
   return both;
+}
+
+std::vector<Variant> product(const std::vector<Variant>& variants) {
+  std::vector<Variant> all;
+  for (const Variant& reduced : variants) {
+    if (reduced.axis != Axis::kModes) continue;
+    for (const Variant& flow : variants) {
+      if (flow.axis == Axis::kFlow) all.push_back(combined(reduced, flow));
+    }
+  }
+  return all;
 }
 
 }  // namespace slipmode::trade

@@ -19,8 +19,8 @@ inline constexpr double kReferenceTolerance = 1e-12;
 /// The scene as it stands.
 [[nodiscard]] Variant as_it_stands(const scene::Scene& scene);
 
-/// The axes that a scene has, in the order of Axis; `bases` decides about kModes.
-[[nodiscard]] std::vector<Axis> axes_of(const scene::Scene& scene, const std::vector<OfferedBasis>& bases);
+/// The axes that a scene has, in the order of Axis. With two degrees of freedom there are modes to choose.
+[[nodiscard]] std::vector<Axis> axes_of(const scene::Scene& scene);
 
 /// Words of --axes. @throws InvalidInput  for an unknown one, or one that the scene does not have; both name the valid
 [[nodiscard]] std::vector<Axis> parse_axes(const std::string& words, const std::vector<Axis>& available);
@@ -32,5 +32,8 @@ inline constexpr double kReferenceTolerance = 1e-12;
 
 /// A reduced model with another flow. @param reduced  of kModes  @param flow  of kFlow
 [[nodiscard]] Variant combined(const Variant& reduced, const Variant& flow);
+
+/// Every reduced model with every flow of `variants`.
+[[nodiscard]] std::vector<Variant> product(const std::vector<Variant>& variants);
 
 }  // namespace slipmode::trade

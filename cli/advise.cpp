@@ -1,0 +1,103 @@
+#include "cli/text_table.hpp"
+#include "cli/trade_report.hpp"
+#include "cli/trade_request.hpp"
+#include "cli/verbs.hpp"
+#include "scene/provenance.hpp"
+#include "trade/effects.hpp"
+#include "trade/variants.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+namespace slipmode::cli {
+namespace {
+
+struct Arguments {
+  std::string scene, output, error = "1%";
+};
+
+std::vector<trade::Variant> variants_of(const scene::Scene& scene, const std::vector<trade::Effect>& effects) {
+  std::vector<trade::Variant> all = {trade::as_it_stands(scene)};
+  for (const trade::Effect& effect : effects) all.push_back(effect.without);
+  return all;
+}
+
+std::string names_of(const std::vector<trade::Effect>& effects, const std::vector<trade::EffectAdvice>& advice,
+                     trade::Verdict verdict) {
+  std::string names;
+  for (std::size_t i = 0; i < effects.size(); ++i) {
+    if (advice[i].verdict == verdict) names += (names.empty() ? "" : ", ") + effects[i].name;
+  }
+  return names;
+}
+
+/// What all effects come to, verdict by verdict.
+std::string summary(const std::vector<trade::Effect>& effects, const std::vector<trade::EffectAdvice>& advice) {
+  std::string text;
+  const auto add = [&](trade::Verdict verdict, const std::string& words) {
+    const std::string names = names_of(effects, advice, verdict);
+    if (!names.empty()) text += fmt::format("{}: {}\n", words, names);
+  };
+  add(trade::Verdict::kNeeded, "The scene needs");
+  add(trade::Verdict::kSpare, "It could leave out");
+  add(trade::Verdict::kUnclear, "Not to be told from scatter");
+  add(trade::Verdict::kFailed, "It does not run without");
+  return text;
+}
+
+Json json_of(const trade::Effect& effect, const trade::EffectAdvice& advice) {
+  return {{"effect", effect.name},
+          {"verdict", trade::to_string(advice.verdict)},
+          {"measure", trade::to_string(advice.measure)},
+          {"time_share", advice.time_share},
+          {"sentence", advice.sentence}};
+}
+
+Report run(const Session& session, const Arguments& arguments) {
+  if (!arguments.output.empty()) require_writable(arguments.output);
+  const scene::Scene scene = session.load(arguments.scene);
+  const double limit = parse_percent("--error", arguments.error);
+  const trade::Schedule schedule = trade::schedule_of(scene);
+  const std::vector<trade::Effect> effects = trade::effects_of(scene);
+  Report report;
+  const auto study = [&](trade::StudyOptions options) {
+    options.schedule = schedule;
+    return trade::study(scene, trade::as_it_stands(scene), variants_of(scene, effects), {}, options);
+  };
+  const auto finish = [&](const trade::Study& done) {
+    std::vector<trade::EffectAdvice> advice;
+    Json list = Json::array();
+    report.text = study_text(done, scene);
+    for (std::size_t i = 0; i < effects.size(); ++i) {
+      advice.push_back(trade::advise(effects[i], done.rows.front(), done.rows[i + 1], limit));
+      list.push_back(json_of(effects[i], advice.back()));
+      report.text += advice.back().sentence + '\n';
+    }
+    report.text += summary(effects, advice);
+    report.data = {{"verb", "advise"}, {"limit_percent", limit}, {"effects", list}, {"study", to_json(done, scene)}};
+    if (arguments.output.empty()) return;
+    scene::StoreWriter writer(arguments.output);
+    scene::save(writer, scene::provenance_of(scene, "slipmode advise"));
+    store_study(writer, done, scene);
+    writer.commit();
+    report.data["file"] = arguments.output;
+    report.text += fmt::format("Result: {}\n", arguments.output);
+  };
+  run_study(session, arguments.output, fmt::format("{} advise\n{}", scene::version(), scene::scene_to_toml(scene)),
+            study, finish);
+  return report;
+}
+
+}  // namespace
+
+Verb add_advise(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("advise", "what a scene needs, and what it could leave out");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("SCENE", arguments->scene, "scene file (TOML)")->required();
+  command->add_option("-o,--output", arguments->output, "result file (HDF5)");
+  command->add_option("--error", arguments->error, "change of an output that matters; default 1%");
+  command->footer("Example:\n  slipmode advise datasets/beam_12hz/scene.toml");
+  return {command, [arguments](const Session& session) { return run(session, *arguments); }};
+}
+
+}  // namespace slipmode::cli

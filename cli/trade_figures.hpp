@@ -1,0 +1,20 @@
+#pragma once
+
+#include "cli/file_figures.hpp"
+#include "trade/study.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace slipmode::cli {
+
+/// A Pareto front for each measure that has values, as SVG and PNG: pareto_dX.svg, …
+/// @return names of the files
+std::vector<std::string> save_trade_figures(const trade::Study& study, const scene::Scene& scene,
+                                            const std::filesystem::path& folder);
+
+/// The same of a file that `slipmode trade` wrote; empty for another file.
+[[nodiscard]] std::vector<FileFigure> trade_figures_of(const scene::StoreReader& store);
+
+}  // namespace slipmode::cli
