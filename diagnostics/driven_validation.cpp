@@ -15,7 +15,7 @@ namespace slipmode::diagnostics {
 
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoBand = std::numeric_limits<double>::quiet_NaN();
 constexpr double kTrustedDistance = 0.1, kTrustedNoise = 2.0, kTrustedShare = 0.9;
 
 void check(const DrivenCase& full, const std::vector<DrivenCandidate>& candidates,
@@ -53,7 +53,7 @@ std::vector<Eigen::Index> sizes(const DrivenCandidate& candidate, const std::vec
 
 /// Fills trusted_share and band.
 void judge(const std::vector<double>& values, const DrivenAgreement& noise, DrivenRow& row) {
-  row.band = {kNone, kNone};
+  row.band = {kNoBand, kNoBand};
   std::size_t trusted = 0, run = 0, longest = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!trusted_at(row.agreement.wasserstein[i], noise.wasserstein[i])) {
@@ -79,10 +79,10 @@ Eigen::Index trusted_from(const std::vector<DrivenRow>& rows) {
 }
 
 /// The sweeps one after the other, and then the clocks.
-class Validation {
+class DrivenValidationRun {
  public:
-  Validation(const DrivenCase& full, const DriveAt& drive, const std::vector<DrivenCandidate>& candidates,
-             const dynamics::State& start, const DrivenValidationOptions& options)
+  DrivenValidationRun(const DrivenCase& full, const DriveAt& drive, const std::vector<DrivenCandidate>& candidates,
+                      const dynamics::State& start, const DrivenValidationOptions& options)
       : full_(full), drive_(drive), candidates_(candidates), start_(start), options_(options) {
     for (const DrivenCandidate& candidate : candidates) total_ += sizes(candidate, options.modes).size();
   }
@@ -204,7 +204,7 @@ DrivenValidationReport validate_driven(const DrivenCase& full, const DriveAt& dr
                                        const std::vector<DrivenCandidate>& candidates, const dynamics::State& start,
                                        const dynamics::State& other, const DrivenValidationOptions& options) {
   check(full, candidates, options);
-  return Validation(full, drive, candidates, start, options).run(other);
+  return DrivenValidationRun(full, drive, candidates, start, options).run(other);
 }
 
 }  // namespace slipmode::diagnostics

@@ -18,7 +18,7 @@ namespace slipmode::diagnostics {
 
 namespace {
 
-constexpr std::size_t kStretches = 8;
+constexpr std::size_t kPieces = 8;
 
 /// Exponent and its scatter from the log growth of every interval.
 LyapunovExponent summarise(const std::vector<double>& logs, double interval) {
@@ -28,21 +28,21 @@ LyapunovExponent summarise(const std::vector<double>& logs, double interval) {
   for (const double log : logs) sum += log;
   result.nats = sum / (static_cast<double>(count) * interval);
   result.bits = result.nats / std::numbers::ln2;
-  const std::size_t stretch = count / kStretches;
+  const std::size_t stretch = count / kPieces;
   if (stretch == 0) {
     result.error = std::numeric_limits<double>::quiet_NaN();
     return result;
   }
   double mean = 0.0;
   double square = 0.0;
-  for (std::size_t s = 0; s < kStretches; ++s) {
+  for (std::size_t s = 0; s < kPieces; ++s) {
     double part = 0.0;
     for (std::size_t k = s * stretch; k < (s + 1) * stretch; ++k) part += logs[k];
     part /= static_cast<double>(stretch) * interval;
-    mean += part / kStretches;
-    square += part * part / kStretches;
+    mean += part / kPieces;
+    square += part * part / kPieces;
   }
-  result.error = std::sqrt(std::max(0.0, square - mean * mean) / (kStretches - 1));
+  result.error = std::sqrt(std::max(0.0, square - mean * mean) / (kPieces - 1));
   return result;
 }
 

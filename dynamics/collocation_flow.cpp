@@ -15,7 +15,7 @@ constexpr double kEndNodeGain = 3e-2;
 /// The step is doubled when the error of the doubled one, eighth order, is foreseen to pass with this margin.
 constexpr double kGrowth = 1.0 / (256.0 * 8.0);
 /// Largest product of the law's slope, the mobility and the step that is tried.
-constexpr double kLargestGrowth = 1.2;
+constexpr double kGrowthPerStep = 1.2;
 /// A step spans at most this phase of a shaker, so that all quadratures resolve it.
 constexpr double kLargestDrivePhase = 2.0;
 
@@ -57,7 +57,7 @@ CollocationFlow::CollocationFlow(const HybridSystem& system, const StepTables& t
   for (std::size_t c = 0; c < laws().size(); ++c) {
     const auto i = static_cast<Eigen::Index>(c);
     steep_speed_.push_back(
-        std::log(laws()[c].alpha * laws()[c].drop * model_.mobility(i, i) * tables_.step(0) / kLargestGrowth) /
+        std::log(laws()[c].alpha * laws()[c].drop * model_.mobility(i, i) * tables_.step(0) / kGrowthPerStep) /
         laws()[c].alpha);
   }
   for (int c = 0; c < nc_; ++c) {

@@ -16,7 +16,7 @@ constexpr double kAtLimit = 1e-10;
 /// Right after sliding has begun, a guard that vanishes within this share of a step is an error of interpolation.
 constexpr double kEarly = 1.0 / 64.0;
 /// Halvings tried to show that a stick force stays below its limit.
-constexpr int kHalvings = 2;
+constexpr int kMarginHalvings = 2;
 /// Shifts below this share of the step are made by two terms of Taylor's series.
 constexpr double kShortShift = 1e-7;
 constexpr int kRefinements = 20;
@@ -49,7 +49,7 @@ CollocationFlow::Guarded CollocationFlow::first_guard() const {
       for (const double sign : {1.0, -1.0}) {
         V8 margin = law.static_limit - sign * b;
         if (std::abs(margin[0]) <= kAtLimit * law.static_limit) margin[0] = 0.0;  // on the guard: where to, shows next
-        if (!stays_above(margin, 0.0, kHalvings)) consider(margin, 0.0, kNodes - 1, c, 0);
+        if (!stays_above(margin, 0.0, kMarginHalvings)) consider(margin, 0.0, kNodes - 1, c, 0);
       }
       continue;
     }

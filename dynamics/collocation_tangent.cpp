@@ -1,7 +1,6 @@
 #include "dynamics/collocation_flow.hpp"
 
 #include "core/decompositions.hpp"
-#include "core/errors.hpp"
 #include "dynamics/pair_kernels.hpp"
 
 #include <cmath>
@@ -21,10 +20,6 @@ double CollocationFlow::force_slope(int c, ContactMode mode, double velocity, do
 }
 
 void CollocationFlow::set_tangents(Eigen::MatrixXd tangents) {
-  if (any_bristle_)
-    throw InvalidInput(
-        "the tangent flow carries displacements and velocities, but a contact's law (Dahl, LuGre) has a state of its "
-        "own; use a law without one, or differences of simulated motions");
   tangents_ = std::move(tangents);
   std::vector<Eigen::Index> stuck;
   for (int c = 0; c < nc_; ++c)

@@ -15,7 +15,7 @@ namespace {
 constexpr double kForceTolerance = 1e-10;
 constexpr double kReleaseTolerance = 1e-6;
 /// Below this share of the largest friction acceleration, sliding is taken to start with zero acceleration.
-constexpr double kSimpleStart = 1e-7;
+constexpr double kSimpleTouch = 1e-7;
 /// Up to this many undecided contacts every combination can be tried.
 constexpr int kMaxEnumerated = 6;
 
@@ -187,7 +187,7 @@ SingleResolution resolve_single(const Instant& now, bool released, double releas
   if (!released && std::abs(stick) <= law.static_limit * (1 + kForceTolerance)) return {ContactMode::kStick, stick, 0};
   const double sign = released ? release_sign : (stick > 0 ? 1.0 : -1.0);
   const double excess = sign * stick - law.onset(sign);  // sliding starts with this, times the mobility
-  return {slip_mode(sign), sign * law.onset(sign), excess > kSimpleStart * law.static_limit ? 1 : 2};
+  return {slip_mode(sign), sign * law.onset(sign), excess > kSimpleTouch * law.static_limit ? 1 : 2};
 }
 
 void stick_forces(const Instant& now, const std::vector<bool>& stuck, Eigen::VectorXd& force) {
@@ -275,7 +275,7 @@ int start_multiplicity(const Instant& now, int c, ContactMode mode, const Eigen:
                               m.load_acceleration(c) + m.mobility.row(c).dot(force) +
                               (now.force.size() > 0 ? m.force_acceleration.row(c).dot(now.force) : 0.0);
   const double start = sign_of(mode) * (now.belt_acceleration - acceleration);
-  const double threshold = kSimpleStart * m.mobility(c, c) * now.laws[static_cast<std::size_t>(c)].static_limit;
+  const double threshold = kSimpleTouch * m.mobility(c, c) * now.laws[static_cast<std::size_t>(c)].static_limit;
   return start > threshold ? 1 : start >= -threshold ? 2 : -1;
 }
 

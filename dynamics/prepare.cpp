@@ -19,25 +19,25 @@ constexpr double kOnGuardAsGiven = 1e-9;
 
 /// @param message  called only when the condition fails: runs are too short to compose it each time
 template <class Message>
-void require(bool condition, const Message& message) {
+void require_or_say(bool condition, const Message& message) {
   if (!condition) throw InvalidInput(message());
 }
 
 void check_start(const HybridSystem& system, const State& start) {
-  require(start.q.size() == system.size() && start.v.size() == system.size(), [&] {
+  require_or_say(start.q.size() == system.size() && start.v.size() == system.size(), [&] {
     return "start state has " + std::to_string(start.q.size()) + " displacements and " +
            std::to_string(start.v.size()) + " velocities; the system has " + std::to_string(system.size()) +
            " degrees of freedom";
   });
-  require(start.q.allFinite() && start.v.allFinite() && std::isfinite(start.time),
-          [&] { return std::string("start state holds values that are not finite"); });
-  require(start.internal.size() == 0 || start.internal.size() == system.internal_size(), [&] {
+  require_or_say(start.q.allFinite() && start.v.allFinite() && std::isfinite(start.time),
+                 [&] { return std::string("start state holds values that are not finite"); });
+  require_or_say(start.internal.size() == 0 || start.internal.size() == system.internal_size(), [&] {
     return "start state has " + std::to_string(start.internal.size()) + " contact states; the contacts have " +
            std::to_string(system.internal_size());
   });
-  require(start.internal.allFinite(),
-          [&] { return std::string("start state holds contact states that are not finite"); });
-  require(start.modes.empty() || start.modes.size() == system.contacts().size(), [&] {
+  require_or_say(start.internal.allFinite(),
+                 [&] { return std::string("start state holds contact states that are not finite"); });
+  require_or_say(start.modes.empty() || start.modes.size() == system.contacts().size(), [&] {
     return "start state names the modes of " + std::to_string(start.modes.size()) + " contacts; the system has " +
            std::to_string(system.contacts().size());
   });
@@ -97,7 +97,7 @@ ContactMode start_mode(const friction::Clearance& law, const friction::Contact& 
   if (law.right) right.emplace(*law.right, 1.0, contact, start);
   if (!start.modes.empty()) {
     const ContactMode given = start.modes[c];
-    require(agrees(law, given, left, right), [&] {
+    require_or_say(agrees(law, given, left, right), [&] {
       return "start state says the clearance of contact " + std::to_string(c + 1) + " is in mode " +
              std::to_string(static_cast<int>(given)) + ", but its displacement is " +
              std::to_string(contact.direction.dot(start.q) + contact.offset) + " and its velocity " +
@@ -146,7 +146,7 @@ std::vector<ContactMode> start_modes(const HybridSystem& system, const State& st
     // A run that ended at an event leaves a sliding speed of rounding, of either sign.
     const bool agrees =
         by_sign == ContactMode::kStick || modes[c] == by_sign || std::abs(sliding) <= 1e-9 * std::max(1.0, scale);
-    require(agrees && modes[c] != ContactMode::kSmooth, [&] {
+    require_or_say(agrees && modes[c] != ContactMode::kSmooth, [&] {
       return "start state says contact " + std::to_string(c + 1) + " is in mode " +
              std::to_string(static_cast<int>(modes[c])) + ", but its relative velocity is " + std::to_string(sliding) +
              "; leave the modes empty to have them derived";
@@ -183,22 +183,22 @@ FlowMethod choose_method(const HybridSystem& system, FlowMethod asked) {
     if (!law.is_piecewise_linear()) nonlinear = static_cast<int>(c) + 1;
   }
   const auto name = [](int contact) { return "contact " + std::to_string(contact); };
-  require(!forced || nonlinear == 0, [&] {
+  require_or_say(!forced || nonlinear == 0, [&] {
     return "a force drive needs piecewise-linear laws, but " + name(nonlinear) +
            " has a force that depends on the sliding speed: use Coulomb's law, rigid or compliant";
   });
-  require(!forced || asked != FlowMethod::kCollocation,
-          [&] { return std::string("a force drive needs the closed-form flow"); });
-  require(special == 0 || nonlinear == 0, [&] {
+  require_or_say(!forced || asked != FlowMethod::kCollocation,
+                 [&] { return std::string("a force drive needs the closed-form flow"); });
+  require_or_say(special == 0 || nonlinear == 0, [&] {
     return name(special) +
            " has a contact spring, a clearance, a tilt or a varying load, for which "
            "all laws must be piecewise linear, but " +
            name(nonlinear) + " has a force that depends on the sliding speed";
   });
-  require(special == 0 || asked != FlowMethod::kCollocation, [&] {
+  require_or_say(special == 0 || asked != FlowMethod::kCollocation, [&] {
     return name(special) + " has a contact spring, a clearance, a tilt or a varying load: use the closed-form flow";
   });
-  require(nonlinear == 0 || asked != FlowMethod::kClosedForm, [&] {
+  require_or_say(nonlinear == 0 || asked != FlowMethod::kClosedForm, [&] {
     return "the closed-form flow needs piecewise-linear laws, but " + name(nonlinear) +
            " has a force that depends on the sliding speed; use the collocation flow, or Coulomb's law";
   });
@@ -231,9 +231,10 @@ double fastest_rate(const HybridSystem& system, const ModalModel& m) {
 
 Prepared prepare(const HybridSystem& system, const State& start, FlowOptions options, bool rows_suffice) {
   check_start(system, start);
-  require(options.tolerance > 0 && std::isfinite(options.tolerance),
-          [&] { return std::string("flow tolerance must be positive"); });
-  require(options.max_events_per_window > 0, [&] { return std::string("max_events_per_window must be at least 1"); });
+  require_or_say(options.tolerance > 0 && std::isfinite(options.tolerance),
+                 [&] { return std::string("flow tolerance must be positive"); });
+  require_or_say(options.max_events_per_window > 0,
+                 [&] { return std::string("max_events_per_window must be at least 1"); });
   const bool at_origin = start.q.isZero(0.0) && start.v.isZero(0.0);
   const ModelTables& tables = system.cache().tables(system, rows_suffice && at_origin);
   const ModalModel& m = tables.model;

@@ -15,11 +15,11 @@ namespace {
 /// than anything moves.
 constexpr double kTopPhase = 4294967296.0;
 /// Below this phase a short Taylor series is exact to rounding.
-constexpr double kTaylorPhase = 0.25;
+constexpr double kTabulatedPhase = 0.25;
 /// Quadrature over this many radians at once.
 constexpr double kQuadraturePhase = 4.0;
 /// Exponent beyond which a growing window is useless anyway.
-constexpr double kLargestGrowth = 200.0;
+constexpr double kLargestExponent = 200.0;
 
 /// M_k = ∫₀ᵗ e^{G(t−s)} s^k/k! ds for k = 0, 1, 2.
 struct Moments {
@@ -175,7 +175,7 @@ void RegimeTables::make(RegimeWindow& out, int level) const {
   out.remainder = Eigen::MatrixXd::Zero(np, no);
   for (Eigen::Index i = 0; i < r.pairs.n; ++i)
     out.remainder.row(i) = (interpolated(i) ? std::min(kInterpolationGain, share(i)) : 1.0) *
-                           std::exp(std::min(r.growth * h, kLargestGrowth)) * r.weight.row(i);
+                           std::exp(std::min(r.growth * h, kLargestExponent)) * r.weight.row(i);
 }
 
 void apply(const RegimeStep& s, const double* x, const Eigen::VectorXd& inputs, double* out_x) {
@@ -198,9 +198,9 @@ void advance(const RegimeTables& tables, double t, Eigen::VectorXd& x, Eigen::Ve
   const Regime& r = tables.regime();
   const ModalModel& m = r.pairs;
   const auto np = m.np, ni = r.inputs(), V = r.speed_input();
-  const bool tabulated = r.rate * t > kTaylorPhase;
+  const bool tabulated = r.rate * t > kTabulatedPhase;
   for (int level = tabulated ? tables.level_covering(t) : 0;
-       level < RegimeTables::kLevels && r.rate * t > kTaylorPhase;) {
+       level < RegimeTables::kLevels && r.rate * t > kTabulatedPhase;) {
     const double h = tables.length(level);
     if (h > t) {
       ++level;

@@ -9,7 +9,7 @@ namespace slipmode::dynamics {
 namespace {
 
 /// The largest step spans this many radians of the fastest pair: quadratures below are then exact to rounding.
-constexpr double kTopPhase = 4.0;
+constexpr double kLongestPhase = 4.0;
 
 /// Values of a function at `targets` from its values at the Chebyshev points of [0, h] (barycentric form).
 Eigen::MatrixXd chebyshev_interpolation(const Eigen::VectorXd& points, const Eigen::VectorXd& targets) {
@@ -37,7 +37,7 @@ int gauss_points(double phase) { return 16 + static_cast<int>(std::ceil(phase));
 }  // namespace
 
 StepTables::StepTables(const ModalModel& model)
-    : model_(model), top_(kTopPhase / (model.fastest > 0 ? model.fastest : 1.0)) {}
+    : model_(model), top_(kLongestPhase / (model.fastest > 0 ? model.fastest : 1.0)) {}
 
 void StepTables::propagate_to(double end, double h, Propagator& out) const {
   const auto& m = model_;

@@ -64,7 +64,12 @@ TangentResult TangentFlow::Implementation::run(CollocationFlow& flow, const Moda
 
 TangentFlow::TangentFlow(const HybridSystem& system, const FlowOptions& options)
     : implementation_(
-          std::make_unique<Implementation>(Implementation{system, options, choose_method(system, options.method)})) {}
+          std::make_unique<Implementation>(Implementation{system, options, choose_method(system, options.method)})) {
+  if (implementation_->method == FlowMethod::kCollocation && system.internal_size() > 0)
+    throw InvalidInput(
+        "the tangent flow carries displacements and velocities, but a contact's law (Dahl, LuGre) has a state of its "
+        "own; use a law without one, or differences of simulated motions");
+}
 TangentFlow::TangentFlow(TangentFlow&&) noexcept = default;
 TangentFlow& TangentFlow::operator=(TangentFlow&&) noexcept = default;
 TangentFlow::~TangentFlow() = default;

@@ -10,8 +10,6 @@ namespace slipmode::fem {
 
 namespace {
 
-constexpr Eigen::Index kDenseLimit = 500;
-
 void check(const Structure& structure, const Eigen::MatrixXd& W, const Eigen::VectorXd& stiffnesses,
            Eigen::Index count) {
   const Eigen::Index n = structure.size();
@@ -47,7 +45,7 @@ Structure sprung(const Structure& structure, const Eigen::MatrixXd& springs) {
 detail::EigenPairs solve(const Structure& structure, const Structure& sum, const Eigen::MatrixXd& W,
                          const Eigen::MatrixXd& springs, const Eigen::VectorXd& stiffnesses, Eigen::Index count) {
   const Eigen::Index n = structure.size();
-  if (n >= kDenseLimit && 5 * count < n) {
+  if (n >= detail::kDenseLimit && 5 * count < n) {
     return detail::solve_spectra(structure, {W, stiffnesses.cwiseInverse()}, count);
   }
   if (auto factored = detail::solve_by_factors(structure, springs)) return *std::move(factored);

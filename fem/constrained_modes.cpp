@@ -14,7 +14,6 @@ namespace slipmode::fem {
 namespace {
 
 constexpr double kRankTolerance = 1e-10;  // on columns of unit length
-constexpr Eigen::Index kDenseLimit = 500;
 
 Eigen::MatrixXd checked_unit_columns(const Eigen::MatrixXd& W, Eigen::Index n) {
   if (W.rows() != n) {
@@ -117,7 +116,7 @@ Modes constrained_modes(const Structure& structure, const Eigen::MatrixXd& const
   }
   const Eigen::Index wanted = count == 0 ? free : count;
   if (const auto dofs = dofs_left_free(W)) return modes_of_free_dofs(structure, *dofs, wanted);
-  if (free < kDenseLimit || 5 * wanted >= free) return modes_by_projection(structure, W, wanted);
+  if (free < detail::kDenseLimit || 5 * wanted >= free) return modes_by_projection(structure, W, wanted);
   const detail::Holds rigid{W, Eigen::VectorXd::Zero(W.cols())};
   return detail::conventional_modes(structure, detail::solve_spectra(structure, rigid, wanted));
 }

@@ -15,7 +15,7 @@ namespace slipmode::fem::detail {
 namespace {
 
 constexpr int kMaxRestarts = 1000;
-constexpr double kTolerance = 0.0;  // ARPACK reads this as the machine's rounding unit
+constexpr double kRoundingUnit = 0.0;  // ARPACK reads this as the machine's rounding unit
 
 // The arrays that dsaupd fills and dseupd reads.
 struct Workspace {
@@ -46,7 +46,7 @@ void iterate(const ShiftInvert& inverse, int n, int count, Workspace& work) {
   int request = 0;
   int info = 1;  // start from work.residual
   for (;;) {
-    dsaupd_c(&request, "G", n, "LM", count, kTolerance, work.residual.data(), work.subspace, work.lanczos.data(), n,
+    dsaupd_c(&request, "G", n, "LM", count, kRoundingUnit, work.residual.data(), work.subspace, work.lanczos.data(), n,
              work.settings.data(), work.offsets.data(), work.vectors.data(), work.small.data(),
              static_cast<int>(work.small.size()), &info);
     if (request == -1) {
@@ -80,7 +80,7 @@ EigenPairs solve_arpack(const Structure& structure, Eigen::Index count_wanted) {
   Eigen::VectorXd values(count);
   Eigen::MatrixXd vectors(n, count);
   int info = 0;
-  dseupd_c(1, "A", select.data(), values.data(), vectors.data(), n, inverse.shift(), "G", n, "LM", count, kTolerance,
+  dseupd_c(1, "A", select.data(), values.data(), vectors.data(), n, inverse.shift(), "G", n, "LM", count, kRoundingUnit,
            work.residual.data(), work.subspace, work.lanczos.data(), n, work.settings.data(), work.offsets.data(),
            work.vectors.data(), work.small.data(), static_cast<int>(work.small.size()), &info);
   if (info != 0) {

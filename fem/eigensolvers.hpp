@@ -9,6 +9,9 @@
 /// The eigensolvers behind modes.hpp, one file each. Not meant for use outside this folder: inputs are not checked.
 namespace slipmode::fem::detail {
 
+/// From this size on few modes are sought by iteration rather than all by dense decomposition [degrees of freedom].
+inline constexpr Eigen::Index kDenseLimit = 500;
+
 /// Solutions of K φ = λ M φ with φᵀMφ = 1, ascending in λ = ω². Signs of the columns are arbitrary.
 struct EigenPairs {
   Eigen::VectorXd values;   ///< λ [rad²/s²], k

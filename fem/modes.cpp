@@ -12,13 +12,12 @@ namespace {
 
 // Below this size the dense solver is as fast as any, and its modes are the most nearly orthogonal.
 constexpr Eigen::Index kSmall = 64;
-constexpr Eigen::Index kDenseLimit = 500;
 
 EigenMethod choose(const Structure& structure, Eigen::Index count) {
   const Eigen::Index n = structure.size();
   if (n <= kSmall) return EigenMethod::kDense;
   if (structure.is_chain_like()) return EigenMethod::kTridiagonal;
-  if (n < kDenseLimit || 5 * count >= n) return EigenMethod::kDense;
+  if (n < detail::kDenseLimit || 5 * count >= n) return EigenMethod::kDense;
   return EigenMethod::kSpectra;
 }
 

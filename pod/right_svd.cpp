@@ -14,7 +14,7 @@ namespace slipmode::pod {
 
 namespace {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr double kRounding = std::numeric_limits<double>::epsilon();
 constexpr int kMaxSweeps = 60;
 constexpr Eigen::Index kJacobiLimit = 256;
 constexpr double kNegligible = 1e-125;  // relative to the largest entry; its square is still a normal number
@@ -38,7 +38,7 @@ double rotate(Eigen::MatrixXd& G, Eigen::Index p, Eigen::Index q, double toleran
 
 void orthogonalise_columns(Eigen::MatrixXd& G) {
   const Eigen::Index n = G.cols();
-  const double tolerance = kEpsilon * std::sqrt(static_cast<double>(std::max<Eigen::Index>(n, 4)));
+  const double tolerance = kRounding * std::sqrt(static_cast<double>(std::max<Eigen::Index>(n, 4)));
   double worst = 0.0;
   for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
     worst = 0.0;

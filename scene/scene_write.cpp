@@ -101,6 +101,8 @@ std::string number_text(double value) {
   return text;
 }
 
+std::string number_line(const char* key, double value) { return fmt::format("{} = {}\n", key, number_text(value)); }
+
 std::string numbers_text(const std::vector<double>& values) {
   std::vector<std::string> texts;
   for (const double value : values) texts.push_back(number_text(value));

@@ -8,8 +8,6 @@ namespace slipmode::scene {
 
 namespace {
 
-std::string line(const char* key, double value) { return fmt::format("{} = {}\n", key, number_text(value)); }
-
 std::string belt_toml(const friction::Belt& belt) {
   const bool ramp = belt.ramp_end > belt.ramp_begin;
   const std::string speed =
@@ -27,14 +25,14 @@ std::string force_place_toml(const ForcePlace& place) {
 std::string force_toml(const ForceSpec& force) {
   const ForceSpec::Harmonic& first = force.harmonics.front();
   std::string out = "\n[drive]\nkind = \"force\"\n";
-  out += force.frequency_hz ? line("frequency", *force.frequency_hz) : line("omega", force.omega);
-  out += line("amplitude", first.amplitude) + line("phase", first.phase) + force_place_toml(first.at);
+  out += force.frequency_hz ? number_line("frequency", *force.frequency_hz) : number_line("omega", force.omega);
+  out += number_line("amplitude", first.amplitude) + number_line("phase", first.phase) + force_place_toml(first.at);
   const double* mean = std::get_if<double>(&force.mean);
   out += fmt::format("mean = {}\n", mean != nullptr ? number_text(*mean) : numbers_text(std::get<1>(force.mean)));
   for (std::size_t k = 1; k < force.harmonics.size(); ++k) {
     const ForceSpec::Harmonic& own = force.harmonics[k];
-    out += fmt::format("\n[[drive.harmonic]]\norder = {}\n", own.order) + line("amplitude", own.amplitude) +
-           line("phase", own.phase) + force_place_toml(own.at);
+    out += fmt::format("\n[[drive.harmonic]]\norder = {}\n", own.order) + number_line("amplitude", own.amplitude) +
+           number_line("phase", own.phase) + force_place_toml(own.at);
   }
   return out;
 }
@@ -63,7 +61,7 @@ std::string amplitude_toml(const friction::AmplitudeCurve& curve) {
 
 std::string place_toml(const ContactPlace& place) {
   return std::visit(
-      Overloaded{[](int mass) { return fmt::format("at = {}\n", mass); }, [](double x) { return line("at", x); },
+      Overloaded{[](int mass) { return fmt::format("at = {}\n", mass); }, [](double x) { return number_line("at", x); },
                  [](AtTip) { return std::string("at = \"tip\"\n"); },
                  [](const Between& pair) { return fmt::format("between = [{}, {}]\n", pair.first, pair.second); }},
       place);
@@ -73,8 +71,8 @@ std::string drive_toml(const Scene& scene) {
   if (const friction::Belt* belt = scene.drive.belt()) return belt_toml(*belt);
   if (scene.force) return force_toml(*scene.force);
   const friction::Shaker& shaker = *scene.drive.shaker();
-  return "\n[drive]\nkind = \"shaker\"\n" + line("frequency", shaker.frequency_hz) + line("phase", shaker.phase) +
-         fmt::format("amplitude = {}\n", amplitude_toml(scene.amplitude));
+  return "\n[drive]\nkind = \"shaker\"\n" + number_line("frequency", shaker.frequency_hz) +
+         number_line("phase", shaker.phase) + fmt::format("amplitude = {}\n", amplitude_toml(scene.amplitude));
 }
 
 }  // namespace slipmode::scene

@@ -10,8 +10,6 @@ namespace slipmode::scene {
 
 namespace {
 
-std::string line(const char* key, double value) { return fmt::format("{} = {}\n", key, number_text(value)); }
-
 std::string chain_toml(const fem::ChainOptions& chain) {
   const auto ends = std::ranges::find_if(kEnds, [&](const Ends& entry) {
     return entry.left_fixed == chain.left_fixed && entry.right_fixed == chain.right_fixed;
@@ -22,21 +20,22 @@ std::string chain_toml(const fem::ChainOptions& chain) {
   if (!chain.ground_stiffness.empty()) {
     out += fmt::format("ground_stiffness = {}\n", one_or_many_text(chain.ground_stiffness));
   }
-  return out + line("damping", chain.damping) + line("mass_damping", chain.mass_damping);
+  return out + number_line("damping", chain.damping) + number_line("mass_damping", chain.mass_damping);
 }
 
 std::string span_toml(const fem::BeamSpan& span, fem::BeamTheory theory) {
-  std::string out = line("length", span.length) + line("width", span.width) + line("thickness", span.thickness) +
-                    line("youngs_modulus", span.youngs_modulus) + line("density", span.density) +
-                    fmt::format("elements = {}\n", span.elements);
+  std::string out = number_line("length", span.length) + number_line("width", span.width) +
+                    number_line("thickness", span.thickness) + number_line("youngs_modulus", span.youngs_modulus) +
+                    number_line("density", span.density) + fmt::format("elements = {}\n", span.elements);
   if (theory == fem::BeamTheory::kEulerBernoulli) return out;
-  return out + line("poisson_ratio", span.poisson_ratio) + line("shear_coefficient", span.shear_coefficient);
+  return out + number_line("poisson_ratio", span.poisson_ratio) +
+         number_line("shear_coefficient", span.shear_coefficient);
 }
 
 std::string damping_toml(const fem::BeamDamping& damping) {
   return std::visit(Overloaded{[](const fem::Rayleigh& rayleigh) {
-                                 return line("coefficient", rayleigh.stiffness) +
-                                        line("mass_coefficient", rayleigh.mass);
+                                 return number_line("coefficient", rayleigh.stiffness) +
+                                        number_line("mass_coefficient", rayleigh.mass);
                                },
                                [](const fem::ProportionalRatios& proportional) {
                                  std::vector<double> ratios, frequencies;
@@ -61,8 +60,8 @@ std::string beam_toml(const fem::BeamOptions& beam) {
   } else {
     for (const fem::BeamSpan& span : beam.spans) out += "\n[[structure.span]]\n" + span_toml(span, beam.theory);
   }
-  out += "\n[structure.tip]\n" + line("mass", beam.tip.mass) + line("inertia", beam.tip.inertia) +
-         line("offset", beam.tip.offset) + line("extension", beam.tip.extension);
+  out += "\n[structure.tip]\n" + number_line("mass", beam.tip.mass) + number_line("inertia", beam.tip.inertia) +
+         number_line("offset", beam.tip.offset) + number_line("extension", beam.tip.extension);
   return out + "\n[structure.damping]\n" + damping_toml(beam.damping);
 }
 
@@ -72,8 +71,8 @@ std::string masses_toml(const fem::MassesOptions& masses) {
   for (const fem::Link& link : masses.links) {
     const ContactPlace ends =
         link.first == 0 ? ContactPlace{link.second} : ContactPlace{Between{link.first, link.second}};
-    out +=
-        "\n[[structure.link]]\n" + place_toml(ends) + line("stiffness", link.stiffness) + line("damping", link.damping);
+    out += "\n[[structure.link]]\n" + place_toml(ends) + number_line("stiffness", link.stiffness) +
+           number_line("damping", link.damping);
   }
   return out;
 }
@@ -106,7 +105,7 @@ std::string load_toml(const friction::NormalLoad& load) {
       number_text(own.slope));
 }
 
-std::string coefficients_toml(const auto& law) { return line("mu_s", law.mu_s) + line("mu_k", law.mu_k); }
+std::string coefficients_toml(const auto& law) { return number_line("mu_s", law.mu_s) + number_line("mu_k", law.mu_k); }
 
 std::string stop_toml(const char* key, const friction::Stop& stop) {
   return fmt::format("{} = {{ stiffness = {}, damping = {}, gap = {} }}\n", key, number_text(stop.stiffness),
@@ -124,21 +123,22 @@ std::string clearance_toml(const friction::Clearance& law) {
 
 std::string law_toml(const friction::Law& any) {
   return std::visit(
-      Overloaded{[](const friction::Coulomb& law) { return coefficients_toml(law); },
-                 [](const friction::Stribeck& law) { return coefficients_toml(law) + line("alpha", law.alpha); },
-                 [](const friction::TanhRegularised& law) {
-                   return coefficients_toml(law) + line("alpha", law.alpha) + line("epsilon", law.epsilon);
-                 },
-                 [](const friction::CompliantCoulomb& law) {
-                   return coefficients_toml(law) + line("stiffness", law.stiffness);
-                 },
-                 [](const friction::Dahl& law) { return line("mu", law.mu) + line("stiffness", law.stiffness); },
-                 [](const friction::LuGre& law) {
-                   return coefficients_toml(law) + line("stribeck_speed", law.stribeck_speed) +
-                          line("stiffness", law.stiffness) + line("damping", law.damping) +
-                          line("viscous", law.viscous);
-                 },
-                 [](const friction::Clearance& law) { return clearance_toml(law); }},
+      Overloaded{
+          [](const friction::Coulomb& law) { return coefficients_toml(law); },
+          [](const friction::Stribeck& law) { return coefficients_toml(law) + number_line("alpha", law.alpha); },
+          [](const friction::TanhRegularised& law) {
+            return coefficients_toml(law) + number_line("alpha", law.alpha) + number_line("epsilon", law.epsilon);
+          },
+          [](const friction::CompliantCoulomb& law) {
+            return coefficients_toml(law) + number_line("stiffness", law.stiffness);
+          },
+          [](const friction::Dahl& law) { return number_line("mu", law.mu) + number_line("stiffness", law.stiffness); },
+          [](const friction::LuGre& law) {
+            return coefficients_toml(law) + number_line("stribeck_speed", law.stribeck_speed) +
+                   number_line("stiffness", law.stiffness) + number_line("damping", law.damping) +
+                   number_line("viscous", law.viscous);
+          },
+          [](const friction::Clearance& law) { return clearance_toml(law); }},
       any);
 }
 
@@ -159,7 +159,7 @@ std::string contact_toml(const ContactSpec& contact, const Scene& scene) {
   if (!clearance) out += fmt::format("normal_load = {}\n", load_toml(contact.normal_load));
   out += law_toml(contact.law);
   if (clearance) return out;
-  if (contact.tilt_deg != 0.0 || scene.beam() != nullptr) out += line("tilt_deg", contact.tilt_deg);
+  if (contact.tilt_deg != 0.0 || scene.beam() != nullptr) out += number_line("tilt_deg", contact.tilt_deg);
   return out;
 }
 

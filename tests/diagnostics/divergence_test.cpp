@@ -31,27 +31,38 @@ TEST(Divergence, OfHenonIsWithinFivePercentFrom20000Points) {
 }
 
 TEST(Divergence, OfLorenzIsWithinFivePercentAcrossTheFlowFrom20000Points) {
-  const auto result = divergence(fixtures::lorenz(20000, 0.05), {.embedding = {.dimension = 3, .lag = 3},
-                                                                 .method = Method::kTransverse,
-                                                                 .steps = 140,
-                                                                 .references = 10000,
-                                                                 .region = {.least_width = 0.75}});
-  EXPECT_NEAR(result.exponent, 0.9056, 0.05 * 0.9056);
-  EXPECT_LT(std::abs(result.exponent - 0.9056), 2.0 * result.error + 0.02);
+  // Records scatter by 0.012 about 0.92: the mean of four.
+  double mean = 0.0;
+  for (const double x0 : {1.0, 1.1, 1.2, 1.3}) {
+    const auto result = divergence(fixtures::lorenz(20000, 0.05, x0), {.embedding = {.dimension = 3, .lag = 3},
+                                                                       .method = Method::kTransverse,
+                                                                       .steps = 140,
+                                                                       .references = 10000,
+                                                                       .region = {.least_width = 0.75}});
+    EXPECT_LT(std::abs(result.exponent - 0.9056), 2.0 * result.error + 0.04) << x0;
+    mean += result.exponent / 4.0;
+  }
+  EXPECT_NEAR(mean, 0.9056, 0.05 * 0.9056);
 }
 
 TEST(Divergence, AcrossTheFlowIsNearerTheTruthForRoesslerThanBetweenSamples) {
   // 0.0714 per unit. Half a sampling interval along the path is farther than the next loop: the nearest sample hides
-  // the growth.
+  // the growth. One record of 20,000 samples scatters by 0.003 across the flow, by 0.005 between samples, and by 0.004
+  // in their difference: ten records are averaged.
   DivergenceOptions options{.embedding = {.dimension = 3, .lag = 8},
                             .steps = 125,
                             .stride = 4,
                             .references = 5000,
                             .region = {.least_width = 12.0}};
-  const Series series = fixtures::roessler(20000, 0.2);
-  const double between = divergence(series, options).exponent;
-  options.method = Method::kTransverse;
-  const double across = divergence(series, options).exponent;
+  constexpr int kRecords = 10;
+  double between = 0.0, across = 0.0;
+  for (int i = 0; i < kRecords; ++i) {
+    const Series series = fixtures::roessler(20000, 0.2, 5.7, 1.0 + 0.1 * i);
+    options.method = Method::kRosenstein;
+    between += divergence(series, options).exponent / kRecords;
+    options.method = Method::kTransverse;
+    across += divergence(series, options).exponent / kRecords;
+  }
   EXPECT_GT(across, between);
   EXPECT_LT(across, 0.0714);
   EXPECT_NEAR(across, 0.0714, 0.15 * 0.0714);

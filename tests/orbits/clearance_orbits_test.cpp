@@ -213,13 +213,19 @@ TEST(ClearanceOrbits, InsideTheWindowOnlyHigherPeriodsAreStable) {
       EXPECT_TRUE(!result.converged() || result.orbit.stability == Stability::kUnstable) << omega;
     }
   }
+  // Which of the motions inside the window a start settles to hangs on rounding, so several are tried.
   for (const auto& [omega, order] : std::vector<std::pair<double, int>>{{0.475, 3}, {0.49, 5}}) {
     const HybridSystem system = Backlash{.omega = omega}.system();
-    const PeriodicOrbit orbit =
-        find_orbit(system, settle_guess(system, displaced(system, 0, 0.3), 400.0), {.order = order});
-    EXPECT_EQ(orbit.stability, Stability::kStable);
-    EXPECT_EQ(orbit.repeats, 1);
-    EXPECT_EQ(orbit.order, order);
+    int stable = 0;
+    for (const double x : {0.3, 0.0, 0.6, 1.0, 1.5, -0.4, -0.8, -1.2}) {
+      const ShootingResult result =
+          shoot(system, settle_guess(system, displaced(system, 0, x), 400.0), {.order = order});
+      if (!result.converged() || result.orbit.stability != Stability::kStable) continue;
+      EXPECT_EQ(result.orbit.repeats, 1) << omega << ' ' << x;
+      EXPECT_EQ(result.orbit.order, order) << omega << ' ' << x;
+      ++stable;
+    }
+    EXPECT_GT(stable, 0) << omega;
   }
 }
 

@@ -14,26 +14,26 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-const fem::Beam& beam() {
+const fem::Beam& gauged_beam() {
   static const fem::Beam shared(tests::with_tip_body(20));
   return shared;
 }
 
 auto array_of(std::vector<Sensor> sensors) {
-  return [sensors] { (void)SensorArray(beam(), sensors); };
+  return [sensors] { (void)SensorArray(gauged_beam(), sensors); };
 }
 
 TEST(Sensors, ReadAParabolaExactly) {
   // y = a (x/L)²: strain ½h y″ = h a/L² everywhere; beyond the end y(L) + (x − L) y′(L) = a + 2 a (x − L)/L.
   const double a = 3e-3, L = 0.4, h = 0.00086;
-  const Eigen::VectorXd q = tests::polynomial(beam(), {0.0, 0.0, a});
-  const SensorArray sensors(beam(), {{SensorKind::kDisplacement, 0.1},
-                                     {SensorKind::kDisplacement, 0.1234},
-                                     {SensorKind::kDisplacement, L},
-                                     {SensorKind::kDisplacement, 0.464},
-                                     {SensorKind::kStrain, 0.0},
-                                     {SensorKind::kStrain, 0.2},
-                                     {SensorKind::kStrain, L}});
+  const Eigen::VectorXd q = tests::polynomial(gauged_beam(), {0.0, 0.0, a});
+  const SensorArray sensors(gauged_beam(), {{SensorKind::kDisplacement, 0.1},
+                                            {SensorKind::kDisplacement, 0.1234},
+                                            {SensorKind::kDisplacement, L},
+                                            {SensorKind::kDisplacement, 0.464},
+                                            {SensorKind::kStrain, 0.0},
+                                            {SensorKind::kStrain, 0.2},
+                                            {SensorKind::kStrain, L}});
   Eigen::VectorXd expected(7);
   expected << a * 0.0625, a * 0.1234 * 0.1234 / (L * L), a, a * 1.32, h * a / (L * L), h * a / (L * L), h * a / (L * L);
   const Eigen::VectorXd read = sensors.readings(q);
@@ -45,7 +45,7 @@ TEST(Sensors, EvenlySpacedEndAtTheSpan) {
   ASSERT_EQ(sensors.size(), 40U);
   EXPECT_DOUBLE_EQ(sensors[0].x, 0.01);
   EXPECT_EQ(sensors[39].x, 0.4);
-  EXPECT_EQ(SensorArray(beam(), sensors).size(), 40);
+  EXPECT_EQ(SensorArray(gauged_beam(), sensors).size(), 40);
 }
 
 TEST(Noise, HasTheDeviationAskedFor) {
@@ -98,7 +98,7 @@ TEST(Sensors, RefuseBadPlaces) {
   EXPECT_NO_THROW(array_of({{kStrain, 0.1}, {kDisplacement, 0.1}})());
   EXPECT_THROW((void)evenly_spaced(0, 0.4), InvalidInput);
   EXPECT_THROW((void)evenly_spaced(3, 0.0), InvalidInput);
-  EXPECT_THROW((void)SensorArray(beam(), {{kStrain, 0.1}}).readings(Eigen::VectorXd::Zero(3)), InvalidInput);
+  EXPECT_THROW((void)SensorArray(gauged_beam(), {{kStrain, 0.1}}).readings(Eigen::VectorXd::Zero(3)), InvalidInput);
 }
 
 TEST(Noise, RefusesBadNumbers) {
