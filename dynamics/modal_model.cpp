@@ -135,13 +135,20 @@ Eigen::MatrixXd square_root(const Eigen::MatrixXd& A) {
   return root.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * root.eigenvectors().transpose();
 }
 
-void separate_rigid_modes(const Eigen::VectorXd& omega, Eigen::MatrixXd& shapes, Eigen::MatrixXd& damping) {
+void separate_rigid_modes(const Eigen::VectorXd& omega, Eigen::MatrixXd& shapes, Eigen::MatrixXd& damping,
+                          Eigen::MatrixXd* coupled) {
   std::vector<Eigen::Index> rigid;
   for (Eigen::Index i = 0; i < omega.size(); ++i)
     if (omega(i) == 0.0) rigid.push_back(i);
   if (rigid.empty()) return;
-  const Eigen::MatrixXd own = damping(rigid, rigid);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> turn(Eigen::MatrixXd((own + own.transpose()) / 2.0));
+  Eigen::MatrixXd own = damping(rigid, rigid);
+  own = (own + own.transpose()).eval() / 2.0;
+  if (coupled != nullptr) {  // sizes do not matter, only what is zero
+    own /= std::max(damping.norm(), 1e-300);
+    for (const auto& w : coupled->colwise())
+      if (w.norm() > 0.0) own += w(rigid) * w(rigid).transpose() / w.squaredNorm();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> turn(own);
   const Eigen::MatrixXd& Q = turn.eigenvectors();
   shapes(Eigen::all, rigid) = (shapes(Eigen::all, rigid) * Q).eval();
   damping(rigid, Eigen::all) = (Q.transpose() * damping(rigid, Eigen::all)).eval();
@@ -152,6 +159,11 @@ void separate_rigid_modes(const Eigen::VectorXd& omega, Eigen::MatrixXd& shapes,
       damping.row(i).setZero();
       damping.col(i).setZero();
     }
+  if (coupled == nullptr) return;
+  (*coupled)(rigid, Eigen::all) = (Q.transpose() * (*coupled)(rigid, Eigen::all)).eval();
+  for (auto w : coupled->colwise())
+    for (const Eigen::Index i : rigid)
+      if (std::abs(w(i)) <= kProportionalTolerance * w.norm()) w(i) = 0.0;
 }
 
 void ModalModel::measure_rates() {

@@ -193,31 +193,34 @@ void RegimeBuilder::make_general_pairs(Regime& out) {
   // First states: scaled displacements of the modes without what is not symmetric or not positive, then scaled ζ;
   // second states: their rates.
   const auto m = Z_.cols(), k = static_cast<Eigen::Index>(oscillators_.size()), N = m + k;
-  const auto [base_omega, shapes] = base_modes();
+  auto [base_omega, shapes] = base_modes();
   Eigen::VectorXd omega(N);
   omega.head(m) = base_omega;
   for (Eigen::Index j = 0; j < k; ++j)
     omega(m + j) = std::sqrt(load(oscillators_[static_cast<std::size_t>(j)]).stiffness);
+  Eigen::MatrixXd own_damping = shapes.transpose() * (Z_.transpose() * C_ * Z_) * shapes;
+  Eigen::MatrixXd W = Eigen::MatrixXd::Zero(m, nc_);  // of the contacts that add what is not in the base modes
+  for (Eigen::Index c = 0; c < nc_; ++c)
+    if (spring_(c) < 0.0 || load(c).oscillates())
+      W.col(c) = shapes.transpose() * (Z_.transpose() * modal_.directions.col(c));
+  separate_rigid_modes(base_omega, shapes, own_damping, &W);
   Eigen::MatrixXd damping = Eigen::MatrixXd::Zero(N, N);
-  const Eigen::MatrixXd ZS = Z_ * shapes;
-  damping.topLeftCorner(m, m) = ZS.transpose() * C_ * ZS;
+  damping.topLeftCorner(m, m) = own_damping;
   Eigen::VectorXd coupling = Eigen::VectorXd::Zero(N);  // squared
   for (Eigen::Index c = 0; c < nc_; ++c) {
-    const Eigen::VectorXd w = (ZS.transpose() * modal_.directions.col(c)).cwiseAbs();
+    const Eigen::VectorXd w = W.col(c).cwiseAbs();
     if (spring_(c) < 0.0) coupling.head(m) = coupling.head(m).cwiseMax(-spring_(c) * w.norm() * w);
     if (load(c).oscillates()) coupling.head(m) = coupling.head(m).cwiseMax(std::abs(load(c).lift) * w);
   }
   BalancedState state = balanced_state(omega, damping, coupling.cwiseSqrt());
   Eigen::MatrixXd& A = state.A;
-  for (Eigen::Index c = 0; c < nc_; ++c) {
-    if (spring_(c) >= 0.0) continue;
-    const Eigen::VectorXd w = ZS.transpose() * modal_.directions.col(c);
-    A.block(N, 0, m, m) -= spring_(c) * w * w.cwiseQuotient(state.scale.head(m)).transpose();
-  }
+  for (Eigen::Index c = 0; c < nc_; ++c)
+    if (spring_(c) < 0.0)
+      A.block(N, 0, m, m) -= spring_(c) * W.col(c) * W.col(c).cwiseQuotient(state.scale.head(m)).transpose();
   for (Eigen::Index j = 0; j < k; ++j) {
     const Eigen::Index c = oscillators_[static_cast<std::size_t>(j)];
     const LoadForm& own = load(c);
-    const Eigen::VectorXd w = ZS.transpose() * modal_.directions.col(c);
+    const auto w = W.col(c);
     A(N + m + j, N + m + j) = -own.damping;
     A.block(N + m + j, 0, 1, m) += own.lift * w.cwiseQuotient(state.scale.head(m)).transpose();
     A.block(N + m + j, N, 1, m) += own.lift_rate * w.transpose();
