@@ -12,7 +12,7 @@
 namespace slipmode::cli {
 namespace {
 
-struct Arguments {
+struct AdviseArguments {
   std::string scene, output, error = "1%";
 };
 
@@ -53,7 +53,7 @@ Json json_of(const trade::Effect& effect, const trade::EffectAdvice& advice) {
           {"sentence", advice.sentence}};
 }
 
-Report run(const Session& session, const Arguments& arguments) {
+Report run(const Session& session, const AdviseArguments& arguments) {
   if (!arguments.output.empty()) require_writable(arguments.output);
   const scene::Scene scene = session.load(arguments.scene);
   const double limit = parse_percent("--error", arguments.error);
@@ -92,7 +92,7 @@ Report run(const Session& session, const Arguments& arguments) {
 
 Verb add_advise(CLI::App& app) {
   CLI::App* command = app.add_subcommand("advise", "what a scene needs, and what it could leave out");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<AdviseArguments>();
   command->add_option("SCENE", arguments->scene, "scene file (TOML)")->required();
   command->add_option("-o,--output", arguments->output, "result file (HDF5)");
   command->add_option("--error", arguments->error, "change of an output that matters; default 1%");

@@ -18,7 +18,7 @@ using orbits::MapPoint;
 using orbits::StrobePoint;
 
 /// Failures of a row, one line per point; lines of points that went well are empty.
-std::string failures_of(const std::vector<MapPoint>& row) {
+std::string failure_lines(const std::vector<MapPoint>& row) {
   std::string text;
   bool any = false;
   for (const MapPoint& point : row) {
@@ -35,7 +35,7 @@ scene::JournalRecord to_record(const std::string& table, std::size_t row, const 
                                  point.multiplier, point.symmetric ? 1.0 : 0.0, point.floating ? 1.0 : 0.0,
                                  point.alternating, point.residual, static_cast<double>(point.periods)});
   }
-  return {table, static_cast<std::int64_t>(row), std::move(values), failures_of(points)};
+  return {table, static_cast<std::int64_t>(row), std::move(values), failure_lines(points)};
 }
 
 std::vector<MapPoint> row_from_record(const scene::JournalRecord& record) {

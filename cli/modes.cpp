@@ -16,7 +16,7 @@
 namespace slipmode::cli {
 namespace {
 
-struct Arguments {
+struct ModesArguments {
   std::string scene, output;
   Eigen::Index count = 0;
 };
@@ -161,7 +161,7 @@ nlohmann::json theory_json(const std::vector<fem::TheoryEffect>& effects) {
   return list;
 }
 
-Report run(const Session& session, const Arguments& arguments) {
+Report run(const Session& session, const ModesArguments& arguments) {
   if (!arguments.output.empty()) require_writable(arguments.output);
   const scene::Scene scene = session.load(arguments.scene);
   const dynamics::HybridSystem system = scene::build_system(scene);
@@ -197,7 +197,7 @@ Report run(const Session& session, const Arguments& arguments) {
 
 Verb add_modes(CLI::App& app) {
   CLI::App* command = app.add_subcommand("modes", "natural frequencies and mode shapes, slipping and sticking");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ModesArguments>();
   command->add_option("SCENE", arguments->scene, "scene file (TOML)")->required();
   command->add_option("-o,--output", arguments->output, "also store frequencies and shapes (HDF5)");
   command->add_option("--count", arguments->count, "number of modes; 0: the lowest 20");

@@ -14,7 +14,7 @@ namespace {
 
 using orbits::SpecialKind;
 
-struct Arguments {
+struct OrbitContinueArguments {
   OrbitSearch search;
   std::string over, output;
   bool sequential = false, switches = false;
@@ -22,8 +22,8 @@ struct Arguments {
   int points = 2000;
 };
 
-orbits::ContinuationOptions continuation_options(const Arguments& arguments, const OrbitRange& range, double start,
-                                                 const orbits::ShootingOptions& shooting) {
+orbits::ContinuationOptions continuation_options(const OrbitContinueArguments& arguments, const OrbitRange& range,
+                                                 double start, const orbits::ShootingOptions& shooting) {
   return {.from = range.from,
           .to = range.to,
           .direction = range.to > range.from ? 1 : -1,
@@ -122,7 +122,7 @@ std::string branch_text(const NamedBranch& named) {
   return text;
 }
 
-Report run(const Session& session, const Arguments& arguments) {
+Report run(const Session& session, const OrbitContinueArguments& arguments) {
   require_writable(arguments.output);
   const OrbitRange range = parse_range(arguments.over);
   scene::Scene scene = session.load(arguments.search.scene);
@@ -164,7 +164,7 @@ Report run(const Session& session, const Arguments& arguments) {
 
 Verb add_orbit_continue(CLI::App& orbit) {
   CLI::App* command = orbit.add_subcommand("continue", "follow an orbit over one key of the scene");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<OrbitContinueArguments>();
   add_search_options(*command, arguments->search);
   command->add_option("--over", arguments->over, "key and range: KEY=FROM:TO")->required();
   command->add_option("-o,--output", arguments->output, "result file (HDF5)")->required();

@@ -10,7 +10,7 @@
 namespace slipmode::cli {
 namespace {
 
-struct Arguments {
+struct OrbitFindArguments {
   OrbitSearch search;
   std::string output;
 };
@@ -30,7 +30,7 @@ void store(const std::string& path, const scene::Scene& scene, const dynamics::H
   writer.commit();
 }
 
-Report run(const Session& session, const Arguments& arguments) {
+Report run(const Session& session, const OrbitFindArguments& arguments) {
   if (!arguments.output.empty()) require_writable(arguments.output);
   const scene::Scene scene = session.load(arguments.search.scene);
   const SearchModel model = search_model(arguments.search, scene);
@@ -57,7 +57,7 @@ Report run(const Session& session, const Arguments& arguments) {
 
 Verb add_orbit_find(CLI::App& orbit) {
   CLI::App* command = orbit.add_subcommand("find", "a periodic orbit, its multipliers and what it does");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<OrbitFindArguments>();
   add_search_options(*command, arguments->search);
   command->add_option("-o,--output", arguments->output, "also store the orbit and one period of it (HDF5)");
   command->footer(

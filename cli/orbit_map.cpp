@@ -17,7 +17,7 @@ namespace {
 using orbits::MapPoint;
 using orbits::StrobePoint;
 
-struct Arguments {
+struct OrbitMapArguments {
   std::string scene, output;
   std::vector<std::string> over;
   std::string start = "scene";
@@ -29,7 +29,7 @@ struct Arguments {
 /// What both kinds of map have to do with.
 struct Task {
   const Session& session;
-  const Arguments& arguments;
+  const OrbitMapArguments& arguments;
   scene::Scene scene;
   std::vector<Over> over;
   std::vector<std::string> starts;
@@ -37,7 +37,7 @@ struct Task {
   std::string command;
 };
 
-std::vector<std::string> starts_of(const Arguments& arguments) {
+std::vector<std::string> starts_of(const OrbitMapArguments& arguments) {
   if (arguments.start == "both") return {"scene", "centre"};
   if (arguments.start == "scene" || arguments.start == "centre") return {arguments.start};
   throw InvalidInput(
@@ -207,7 +207,7 @@ Report run_strobe(const Task& task) {
   return report;
 }
 
-void check_arguments(const Arguments& arguments, const scene::Scene& scene) {
+void check_arguments(const OrbitMapArguments& arguments, const scene::Scene& scene) {
   if (arguments.over.size() > 2) {
     throw InvalidInput(fmt::format("--over: given {} times; once for a stroboscopic map, twice for a map over a plane",
                                    arguments.over.size()));
@@ -222,7 +222,7 @@ void check_arguments(const Arguments& arguments, const scene::Scene& scene) {
   }
 }
 
-Report run(const Session& session, const Arguments& arguments) {
+Report run(const Session& session, const OrbitMapArguments& arguments) {
   require_writable(arguments.output);
   const scene::Scene scene = session.load(arguments.scene);
   check_arguments(arguments, scene);
@@ -254,7 +254,7 @@ Report run(const Session& session, const Arguments& arguments) {
 
 Verb add_orbit_map(CLI::App& orbit) {
   CLI::App* command = orbit.add_subcommand("map", "settled motion of a driven scene over one key or two");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<OrbitMapArguments>();
   command->add_option("SCENE", arguments->scene, "scene file (TOML)")->required();
   command
       ->add_option("--over", arguments->over,

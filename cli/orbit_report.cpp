@@ -1,5 +1,6 @@
 #include "cli/orbit_report.hpp"
 
+#include "cli/json_list.hpp"
 #include "cli/text_table.hpp"
 
 #include <fmt/format.h>
@@ -18,8 +19,6 @@ std::string contact_name(const dynamics::HybridSystem& system, std::size_t c) {
   const std::string& name = system.contacts()[c].name;
   return name.empty() ? fmt::format("contact {}", c + 1) : name;
 }
-
-std::vector<double> list(const Eigen::VectorXd& values) { return {values.begin(), values.end()}; }
 
 std::string period_text(const PeriodicOrbit& orbit) {
   std::string text = fmt::format("{} orbit, period {:.12g}", orbits::to_string(orbit.kind), orbit.period);
@@ -123,9 +122,9 @@ Json orbit_json(const dynamics::HybridSystem& system, const PeriodicOrbit& orbit
                {"iterations", orbit.iterations},
                {"residuals", orbit.residuals}};
   data["start"] = {{"time", orbit.start.time},
-                   {"displacement", list(orbit.start.q)},
-                   {"velocity", list(orbit.start.v)},
-                   {"internal", list(orbit.start.internal)}};
+                   {"displacement", json_list(orbit.start.q)},
+                   {"velocity", json_list(orbit.start.v)},
+                   {"internal", json_list(orbit.start.internal)}};
   Json sizes = Json::array();
   for (std::size_t c = 0; c < amplitudes.size(); ++c) {
     const orbits::Amplitude& own = amplitudes[c];
@@ -162,7 +161,7 @@ Report not_found(const std::string& verb, const orbits::ShootingResult& result) 
                  {"residual", best.residual},
                  {"iterations", best.iterations},
                  {"residuals", best.residuals},
-                 {"best", {{"displacement", list(best.start.q)}, {"velocity", list(best.start.v)}}}};
+                 {"best", {{"displacement", json_list(best.start.q)}, {"velocity", json_list(best.start.v)}}}};
   return report;
 }
 

@@ -12,7 +12,7 @@
 namespace slipmode::cli {
 namespace {
 
-struct Arguments {
+struct OrbitReturnsArguments {
   std::string series, output;
   Eigen::Index column = 0, delay = 1, dimension = 3;
   orbits::ReturnOptions search = {.min_length = 2, .max_length = 0, .threshold = 0.0, .per_length = 1000};
@@ -26,7 +26,7 @@ struct Recurrence {
 };
 
 /// FILE:DATASET, a column of it.
-Eigen::VectorXd read_series(const Arguments& arguments) {
+Eigen::VectorXd read_series(const OrbitReturnsArguments& arguments) {
   const std::size_t colon = arguments.series.rfind(':');
   if (colon == std::string::npos) {
     throw InvalidInput(fmt::format("{}: expected FILE:DATASET, e.g. run.h5:trajectory/v ('slipmode info' lists them)",
@@ -73,7 +73,8 @@ std::vector<double> column_of(const std::vector<Recurrence>& groups, double (*nu
   return values;
 }
 
-void store_groups(const Arguments& arguments, const Eigen::MatrixXd& points, const std::vector<Recurrence>& groups) {
+void store_groups(const OrbitReturnsArguments& arguments, const Eigen::MatrixXd& points,
+                  const std::vector<Recurrence>& groups) {
   scene::StoreWriter writer(arguments.output);
   writer.describe_group("returns", fmt::format("close returns of {}, delay {}, dimension {}", arguments.series,
                                                arguments.delay, arguments.dimension));
@@ -100,7 +101,7 @@ void store_groups(const Arguments& arguments, const Eigen::MatrixXd& points, con
   writer.commit();
 }
 
-Report run(const Arguments& arguments) {
+Report run(const OrbitReturnsArguments& arguments) {
   if (!arguments.output.empty()) require_writable(arguments.output);
   const Eigen::MatrixXd points =
       orbits::delay_coordinates(read_series(arguments), arguments.delay, arguments.dimension);
@@ -141,7 +142,7 @@ Report run(const Arguments& arguments) {
 
 Verb add_orbit_returns(CLI::App& orbit) {
   CLI::App* command = orbit.add_subcommand("returns", "approximate orbits in a measured series");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<OrbitReturnsArguments>();
   command->add_option("SERIES", arguments->series, "FILE:DATASET of a result file, e.g. run.h5:trajectory/v")
       ->required();
   command->add_option("--column", arguments->column, "column of the dataset, from 1, when it has several");

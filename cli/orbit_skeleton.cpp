@@ -12,7 +12,7 @@
 namespace slipmode::cli {
 namespace {
 
-struct Arguments {
+struct OrbitSkeletonArguments {
   std::string scene, output, model = "full", compare_with;
   double duration = 0.0, transient = -1.0;
   orbits::SkeletonOptions search = {};
@@ -38,7 +38,8 @@ pod::Basis basis_of(const std::string& model, const std::string& option, Eigen::
 }
 
 /// How long is recorded: two hundred times what a run of the scene keeps, unless the user says.
-orbits::AttractorOptions record_options(const Session& session, const Arguments& arguments, const scene::Scene& scene) {
+orbits::AttractorOptions record_options(const Session& session, const OrbitSkeletonArguments& arguments,
+                                        const scene::Scene& scene) {
   constexpr double kRecords = 200.0;
   constexpr double kSamples = 5000.0;
   orbits::AttractorOptions options;
@@ -51,7 +52,7 @@ orbits::AttractorOptions record_options(const Session& session, const Arguments&
   return options;
 }
 
-Recorded record(const Session& session, const Arguments& arguments, const scene::Scene& scene,
+Recorded record(const Session& session, const OrbitSkeletonArguments& arguments, const scene::Scene& scene,
                 const std::optional<pod::Basis>& basis, const std::optional<orbits::Metric>& metric) {
   const dynamics::HybridSystem full = scene::build_system(scene);
   const dynamics::HybridSystem system = basis ? rom::reduce(full, *basis) : full;
@@ -83,7 +84,7 @@ Recorded record(const Session& session, const Arguments& arguments, const scene:
 
 /// Runs a search with progress; one that was interrupted ends the verb.
 template <class Search>
-orbits::Skeleton with_progress(const Session& session, const Arguments& arguments, const std::string& what,
+orbits::Skeleton with_progress(const Session& session, const OrbitSkeletonArguments& arguments, const std::string& what,
                                const Search& search) {
   ProgressLine line(what, session.progress_mode());
   orbits::SkeletonOptions options = arguments.search;
@@ -93,7 +94,7 @@ orbits::Skeleton with_progress(const Session& session, const Arguments& argument
   return skeleton;
 }
 
-orbits::Skeleton found_in(const Session& session, const Arguments& arguments, const Recorded& model,
+orbits::Skeleton found_in(const Session& session, const OrbitSkeletonArguments& arguments, const Recorded& model,
                           const std::string& what) {
   return with_progress(session, arguments, what, [&](const orbits::SkeletonOptions& options) {
     return orbits::find_skeleton(model.system, model.attractor, options);
@@ -105,7 +106,8 @@ struct Pair {
   orbits::Skeleton full, reduced;
 };
 
-Pair found_in_both(const Session& session, const Arguments& arguments, const Recorded& full, const Recorded& reduced) {
+Pair found_in_both(const Session& session, const OrbitSkeletonArguments& arguments, const Recorded& full,
+                   const Recorded& reduced) {
   const Eigen::Index segment = arguments.search.passages_per_segment;
   const pod::Basis& basis = *reduced.basis;
   const Pair own{found_in(session, arguments, full, "skeleton, full"),
@@ -130,7 +132,7 @@ ModelSkeleton shown(const Recorded& model, orbits::Skeleton skeleton) {
   return {model.title, std::move(skeleton), model.portrait};
 }
 
-scene::StoreWriter begin_store(const Arguments& arguments, const scene::Scene& scene) {
+scene::StoreWriter begin_store(const OrbitSkeletonArguments& arguments, const scene::Scene& scene) {
   scene::StoreWriter writer(arguments.output);
   scene::save(writer, scene::provenance_of(scene, fmt::format("slipmode orbit skeleton --model {}{}", arguments.model,
                                                               arguments.compare_with.empty()
@@ -139,7 +141,7 @@ scene::StoreWriter begin_store(const Arguments& arguments, const scene::Scene& s
   return writer;
 }
 
-Report run_one(const Session& session, const Arguments& arguments, const scene::Scene& scene,
+Report run_one(const Session& session, const OrbitSkeletonArguments& arguments, const scene::Scene& scene,
                const std::optional<pod::Basis>& basis) {
   const Recorded model = record(session, arguments, scene, basis, {});
   const ModelSkeleton found = shown(model, found_in(session, arguments, model, "skeleton"));
@@ -153,7 +155,7 @@ Report run_one(const Session& session, const Arguments& arguments, const scene::
   return report;
 }
 
-Report run_pair(const Session& session, const Arguments& arguments, const scene::Scene& scene,
+Report run_pair(const Session& session, const OrbitSkeletonArguments& arguments, const scene::Scene& scene,
                 const pod::Basis& basis) {
   const Recorded full = record(session, arguments, scene, {}, {});
   const Recorded reduced = record(session, arguments, scene, basis, full.attractor.metric);
@@ -180,7 +182,7 @@ Report run_pair(const Session& session, const Arguments& arguments, const scene:
   return report;
 }
 
-Report run(const Session& session, const Arguments& arguments) {
+Report run(const Session& session, const OrbitSkeletonArguments& arguments) {
   require_writable(arguments.output);
   const scene::Scene scene = session.load(arguments.scene);
   if (arguments.compare_with.empty()) {
@@ -199,7 +201,7 @@ Report run(const Session& session, const Arguments& arguments) {
 
 Verb add_orbit_skeleton(CLI::App& orbit) {
   CLI::App* command = orbit.add_subcommand("skeleton", "the unstable periodic orbits of a chaotic motion");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<OrbitSkeletonArguments>();
   orbits::SkeletonOptions& search = arguments->search;
   command->add_option("SCENE", arguments->scene, "scene file (TOML)")->required();
   command->add_option("-o,--output", arguments->output, "result file (HDF5)")->required();

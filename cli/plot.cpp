@@ -8,11 +8,11 @@
 namespace slipmode::cli {
 namespace {
 
-struct Arguments {
+struct PlotArguments {
   std::string input, output, figure;
 };
 
-const FileFigure& select(const std::vector<FileFigure>& figures, const Arguments& arguments) {
+const FileFigure& select(const std::vector<FileFigure>& figures, const PlotArguments& arguments) {
   if (figures.empty()) {
     throw InvalidInput(
         fmt::format("'{}' holds nothing to draw; figures come from trajectories, PODs, reduced models, "
@@ -29,7 +29,7 @@ const FileFigure& select(const std::vector<FileFigure>& figures, const Arguments
       fmt::format("--figure {}: '{}' can give {}", arguments.figure, arguments.input, fmt::join(names, ", ")));
 }
 
-Report run(const Arguments& arguments) {
+Report run(const PlotArguments& arguments) {
   figures::require_figure_extension(arguments.output);
   require_writable(arguments.output);
   const scene::StoreReader store(arguments.input);
@@ -53,7 +53,7 @@ Report run(const Arguments& arguments) {
 
 Verb add_plot(CLI::App& app) {
   CLI::App* command = app.add_subcommand("plot", "draw what a result file holds (svg, png or pdf)");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<PlotArguments>();
   command->add_option("FILE", arguments->input, "result file (HDF5)")->required();
   command->add_option("-o,--output", arguments->output, "figure; .svg, .png or .pdf chooses the format")->required();
   command->add_option("--figure", arguments->figure, "which figure, if the file can give several");

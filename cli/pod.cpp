@@ -12,13 +12,13 @@
 namespace slipmode::cli {
 namespace {
 
-struct Arguments {
+struct PodArguments {
   std::string input, output;
   Eigen::Index modes = 0;
 };
 
 /// The decomposition knows numbers only: a refusal is told with the file and the option it belongs to.
-pod::PodResult decompose(const pod::Ensemble& ensemble, const Arguments& arguments) {
+pod::PodResult decompose(const pod::Ensemble& ensemble, const PodArguments& arguments) {
   try {
     return pod::pod(ensemble, {.choice = {.modes = arguments.modes, .energy = 1.0}});
   } catch (const InvalidInput& refusal) {
@@ -27,7 +27,7 @@ pod::PodResult decompose(const pod::Ensemble& ensemble, const Arguments& argumen
 }
 
 /// Under a shaker modes have the mass metric, and sensors give modal functions.
-Report run_shaken(const Arguments& arguments, const scene::Scene& scene, const pod::Ensemble& ensemble,
+Report run_shaken(const PodArguments& arguments, const scene::Scene& scene, const pod::Ensemble& ensemble,
                   scene::Provenance provenance) {
   if (arguments.modes > 0) {
     throw InvalidInput("--modes: under a shaker all modes are kept, 'slipmode reduce --modes' takes as many as wanted");
@@ -49,7 +49,7 @@ Report run_shaken(const Arguments& arguments, const scene::Scene& scene, const p
   return report;
 }
 
-Report run(const Session& session, const Arguments& arguments) {
+Report run(const Session& session, const PodArguments& arguments) {
   require_writable(arguments.output);
   const scene::StoreReader store(arguments.input);
   scene::Provenance provenance = scene::load_provenance(store);
@@ -89,7 +89,7 @@ Report run(const Session& session, const Arguments& arguments) {
 
 Verb add_pod(CLI::App& app) {
   CLI::App* command = app.add_subcommand("pod", "proper orthogonal modes of an ensemble or a trajectory");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<PodArguments>();
   command->add_option("FILE", arguments->input, "result of 'slipmode simulate'")->required();
   command->add_option("-o,--output", arguments->output, "result file (HDF5)")->required();
   command->add_option("--modes", arguments->modes, "number of modes to keep; 0: all that the data hold")

@@ -13,7 +13,7 @@
 namespace slipmode::cli {
 namespace {
 
-struct Arguments {
+struct ReduceArguments {
   std::string scene, basis, output;
   Eigen::Index modes = 0;
 };
@@ -34,7 +34,7 @@ BasisSource load_shaken_basis(const scene::Scene& scene, const dynamics::HybridS
 }
 
 /// LNMs have no energies of their own: without a count there is nothing to choose by.
-Eigen::Index mode_count(const Arguments& arguments, const scene::Scene& scene, const BasisSource& source) {
+Eigen::Index mode_count(const ReduceArguments& arguments, const scene::Scene& scene, const BasisSource& source) {
   pod::ModeChoice choice = scene.reduction.choice;
   if (arguments.modes > 0) choice.modes = arguments.modes;
   if (choice.modes == 0 && source.shares.size() == 0) {
@@ -44,7 +44,7 @@ Eigen::Index mode_count(const Arguments& arguments, const scene::Scene& scene, c
   return chosen_modes(choice, source.shares, source.basis.modes(), fmt::format("basis '{}'", arguments.basis));
 }
 
-Report run(const Session& session, const Arguments& arguments) {
+Report run(const Session& session, const ReduceArguments& arguments) {
   require_writable(arguments.output);
   const scene::Scene scene = session.load(arguments.scene);
   const dynamics::HybridSystem full = scene::build_system(scene);
@@ -88,7 +88,7 @@ Report run(const Session& session, const Arguments& arguments) {
 
 Verb add_reduce(CLI::App& app) {
   CLI::App* command = app.add_subcommand("reduce", "project a scene's model on a basis");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ReduceArguments>();
   command->add_option("SCENE", arguments->scene, "scene file (TOML)")->required();
   command->add_option("BASIS", arguments->basis, "result of 'slipmode pod', or the word lnm, on a beam also lnm+static")
       ->required();

@@ -11,7 +11,7 @@
 namespace slipmode::cli {
 namespace {
 
-struct Arguments {
+struct RunArguments {
   std::string scene, output;
 };
 
@@ -48,7 +48,7 @@ Report run_scene(const Session& session, const scene::Scene& scene, const std::f
   return {.data = to_json(result, scene), .text = summary_text(result, scene)};
 }
 
-Report run(const Session& session, const Arguments& arguments) {
+Report run(const Session& session, const RunArguments& arguments) {
   const scene::Scene scene = session.load(arguments.scene);
   figures::require_gnuplot();
   WorkFolder folder(arguments.output);
@@ -80,7 +80,7 @@ Report run(const Session& session, const Arguments& arguments) {
 Verb add_run(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("run", "the whole pipeline: figures, tables and data of what a scene asks for");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<RunArguments>();
   command->add_option("SCENE", arguments->scene, "scene file (TOML)")->required();
   command->add_option("-o,--output", arguments->output, "folder for results; made if missing")->required();
   command->footer("Example:\n  slipmode run datasets/chain10/scene.toml -o out/chain10");

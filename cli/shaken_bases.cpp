@@ -1,5 +1,6 @@
 #include "cli/shaken_bases.hpp"
 
+#include "cli/json_list.hpp"
 #include "cli/steps.hpp"
 #include "cli/text_table.hpp"
 #include "fem/modes.hpp"
@@ -59,8 +60,6 @@ std::string share_table(const std::string& name, const Eigen::MatrixXd& shares) 
   }
   return table.str();
 }
-
-std::vector<double> list(const Eigen::VectorXd& values) { return {values.begin(), values.end()}; }
 
 }  // namespace
 
@@ -126,10 +125,10 @@ std::string text_of(const ShakenModes& modes) {
 }
 
 Json json_of(const ShakenModes& modes) {
-  Json out = {{"mass_pom", {{"shares", list(modes.mass_pom.shares)}, {"lnm_shares", rows_of(modes.mass_shares)}}}};
+  Json out = {{"mass_pom", {{"shares", json_list(modes.mass_pom.shares)}, {"lnm_shares", rows_of(modes.mass_shares)}}}};
   if (!modes.pomf) return out;
-  out["pomf"] = {{"sensor_shares", list(modes.pomf->discrete.shares)},
-                 {"mass_shares", list(modes.pomf->mass_shares)},
+  out["pomf"] = {{"sensor_shares", json_list(modes.pomf->discrete.shares)},
+                 {"mass_shares", json_list(modes.pomf->mass_shares)},
                  {"lnm_shares", rows_of(modes.pomf_shares)},
                  {"condition", modes.pomf->condition}};
   return out;

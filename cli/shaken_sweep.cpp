@@ -18,7 +18,7 @@ namespace slipmode::cli {
 namespace {
 
 /// The model swept, where it starts, and what identifies it for resuming.
-struct Subject {
+struct ShakenSubject {
   std::optional<pod::Basis> basis;
   std::string title, identity = "full";
 };
@@ -30,8 +30,8 @@ std::string basis_identity(const pod::Basis& basis) {
 }
 
 /// "pomf:3": a basis of the scene's own words, made as its ensemble says.
-Subject basis_subject(const Session& session, const scene::Scene& scene, const dynamics::HybridSystem& system,
-                      const std::string& model) {
+ShakenSubject basis_subject(const Session& session, const scene::Scene& scene, const dynamics::HybridSystem& system,
+                            const std::string& model) {
   const std::size_t colon = model.find(':');
   const std::string word = model.substr(0, colon);
   Eigen::Index modes = 0;
@@ -62,8 +62,8 @@ Subject basis_subject(const Session& session, const scene::Scene& scene, const d
                   model));
 }
 
-Subject subject(const Session& session, const scene::Scene& scene, const dynamics::HybridSystem& system,
-                const std::string& model) {
+ShakenSubject subject(const Session& session, const scene::Scene& scene, const dynamics::HybridSystem& system,
+                      const std::string& model) {
   if (model == "full") {
     return {.basis = {}, .title = fmt::format("full model, {} degrees of freedom", system.size())};
   }
@@ -90,7 +90,7 @@ struct Pass {
   bool interrupted = false;
 };
 
-Report summary(const SweepRequest& request, const Subject& swept, const Over& over, const Pass& found) {
+Report summary(const SweepRequest& request, const ShakenSubject& swept, const Over& over, const Pass& found) {
   const auto& points = found.up.empty() ? found.down : found.up;
   Report report;
   const MotionTable motions = motion_table(count_motions(points), points.size());
@@ -131,7 +131,7 @@ Report run_shaken_sweep(const Session& session, const SweepRequest& request, con
   }
   check_values(scene, over);
   const diagnostics::DrivenCase full = shaken_case(scene);
-  const Subject swept = subject(session, scene, full.system, request.model);
+  const ShakenSubject swept = subject(session, scene, full.system, request.model);
   const std::string manner =
       fmt::format("{}{}{}{}", request.follow ? fmt::format(" --follow --segments {}", request.segments) : "",
                   request.reverse ? " --reverse" : "", request.both ? " --both" : "",

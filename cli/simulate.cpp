@@ -10,7 +10,7 @@
 namespace slipmode::cli {
 namespace {
 
-struct Arguments {
+struct SimulateArguments {
   std::string scene, output;
   bool single = false;
 };
@@ -49,7 +49,7 @@ Run simulate_or_part(const Session& session, const dynamics::HybridSystem& syste
   }
 }
 
-Report run_trajectory(const Session& session, const Arguments& arguments, const scene::Scene& scene) {
+Report run_trajectory(const Session& session, const SimulateArguments& arguments, const scene::Scene& scene) {
   const dynamics::HybridSystem system = scene::build_system(scene);
   const Run run =
       simulate_or_part(session, system, scene::initial_state(scene, system), scene::simulate_options(scene));
@@ -91,7 +91,7 @@ Report run_trajectory(const Session& session, const Arguments& arguments, const 
   return report;
 }
 
-Report run_ensemble(const Session& session, const Arguments& arguments, const scene::Scene& scene) {
+Report run_ensemble(const Session& session, const SimulateArguments& arguments, const scene::Scene& scene) {
   const diagnostics::EnsembleRun run = run_scene_ensemble(session, scene, scene::build_system(scene));
   store_ensemble(arguments.output, scene, run);
 
@@ -121,7 +121,7 @@ Report run_ensemble(const Session& session, const Arguments& arguments, const sc
 
 Verb add_simulate(CLI::App& app) {
   CLI::App* command = app.add_subcommand("simulate", "one trajectory, or the scene's ensemble");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<SimulateArguments>();
   command->add_option("SCENE", arguments->scene, "scene file (TOML)")->required();
   command->add_option("-o,--output", arguments->output, "result file (HDF5)")->required();
   command->add_flag("--single", arguments->single, "one trajectory from [initial], even if the scene has [ensemble]");

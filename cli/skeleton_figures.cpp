@@ -23,7 +23,7 @@ using scene::StoreReader;
 
 std::string group_of(const std::string& model) { return fmt::format("{}/{}", kSkeletonGroup, model); }
 
-std::string_view colour_of(const std::string& model) {
+std::string_view model_colour(const std::string& model) {
   return model == "full" ? figures::kFullColour : figures::kPomColour;
 }
 
@@ -44,7 +44,7 @@ class ContactView {
 
   [[nodiscard]] figures::PhasePortrait attractor(const StoreReader& store, const std::string& model) const {
     const Eigen::MatrixXd portrait = store.columns(group_of(model) + "/portrait", 2);
-    return {model + " model", portrait.row(0), portrait.row(1), colour_of(model)};
+    return {model + " model", portrait.row(0), portrait.row(1), model_colour(model)};
   }
 
   /// @param index  of the orbit, from 0
@@ -60,7 +60,7 @@ class ContactView {
     rate(count) = rate(0);
     return {
         fmt::format("T = {:.3f}, {:.1f} %", orbits.numbers("period")[index], 100.0 * orbits.numbers("share")[index]), y,
-        rate, colour_of(model)};
+        rate, model_colour(model)};
   }
 
   [[nodiscard]] figures::PortraitLayout layout(int columns, figures::PortraitLayout::Axes axes) const {
@@ -131,7 +131,7 @@ struct OrbitPoints {
 };
 
 /// Every orbit of every model: growth rate and share against period; orbits that match are joined.
-Figure spectrum(const StoreReader& store) {
+Figure orbit_spectrum(const StoreReader& store) {
   const std::vector<std::string> models = models_of(store);
   std::vector<OrbitPoints> points;
   for (const std::string& model : models) points.emplace_back(store, model);
@@ -151,7 +151,7 @@ Figure spectrum(const StoreReader& store) {
     }
     for (std::size_t k = 0; k < points.size(); ++k) {
       out.series.push_back(
-          {models[k] + " model", points[k].period, points[k].*value, Series::Look::kPoints, colour_of(models[k])});
+          {models[k] + " model", points[k].period, points[k].*value, Series::Look::kPoints, model_colour(models[k])});
     }
     return out;
   };
@@ -174,7 +174,7 @@ std::vector<FileFigure> skeleton_figures_of(const StoreReader& store) {
     out.push_back({"comparison", "both attractors and orbits that both have", [&store] { return comparison(store); }});
   }
   out.push_back({"orbits", "the attractor and its orbits", [&store] { return portraits(store); }});
-  out.push_back({"spectrum", "growth rates and shares against period", [&store] { return spectrum(store); }});
+  out.push_back({"spectrum", "growth rates and shares against period", [&store] { return orbit_spectrum(store); }});
   return out;
 }
 

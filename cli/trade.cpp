@@ -16,13 +16,13 @@ namespace {
 
 constexpr double kLimit = 1.0;  // percent, where none is asked for
 
-struct Arguments {
+struct TradeArguments {
   std::string scene, output, figures, axes, budget, error, write;
   std::string measure = "dE";
   bool product = false;
 };
 
-trade::Wish wish_of(const Arguments& arguments, const scene::Scene& scene) {
+trade::Wish wish_of(const TradeArguments& arguments, const scene::Scene& scene) {
   trade::Wish wish{.measure = parse_measure(arguments.measure), .duration = scene.time.duration};
   if (!arguments.error.empty()) wish.limit = parse_percent("--error", arguments.error);
   if (!arguments.budget.empty()) wish.budget = parse_duration("--budget", arguments.budget);
@@ -49,7 +49,7 @@ std::string how_to_run(const trade::Row& row, const std::string& path) {
       path, path, path);
 }
 
-Report run(const Session& session, const Arguments& arguments) {
+Report run(const Session& session, const TradeArguments& arguments) {
   if (!arguments.output.empty()) require_writable(arguments.output);
   if (!arguments.write.empty()) require_writable(arguments.write);
   if (!arguments.figures.empty()) figures::require_gnuplot();
@@ -113,7 +113,7 @@ Report run(const Session& session, const Arguments& arguments) {
 
 Verb add_trade(CLI::App& app) {
   CLI::App* command = app.add_subcommand("trade", "speed against accuracy: what is how wrong, and how costly");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<TradeArguments>();
   command->add_option("SCENE", arguments->scene, "scene file (TOML)")->required();
   command->add_option("-o,--output", arguments->output, "result file (HDF5)");
   command->add_option("--figures", arguments->figures, "folder for a Pareto front of each measure; made if missing");

@@ -15,12 +15,12 @@
 namespace slipmode::cli {
 namespace {
 
-struct Arguments {
+struct ValidateArguments {
   std::string scene, input, output;
   bool no_sweep = false;
 };
 
-Report run_shaken(const Session& session, const Arguments& arguments, scene::Scene scene,
+Report run_shaken(const Session& session, const ValidateArguments& arguments, scene::Scene scene,
                   const dynamics::HybridSystem& full) {
   if (arguments.no_sweep) scene.shaken.frequencies.reset();
   const auto candidates = load_shaken_candidates(scene, full, arguments.input);
@@ -34,7 +34,7 @@ Report run_shaken(const Session& session, const Arguments& arguments, scene::Sce
   return report;
 }
 
-Report run(const Session& session, const Arguments& arguments) {
+Report run(const Session& session, const ValidateArguments& arguments) {
   require_writable(arguments.output);
   const scene::Scene scene = session.load(arguments.scene);
   refuse_force(scene, "validate");
@@ -56,7 +56,7 @@ Report run(const Session& session, const Arguments& arguments) {
 
 Verb add_validate(CLI::App& app) {
   CLI::App* command = app.add_subcommand("validate", "compare reduced models with the full one");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ValidateArguments>();
   command->add_option("SCENE", arguments->scene, "scene file (TOML)")->required();
   command
       ->add_option("FILE", arguments->input,

@@ -16,16 +16,16 @@ using diagnostics::OrbitRow;
 using diagnostics::ShareRow;
 using diagnostics::ValidationReport;
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kBlank = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<std::string> share_cells(const ShareRow& row) {
   const bool ok = row.failure.empty();
   return {fixed(row.energy, 2),
-          fixed(ok ? row.horizon.dX : kNone, 2),
-          fixed(ok ? row.horizon.dE : kNone, 2),
-          fixed(row.attractor ? row.distance.wasserstein : kNone, 3),
+          fixed(ok ? row.horizon.dX : kBlank, 2),
+          fixed(ok ? row.horizon.dE : kBlank, 2),
+          fixed(row.attractor ? row.distance.wasserstein : kBlank, 3),
           row.attractor ? motion_text(row.attractor->period) : "failed",
-          fixed(row.lyapunov ? row.lyapunov->bits : kNone, 4)};
+          fixed(row.lyapunov ? row.lyapunov->bits : kBlank, 4)};
 }
 
 /// One row per number of modes, all bases side by side.

@@ -1,42 +1,20 @@
 #include "cli/figures/bifurcation.hpp"
 
+#include "cli/figures/raster.hpp"
 #include "cli/figures/style.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
-#include <utility>
 
 namespace slipmode::figures {
 namespace {
 
-struct Range {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -std::numeric_limits<double>::infinity();
-
-  void include(const Eigen::VectorXd& values) {
-    for (const double value : values) {
-      if (!std::isfinite(value)) continue;
-      low = std::min(low, value);
-      high = std::max(high, value);
-    }
-  }
-};
-
 /// Points on a raster finer than the dots: one per cell.
 BifurcationPanel thinned(const BifurcationPanel& panel, const Range& x, const Range& y, double cells_x,
                          double cells_y) {
-  std::set<std::pair<int, int>> seen;
-  std::vector<Eigen::Index> kept;
-  const auto cell = [](double value, const Range& range, double cells) {
-    return static_cast<int>(cells * (value - range.low) / std::max(range.high - range.low, 1e-300));
-  };
-  for (Eigen::Index i = 0; i < panel.parameter.size(); ++i) {
-    if (!std::isfinite(panel.value[i]) || !std::isfinite(panel.parameter[i])) continue;
-    if (seen.emplace(cell(panel.parameter[i], x, cells_x), cell(panel.value[i], y, cells_y)).second) kept.push_back(i);
-  }
+  const auto kept = one_per_cell(panel.parameter, panel.value, x, y, cells_x, cells_y);
   return {panel.title, panel.parameter(kept), panel.value(kept), panel.colour};
 }
 

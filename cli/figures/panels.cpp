@@ -1,34 +1,20 @@
 #include "cli/figures/panels.hpp"
 
+#include "cli/figures/raster.hpp"
 #include "cli/figures/style.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <set>
-#include <utility>
 
 namespace slipmode::figures {
 namespace {
 
-struct Range {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -std::numeric_limits<double>::infinity();
-
-  void include(const Eigen::VectorXd& values, bool positive) {
-    for (const double value : values) {
-      if (!std::isfinite(value) || (positive && !(value > 0.0))) continue;
-      low = std::min(low, value);
-      high = std::max(high, value);
-    }
-  }
-  [[nodiscard]] std::string text(bool log) const {
-    if (!log) return padded_range(low, high);
-    if (!(high > 0.0) || !std::isfinite(low)) return "[1e-3:1]";
-    return fmt::format("[{:.3g}:{:.3g}]", 0.7 * low, 1.4 * high);
-  }
-};
+std::string range_text(const Range& range, bool log) {
+  if (!log) return padded_range(range.low, range.high);
+  if (!(range.high > 0.0) || !std::isfinite(range.low)) return "[1e-3:1]";
+  return fmt::format("[{:.3g}:{:.3g}]", 0.7 * range.low, 1.4 * range.high);
+}
 
 struct Ranges {
   Range x, y;
@@ -43,17 +29,7 @@ struct Ranges {
 /// One point per cell of a raster.
 Series thinned(const Series& series, const Ranges& ranges) {
   constexpr double kCellsX = 700.0, kCellsY = 350.0;
-  std::set<std::pair<int, int>> seen;
-  std::vector<Eigen::Index> kept;
-  const auto cell = [](double value, const Range& range, double cells) {
-    return static_cast<int>(cells * (value - range.low) / std::max(range.high - range.low, 1e-300));
-  };
-  for (Eigen::Index i = 0; i < series.x.size(); ++i) {
-    if (!std::isfinite(series.x[i]) || !std::isfinite(series.y[i])) continue;
-    if (seen.emplace(cell(series.x[i], ranges.x, kCellsX), cell(series.y[i], ranges.y, kCellsY)).second) {
-      kept.push_back(i);
-    }
-  }
+  const auto kept = one_per_cell(series.x, series.y, ranges.x, ranges.y, kCellsX, kCellsY);
   return {series.title, series.x(kept), series.y(kept), series.look, series.colour};
 }
 
@@ -109,7 +85,8 @@ Figure panel_grid(const std::vector<Panel>& panels, const PanelLayout& layout) {
     if (!layout.shared_y) ranges.y = own.y;
     const bool left = i % columns == 0, below = i + columns >= count;
     figure.command(i == 0 ? std::string(layout.legend.empty() ? kLegendAbove : layout.legend) : "unset key");
-    figure.command(fmt::format("set xrange {}; set yrange {}", ranges.x.text(false), ranges.y.text(layout.log_y)));
+    figure.command(
+        fmt::format("set xrange {}; set yrange {}", range_text(ranges.x, false), range_text(ranges.y, layout.log_y)));
     figure.command(fmt::format("set title \"{}\" offset 0,-0.7", literal(panels[static_cast<std::size_t>(i)].title)));
     figure.command(left ? fmt::format("set ylabel \"{}\"", layout.y_label) : std::string("unset ylabel"));
     if (layout.shared_y) {

@@ -20,7 +20,7 @@ using friction::Force;
 using friction::Stop;
 
 /// One mass on a spring k, damper c.
-fem::Structure oscillator(double k, double c) {
+fem::Structure plain_oscillator(double k, double c) {
   const Eigen::MatrixXd one = Eigen::MatrixXd::Ones(1, 1);
   return {fem::Matrix(one), fem::Matrix(Eigen::MatrixXd(c * one)), fem::Matrix(Eigen::MatrixXd(k * one))};
 }
@@ -73,7 +73,7 @@ TEST(Clearance, WithoutAGapItIsTheStiffLinearOscillator) {
   const Stop stop{.stiffness = 3.0, .damping = 0.0, .gap = 0.0};
   const double omega = 1.3, own = std::sqrt(1.0 + 3.0);
   for (const ContactLoss loss : {ContactLoss::kZeroForce, ContactLoss::kGap}) {
-    const HybridSystem system(oscillator(1.0, 0.0),
+    const HybridSystem system(plain_oscillator(1.0, 0.0),
                               {Contact{.direction = Eigen::VectorXd::Ones(1), .law = Clearance{stop, stop, loss}}},
                               Force{omega, {{.amplitude = 0.7}}}, {}, Eigen::MatrixXd::Ones(1, 1));
     const Trajectory run = simulate(system, system.rest(), {.duration = 40.0, .sample = 0.25});
@@ -91,7 +91,7 @@ TEST(Clearance, QuickContactsAtStiffStopsAreNotTakenForZeno) {
   // Without a gap and damping the mass swings at √k: an event each half period, far more often than 200 within what is
   // short for a mass that floats in the gap.
   const Stop stop{.stiffness = 1e10, .damping = 0.0, .gap = 0.0};
-  const HybridSystem system(oscillator(0.0, 0.01),
+  const HybridSystem system(plain_oscillator(0.0, 0.01),
                             {Contact{.direction = Eigen::VectorXd::Ones(1), .law = Clearance{stop, stop}}},
                             Force{1.0, {{.amplitude = 1.0}}}, {}, Eigen::MatrixXd::Ones(1, 1));
   const State start{0.0, Eigen::VectorXd::Zero(1), Eigen::VectorXd::Ones(1)};
@@ -124,7 +124,7 @@ TEST(Clearance, ASlipThatBeginsUnderAForceIsTakenUpThere) {
 TEST(Clearance, AnUndampedStopReturnsTheSpeedItWasHitWith) {
   // No force but the stop's: the mass flies back with its speed after half a period of the contact's own vibration.
   const Stop stop{.stiffness = 9.0, .damping = 0.0, .gap = 0.5};
-  const HybridSystem system(oscillator(0.0, 0.0),
+  const HybridSystem system(plain_oscillator(0.0, 0.0),
                             {Contact{.direction = Eigen::VectorXd::Ones(1), .law = Clearance{stop, stop}}},
                             Force{1.0, {}}, {}, Eigen::MatrixXd::Ones(1, 1));
   const State start{0.0, Eigen::VectorXd::Zero(1), Eigen::VectorXd::Constant(1, 2.0)};

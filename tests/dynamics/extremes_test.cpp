@@ -14,8 +14,8 @@ using friction::Belt;
 using friction::Coulomb;
 using friction::Stribeck;
 
-constexpr FlowOptions kTight{.method = FlowMethod::kCollocation, .tolerance = 1e-13};
-constexpr FlowOptions kExact{.method = FlowMethod::kClosedForm};
+constexpr FlowOptions kTightExtremes{.method = FlowMethod::kCollocation, .tolerance = 1e-13};
+constexpr FlowOptions kExactExtremes{.method = FlowMethod::kClosedForm};
 
 TEST(Extremes, OnABeltAtRestTheChainSettlesAndStaysStuck) {
   for (const friction::Law& law : {friction::Law(Coulomb{0.4, 0.2}), friction::Law(Stribeck{0.4, 0.2, 8.0})}) {
@@ -45,7 +45,7 @@ TEST(Extremes, AStuckChainAtRestStaysForTenMillionUnits) {
 }
 
 TEST(Extremes, ABeltOfOneNanometrePerSecondCarriesTheMassAlong) {
-  for (const FlowOptions& flow : {kExact, kTight}) {
+  for (const FlowOptions& flow : {kExactExtremes, kTightExtremes}) {
     const HybridSystem chain = belt_chain(Coulomb{0.4, 0.2}, Belt::constant(1e-9));
     const Trajectory run = simulate(chain, chain.rest(), {.duration = 1000.0, .sample = 10.0, .flow = flow});
     EXPECT_EQ(run.final_state.modes.at(0), ContactMode::kStick);
@@ -61,8 +61,8 @@ TEST(Extremes, SlowBeltsAgreeWithTheReference) {
     const HybridSystem stribeck = belt_chain(Stribeck{0.4, 0.2, 8.0}, Belt::constant(speed));
     for (const std::uint64_t seed : {1u, 2u}) {
       const State start = swinging(10, seed, 1.5);
-      for (const auto& [system, flow] :
-           {std::pair{&coulomb, kExact}, std::pair{&coulomb, kTight}, std::pair{&stribeck, kTight}}) {
+      for (const auto& [system, flow] : {std::pair{&coulomb, kExactExtremes}, std::pair{&coulomb, kTightExtremes},
+                                         std::pair{&stribeck, kTightExtremes}}) {
         const ReferenceGap gap = gap_to_reference(*system, start, 60.0, flow);
         EXPECT_EQ(gap.mismatch, "") << "belt " << speed << " seed " << seed;
         EXPECT_LT(gap.event_time, 1e-9);
@@ -96,10 +96,10 @@ TEST(Extremes, OneAndTwoMassesAgreeWithTheReference) {
     for (const std::uint64_t seed : {1u, 2u, 3u}) {
       const State start = swinging(n, seed, 2.0);
       const ReferenceGap rough =
-          gap_to_reference(belt_chain(Stribeck{0.4, 0.2, 8.0}, Belt::constant(0.2), n), start, 60.0, kTight);
+          gap_to_reference(belt_chain(Stribeck{0.4, 0.2, 8.0}, Belt::constant(0.2), n), start, 60.0, kTightExtremes);
       EXPECT_EQ(rough.mismatch, "");
       EXPECT_LT(rough.event_time, 1e-9);
-      for (const FlowOptions& flow : {kExact, kTight}) {
+      for (const FlowOptions& flow : {kExactExtremes, kTightExtremes}) {
         const ReferenceGap gap =
             gap_to_reference(belt_chain(Coulomb{0.4, 0.2}, Belt::constant(0.2), n), start, 60.0, flow);
         EXPECT_EQ(gap.mismatch, "");
@@ -111,7 +111,7 @@ TEST(Extremes, OneAndTwoMassesAgreeWithTheReference) {
 
 TEST(Extremes, EqualCoefficientsNeverJumpAndAgreeWithTheReference) {
   const State start = swinging(10, 2, 1.5);
-  for (const FlowOptions& flow : {kExact, kTight}) {
+  for (const FlowOptions& flow : {kExactExtremes, kTightExtremes}) {
     const ReferenceGap gap = gap_to_reference(belt_chain(Coulomb{0.3, 0.3}, Belt::constant(0.2)), start, 80.0, flow);
     EXPECT_EQ(gap.mismatch, "");
     EXPECT_LT(gap.event_time, 1e-9);
@@ -124,7 +124,7 @@ TEST(Extremes, AFreeFreeChainUnderLoadMovesItsCentreOfMassAsNewtonSays) {
                             {{unit(3, 1), Coulomb{0.4, 0.2}, 1.5}}, Belt::constant(0.0),
                             Eigen::VectorXd::Constant(3, 0.5));
   const State start = state(Eigen::VectorXd::Zero(3), Eigen::VectorXd::Constant(3, 1.0));
-  for (const FlowOptions& flow : {kExact, kTight}) {
+  for (const FlowOptions& flow : {kExactExtremes, kTightExtremes}) {
     const Trajectory run = simulate(system, start, {.duration = 50.0, .sample = 1.0, .flow = flow});
     EXPECT_TRUE(run.events.empty());
     const Eigen::Vector3d mass(1.0, 2.0, 1.5);
@@ -148,7 +148,7 @@ TEST(Extremes, CriticalNearCriticalAndHeavyDampingFollowTheirClosedForms) {
            (d < 1.0 ? std::cos(root * t) + b * std::sin(root * t) : std::cosh(root * t) + b * std::sinh(root * t));
   };
   const State start = state(Eigen::VectorXd::Constant(1, 1.0), Eigen::VectorXd::Constant(1, -0.3));
-  for (const FlowOptions& flow : {kExact, kTight}) {
+  for (const FlowOptions& flow : {kExactExtremes, kTightExtremes}) {
     for (const double d : {1.0, 1.0 + 1e-5, 1.0 - 1e-5, 0.5, 3.0}) {
       const HybridSystem system = oscillator(1.0, 1.0, 2.0 * d, Coulomb{0.0, 0.0}, 1.0, Belt::constant(9.0));
       const Trajectory run = simulate(system, start, {.duration = 8.0, .sample = 0.5, .flow = flow});
@@ -173,7 +173,7 @@ TEST(Extremes, HeavilyDampedChainsAgreeWithTheReference) {
   for (const double damping : {0.5, 1.0, 10.0}) {
     const State start = swinging(6, 1, 2.0);
     const HybridSystem coulomb = belt_chain(Coulomb{0.4, 0.2}, Belt::constant(0.2), 6, damping);
-    for (const FlowOptions& flow : {kExact, kTight}) {
+    for (const FlowOptions& flow : {kExactExtremes, kTightExtremes}) {
       const ReferenceGap gap = gap_to_reference(coulomb, start, 40.0, flow);
       EXPECT_EQ(gap.mismatch, "") << damping;
       EXPECT_LT(gap.event_time, 1e-9) << damping;
@@ -186,7 +186,7 @@ TEST(Extremes, SymmetricContactsChangeTogetherAndTheMotionStaysSymmetric) {
   const HybridSystem system(fem::chain({.masses = 5, .damping = 0.01, .right_fixed = true}),
                             {{unit(5, 1), Coulomb{0.4, 0.2}, 1.0}, {unit(5, 3), Coulomb{0.4, 0.2}, 1.0}},
                             Belt::constant(0.15));
-  for (const FlowOptions& flow : {kExact, kTight}) {
+  for (const FlowOptions& flow : {kExactExtremes, kTightExtremes}) {
     const Trajectory run = simulate(system, system.rest(), {.duration = 60.0, .sample = 0.1, .flow = flow});
     const auto changes = mode_changes(run.events);
     ASSERT_GE(changes.size(), 8u);

@@ -17,7 +17,7 @@ using friction::Stribeck;
 
 FlowOptions flow_of(FlowMethod method) { return {.method = method, .tolerance = 1e-13}; }
 
-Eigen::VectorXd stacked(const State& s) {
+Eigen::VectorXd coordinates_of(const State& s) {
   Eigen::VectorXd x(2 * s.q.size());
   x << s.q, s.v;
   return x;
@@ -31,7 +31,7 @@ Eigen::MatrixXd by_differences(const HybridSystem& system, const State& start, d
   const auto end_of = [&](Eigen::Index i, double step) {
     State moved = start;
     (i < n ? moved.q[i] : moved.v[i - n]) += step;
-    return stacked(simulate(system, moved, {.duration = duration, .flow = flow_of(method)}).final_state);
+    return coordinates_of(simulate(system, moved, {.duration = duration, .flow = flow_of(method)}).final_state);
   };
   for (Eigen::Index i = 0; i < 2 * n; ++i) {
     result.col(i) = (8.0 * (end_of(i, h) - end_of(i, -h)) - (end_of(i, 2 * h) - end_of(i, -2 * h))) / (12.0 * h);
@@ -46,7 +46,7 @@ void expect_differences(const HybridSystem& system, const State& start, double d
   const Eigen::MatrixXd expected = by_differences(system, start, duration, method);
   EXPECT_LT((tangent.monodromy - expected).cwiseAbs().maxCoeff(), 1e-7 * expected.cwiseAbs().maxCoeff());
   const Trajectory run = simulate(system, start, {.duration = duration, .flow = flow_of(method)});
-  EXPECT_LT((stacked(tangent.end) - stacked(run.final_state)).cwiseAbs().maxCoeff(), 1e-10);
+  EXPECT_LT((coordinates_of(tangent.end) - coordinates_of(run.final_state)).cwiseAbs().maxCoeff(), 1e-10);
 }
 
 TEST(Tangent, WithoutFrictionItIsTheLinearFlow) {

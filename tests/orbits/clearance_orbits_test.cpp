@@ -19,7 +19,7 @@ using dynamics::State;
 using Complex = std::complex<double>;
 
 /// Settled from a displacement for 60 periods.
-PeriodicOrbit settled_orbit(const HybridSystem& system, double x, const ShootingOptions& options = {}) {
+PeriodicOrbit orbit_after_settling(const HybridSystem& system, double x, const ShootingOptions& options = {}) {
   return find_orbit(system, settle_guess(system, displaced(system, 0, x), 60.0), options);
 }
 
@@ -106,7 +106,7 @@ TEST(ClearanceOrbits, Table41OfS0) {
       {"E", 0.4, 0.0, {Complex(-0.0986, 0.0120), Complex(-0.0986, -0.0120)}, 8e-5, 8, true},
       {"F", 0.1, 0.0, {0.0001, 0.0}, 5e-5, 8, true}};
   for (const PrintedOrbit& row : table) {
-    const PeriodicOrbit orbit = settled_orbit(Backlash{.omega = row.omega}.system(), row.start);
+    const PeriodicOrbit orbit = orbit_after_settling(Backlash{.omega = row.omega}.system(), row.start);
     SCOPED_TRACE(row.label);
     expect_multipliers(orbit, row.multipliers, row.tolerance);
     EXPECT_EQ(orbit.crossings, row.crossings);
@@ -124,7 +124,7 @@ TEST(ClearanceOrbits, Table41OfS0) {
 TEST(ClearanceOrbits, AgreeWithAnIndependentIntegrator) {
   // Runge-Kutta with 4,000 steps per period closes on the orbit, and its differences give the fundamental matrix.
   for (const auto& [omega, start] : std::vector<std::pair<double, double>>{{1.4, -2.0}, {0.65, 0.0}, {0.4, 0.0}}) {
-    const PeriodicOrbit orbit = settled_orbit(Backlash{.omega = omega}.system(), start);
+    const PeriodicOrbit orbit = orbit_after_settling(Backlash{.omega = omega}.system(), start);
     const BacklashReference reference{.omega = omega};
     const dynamics::ContactMode mode = orbit.start.modes[0];
     const auto end_of = [&](const Eigen::Vector2d& shift) {
@@ -192,8 +192,8 @@ TEST(ClearanceOrbits, SettledGuessesNeedTenStepsAtMost) {
 
 TEST(ClearanceOrbits, HalfPeriodsGiveTheSameSymmetricOrbit) {
   const HybridSystem system = Backlash{.omega = 0.8}.system();
-  const PeriodicOrbit whole = settled_orbit(system, 0.0);
-  const PeriodicOrbit half = settled_orbit(system, 0.0, {.half_period = true});
+  const PeriodicOrbit whole = orbit_after_settling(system, 0.0);
+  const PeriodicOrbit half = orbit_after_settling(system, 0.0, {.half_period = true});
   EXPECT_LT((stacked(whole.start) - stacked(half.start)).norm(), 1e-10);
   EXPECT_LT((whole.monodromy - half.monodromy).norm(), 1e-10);
   ASSERT_EQ(whole.half_multipliers.size(), 2);
@@ -231,12 +231,13 @@ TEST(ClearanceOrbits, InsideTheWindowOnlyHigherPeriodsAreStable) {
 
 TEST(ClearanceOrbits, AnOrbitPassedTwiceIsSeen) {
   const HybridSystem system = Backlash{.omega = 0.8}.system();
-  EXPECT_EQ(settled_orbit(system, 0.0, {.order = 2}).repeats, 2);
+  EXPECT_EQ(orbit_after_settling(system, 0.0, {.order = 2}).repeats, 2);
 }
 
 TEST(ClearanceOrbits, SingleAndMultipleShootingAgree) {
   const HybridSystem system = Backlash{.omega = 0.65}.system();
-  const PeriodicOrbit single = settled_orbit(system, 0.0), multiple = settled_orbit(system, 0.0, {.segments = 5});
+  const PeriodicOrbit single = orbit_after_settling(system, 0.0),
+                      multiple = orbit_after_settling(system, 0.0, {.segments = 5});
   EXPECT_LT((stacked(single.start) - stacked(multiple.start)).norm(), 1e-9);
   EXPECT_LT((single.monodromy - multiple.monodromy).norm(), 1e-8);
   EXPECT_EQ(single.word, multiple.word);
@@ -244,7 +245,7 @@ TEST(ClearanceOrbits, SingleAndMultipleShootingAgree) {
 
 TEST(ClearanceOrbits, AStartOnAStopIsMovedOffIt) {
   const HybridSystem system = Backlash{.omega = 0.8}.system();
-  const PeriodicOrbit orbit = settled_orbit(system, 0.0);
+  const PeriodicOrbit orbit = orbit_after_settling(system, 0.0);
   const dynamics::Event& contact = orbit.events.front();
   State on_guard = advanced(system, orbit.start, contact.time - orbit.start.time);
   on_guard.modes.clear();
