@@ -72,11 +72,12 @@ double PhaseVolume::slope(int contact, double relative_velocity) const {
   return -slope;
 }
 
-Divergence PhaseVolume::along(const dynamics::State& start, double duration, const dynamics::FlowOptions& flow) const {
+PhaseContraction PhaseVolume::along(const dynamics::State& start, double duration,
+                                    const dynamics::FlowOptions& flow) const {
   constexpr double kStep = 0.2, kAgreement = 1e-7;
   constexpr int kHalvings = 12;
   const Eigen::MatrixXd mobility = mobility_of(start.modes);
-  Divergence out{.viscous = -duration * mobility.cwiseProduct(damping_.transpose()).sum()};
+  PhaseContraction out{.viscous = -duration * mobility.cwiseProduct(damping_.transpose()).sum()};
   std::vector<std::pair<int, double>> sliding;  // contact, its own mobility
   for (int c = 0; c < static_cast<int>(laws_.size()); ++c) {
     const ContactForces& law = laws_[static_cast<std::size_t>(c)];

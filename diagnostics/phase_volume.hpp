@@ -9,12 +9,12 @@
 namespace slipmode::diagnostics {
 
 /// ∫ tr A dt over a stretch of motion, A the linearised field on the space the motion is confined to.
-struct Divergence {
+struct PhaseContraction {
   double viscous = 0.0;  ///< −tr M⁻¹C, on what the sticking contacts leave free, and the stops' dashpots
   double friction = 0.0;  ///< −Σ λ'(s) wᵀM⁻¹w of the contacts that slide: positive where friction falls with speed
 
   [[nodiscard]] double total() const { return viscous + friction; }
-  Divergence& operator+=(const Divergence& more) {
+  PhaseContraction& operator+=(const PhaseContraction& more) {
     viscous += more.viscous;
     friction += more.friction;
     return *this;
@@ -33,8 +33,8 @@ class PhaseVolume {
 
   /// Over a stretch without events [—]. Friction by Simpson's rule, panels halved until two results agree to 1e-7.
   /// @param start  with its modes
-  [[nodiscard]] Divergence along(const dynamics::State& start, double duration,
-                                 const dynamics::FlowOptions& flow) const;
+  [[nodiscard]] PhaseContraction along(const dynamics::State& start, double duration,
+                                       const dynamics::FlowOptions& flow) const;
 
   /// Friction's impulse at a contact that does not stick while `modes` rule: M⁻¹w on T_S, of unit energy, as
   /// (q, q̇) [2n]. The normal, in the energy metric, of the space in which this contact sticks too.

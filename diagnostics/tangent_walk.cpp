@@ -133,7 +133,7 @@ std::optional<Event> TangentWalk::next_event(double within) const {
 }
 
 void TangentWalk::quiet(double duration) {
-  const Divergence part = volume_->along(state_, duration, options_);
+  const PhaseContraction part = volume_->along(state_, duration, options_);
   balance_->viscous += part.viscous;
   balance_->friction += part.friction;
   push(duration);

@@ -14,7 +14,7 @@ namespace {
 /// Natural frequencies below this share of the fastest are rigid-body motion.
 constexpr double kRigid = 1e-8;
 /// Damping counts as diagonal in the regime's modes when the rest is below this share of it.
-constexpr double kProportionalTolerance = 1e-12;
+constexpr double kSymmetric = 1e-12;
 
 /// Rows of a [2m x k] matrix spread to padded pairs [2np x k].
 Eigen::MatrixXd spread(const Eigen::MatrixXd& rows, Eigen::Index np) {
@@ -158,12 +158,12 @@ void RegimeBuilder::make_symmetric_pairs(Regime& out) {
   auto [omega, shapes] = base_modes();
   ModalModel& pairs = out.pairs;
   Eigen::MatrixXd D = shapes.transpose() * (Z_.transpose() * C_ * Z_) * shapes;
-  if ((D - D.transpose()).norm() <= kProportionalTolerance * D.norm()) D = (D + D.transpose()).eval() / 2.0;
+  if ((D - D.transpose()).norm() <= kSymmetric * D.norm()) D = (D + D.transpose()).eval() / 2.0;
   separate_rigid_modes(omega, shapes, D);
   const Eigen::VectorXd diagonal = D.diagonal();
   const bool kept = rayleigh_ && spring_.isZero(0.0) && damper_.isZero(0.0);
   const Eigen::MatrixXd no_rate = Eigen::MatrixXd::Zero(m, m);
-  if (kept || (D - Eigen::MatrixXd(diagonal.asDiagonal())).norm() <= kProportionalTolerance * D.norm()) {
+  if (kept || (D - Eigen::MatrixXd(diagonal.asDiagonal())).norm() <= kSymmetric * D.norm()) {
     pairs.proportional = true;
     pairs.omega = pairs.damping = pairs.g11 = pairs.g12 = pairs.g21 = pairs.g22 = Eigen::VectorXd::Zero(pairs.np);
     pairs.omega.head(m) = omega;
