@@ -39,7 +39,7 @@ const Study& study() {
 }
 
 /// Small enough for a test: no sweep, no timing unless asked.
-ValidationOptions quick() {
+ValidationOptions quick_validation() {
   ValidationOptions options;
   options.horizon_starts = 6;
   options.settle = {.transient = 1000.0, .block = 2000.0, .limit = 10000.0};
@@ -49,7 +49,7 @@ ValidationOptions quick() {
 }
 
 TEST(Validate, GivesATableRowForEveryNumberOfModesAndBasis) {
-  const ValidationReport report = validate(study().full, study().candidates, study().start, quick());
+  const ValidationReport report = validate(study().full, study().candidates, study().start, quick_validation());
   ASSERT_EQ(report.candidates.size(), 2u);
   EXPECT_EQ(report.full.period.motion, Motion::kAperiodic);
   EXPECT_EQ(report.chosen, 6);  // 99 % of the energy, as in S4 table 3.1
@@ -72,7 +72,7 @@ TEST(Validate, GivesATableRowForEveryNumberOfModesAndBasis) {
 }
 
 TEST(Validate, AllModesAreTheFullModel) {
-  ValidationOptions options = quick();
+  ValidationOptions options = quick_validation();
   options.modes = {10};
   options.lyapunov.duration = 20000.0;
   const ValidationReport report = validate(study().full, study().candidates, study().start, options);
@@ -88,7 +88,7 @@ TEST(Validate, AllModesAreTheFullModel) {
 }
 
 TEST(Validate, AllModesHaveTheFullOrbit) {
-  ValidationOptions options = quick();
+  ValidationOptions options = quick_validation();
   options.modes = {10};
   options.orbit_speeds = {0.45};
   options.settle.limit = 40000.0;
@@ -104,7 +104,7 @@ TEST(Validate, AllModesHaveTheFullOrbit) {
 
 TEST(Validate, ChaosIsLostBelowSixModesAndKeptAbove) {
   // Origin: two fixed-step programs found chaos in the reduced models from six modes on; see docs/theory.
-  ValidationOptions options = quick();
+  ValidationOptions options = quick_validation();
   options.modes = {3, 6, 8};
   options.settle.limit = 40000.0;
   options.lyapunov = {.transient = 0.0, .duration = 20000.0};
@@ -125,7 +125,7 @@ TEST(Validate, TriesOtherStartsWhereTheGivenOneLeadsToNoOrbit) {
   const dynamics::HybridSystem full = tests::system_of(o);
   const std::vector<Candidate> all = {
       {"all", rom::user_basis(Eigen::MatrixXd::Identity(1, 1)), Eigen::VectorXd::Ones(1)}};
-  ValidationOptions options = quick();
+  ValidationOptions options = quick_validation();
   options.speed = o.belt;
   options.orbit_speeds = {o.belt};
   options.orbit_starts = 1;
@@ -143,7 +143,7 @@ TEST(Validate, TriesOtherStartsWhereTheGivenOneLeadsToNoOrbit) {
 }
 
 TEST(Validate, ComparesSweepsAndCostAtTheChosenNumberOfModes) {
-  ValidationOptions options = quick();
+  ValidationOptions options = quick_validation();
   options.modes = {10};
   options.chosen = 10;
   options.sweep_values = {0.45, 0.44, 0.43};
@@ -165,7 +165,7 @@ TEST(Validate, ComparesSweepsAndCostAtTheChosenNumberOfModes) {
 }
 
 TEST(Validate, SweepsWaitForTheirOwnLimitAndAuditNothing) {
-  ValidationOptions options = quick();
+  ValidationOptions options = quick_validation();
   options.modes = {6};
   options.sweep_values = {0.2};  // chaos: no limit is ever cut short by a period
   options.sweep_settle = {.transient = 300.0, .block = 700.0, .limit = 700.0, .flow = {.audit = false}};
@@ -180,7 +180,7 @@ TEST(Validate, SweepsWaitForTheirOwnLimitAndAuditNothing) {
 }
 
 TEST(Validate, MeasuresEveryExponentFromTheEndOfItsAttractor) {
-  ValidationOptions options = quick();
+  ValidationOptions options = quick_validation();
   options.modes = {10};
   const ValidationReport report = validate(study().full, study().candidates, study().full.rest(), options);
   ASSERT_TRUE(report.lyapunov.has_value());
@@ -188,7 +188,7 @@ TEST(Validate, MeasuresEveryExponentFromTheEndOfItsAttractor) {
 }
 
 TEST(Validate, GivesTheSameBytesForAnyNumberOfThreads) {
-  ValidationOptions options = quick();
+  ValidationOptions options = quick_validation();
   options.modes = {4, 6};
   options.parallel.threads = 1;
   const ValidationReport one = validate(study().full, study().candidates, study().start, options);
@@ -210,7 +210,7 @@ TEST(Validate, GivesTheSameBytesForAnyNumberOfThreads) {
 TEST(Validate, ABasisTheContactCannotSeeFillsItsRowWithTheReason) {
   Candidate blind{.name = "blind", .basis = study().candidates[0].basis, .captured = Eigen::VectorXd::Ones(1)};
   blind.basis.vectors = Eigen::MatrixXd::Identity(10, 1);  // the first mass alone; the contact is on the tenth
-  ValidationOptions options = quick();
+  ValidationOptions options = quick_validation();
   options.modes = {1};
   options.chosen = 1;
   const ValidationReport report = validate(study().full, {study().candidates[0], blind}, study().start, options);
@@ -223,19 +223,19 @@ TEST(Validate, RefusesWhatItCannotTryAndReportsAnInterrupt) {
   const auto run = [](const std::vector<Candidate>& candidates, const ValidationOptions& options) {
     return validate(study().full, candidates, study().start, options);
   };
-  ValidationOptions options = quick();
+  ValidationOptions options = quick_validation();
   EXPECT_THROW((void)run({}, options), InvalidInput);
   options.modes = {11};
   EXPECT_THROW((void)run(study().candidates, options), InvalidInput);
-  options = quick();
+  options = quick_validation();
   options.horizon = 0.0;
   EXPECT_THROW((void)run(study().candidates, options), InvalidInput);
-  options = quick();
+  options = quick_validation();
   options.orbit_starts = 0;
   EXPECT_THROW((void)run(study().candidates, options), InvalidInput);
   std::vector<Candidate> small = {{"small", rom::lnm_basis(fem::chain({.masses = 3}), 2), Eigen::VectorXd::Ones(2)}};
-  EXPECT_THROW((void)run(small, quick()), InvalidInput);
-  options = quick();
+  EXPECT_THROW((void)run(small, quick_validation()), InvalidInput);
+  options = quick_validation();
   const StopFlag stop = true;
   options.parallel.stop = &stop;
   EXPECT_TRUE(run(study().candidates, options).interrupted);
