@@ -4,6 +4,7 @@
 #include "bench/library_cases.hpp"
 #include "bench/orbit_cases.hpp"
 #include "bench/report.hpp"
+#include "bench/series_cases.hpp"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -38,6 +39,7 @@ std::vector<LibraryCase> library_cases() {
           {"sweep-coulomb", [](bool quick) { return measure_sweep(true, quick); }},
           {"reduction", measure_reduction},
           {"orbit", measure_orbits},
+          {"series", measure_series, true},
           {"pod", measure_pod, true},
           {"beam", measure_beam, true},
           {"beam-sweep-pomf", [](bool quick) { return measure_beam_sweep(0, quick); }, true},
