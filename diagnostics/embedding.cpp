@@ -1,6 +1,7 @@
 #include "diagnostics/embedding.hpp"
 
 #include "core/errors.hpp"
+#include "orbits/close_returns.hpp"
 
 #include <fmt/format.h>
 
@@ -14,12 +15,7 @@ Eigen::MatrixXd delay_vectors(const Series& series, const Embedding& embedding) 
   const Eigen::Index span = embedding.span();
   check_series(series, span + 2,
                fmt::format("embedding in dimension {} at lag {}", embedding.dimension, embedding.lag));
-  const Eigen::Index points = series.values.size() - span;
-  Eigen::MatrixXd vectors(embedding.dimension, points);
-  for (int k = 0; k < embedding.dimension; ++k) {
-    vectors.row(k) = series.values.segment(k * embedding.lag, points).transpose();
-  }
-  return vectors;
+  return orbits::delay_coordinates(series.values, embedding.lag, embedding.dimension);
 }
 
 }  // namespace slipmode::diagnostics

@@ -69,6 +69,7 @@ class Examination {
   double loop() const { return loop_; }
 
   Embedding embedding() const {
+    if (options_.embedding) return *options_.embedding;
     const Eigen::Index lag = delay();
     const auto near = false_neighbours(series_, {.lag = lag,
                                                  .max_dimension = options_.max_dimension,

@@ -8,6 +8,7 @@
 #include "diagnostics/smoothness.hpp"
 #include "diagnostics/surrogates.hpp"
 
+#include <optional>
 #include <string>
 
 namespace slipmode::diagnostics {
@@ -27,6 +28,7 @@ struct VerdictOptions {
   Eigen::Index references = 4000;  ///< points examined by each tool
   /// Largest mean squared difference of the record and itself one period later, over twice its variance.
   double repeat = 1e-5;
+  std::optional<Embedding> embedding = {};  ///< empty: delay by mutual information, dimension by false neighbours
   ParallelOptions run = {};
 };
 
@@ -67,7 +69,7 @@ struct SeriesVerdict {
 ///  5. chaotic       the largest exponent is above three errors by fitted Jacobians, and neighbours diverge in both
 ///                   halves;
 ///  6. else not settled.
-/// Delay by mutual information, dimension by false neighbours. smoothness.doubtful is a warning to be shown with it.
+/// smoothness.doubtful is a warning to be shown with it.
 /// @throws InvalidInput  for fewer than 1,000 samples, or as the tools
 [[nodiscard]] SeriesVerdict series_verdict(const Series& series, const VerdictOptions& options = {});
 
