@@ -14,9 +14,9 @@ namespace slipmode::trade {
 
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 
-const Row* as_it_stands(const Study& study) {
+const Row* row_as_it_stands(const Study& study) {
   const auto found = std::ranges::find(study.rows, Axis::kScene, [](const Row& row) { return row.variant.axis; });
   return found == study.rows.end() ? nullptr : &*found;
 }
@@ -48,7 +48,7 @@ std::string use_text(const Study& study, const Row& row, Measure measure) {
 std::vector<Offer> sound_offers(const Study& study, Measure measure, double limit) {
   std::vector<Offer> offers = study.offers(measure);
   for (std::size_t i = 0; i < offers.size(); ++i) {
-    if (!is_alike(study.rows[i], limit)) offers[i].error = kNone;
+    if (!is_alike(study.rows[i], limit)) offers[i].error = kNotKnown;
   }
   return offers;
 }
@@ -104,13 +104,13 @@ std::string percent_text(double value) {
 }
 
 double speed_up(const Study& study, const Row& row) {
-  const Row* own = as_it_stands(study);
-  return own == nullptr ? kNone : own->cost.cpu / row.cost.cpu;
+  const Row* own = row_as_it_stands(study);
+  return own == nullptr ? kNotKnown : own->cost.cpu / row.cost.cpu;
 }
 
 double break_even(const Study& study, const Row& row, double duration) {
-  const Row* own = as_it_stands(study);
-  if (own == nullptr || !std::isfinite(row.cost.cpu)) return kNone;
+  const Row* own = row_as_it_stands(study);
+  if (own == nullptr || !std::isfinite(row.cost.cpu)) return kNotKnown;
   const double saved = (own->cost.cpu - row.cost.cpu) * duration / row.cost.simulated;
   if (!(saved > 0.0)) return std::numeric_limits<double>::infinity();
   return row.basis_seconds > 0.0 ? (row.basis_seconds + row.cost.setup) / saved : 0.0;

@@ -14,7 +14,7 @@ namespace slipmode::trade {
 
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUnmeasured = std::numeric_limits<double>::quiet_NaN();
 /// Of starts about the scene's own where [ensemble] has none: enough for a chaotic motion to forget.
 constexpr double kSpread = 1e-4;
 
@@ -107,9 +107,9 @@ class Work {
 
   [[nodiscard]] Finished errors_of(const Variant& variant) const {
     Finished out;
-    out.error.fill(kNone);
+    out.error.fill(kUnmeasured);
     out.noise = scatter_;
-    at(out.noise, Measure::kDx) = at(out.noise, Measure::kDe) = kNone;
+    at(out.noise, Measure::kDx) = at(out.noise, Measure::kDe) = kUnmeasured;
     try {
       const Case candidate = build_case(variant, bases_);
       const Motion motion = run_motion(candidate, carried(*model_, candidate, motions_.front().end),

@@ -1,0 +1,148 @@
+// Fronts, choices and sentences: pure arithmetic, on made-up offers.
+
+#include "core/errors.hpp"
+#include "core/random.hpp"
+#include "trade/advice.hpp"
+#include "trade/effects.hpp"
+#include "trade/pareto.hpp"
+
+#include <gtest/gtest.h>
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+namespace slipmode::trade {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+TEST(ParetoFront, HoldsExactlyWhatNothingElseBeats) {
+  // Costs and errors from a coarse grid, so that equal ones occur. The definition itself is what is compared with.
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Random random(seed);
+    std::vector<Offer> offers;
+    for (int i = 0; i < 40; ++i) {
+      offers.push_back({.cost = std::floor(random.uniform(1.0, 12.0)), .error = std::floor(random.uniform(0.0, 12.0))});
+    }
+    std::vector<std::size_t> expected;
+    for (std::size_t i = 0; i < offers.size(); ++i) {
+      const bool beaten = std::ranges::any_of(offers, [&](const Offer& other) {
+        return other.cost <= offers[i].cost && other.error <= offers[i].error &&
+               (other.cost < offers[i].cost || other.error < offers[i].error);
+      });
+      const auto first = std::ranges::find_if(
+          offers, [&](const Offer& other) { return other.cost == offers[i].cost && other.error == offers[i].error; });
+      if (!beaten && first == offers.begin() + static_cast<std::ptrdiff_t>(i)) expected.push_back(i);
+    }
+    std::ranges::sort(expected, {}, [&](std::size_t i) { return offers[i].cost; });
+    EXPECT_EQ(pareto_front(offers), expected) << "seed " << seed;
+  }
+}
+
+TEST(ParetoFront, LeavesOutWhatIsNotKnown) {
+  const std::vector<Offer> offers = {{kNone, 1.0}, {1.0, kNone}, {2.0, 3.0, kNone}, {3.0, 2.0}};
+  EXPECT_EQ(pareto_front(offers), std::vector<std::size_t>{3});
+  EXPECT_TRUE(pareto_front(std::vector<Offer>{}).empty());
+}
+
+TEST(Choices, AnErrorBelowItsNoiseIsOnlyKnownToTheNoise) {
+  // The first is cheap and right by luck: its scatter is above the limit of 1 %.
+  const std::vector<Offer> offers = {{1.0, 0.1, 2.0}, {3.0, 0.8, 0.5}, {4.0, 0.2, 0.1}};
+  EXPECT_EQ(cheapest_within_error(offers, 1.0), 1U);
+  EXPECT_EQ(cheapest_within_error(offers, 2.0), 0U);
+  EXPECT_EQ(cheapest_within_error(offers, 0.3), 2U);
+  EXPECT_FALSE(cheapest_within_error(offers, 0.15).has_value());
+}
+
+TEST(Choices, WithinTheNoiseTheCheaperOfTheAffordableIsTaken) {
+  const std::vector<Offer> offers = {{5.0, 0.01, 0.5}, {2.0, 0.4, 0.5}, {1.0, 7.0, 0.5}};
+  EXPECT_EQ(best_within_budget(offers, 10.0), 1U);
+  EXPECT_EQ(best_within_budget(offers, 1.5), 2U);
+  EXPECT_FALSE(best_within_budget(offers, 0.5).has_value());
+  EXPECT_EQ(cheapest(offers), 2U);
+  EXPECT_EQ(most_accurate(offers), 1U);
+}
+
+/// A row with one error under dE and little under all else.
+Row row(const std::string& name, Axis axis, double cpu, double dE, double spread = 0.1) {
+  Row made;
+  made.variant.name = name;
+  made.variant.axis = axis;
+  made.error = {dE, dE, spread, spread, spread, spread};
+  made.noise.fill(0.05);
+  made.cost = {.wall = cpu, .cpu = cpu, .cpu_low = cpu, .cpu_high = cpu, .setup = 0.5, .simulated = 10.0};
+  return made;
+}
+
+/// 8 s, 2 s and 1 s per 10 units; the last one is 40 % off in the settled motion although its dE is small.
+Study made_study() {
+  Study study;
+  study.rows = {row("scene as it stands", Axis::kScene, 8.0, 0.0), row("6 POM", Axis::kModes, 2.0, 0.4),
+                row("2 POM", Axis::kModes, 1.0, 0.2, 40.0)};
+  study.rows[1].variant.reduction = study.rows[2].variant.reduction = Reduction{};
+  study.rows[1].basis_seconds = 30.0;
+  return study;
+}
+
+TEST(Choices, WhatAgreesByChanceIsNotChosen) {
+  const Study study = made_study();
+  EXPECT_FALSE(is_alike(study.rows[2], 1.0));
+  const Choice choice = choose(study, {.limit = 1.0, .duration = 10.0});
+  EXPECT_EQ(choice.row, 1U);
+  EXPECT_EQ(choice.sentence,
+            "for dE under 1 % use 6 POM: 4 times faster than the scene as it stands (dE 0.4 ± 0.05 %)");
+  EXPECT_EQ(recommendation(study, Measure::kDe, 1.0), choice.sentence);
+}
+
+TEST(Choices, ABudgetCountsSetUpAndTheLengthOfTheRun) {
+  // 20 units: 16.5, 4.5 and 2.5 s.
+  const Study study = made_study();
+  EXPECT_EQ(choose(study, {.budget = 17.0, .duration = 20.0}).row, 0U);
+  EXPECT_EQ(choose(study, {.budget = 16.0, .duration = 20.0}).row, 2U) << "dE alone is asked for: 0.2 % beats 0.4 %";
+  EXPECT_EQ(choose(study, {.limit = 1.0, .budget = 16.0, .duration = 20.0}).row, 1U);
+}
+
+TEST(Choices, WhatCannotBeHadNamesTheNearest) {
+  const auto said = [](const Wish& wish) -> std::string {
+    try {
+      (void)choose(made_study(), wish);
+    } catch (const InvalidInput& refusal) {
+      return refusal.what();
+    }
+    return "";
+  };
+  EXPECT_NE(said({.budget = 1.0, .duration = 20.0}).find("the cheapest that exists: 2 POM, 2.5 s"), std::string::npos);
+  EXPECT_NE(said({.limit = 0.01}).find("the most accurate that exists: scene as it stands"), std::string::npos);
+  EXPECT_NE(said({.limit = 0.5, .budget = 1.0, .duration = 20.0}).find("within a budget of 1 s"), std::string::npos);
+}
+
+TEST(Choices, ABasisIsPaidForByTheTimeSaved) {
+  // 6 s saved per 10 units, so 12 s per run of 20; 30 s for the basis and 0.5 s for the projection.
+  const Study study = made_study();
+  EXPECT_DOUBLE_EQ(break_even(study, study.rows[1], 20.0), 30.5 / 12.0);
+  EXPECT_DOUBLE_EQ(speed_up(study, study.rows[1]), 4.0);
+  EXPECT_EQ(break_even(study, study.rows[0], 20.0), std::numeric_limits<double>::infinity());
+}
+
+TEST(Advice, IsNeededOnlyBeyondLimitAndScatter) {
+  const Effect effect{.name = "tilt", .without = {}};
+  const Row full = row("full", Axis::kScene, 8.0, 0.0);
+  const auto verdict = [&](double spread, double noise) {
+    Row without = row("without", Axis::kEffect, 4.0, 0.1, spread);
+    at(without.noise, Measure::kSpread) = noise;
+    at(without.error, Measure::kPoints) = at(without.error, Measure::kEnergy) = at(without.error, Measure::kStick) =
+        kNone;
+    return advise(effect, full, without, 1.0);
+  };
+  EXPECT_EQ(verdict(5.0, 1.0).verdict, Verdict::kNeeded);
+  EXPECT_EQ(verdict(5.0, 3.0).verdict, Verdict::kUnclear);
+  EXPECT_EQ(verdict(0.5, 3.0).verdict, Verdict::kSpare);
+  EXPECT_EQ(verdict(5.0, 1.0).measure, Measure::kSpread);
+  EXPECT_DOUBLE_EQ(verdict(5.0, 1.0).time_share, 0.5);
+  Row failed = row("without", Axis::kEffect, kNone, kNone);
+  failed.failure = "no convergence";
+  EXPECT_EQ(advise(effect, full, failed, 1.0).verdict, Verdict::kFailed);
+}
+
+}  // namespace
+}  // namespace slipmode::trade
