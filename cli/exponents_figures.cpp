@@ -1,0 +1,163 @@
+#include "cli/exponents_figures.hpp"
+
+#include "cli/exponents_store.hpp"
+#include "cli/figures/exponent_figures.hpp"
+#include "cli/figures/panels.hpp"
+#include "cli/figures/style.hpp"
+#include "scene/table.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace slipmode::cli {
+namespace {
+
+using figures::Figure;
+using figures::to_vector;
+using scene::StoreReader;
+
+constexpr const char* kExponentUnit = "bit per unit of time";
+constexpr std::array<std::string_view, 4> kExponentModelColours = {figures::kFullColour, figures::kPomColour,
+                                                                   figures::kLnmColour, figures::kSecondColour};
+
+std::string_view model_colour(std::size_t model) { return kExponentModelColours[model % kExponentModelColours.size()]; }
+
+/// Groups of models that have exponents.
+std::vector<std::string> exponent_groups(const StoreReader& store) {
+  std::vector<std::string> groups;
+  for (std::size_t i = 0; store.has(fmt::format("{}/{}", kExponentsGroup, i)); ++i) {
+    const std::string group = fmt::format("{}/{}", kExponentsGroup, i);
+    if (store.has(group + "/values")) groups.push_back(group);
+  }
+  return groups;
+}
+
+Eigen::VectorXd bits_of(const std::vector<double>& nats) { return to_vector(nats) / std::numbers::ln2; }
+
+/// As many as the Kaplan-Yorke dimension needs and two more, at least four.
+Eigen::Index leading(const StoreReader& store, const std::string& group) {
+  const double dimension = store.number(group + "/kaplan_yorke");
+  const Eigen::Index needed = std::isfinite(dimension) ? static_cast<Eigen::Index>(std::ceil(dimension)) + 2 : 4;
+  return std::max<Eigen::Index>(needed, 4);
+}
+
+Eigen::Index leading_exponents(const StoreReader& store) {
+  Eigen::Index most = 4;
+  for (const std::string& group : exponent_groups(store)) most = std::max(most, leading(store, group));
+  return most;
+}
+
+Eigen::Index finite_of(const Eigen::VectorXd& values) { return values.array().isFinite().count(); }
+
+Figure exponents_drawn(const StoreReader& store) {
+  std::vector<figures::ExponentSeries> models;
+  for (const std::string& group : exponent_groups(store)) {
+    const scene::Table values = scene::load_table(store, group + "/values");
+    const Eigen::VectorXd bits = bits_of(values.numbers("nats"));
+    const Eigen::Index finite = finite_of(bits);
+    const Eigen::Index lost = store.integer(group + "/lost");
+    models.push_back({.title = lost > 0
+                                   ? fmt::format("{} (and {} of minus infinity)", store.text(group + "/title"), lost)
+                                   : store.text(group + "/title"),
+                      .value = bits.head(finite),
+                      .error = bits_of(values.numbers("error")).head(finite),
+                      .colour = model_colour(models.size())});
+  }
+  return figures::exponent_spectrum(models, leading_exponents(store), kExponentUnit);
+}
+
+Figure convergence_drawn(const StoreReader& store) {
+  const Eigen::Index most = leading_exponents(store);
+  std::vector<figures::ExponentHistory> models;
+  std::string time_unit;
+  for (const std::string& group : exponent_groups(store)) {
+    const Eigen::MatrixXd running = store.columns(group + "/running") / std::numbers::ln2;
+    const Eigen::Index finite = finite_of(running.rightCols(1));
+    models.push_back({.title = store.text(group + "/title"),
+                      .time = store.vector(group + "/time"),
+                      .running = running.topRows(std::min(most, finite))});
+    time_unit = store.entry(group + "/time").meaning.units;
+  }
+  return figures::exponent_convergence(models, kExponentUnit, time_unit);
+}
+
+/// Cumulative distribution of the rates of expansion of the leading directions, interval by interval.
+Figure expansion_drawn(const StoreReader& store) {
+  constexpr Eigen::Index kShownDirections = 3;
+  std::vector<figures::Panel> panels;
+  const std::vector<std::string> groups = exponent_groups(store);
+  for (Eigen::Index i = 0; i < kShownDirections; ++i) {
+    figures::Panel panel{.title = fmt::format("direction {}", i + 1), .series = {}};
+    for (std::size_t m = 0; m < groups.size(); ++m) {
+      const Eigen::MatrixXd rates = store.columns(groups[m] + "/rates") / std::numbers::ln2;
+      if (i >= rates.rows() || !rates.row(i).allFinite()) continue;
+      Eigen::VectorXd sorted = rates.row(i).transpose();
+      std::sort(sorted.begin(), sorted.end());
+      panel.series.push_back({.title = i == 0 ? store.text(groups[m] + "/title") : "",
+                              .x = sorted,
+                              .y = Eigen::VectorXd::LinSpaced(sorted.size(), 0.0, 1.0),
+                              .colour = model_colour(m)});
+    }
+    if (!panel.series.empty()) panels.push_back(std::move(panel));
+  }
+  return figures::panel_grid(panels, {.columns = static_cast<int>(panels.size()),
+                                      .panel_height = 420,
+                                      .x_label = fmt::format("expansion over one interval [{}]", kExponentUnit),
+                                      .y_label = "share of the intervals below"});
+}
+
+Figure exponents_over_key(const StoreReader& store) {
+  std::vector<figures::ExponentSweep> models;
+  std::string label, unit, value_unit;
+  for (const std::string group : {"exponents/full", "exponents/reduced"}) {
+    if (!store.has(group)) continue;
+    const scene::Table values = scene::load_table(store, group + "/values");
+    figures::ExponentSweep model{.title = store.text(group + "/title"),
+                                 .slip_parameter = {},
+                                 .slip_value = {},
+                                 .parameter = to_vector(values.numbers("parameter")),
+                                 .exponents = store.columns(group + "/nats") / std::numbers::ln2,
+                                 .colour = model_colour(models.size())};
+    const std::string slips = std::string("sweep/") + (group == "exponents/full" ? "full" : "reduced") + "/slips";
+    if (store.has(slips)) {
+      const scene::Table table = scene::load_table(store, slips);
+      model.slip_parameter = to_vector(table.numbers("parameter"));
+      model.slip_value = to_vector(table.numbers("displacement"));
+      value_unit = store.entry(slips + "/displacement").meaning.units;
+    }
+    label = store.text(group + "/label");
+    unit = store.entry(group + "/values/parameter").meaning.units;
+    models.push_back(std::move(model));
+  }
+  return figures::exponent_sweep(models, figures::axis_label(label, unit),
+                                 figures::axis_label("displacement as slip begins", value_unit), kExponentUnit);
+}
+
+}  // namespace
+
+std::vector<FileFigure> exponents_figures_of(const StoreReader& store) {
+  if (!store.has(kExponentsGroup)) return {};
+  if (store.has("exponents/full"))
+    return {{"exponents", "exponents against the swept key, below the bifurcation diagram",
+             [&store] { return exponents_over_key(store); }}};
+  if (exponent_groups(store).empty()) return {};
+  return {
+      {"exponents", "Lyapunov exponents with their errors", [&store] { return exponents_drawn(store); }},
+      {"convergence", "exponents against the time measured", [&store] { return convergence_drawn(store); }},
+      {"expansion", "distribution of the expansion over one interval", [&store] { return expansion_drawn(store); }}};
+}
+
+std::vector<std::string> draw_exponents_figures(const StoreReader& store, const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  std::vector<std::string> names;
+  for (const FileFigure& figure : exponents_figures_of(store)) {
+    figures::save(figure.draw(), {folder / (figure.name + ".svg"), folder / (figure.name + ".png")});
+    names.push_back(figure.name);
+  }
+  return names;
+}
+
+}  // namespace slipmode::cli
