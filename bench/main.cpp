@@ -1,6 +1,7 @@
 // Speed and accuracy beside the peers, measured in one process: see bench/README.md.
 #include "bench/beam_cases.hpp"
 #include "bench/cases.hpp"
+#include "bench/extras_cases.hpp"
 #include "bench/library_cases.hpp"
 #include "bench/orbit_cases.hpp"
 #include "bench/report.hpp"
@@ -39,6 +40,7 @@ std::vector<LibraryCase> library_cases() {
           {"sweep-coulomb", [](bool quick) { return measure_sweep(true, quick); }},
           {"reduction", measure_reduction},
           {"orbit", measure_orbits},
+          {"extras", measure_extras},
           {"series", measure_series, true},
           {"pod", measure_pod, true},
           {"beam", measure_beam, true},
