@@ -49,7 +49,6 @@ class Gathered {
     sum_ += q.rowwise().sum();
     for (const double time : piece.statistics.stick_time) stuck_ += time;
     out_.events += piece.statistics.events;
-    out_.regimes += piece.statistics.regimes_built;
     add_points(piece, model_.model.readings.of(q));
     count_ += columns;
   }

@@ -19,7 +19,6 @@ struct Motion {
   double energy = 0.0;
   double stick = 0.0;  ///< share of the time, mean over contacts; NaN where a law does not tell
   std::int64_t events = 0;
-  int regimes = 0;      ///< built during the run
   dynamics::State end;  ///< in the case's own coordinates
 };
 

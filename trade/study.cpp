@@ -67,7 +67,6 @@ class Work {
       along[i] = states_of(*model_, motions_[i].end, schedule_.starts, schedule_.gap, stop());
     }));
     for (const auto& states : along) shared_.insert(shared_.end(), states.begin(), states.end());
-    out_.regimes = motions_.front().regimes;
     out_.reference.error.fill(0.0);
     out_.reference.noise = scatter_ = motion_scatter(motions_);
   }

@@ -51,7 +51,6 @@ struct Study {
   Row reference;          ///< its errors are zero, its noise is that between its own runs
   std::vector<Row> rows;  ///< in the order given, then those of `more`
   Schedule schedule;
-  int regimes = 0;  ///< built by the reference's first run
 
   [[nodiscard]] std::vector<Offer> offers(Measure measure) const;
 };

@@ -17,7 +17,7 @@ namespace {
 using dynamics::FlowMethod;
 
 constexpr std::array kTolerances = {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10};
-constexpr std::array kMeshes = {0.125, 0.25, 0.5, 2.0};
+constexpr std::array kMeshes = {0.125, 0.25, 0.5};
 constexpr std::size_t kMostSizes = 12;
 
 bool can_run_with(const dynamics::HybridSystem& system, FlowMethod method) {
