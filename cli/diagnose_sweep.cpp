@@ -48,17 +48,19 @@ diagnostics::SystemFactory swept_factory(const scene::Scene& scene, const std::s
 }
 
 std::vector<SweptModel> swept_models(const scene::Scene& scene, const Over& over, const ModelRequest& request) {
-  const DiagnoseSubjects subjects = diagnose_subjects(scene, request);
+  if (request.files.size() > 1)
+    throw InvalidInput(fmt::format("--over: expected one file of MODELS at most beside the full model, found {}",
+                                   request.files.size()));
+  // Of a POD, which gives POMs and LNMs, the kind that [reduction] names: it comes first.
+  DiagnoseSubjects subjects = diagnose_subjects(scene, request);
   if (subjects.candidates.size() > 1)
-    throw InvalidInput(fmt::format(
-        "--over: expected one reduced model at most beside the full one, found {}; give a result of 'slipmode reduce'",
-        subjects.candidates.size()));
+    subjects.candidates.erase(subjects.candidates.begin() + 1, subjects.candidates.end());
   std::vector<SweptModel> models = {{.title = fmt::format("full model, {} degrees of freedom", subjects.full.size()),
                                      .role = "full",
                                      .system = swept_factory(scene, over.key, {}),
                                      .start = subjects.start}};
   for (const diagnostics::VerdictCandidate& candidate : subjects.candidates) {
-    models.push_back({.title = "reduced model, " + candidate.name,
+    models.push_back({.title = fmt::format("reduced model, {}", candidate.name),
                       .role = "reduced",
                       .system = swept_factory(scene, over.key, candidate.basis),
                       .start = diagnostics::on_subspace(subjects.full.structure(), candidate.basis, subjects.start)});
@@ -71,7 +73,7 @@ std::vector<SweptModel> swept_models(const scene::Scene& scene, const Over& over
 bool draw_diagram(const Session& session, const scene::Scene& scene, const Over& over, const ModelRequest& request,
                   scene::Journal& journal, int number, SweptModel& model) {
   const diagnostics::SweepSink kept = journal_sink(journal);
-  ProgressLine line("diagram " + model.role, session.progress_mode());
+  ProgressLine line(fmt::format("diagram {}", model.role), session.progress_mode());
   diagnostics::SweepOptions options{
       .mode = request.follow ? diagnostics::SweepMode::kFollow : diagnostics::SweepMode::kIndependent,
       .settle = sweep_settle_options(scene),
@@ -136,7 +138,7 @@ Eigen::MatrixXd exponent_columns(const std::vector<ExponentPoint>& points, Eigen
 
 void store_exponents_over(scene::StoreWriter& writer, const SweptModel& model, const Over& over,
                           const std::vector<ExponentPoint>& points, const SweepAxis& axis, const Units& units) {
-  const std::string group = "exponents/" + model.role;
+  const std::string group = fmt::format("exponents/{}", model.role);
   std::vector<std::string> failure;
   for (const ExponentPoint& point : points) failure.push_back(point.failure);
   writer.describe_group(group, "leading Lyapunov exponents over a key: " + model.title);
@@ -191,7 +193,7 @@ Report diagnose_over(const Session& session, const scene::Scene& scene, const Di
                                        models.over, models.follow ? " --follow" : "", options.exponents,
                                        options.duration, options.interval, swept.back().title);
   std::string identity = fmt::format("{}\n{}\n{}", scene::version(), task, scene::scene_to_toml(scene));
-  for (const std::string& file : models.files) identity += "\n" + file_fingerprint(file);
+  for (const std::string& file : models.files) identity += fmt::format("\n{}", file_fingerprint(file));
   scene::Journal journal(scene::Journal::path_for(request.output), scene::fingerprint(identity));
   const bool belt = scene::build_system(scene).drive().belt() != nullptr;
   for (std::size_t m = 0; belt && m < swept.size(); ++m)
@@ -215,7 +217,7 @@ Report diagnose_over(const Session& session, const scene::Scene& scene, const Di
       if (known[item]) return;
       points[m][i] = measure_at(swept[m], i, over.values[i], options);
       const std::scoped_lock lock(keeping);
-      journal.append(exponent_record("exponents-" + swept[m].role, i, points[m][i]));
+      journal.append(exponent_record(fmt::format("exponents-{}", swept[m].role), i, points[m][i]));
     }));
   }
 
@@ -226,7 +228,7 @@ Report diagnose_over(const Session& session, const scene::Scene& scene, const Di
   scene::StoreWriter writer(request.output);
   scene::save(writer, scene::provenance_of(scene, task));
   for (std::size_t m = 0; m < swept.size(); ++m) {
-    if (belt) store_sweep(writer, "sweep/" + swept[m].role, swept[m].title, axis, units, swept[m].points);
+    if (belt) store_sweep(writer, fmt::format("sweep/{}", swept[m].role), swept[m].title, axis, units, swept[m].points);
     store_exponents_over(writer, swept[m], over, points[m], axis, units);
     Json summary;
     report.text += exponent_summary(swept[m], points[m], summary);

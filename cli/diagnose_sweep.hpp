@@ -5,9 +5,10 @@
 
 namespace slipmode::cli {
 
-/// Leading exponents against one key of the scene, full model and at most one reduced one, beside the bifurcation
-/// diagram where a belt drives. Finished values are journalled: the same command goes on after an interruption.
-/// @throws InvalidInput  without an output file, for more than one reduced model, keys as `slipmode sweep`
+/// Leading exponents against one key of the scene: the full model, and a reduced one of MODELS' first kind of basis,
+/// below the bifurcation diagram where a belt drives. Finished values are journalled: the same command goes on after an
+/// interruption.
+/// @throws InvalidInput  without an output file, for more than one file of models, keys as `slipmode sweep`
 [[nodiscard]] Report diagnose_over(const Session& session, const scene::Scene& scene, const DiagnoseRequest& request,
                                    const ModelRequest& models);
 

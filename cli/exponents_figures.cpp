@@ -105,7 +105,7 @@ Figure expansion_drawn(const StoreReader& store) {
   }
   return figures::panel_grid(panels, {.columns = static_cast<int>(panels.size()),
                                       .panel_height = 420,
-                                      .x_label = fmt::format("expansion over one interval [{}]", kExponentUnit),
+                                      .x_label = "expansion rate [bit/time]",
                                       .y_label = "share of the intervals below"});
 }
 

@@ -64,7 +64,7 @@ Figure exponent_spectrum(const std::vector<ExponentSeries>& models, Eigen::Index
   }
   whole.include(0.0);
   front.include(0.0);
-  figure.command("set multiplot layout 2,1 margins 0.1,0.97,0.09,0.93 spacing 0,0.09");
+  figure.command("set multiplot layout 2,1 margins 0.115,0.97,0.09,0.93 spacing 0,0.09");
   figure.command(kLegendAbove);
   const auto panel = [&](Eigen::Index shown, const ExponentRange& range, bool first) {
     figure.command(fmt::format("set xrange [0.5:{}]", static_cast<double>(shown) + 0.5));
@@ -94,7 +94,7 @@ Figure exponent_convergence(const std::vector<ExponentHistory>& models, const st
       range.include(model.running.row(i).tail(model.running.cols() - settled).transpose());
   }
   range.include(0.0);
-  figure.command(fmt::format("set multiplot layout {},1 margins 0.1,0.97,{:.4f},{:.4f} spacing 0,{:.4f}", count,
+  figure.command(fmt::format("set multiplot layout {},1 margins 0.115,0.97,{:.4f},{:.4f} spacing 0,{:.4f}", count,
                              75.0 / figure.height(), 1.0 - 40.0 / figure.height(), 45.0 / figure.height()));
   figure.command("unset key");
   figure.command(fmt::format("set xrange [0:{:.10g}]", end));
@@ -130,7 +130,7 @@ Figure exponent_sweep(const std::vector<ExponentSweep>& models, const std::strin
   }
   exponents.include(0.0);
   figure.command(fmt::format("set multiplot layout {},{} rowsfirst margins {},0.985,{:.4f},{:.4f} spacing 0.03,0.03",
-                             diagram ? 2 : 1, columns, columns == 1 ? 0.1 : 0.075, 80.0 / figure.height(),
+                             diagram ? 2 : 1, columns, columns == 1 ? 0.12 : 0.09, 80.0 / figure.height(),
                              1.0 - 40.0 / figure.height()));
   figure.command("unset key");
   figure.command("set xrange " + padded_range(x.low, x.high, 0.012));
