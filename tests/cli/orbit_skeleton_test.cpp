@@ -13,12 +13,12 @@ namespace fs = std::filesystem;
 namespace scene = slipmode::scene;
 using testing::HasSubstr;
 
-const std::string kChain = std::string(SLIPMODE_SOURCE_DIR) + "/datasets/chain10/scene.toml";
+const std::string kTenMasses = std::string(SLIPMODE_SOURCE_DIR) + "/datasets/chain10/scene.toml";
 
 /// A search that takes a second.
 std::vector<std::string> short_search(const std::string& file, const std::vector<std::string>& more = {}) {
-  std::vector<std::string> arguments = {"orbit", "skeleton",     kChain, "--duration", "150000", "--max-length",
-                                        "3",     "--per-length", "4",    "-o",         file,     "--json"};
+  std::vector<std::string> arguments = {"orbit", "skeleton",     kTenMasses, "--duration", "150000", "--max-length",
+                                        "3",     "--per-length", "4",        "-o",         file,     "--json"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return arguments;
 }
@@ -62,7 +62,7 @@ TEST_F(OrbitSkeleton, HasTheSameBytesForAnyNumberOfThreads) {
 
 // All ten natural modes are the full model in other coordinates: orbits that were found in either must be in both.
 TEST_F(OrbitSkeleton, OfAModelWithAllModesMissesNothing) {
-  ASSERT_EQ(slipmode_in(folder, {"reduce", kChain, "lnm", "--modes", "10", "-o", "rom.h5"}).exit_code, 0);
+  ASSERT_EQ(slipmode_in(folder, {"reduce", kTenMasses, "lnm", "--modes", "10", "-o", "rom.h5"}).exit_code, 0);
   const Outcome outcome = slipmode_in(folder, short_search("both.h5", {"--compare-with", "rom:rom.h5"}));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json comparison = outcome.json()["comparison"];
@@ -79,7 +79,7 @@ TEST_F(OrbitSkeleton, OfAModelWithAllModesMissesNothing) {
 
 // At belt speed 0.45 the chain settles to T = 45.10211 (reference: checked orbit p1): 90.2 samples of 0.5.
 TEST_F(OrbitSkeleton, ReturnsOfASeriesFindItsPeriod) {
-  ASSERT_EQ(slipmode_in(folder, {"simulate", kChain, "--single", "--set", "drive.speed=0.45", "--set",
+  ASSERT_EQ(slipmode_in(folder, {"simulate", kTenMasses, "--single", "--set", "drive.speed=0.45", "--set",
                                  "time.duration=21000.0", "-o", "run.h5"})
                 .exit_code,
             0);

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 using slipmode::scene::StoreReader;
 using testing::HasSubstr;
 
-const std::string kBeam = SLIPMODE_SOURCE_DIR "/datasets/beam_12hz/scene.toml";
+const std::string kShakenBeam = SLIPMODE_SOURCE_DIR "/datasets/beam_12hz/scene.toml";
 
 /// datasets/beam_12hz with few elements and cycles.
 std::vector<std::string> small(std::vector<std::string> arguments, const std::vector<std::string>& more = {}) {
@@ -52,7 +52,7 @@ class Shaken : public testing::Test {
 };
 
 TEST_F(Shaken, AnEnsembleGivesModalFunctionsAndThoseAReducedModel) {
-  const auto ensemble = json({"simulate", kBeam, "-o", "ensemble.h5"});
+  const auto ensemble = json({"simulate", kShakenBeam, "-o", "ensemble.h5"});
   EXPECT_EQ(ensemble["members"], 2);
   const StoreReader store(path("ensemble.h5"));
   const Eigen::MatrixXd readings = store.columns("sensors/readings");
@@ -66,19 +66,19 @@ TEST_F(Shaken, AnEnsembleGivesModalFunctionsAndThoseAReducedModel) {
     for (const auto& share : row) sum += share.get<double>();
     EXPECT_NEAR(sum, 1.0, 1e-9);
   }
-  const auto reduced = json({"reduce", kBeam, "pod.h5", "--modes", "3", "-o", "rom.h5"});
+  const auto reduced = json({"reduce", kShakenBeam, "pod.h5", "--modes", "3", "-o", "rom.h5"});
   EXPECT_EQ(reduced["modes"], 3);
-  EXPECT_EQ(
-      json({"sweep", kBeam, "--over", "drive.frequency=12:12.4:0.2", "--model", "rom:rom.h5", "-o", "s.h5"})["values"],
-      3);
-  const auto validated = json({"validate", kBeam, "rom.h5", "-o", "validation.h5"});
+  EXPECT_EQ(json({"sweep", kShakenBeam, "--over", "drive.frequency=12:12.4:0.2", "--model", "rom:rom.h5", "-o",
+                  "s.h5"})["values"],
+            3);
+  const auto validated = json({"validate", kShakenBeam, "rom.h5", "-o", "validation.h5"});
   EXPECT_EQ(validated["validation"]["bases"][0]["rows"][0]["modes"], 3);
 }
 
 TEST_F(Shaken, AllNaturalModesAreTheFullModel) {
   // At 30 Hz the tip is held: no chaos hides a difference.
-  ASSERT_EQ(run({"simulate", kBeam, "-o", "ensemble.h5"}).exit_code, 0);
-  const auto found = json({"validate", kBeam, "ensemble.h5", "-o", "validation.h5"},
+  ASSERT_EQ(run({"simulate", kShakenBeam, "-o", "ensemble.h5"}).exit_code, 0);
+  const auto found = json({"validate", kShakenBeam, "ensemble.h5", "-o", "validation.h5"},
                           {"--set", "drive.frequency=30.0", "--set", "validation.bases=[\"lnm\"]"});
   const auto& rows = found["validation"]["bases"][0]["rows"];
   EXPECT_GT(rows[0]["mean_distance"], 1e-2);
@@ -89,7 +89,8 @@ TEST_F(Shaken, AllNaturalModesAreTheFullModel) {
 
 TEST_F(Shaken, ASweepGivesTheSameBytesForAnyNumberOfThreadsAndAfterAKill) {
   const auto sweep = [&](const std::string& file, const std::string& threads) {
-    return small({"sweep", kBeam, "--over", "drive.frequency=8:20:0.1", "-o", file, "--json", "--threads", threads});
+    return small(
+        {"sweep", kShakenBeam, "--over", "drive.frequency=8:20:0.1", "-o", file, "--json", "--threads", threads});
   };
   ASSERT_EQ(slipmode_in(folder, sweep("one.h5", "1")).exit_code, 0);
   SlipmodeProcess process(sweep("two.h5", "2"), folder.path());
@@ -107,7 +108,7 @@ TEST_F(Shaken, ASweepGivesTheSameBytesForAnyNumberOfThreadsAndAfterAKill) {
 }
 
 TEST_F(Shaken, SweepsUpAndDownStandInOneFile) {
-  const auto found = json({"sweep", kBeam, "--over", "drive.frequency=10:11:0.5", "--follow", "--both", "--model",
+  const auto found = json({"sweep", kShakenBeam, "--over", "drive.frequency=10:11:0.5", "--follow", "--both", "--model",
                            "lnm+static:3", "-o", "both.h5"});
   EXPECT_TRUE(found.contains("hysteresis"));
   const StoreReader store(path("both.h5"));
@@ -119,7 +120,7 @@ TEST_F(Shaken, AnyKeyOfTheSceneCanBeSwept) {
   for (const std::string over :
        {"drive.amplitude=0.001:0.003:0.001", "contact.0.mu_s=0.55:0.85:0.15", "contact.0.stiffness=10000:30000:10000",
         "contact.0.normal_load.constant=0.2:0.4:0.1"}) {
-    const auto found = json({"sweep", kBeam, "--over", over, "--model", "lnm:2", "-o", "s.h5"});
+    const auto found = json({"sweep", kShakenBeam, "--over", over, "--model", "lnm:2", "-o", "s.h5"});
     EXPECT_EQ(found["values"], 3) << over;
     EXPECT_EQ(found["failures"].size(), 0U) << over;
   }
@@ -127,7 +128,7 @@ TEST_F(Shaken, AnyKeyOfTheSceneCanBeSwept) {
 
 TEST_F(Shaken, ThePipelineLeavesSummaryValidationAndFigures) {
   const auto summary =
-      json({"run", kBeam, "-o", "out"}, {"--set", "validation.frequencies={from=10.0, to=12.0, step=1.0}"});
+      json({"run", kShakenBeam, "-o", "out"}, {"--set", "validation.frequencies={from=10.0, to=12.0, step=1.0}"});
   ASSERT_EQ(summary["validation"]["bases"].size(), 4U);
   for (const auto& basis : summary["validation"]["bases"]) {
     for (const auto& row : basis["rows"]) EXPECT_FALSE(row.contains("failure")) << basis["basis"] << row;
@@ -145,7 +146,7 @@ TEST_F(Shaken, MistakesAreToldWithTheirRemedy) {
     EXPECT_EQ(outcome.exit_code, 2) << outcome.out;
     EXPECT_THAT(outcome.err, HasSubstr(words));
   };
-  const std::vector<std::string> sweep = {"sweep", kBeam, "--over", "drive.frequency=10:11:0.5", "-o", "s.h5"};
+  const std::vector<std::string> sweep = {"sweep", kShakenBeam, "--over", "drive.frequency=10:11:0.5", "-o", "s.h5"};
   const auto with = [&](const std::vector<std::string>& more) {
     std::vector<std::string> all = sweep;
     all.insert(all.end(), more.begin(), more.end());

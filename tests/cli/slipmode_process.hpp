@@ -1,5 +1,6 @@
 #pragma once
 
+#include "scene/messages.hpp"
 #include "scene/temporary_folder.hpp"
 
 #include <fcntl.h>
@@ -9,9 +10,7 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
-#include <fstream>
 #include <functional>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
@@ -21,12 +20,6 @@
 extern char** environ;  // NOLINT: POSIX names it so
 
 namespace slipmode::tests {
-
-inline std::string bytes_of(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw std::runtime_error("cannot read " + path.string());
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 inline void write_file(const std::filesystem::path& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;

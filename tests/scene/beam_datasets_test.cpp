@@ -21,19 +21,19 @@ using namespace slipmode;
 
 const std::filesystem::path kFolder = std::filesystem::path(SLIPMODE_SOURCE_DIR) / "datasets" / "beam_12hz";
 
-struct Expectation {
+struct BeamExpectation {
   std::vector<double> value, tolerance, frequencies;
 };
 
 /// The measures of the file, each with its origin said.
-std::map<std::string, Expectation> expectations() {
+std::map<std::string, BeamExpectation> expectations() {
   std::ostringstream text;
   text << std::ifstream(kFolder / "expected.toml").rdbuf();
   const scene::TomlDocument document(text.str(), (kFolder / "expected.toml").string(), {});
   scene::TomlReader in(document);
-  std::map<std::string, Expectation> found;
+  std::map<std::string, BeamExpectation> found;
   for (scene::TomlReader& item : in.tables("driven")) {
-    Expectation e;
+    BeamExpectation e;
     e.value = item.numbers_or("value", {}, scene::kFinite);
     e.tolerance = item.numbers_or("tolerance", {}, scene::kPositive);
     e.frequencies = item.numbers_or("frequencies", {}, scene::kPositive);
@@ -53,7 +53,7 @@ diagnostics::DrivenMotion motion_at(const scene::Scene& scene, const fem::Beam& 
 }
 
 TEST(BeamDataset, FrequenciesAreThoseOfTheTranscendentalEquation) {
-  const Expectation e = expectations().at("slipping_hz");
+  const BeamExpectation e = expectations().at("slipping_hz");
   const fem::Beam beam = build_beam(scene::load_scene(kFolder / "scene.toml"));
   const fem::Modes modes = fem::natural_modes(beam.structure(), static_cast<Eigen::Index>(e.value.size()));
   for (std::size_t k = 0; k < e.value.size(); ++k)
@@ -61,7 +61,7 @@ TEST(BeamDataset, FrequenciesAreThoseOfTheTranscendentalEquation) {
 }
 
 TEST(BeamDataset, GaugesSeeTheSharesOfTheExperiment) {
-  const Expectation e = expectations().at("gauge_energy_shares");
+  const BeamExpectation e = expectations().at("gauge_energy_shares");
   scene::Scene scene = scene::load_scene(kFolder / "scene.toml", {"ensemble.members=1"});
   const fem::Beam beam = build_beam(scene);
   const dynamics::HybridSystem system = build_system(scene, beam);
@@ -79,14 +79,14 @@ TEST(BeamDataset, GaugesSeeTheSharesOfTheExperiment) {
 }
 
 TEST(BeamDataset, SticksAndSlipsWhereTheSourceSaysAndBalancesItsEnergy) {
-  const std::map<std::string, Expectation> all = expectations();
+  const std::map<std::string, BeamExpectation> all = expectations();
   const scene::Scene scene = scene::load_scene(kFolder / "scene.toml");
   const fem::Beam beam = build_beam(scene);
   const dynamics::HybridSystem system = build_system(scene, beam);
   for (const std::string label : {"stick", "stick-slip"})
     for (const double frequency : all.at(label + "_at").frequencies)
       EXPECT_EQ(to_string(motion_at(scene, beam, system, frequency).label), label) << frequency << " Hz";
-  const Expectation& audit = all.at("audit");
+  const BeamExpectation& audit = all.at("audit");
   for (const double frequency : audit.frequencies)
     EXPECT_LT(std::abs(motion_at(scene, beam, system, frequency).audit_residual), audit.tolerance.front())
         << frequency << " Hz";

@@ -1,17 +1,16 @@
 #pragma once
 
-#include <gtest/gtest.h>
+#include "scene/messages.hpp"
+
 #include <string>
 
 namespace slipmode::tests {
 
-/// The text with the first `from` replaced.
-inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  if (at == std::string::npos) return text;
-  return text.replace(at, from.size(), to);
-}
+/// The contact and the amplitude curve of kBeamScene, to be replaced.
+inline const std::string kBeamLaw =
+    "law = \"compliant\"\nmu_k = 0.55\nmu_s = 0.748\nstiffness = 20e3\n"
+    "normal_load = { constant = 0.345, slope = -1.54 }\ntilt_deg = 0.312\n";
+inline const std::string kBeamCurve = "{ exponential = { at = 5.0, amplitude = 3.0e-3, decay = 20.0 } }";
 
 /// A shaken beam with a value for every key.
 inline const std::string kBeamScene = R"(title = "beam"

@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "scene/beam_scene.hpp"
+#include "scene/messages.hpp"
 #include "scene/scene.hpp"
 
 #include <gtest/gtest.h>
@@ -12,27 +13,12 @@
 namespace {
 
 using namespace slipmode;
+using slipmode::tests::BadValue;
+using slipmode::tests::error_of;
+using slipmode::tests::expect_parts;
 using tests::kBeamOnBelt;
 using tests::kBeamScene;
 using tests::replaced;
-
-std::string error_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
-  try {
-    (void)scene::parse_scene(text, overrides, "s.toml");
-  } catch (const InvalidInput& error) {
-    return error.what();
-  }
-  return "no InvalidInput";
-}
-
-void expect_parts(const std::string& message, const std::vector<std::string>& parts) {
-  for (const std::string& part : parts) EXPECT_NE(message.find(part), std::string::npos) << part << "\nin: " << message;
-}
-
-struct BadValue {
-  std::string from, to;            ///< change to the text of the scene
-  std::vector<std::string> parts;  ///< of the message
-};
 
 class BadBeam : public testing::TestWithParam<BadValue> {};
 class BadBelt : public testing::TestWithParam<BadValue> {};
@@ -44,11 +30,6 @@ TEST_P(BadBeam, NamesPlaceKeyValueAndRemedy) {
 TEST_P(BadBelt, NamesPlaceKeyValueAndRemedy) {
   expect_parts(error_of(replaced(kBeamOnBelt, GetParam().from, GetParam().to)), GetParam().parts);
 }
-
-const std::string kLaw =
-    "law = \"compliant\"\nmu_k = 0.55\nmu_s = 0.748\nstiffness = 20e3\n"
-    "normal_load = { constant = 0.345, slope = -1.54 }\ntilt_deg = 0.312\n";
-const std::string kCurve = "{ exponential = { at = 5.0, amplitude = 3.0e-3, decay = 20.0 } }";
 
 INSTANTIATE_TEST_SUITE_P(
     Structure, BadBeam,
@@ -101,21 +82,22 @@ INSTANTIATE_TEST_SUITE_P(
         BadValue{"stiffness = 20e3", "", {"contact.0.stiffness: missing key"}},
         BadValue{"mu_s = 0.748", "mu_s = 0.5", {"contact.0.mu_s = 0.5: less than mu_k = 0.55"}},
         BadValue{"\"compliant\"", "\"coulomb\"", {"contact.0.stiffness = 20000: law \"coulomb\" is rigid"}},
-        BadValue{
-            kLaw, "law = \"dahl\"\nmu_s = 0.5\nnormal_load = 1\n", {"contact.0.mu_s = 0.5: law \"dahl\"", "valid: mu"}},
-        BadValue{kLaw,
+        BadValue{tests::kBeamLaw,
+                 "law = \"dahl\"\nmu_s = 0.5\nnormal_load = 1\n",
+                 {"contact.0.mu_s = 0.5: law \"dahl\"", "valid: mu"}},
+        BadValue{tests::kBeamLaw,
                  "law = \"dahl\"\nmu = 0.5\nstiffness = 0\nnormal_load = 1\n",
                  {"contact.0.stiffness = 0", "a number > 0"}},
-        BadValue{kLaw,
+        BadValue{tests::kBeamLaw,
                  "law = \"lugre\"\nmu_s = 0.5\nmu_k = 0.0\nnormal_load = 1\n",
                  {"contact.0.mu_k = 0: impossible value with law \"lugre\"", "a number > 0"}},
-        BadValue{kLaw,
+        BadValue{tests::kBeamLaw,
                  "law = \"lugre\"\nmu_s = 0.5\nmu_k = 0.4\nstribeck_speed = 0\nnormal_load = 1\n",
                  {"contact.0.stribeck_speed = 0", "a number > 0"}},
-        BadValue{kLaw,
+        BadValue{tests::kBeamLaw,
                  "law = \"dahl\"\nmu = 0.5\nstiffness = 1\nnormal_load = 1\ntilt_deg = 1\n",
                  {"contact.0.tilt_deg = 1: does not go with law \"dahl\"", "\"compliant\""}},
-        BadValue{kLaw,
+        BadValue{tests::kBeamLaw,
                  "law = \"dahl\"\nmu = 0.5\nstiffness = 1\nnormal_load = { constant = 1, slope = 2 }\n",
                  {"contact.0.normal_load = a table: does not go with law \"dahl\"", "a number"}},
         BadValue{"constant = 0.345", "constant = -1", {"contact.0.normal_load.constant = -1", "a number > 0"}},
@@ -137,29 +119,32 @@ INSTANTIATE_TEST_SUITE_P(
         BadValue{"kind = \"shaker\"", "kind = \"shakr\"", {"drive.kind = \"shakr\"", "did you mean \"shaker\""}},
         BadValue{"frequency = 12.5", "frequency = 0", {"s.toml:29: drive.frequency = 0", "a number > 0"}},
         BadValue{"phase = 0.25", "speed = 0.2", {"drive.speed = 0.2: belongs to a belt", "frequency and amplitude"}},
-        BadValue{kCurve, "-1e-3", {"drive.amplitude = -0.001", "a number >= 0, or a curve"}},
-        BadValue{kCurve, "{ polynomal = [1] }", {"drive.amplitude.polynomal = [1]: unknown key", "'polynomial'"}},
-        BadValue{kCurve, "{ polynomial = [] }", {"drive.amplitude.polynomial = []", "without coefficients"}},
-        BadValue{kCurve,
+        BadValue{tests::kBeamCurve, "-1e-3", {"drive.amplitude = -0.001", "a number >= 0, or a curve"}},
+        BadValue{
+            tests::kBeamCurve, "{ polynomal = [1] }", {"drive.amplitude.polynomal = [1]: unknown key", "'polynomial'"}},
+        BadValue{tests::kBeamCurve, "{ polynomial = [] }", {"drive.amplitude.polynomial = []", "without coefficients"}},
+        BadValue{tests::kBeamCurve,
                  "{ polynomial = [1], table = [[1, 1], [2, 2]] }",
                  {"drive.amplitude.table", "another curve", "exactly one of"}},
-        BadValue{kCurve, "{ table = [[5, 1e-3]] }", {"drive.amplitude.table = [[5, 0.001]]", "a table of 1 points"}},
-        BadValue{kCurve, "{ table = [[5, 1e-3], [4, 1e-3]] }", {"drive.amplitude.table", "4 Hz after 5 Hz"}},
-        BadValue{kCurve, "{ table = [[5, 1e-3], [6]] }", {"drive.amplitude.table", "[6] is no pair"}},
-        BadValue{kCurve, "{ table = [[5, 1e-3], [6, -1]] }", {"drive.amplitude.table", "a number >= 0"}},
-        BadValue{kCurve,
+        BadValue{tests::kBeamCurve,
+                 "{ table = [[5, 1e-3]] }",
+                 {"drive.amplitude.table = [[5, 0.001]]", "a table of 1 points"}},
+        BadValue{tests::kBeamCurve, "{ table = [[5, 1e-3], [4, 1e-3]] }", {"drive.amplitude.table", "4 Hz after 5 Hz"}},
+        BadValue{tests::kBeamCurve, "{ table = [[5, 1e-3], [6]] }", {"drive.amplitude.table", "[6] is no pair"}},
+        BadValue{tests::kBeamCurve, "{ table = [[5, 1e-3], [6, -1]] }", {"drive.amplitude.table", "a number >= 0"}},
+        BadValue{tests::kBeamCurve,
                  "{ exponential = { at = 5, amplitude = 1, decay = 0 } }",
                  {"drive.amplitude.exponential.decay = 0", "a number > 0"}},
-        BadValue{kCurve,
+        BadValue{tests::kBeamCurve,
                  "{ table = [[5, 1e-3], [12, 1e-3]] }",
                  {"drive.frequency = 12.5", "no value at 12.5 Hz", "from 5 to 12 Hz"}},
-        BadValue{kCurve,
+        BadValue{tests::kBeamCurve,
                  "{ table = [[5, 1e-3], [40, 1e-3]] }",
                  {"ensemble.frequencies = [12, 41.1]", "no value >= 0 at 41.1 Hz"}},
-        BadValue{kCurve,
+        BadValue{tests::kBeamCurve,
                  "{ table = [[5, 1e-3], [50, 1e-3]] }",
                  {"s.toml:52: validation.frequencies", "no value >= 0 everywhere from 5 to 60 Hz"}},
-        BadValue{kCurve,
+        BadValue{tests::kBeamCurve,
                  "{ polynomial = [3e-3, -1.95e-4, 3e-6] }",  // negative between 25 and 40 Hz only
                  {"validation.frequencies", "everywhere from 5 to 60 Hz"}}));
 

@@ -85,10 +85,6 @@ TEST_P(BeamVariants, AreWrittenAndReadBackToTheSameBytes) {
 const std::string kSpan =
     "length = 0.4\nwidth = 0.0128\nthickness = 0.00086\nyoungs_modulus = 128e9\ndensity = 7488\n"
     "elements = 8\n";
-const std::string kLaw =
-    "law = \"compliant\"\nmu_k = 0.55\nmu_s = 0.748\nstiffness = 20e3\n"
-    "normal_load = { constant = 0.345, slope = -1.54 }\ntilt_deg = 0.312\n";
-const std::string kCurve = "{ exponential = { at = 5.0, amplitude = 3.0e-3, decay = 20.0 } }";
 const std::string kTime = "cycles = 20\ntransient_cycles = 4\nsamples_per_cycle = 16\n";
 
 INSTANTIATE_TEST_SUITE_P(
@@ -103,17 +99,18 @@ INSTANTIATE_TEST_SUITE_P(
         Variant{"modal_ratio = 0.01", "ratio = [0.01, 0.02]\nfrequency = [3, 50]", "frequency = [3.0, 50.0]"},
         Variant{"modal_ratio = 0.01", "coefficient = 1e-5", "coefficient = 1e-05\nmass_coefficient = 0.0"},
         Variant{"[structure.damping]\nmodal_ratio = 0.01\n", "", "coefficient = 0.0\nmass_coefficient = 0.0"},
-        Variant{kLaw, "law = \"dahl\"\nmu = 0.5\nstiffness = 1e4\nnormal_load = 0.3\n", "mu = 0.5\nstiffness = 10000"},
-        Variant{kLaw,
+        Variant{tests::kBeamLaw, "law = \"dahl\"\nmu = 0.5\nstiffness = 1e4\nnormal_load = 0.3\n",
+                "mu = 0.5\nstiffness = 10000"},
+        Variant{tests::kBeamLaw,
                 "law = \"lugre\"\nmu_s = 0.5\nmu_k = 0.4\nstribeck_speed = 0.1\nstiffness = 1e4\ndamping = 0.2\n"
                 "viscous = 0.3\nnormal_load = 0.3\n",
                 "stribeck_speed = 0.1\nstiffness = 10000.0\ndamping = 0.2\nviscous = 0.3\n"},
         Variant{"slope = -1.54 }",
                 "oscillator = { mass = 0.02, support_stiffness = 90.0, spring_stiffness = 282.8, slope = -5e-3 } }",
                 "oscillator = { mass = 0.02, support_stiffness = 90.0, support_damping = 0.0, spring_stiffness"},
-        Variant{kCurve, "2e-3", "amplitude = 0.002\n"},
-        Variant{kCurve, "{ polynomial = [1e-3, 2e-5] }", "{ polynomial = [0.001, 2e-05] }"},
-        Variant{kCurve, "{ table = [[5, 3e-3], [60, 1e-3]] }", "{ table = [[5.0, 0.003], [60.0, 0.001]] }"},
+        Variant{tests::kBeamCurve, "2e-3", "amplitude = 0.002\n"},
+        Variant{tests::kBeamCurve, "{ polynomial = [1e-3, 2e-5] }", "{ polynomial = [0.001, 2e-05] }"},
+        Variant{tests::kBeamCurve, "{ table = [[5, 3e-3], [60, 1e-3]] }", "{ table = [[5.0, 0.003], [60.0, 0.001]] }"},
         Variant{kTime, "duration = 3\nsample = 0.01\n", "duration = 3.0\ntransient = 0.0\nsample = 0.01"},
         Variant{"gauge = 0.1\n", "", "kept = 50.0\nmodes = [1, 2]"},
         Variant{"frequencies = { from = 5.0, to = 60.0, step = 0.1 }\n", "", "[validation]\ncycles = 60.0"},
@@ -192,8 +189,9 @@ TEST(BeamScene, KeysOfOtherLawsLoadsCurvesAndDampingsCanBeSet) {
     SCOPED_TRACE(key);
     EXPECT_EQ(get_key(set_key(parse_scene(text), key, value), key), value);
   };
-  sets(replaced(kBeamScene, kCurve, "{ table = [[5, 3e-3], [60, 1e-3]] }"), "drive.amplitude.table.1.1", 2e-3);
-  sets(replaced(kBeamScene, kCurve, "{ polynomial = [1e-3, 2e-5] }"), "drive.amplitude.polynomial.1", 3e-5);
+  sets(replaced(kBeamScene, tests::kBeamCurve, "{ table = [[5, 3e-3], [60, 1e-3]] }"), "drive.amplitude.table.1.1",
+       2e-3);
+  sets(replaced(kBeamScene, tests::kBeamCurve, "{ polynomial = [1e-3, 2e-5] }"), "drive.amplitude.polynomial.1", 3e-5);
   sets(kBeamScene, "drive.amplitude", 2e-3);  // a number takes the curve's place
   sets(kBeamScene, "contact.0.normal_load", 0.5);
   sets(replaced(kBeamScene, "modal_ratio = 0.01", "ratio = [0.01, 0.02]\nfrequency = [3, 50]"),

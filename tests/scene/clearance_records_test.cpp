@@ -15,7 +15,7 @@ namespace {
 using namespace slipmode;
 using tests::TemporaryFolder;
 
-dynamics::HybridSystem back(const dynamics::HybridSystem& system) {
+dynamics::HybridSystem read_back(const dynamics::HybridSystem& system) {
   const TemporaryFolder folder;
   scene::StoreWriter out(folder.path() / "record.h5");
   scene::save(out, "system", system);
@@ -36,7 +36,7 @@ void expect_same_stop(const std::optional<friction::Stop>& a, const std::optiona
   }
 }
 
-void expect_same(const dynamics::HybridSystem& a, const dynamics::HybridSystem& b) {
+void expect_same_system(const dynamics::HybridSystem& a, const dynamics::HybridSystem& b) {
   EXPECT_EQ(fem::to_dense(a.structure().M()), fem::to_dense(b.structure().M()));
   EXPECT_EQ(fem::to_dense(a.structure().C()), fem::to_dense(b.structure().C()));
   EXPECT_EQ(fem::to_dense(a.structure().K()), fem::to_dense(b.structure().K()));
@@ -66,7 +66,7 @@ TEST(ClearanceRecords, ShippedSystemsReadBackToTheSameBits) {
     SCOPED_TRACE(dataset);
     const auto path = std::filesystem::path(SLIPMODE_SOURCE_DIR) / "datasets" / dataset / "scene.toml";
     const dynamics::HybridSystem system = build_system(scene::load_scene(path));
-    expect_same(system, back(system));
+    expect_same_system(system, read_back(system));
   }
 }
 
@@ -79,9 +79,9 @@ TEST(ClearanceRecords, OneSidedStopsAndHarmonicsReadBackWhenReduced) {
                                        {.direction = Eigen::Vector3d(0.0, 0.0, 1.0), .law = right}},
                                       force, Eigen::Vector3d(0.1, 0.0, -1.0 / 3.0),
                                       (Eigen::MatrixXd(3, 2) << 1.0, 0.0, 0.0, 1.0 / 3.0, 0.0, 1.0).finished());
-  expect_same(system, back(system));
+  expect_same_system(system, read_back(system));
   const pod::Basis basis = rom::user_basis(Eigen::MatrixXd{{1.0, 0.0}, {0.5, 1.0}, {1.0, -1.0}});
-  expect_same(rom::reduce(system, basis), back(rom::reduce(system, basis)));
+  expect_same_system(rom::reduce(system, basis), read_back(rom::reduce(system, basis)));
 }
 
 }  // namespace

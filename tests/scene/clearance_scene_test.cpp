@@ -3,6 +3,7 @@
 #include "core/decompositions.hpp"
 #include "core/errors.hpp"
 #include "scene/beam_scene.hpp"
+#include "scene/messages.hpp"
 #include "scene/scene.hpp"
 
 #include <gtest/gtest.h>
@@ -16,6 +17,9 @@ namespace {
 using namespace slipmode;
 using scene::parse_scene;
 using scene::Scene;
+using slipmode::tests::BadValue;
+using slipmode::tests::error_of;
+using slipmode::tests::expect_parts;
 using tests::replaced;
 
 const std::string kPair = R"(title = "two masses"
@@ -59,19 +63,6 @@ samples_per_cycle = 16
 [initial]
 displacement = [0.1, 0.7]
 )";
-
-std::string error_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
-  try {
-    (void)parse_scene(text, overrides, "s.toml");
-  } catch (const InvalidInput& error) {
-    return error.what();
-  }
-  return "no InvalidInput";
-}
-
-void expect_parts(const std::string& message, const std::vector<std::string>& parts) {
-  for (const std::string& part : parts) EXPECT_NE(message.find(part), std::string::npos) << part << "\nin: " << message;
-}
 
 TEST(ClearanceScene, BuildsTheSystemItSays) {
   const dynamics::HybridSystem system = build_system(parse_scene(kPair));
@@ -201,11 +192,6 @@ duration = 10.0
   EXPECT_EQ(build_system(scene).contacts()[0].direction, Eigen::Vector3d(1.0, 0.0, -1.0));
   EXPECT_EQ(to_string(scene.contacts[0].at), "3-1");
 }
-
-struct BadValue {
-  std::string from, to;            ///< change to the text of the scene
-  std::vector<std::string> parts;  ///< of the message
-};
 
 class BadClearance : public testing::TestWithParam<BadValue> {};
 

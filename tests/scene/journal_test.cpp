@@ -1,5 +1,6 @@
 #include "scene/journal.hpp"
 #include "core/errors.hpp"
+#include "scene/messages.hpp"
 #include "scene/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -16,12 +17,8 @@ namespace {
 using namespace slipmode;
 using scene::Journal;
 using scene::JournalRecord;
+using slipmode::tests::bytes_of;
 using slipmode::tests::TemporaryFolder;
-
-std::string bytes_of(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 JournalRecord record_number(int i) {
   return {"full", i, {i + 0.1, std::sqrt(2.0) * i, -0.0}, i % 2 == 0 ? "" : "because\nof \\ this"};

@@ -1,5 +1,6 @@
 #include "scene/records.hpp"
 #include "core/errors.hpp"
+#include "scene/messages.hpp"
 #include "scene/provenance.hpp"
 #include "scene/temporary_folder.hpp"
 
@@ -11,25 +12,14 @@ namespace {
 
 using namespace slipmode;
 using namespace slipmode::scene;
+using slipmode::tests::expect_parts;
+using slipmode::tests::message_of;
 using slipmode::tests::TemporaryFolder;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const InvalidInput& error) {
-    return error.what();
-  }
-  return "no InvalidInput";
-}
-
-void expect_parts(const std::string& message, const std::vector<std::string>& parts) {
-  for (const std::string& part : parts) EXPECT_NE(message.find(part), std::string::npos) << part << "\nin: " << message;
-}
-
 /// Writes one thing into a new file and hands out a reader of it.
-StoreReader stored(const TemporaryFolder& folder, const std::function<void(StoreWriter&)>& write) {
+StoreReader written(const TemporaryFolder& folder, const std::function<void(StoreWriter&)>& write) {
   StoreWriter out(folder.path() / "record.h5");
   write(out);
   out.commit();
@@ -70,7 +60,7 @@ TEST(Records, TrajectoryReadsBackToTheSameBits) {
   run.statistics.stick_time = {0.5, 0.25};
 
   const TemporaryFolder folder;
-  const auto back = load_trajectory(stored(folder, [&](StoreWriter& out) { save(out, "trajectory", run); }));
+  const auto back = load_trajectory(written(folder, [&](StoreWriter& out) { save(out, "trajectory", run); }));
   ASSERT_EQ(back.events.size(), 2U);
   EXPECT_EQ(back.events[0].after, dynamics::ContactMode::kSlipNegative);
   EXPECT_EQ(back.events[1].contact, -1);
@@ -98,7 +88,7 @@ TEST(Records, TrajectoryIsTimeByQuantity) {
   run.q = run.v = Eigen::MatrixXd::Random(3, 4);
   run.audit.exchanged = 1.0;
   const TemporaryFolder folder;
-  const auto in = stored(folder, [&](StoreWriter& out) { save(out, "trajectory", run); });
+  const auto in = written(folder, [&](StoreWriter& out) { save(out, "trajectory", run); });
   EXPECT_EQ(in.entry("trajectory/q").shape, (std::vector<std::int64_t>{4, 3}));
   EXPECT_EQ(in.entry("trajectory/q").meaning.units, "m");
   for (const StoreEntry& entry : in.entries()) EXPECT_FALSE(entry.meaning.description.empty()) << entry.name;
@@ -107,11 +97,11 @@ TEST(Records, TrajectoryIsTimeByQuantity) {
 TEST(Records, EnsembleReadsBackAndMustBeFinite) {
   pod::Ensemble ensemble{Eigen::MatrixXd::Random(3, 10), {0, 4}};
   const TemporaryFolder folder;
-  const auto back = load_ensemble(stored(folder, [&](StoreWriter& out) { save(out, "ensemble", ensemble); }));
+  const auto back = load_ensemble(written(folder, [&](StoreWriter& out) { save(out, "ensemble", ensemble); }));
   EXPECT_EQ(back.snapshots, ensemble.snapshots);
   EXPECT_EQ(back.run_begin, ensemble.run_begin);
   ensemble.snapshots(1, 1) = kNaN;
-  const auto bad = stored(folder, [&](StoreWriter& out) { save(out, "ensemble", ensemble); });
+  const auto bad = written(folder, [&](StoreWriter& out) { save(out, "ensemble", ensemble); });
   expect_parts(message_of([&] { (void)load_ensemble(bad); }),
                {"record.h5", "ensemble/snapshots", "NaN", "make the file"});
 }
@@ -119,7 +109,7 @@ TEST(Records, EnsembleReadsBackAndMustBeFinite) {
 TEST(Records, BasisReadsBackToTheSameBits) {
   const pod::Basis basis = some_basis();
   const TemporaryFolder folder;
-  const auto back = load_basis(stored(folder, [&](StoreWriter& out) { save(out, "basis", basis); }), "basis", 5);
+  const auto back = load_basis(written(folder, [&](StoreWriter& out) { save(out, "basis", basis); }), "basis", 5);
   EXPECT_EQ(back.vectors, basis.vectors);
   EXPECT_EQ(back.mean, basis.mean);
   EXPECT_EQ(back.energy, basis.energy);
@@ -130,7 +120,7 @@ TEST(Records, BasisReadsBackToTheSameBits) {
 TEST(Records, BasisOfVectorsAloneIsTaken) {
   const Eigen::MatrixXd vectors = Eigen::MatrixXd::Random(5, 2);
   const TemporaryFolder folder;
-  const auto back = load_basis(stored(folder, [&](StoreWriter& out) { out.write("basis/vectors", vectors, {}); }));
+  const auto back = load_basis(written(folder, [&](StoreWriter& out) { out.write("basis/vectors", vectors, {}); }));
   EXPECT_EQ(back.vectors, vectors);
   EXPECT_EQ(back.mean, Eigen::VectorXd::Zero(5));
   EXPECT_EQ(back.kind, pod::BasisKind::kUser);
@@ -139,15 +129,15 @@ TEST(Records, BasisOfVectorsAloneIsTaken) {
 TEST(Records, BasisWithNaNOrWrongSizeIsRefused) {
   const TemporaryFolder folder;
   pod::Basis basis = some_basis();
-  const auto good = stored(folder, [&](StoreWriter& out) { save(out, "basis", basis); });
+  const auto good = written(folder, [&](StoreWriter& out) { save(out, "basis", basis); });
   expect_parts(message_of([&] { (void)load_basis(good, "basis", 10); }),
                {"record.h5", "basis/vectors", "expected 10 x any, found 5 x 2", "another scene"});
   basis.vectors(4, 1) = kNaN;
-  const auto bad = stored(folder, [&](StoreWriter& out) { save(out, "basis", basis); });
+  const auto bad = written(folder, [&](StoreWriter& out) { save(out, "basis", basis); });
   expect_parts(message_of([&] { (void)load_basis(bad); }), {"record.h5", "basis/vectors", "NaN", "finite numbers"});
   basis = some_basis();
   basis.vectors = Eigen::MatrixXd::Random(5, 6);
-  const auto wide = stored(folder, [&](StoreWriter& out) { save(out, "basis", basis); });
+  const auto wide = written(folder, [&](StoreWriter& out) { save(out, "basis", basis); });
   expect_parts(message_of([&] { (void)load_basis(wide); }), {"basis/vectors", "6 modes of 5 dofs"});
 }
 
@@ -158,7 +148,7 @@ TEST(Records, PodResultReadsBack) {
   result.shares = Eigen::VectorXd{{0.7, 0.3, 0.0}};
   result.rank = 2;
   const TemporaryFolder folder;
-  const auto back = load_pod(stored(folder, [&](StoreWriter& out) { save(out, "pod", result); }));
+  const auto back = load_pod(written(folder, [&](StoreWriter& out) { save(out, "pod", result); }));
   EXPECT_EQ(back.singular_values, result.singular_values);
   EXPECT_EQ(back.shares, result.shares);
   EXPECT_EQ(back.rank, 2);
@@ -180,7 +170,7 @@ dynamics::HybridSystem chain_system(fem::ChainOptions options = {.masses = 5, .d
           Eigen::VectorXd::LinSpaced(n, -1.0, 1.0)};
 }
 
-void expect_same(const dynamics::HybridSystem& a, const dynamics::HybridSystem& b) {
+void expect_same_chain(const dynamics::HybridSystem& a, const dynamics::HybridSystem& b) {
   EXPECT_EQ(fem::to_dense(a.structure().M()), fem::to_dense(b.structure().M()));
   EXPECT_EQ(fem::to_dense(a.structure().C()), fem::to_dense(b.structure().C()));
   EXPECT_EQ(fem::to_dense(a.structure().K()), fem::to_dense(b.structure().K()));
@@ -202,20 +192,20 @@ void expect_same(const dynamics::HybridSystem& a, const dynamics::HybridSystem& 
 TEST(Records, SystemReadsBackSparseAndDense) {
   const TemporaryFolder folder;
   const auto sparse = chain_system();
-  expect_same(sparse, load_system(stored(folder, [&](StoreWriter& out) { save(out, "system", sparse); })));
+  expect_same_chain(sparse, load_system(written(folder, [&](StoreWriter& out) { save(out, "system", sparse); })));
 
   const fem::Structure& s = sparse.structure();
   const dynamics::HybridSystem dense({fem::to_dense(s.M()), fem::to_dense(s.C()), fem::to_dense(s.K())},
                                      sparse.contacts(), sparse.drive(), sparse.load());
-  const auto back = load_system(stored(folder, [&](StoreWriter& out) { save(out, "system", dense); }));
-  expect_same(dense, back);
+  const auto back = load_system(written(folder, [&](StoreWriter& out) { save(out, "system", dense); }));
+  expect_same_chain(dense, back);
   EXPECT_EQ(std::get<friction::TanhRegularised>(back.contacts()[2].law).epsilon, 1e-4);
   EXPECT_EQ(std::get<friction::Stribeck>(back.contacts()[1].law).alpha, 8.0);
 }
 
 TEST(Records, DamagedSystemNamesTheFile) {
   const TemporaryFolder folder;
-  const auto in = stored(folder, [&](StoreWriter& out) {
+  const auto in = written(folder, [&](StoreWriter& out) {
     out.write("system/units", std::string("SI"), {});
     out.write("system/dof_names", std::vector<std::string>{"x"}, {});
     out.write("system/M", Eigen::MatrixXd(Eigen::MatrixXd::Constant(1, 1, -1.0)), {});  // not positive definite
@@ -233,10 +223,10 @@ TEST(Records, ReducedModelMustFitItsBasis) {
   basis.mean = Eigen::VectorXd::Zero(9);
   basis.energy.resize(0);
   const ReducedModel model{chain_system(), basis};
-  const auto back = load_reduced(stored(folder, [&](StoreWriter& out) { save(out, "reduced", model); }));
+  const auto back = load_reduced(written(folder, [&](StoreWriter& out) { save(out, "reduced", model); }));
   EXPECT_EQ(back.basis.vectors, basis.vectors);
-  expect_same(back.system, model.system);
-  const auto bad = stored(folder, [&](StoreWriter& out) {
+  expect_same_chain(back.system, model.system);
+  const auto bad = written(folder, [&](StoreWriter& out) {
     save(out, "reduced", ReducedModel{chain_system(), some_basis()});
   });
   expect_parts(message_of([&] { (void)load_reduced(bad); }), {"reduced", "5 dofs", "2 modes", "inconsistent"});
@@ -248,7 +238,7 @@ TEST(Provenance, MakesTheSceneAgain) {
   made.seed = ~0ULL;
   made.audit = dynamics::EnergyAudit{.exchanged = 2.0};
   const TemporaryFolder folder;
-  const auto in = stored(folder, [&](StoreWriter& out) { save(out, made); });
+  const auto in = written(folder, [&](StoreWriter& out) { save(out, made); });
   const Provenance back = load_provenance(in);
   EXPECT_EQ(back.scene_text, scene.source.text);
   EXPECT_EQ(back.overrides, (std::vector<std::string>{"drive.speed=0.25"}));

@@ -1,5 +1,6 @@
 #include "scene/scene.hpp"
 #include "core/errors.hpp"
+#include "scene/messages.hpp"
 
 #include <gtest/gtest.h>
 #include <filesystem>
@@ -13,6 +14,11 @@ namespace {
 using namespace slipmode;
 using scene::parse_scene;
 using scene::Scene;
+using slipmode::tests::BadValue;
+using slipmode::tests::error_of;
+using slipmode::tests::expect_parts;
+using slipmode::tests::message_of;
+using slipmode::tests::replaced;
 
 const std::string kChain = R"(title = "test"
 units = "dimensionless"
@@ -33,30 +39,6 @@ speed = 0.2
 [time]
 duration = 100.0
 )";
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return text.replace(at, from.size(), to);
-}
-
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const InvalidInput& error) {
-    return error.what();
-  }
-  return "no InvalidInput";
-}
-
-std::string error_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
-  return message_of([&] { (void)parse_scene(text, overrides, "s.toml"); });
-}
-
-/// The message has file, place, key, value and remedy.
-void expect_parts(const std::string& message, const std::vector<std::string>& parts) {
-  for (const std::string& part : parts) EXPECT_NE(message.find(part), std::string::npos) << part << "\nin: " << message;
-}
 
 TEST(Scene, ReadsEveryValueAndFillsDefaults) {
   const Scene s = parse_scene(kChain);
@@ -197,11 +179,6 @@ TEST(Scene, FolderInsteadOfFileIsNamed) {
 TEST(Scene, BadTomlNamesFileAndLine) {
   expect_parts(error_of("title = \"a\"\nunits = dimensionless\n"), {"s.toml:2:", "not valid TOML"});
 }
-
-struct BadValue {
-  std::string from, to;            ///< change to the text of kChain
-  std::vector<std::string> parts;  ///< of the message
-};
 
 class BadScene : public testing::TestWithParam<BadValue> {};
 

@@ -1,6 +1,7 @@
 #include "scene/store.hpp"
 #include "core/errors.hpp"
 #include "scene/info.hpp"
+#include "scene/messages.hpp"
 #include "scene/provenance.hpp"
 #include "scene/records.hpp"
 #include "scene/table.hpp"
@@ -19,25 +20,10 @@ namespace {
 
 using namespace slipmode;
 using namespace slipmode::scene;
+using slipmode::tests::bytes_of;
+using slipmode::tests::expect_parts;
+using slipmode::tests::message_of;
 using slipmode::tests::TemporaryFolder;
-
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const InvalidInput& error) {
-    return error.what();
-  }
-  return "no InvalidInput";
-}
-
-void expect_parts(const std::string& message, const std::vector<std::string>& parts) {
-  for (const std::string& part : parts) EXPECT_NE(message.find(part), std::string::npos) << part << "\nin: " << message;
-}
-
-std::string bytes_of(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 TEST(Store, EveryTypeReadsBackToTheSameBits) {
   const TemporaryFolder folder;
