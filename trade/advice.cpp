@@ -44,18 +44,34 @@ std::string use_text(const Study& study, const Row& row, Measure measure) {
   return fmt::format("use {}: {} ({})", row.variant.name, speed_text(speed_up(study, row)), error_text(row, measure));
 }
 
-/// Offers of a measure without those that agree by chance.
+/// All modes: the full model in other coordinates.
+bool keeps_all(const Variant& variant) { return variant.reduction && variant.reduction->modes == variant.scene.size(); }
+
+/// Offers of a measure without those that agree by chance, or reduce nothing.
 std::vector<Offer> sound_offers(const Study& study, Measure measure, double limit) {
   std::vector<Offer> offers = study.offers(measure);
   for (std::size_t i = 0; i < offers.size(); ++i) {
-    if (!is_alike(study.rows[i], limit)) offers[i].error = kNotKnown;
+    if (!is_alike(study.rows[i], limit) || keeps_all(study.rows[i].variant)) offers[i].error = kNotKnown;
   }
   return offers;
 }
 
-/// With a budget alone any error may have to do.
+/// The cheapest within a limit; but the scene as it stands, where that will do and the other is hardly faster.
+std::optional<std::size_t> cheapest_worth_it(const Study& study, const std::vector<Offer>& offers, double limit) {
+  constexpr double kHardly = 1.1;
+  const auto picked = cheapest_within_error(offers, limit);
+  if (!picked || !(speed_up(study, study.rows[*picked]) < kHardly)) return picked;
+  for (std::size_t i = 0; i < offers.size(); ++i) {
+    const bool own = study.rows[i].variant.axis == Axis::kScene;
+    if (own && offers[i].known() && offers[i].assured() <= limit) return i;
+  }
+  return picked;
+}
+
+/// With a budget costs are those of one whole run; with a budget alone any error may have to do.
 std::vector<Offer> offers_of_run(const Study& study, const Wish& wish) {
   std::vector<Offer> offers = wish.limit ? sound_offers(study, wish.measure, *wish.limit) : study.offers(wish.measure);
+  if (!wish.budget) return offers;
   for (std::size_t i = 0; i < offers.size(); ++i) offers[i].cost = study.rows[i].cost.of_run(wish.duration);
   return offers;
 }
@@ -121,8 +137,9 @@ Choice choose(const Study& study, const Wish& wish) {
   std::optional<std::size_t> picked;
   std::string asked;
   if (wish.limit) {
-    picked = cheapest_within_error(offers, *wish.limit);
+    picked = cheapest_worth_it(study, offers, *wish.limit);
     if (!picked) refuse_limit(study, wish, offers);
+    if (wish.budget && offers[*picked].cost > *wish.budget) picked = cheapest_within_error(offers, *wish.limit);
     if (wish.budget && offers[*picked].cost > *wish.budget) refuse_budget(study, wish, offers);
     asked = fmt::format("for {} under {} %", to_string(wish.measure), percent_text(*wish.limit));
     if (wish.budget) asked += fmt::format(" within {:.3g} s", *wish.budget);
@@ -158,7 +175,7 @@ std::vector<Variant> worth_combining(const std::vector<Row>& rows, double limit)
     std::map<scene::BasisChoice, const Variant*> smallest;
     for (const Row& row : rows) {
       if (row.variant.axis != Axis::kModes || !keeps(row) || !is_alike(row, limit)) continue;
-      if (row.variant.reduction->modes == row.variant.scene.size()) continue;
+      if (keeps_all(row.variant)) continue;
       const Variant*& known = smallest[row.variant.reduction->basis];
       if (known == nullptr || row.variant.reduction->modes < known->reduction->modes) known = &row.variant;
     }
@@ -170,7 +187,7 @@ std::vector<Variant> worth_combining(const std::vector<Row>& rows, double limit)
 std::string recommendation(const Study& study, Measure measure, double limit) {
   const std::vector<Offer> offers = sound_offers(study, measure, limit);
   const std::string asked = fmt::format("for {} under {} %", to_string(measure), percent_text(limit));
-  if (const auto picked = cheapest_within_error(offers, limit)) {
+  if (const auto picked = cheapest_worth_it(study, offers, limit)) {
     return fmt::format("{} {}", asked, use_text(study, study.rows[*picked], measure));
   }
   const auto best = most_accurate(offers);

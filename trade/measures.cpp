@@ -10,7 +10,7 @@ struct Words {
 
 constexpr std::array<Words, kMeasures> kWords = {
     {{"dX", "deviation of the motion from shared starts, up to the horizon"},
-     {"dE", "deviation of its mean energy there"},
+     {"dE", "deviation of the mean energy from shared starts, up to the horizon"},
      {"points", "distance of slip states or section points (Wasserstein-1), of the reading's rms"},
      {"spread", "distance of the reading's values at all times (Wasserstein-1), of its rms"},
      {"energy", "mean energy of the settled motion"},

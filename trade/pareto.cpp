@@ -33,12 +33,12 @@ std::vector<std::size_t> pareto_front(std::span<const Offer> offers) {
   for (std::size_t i = 0; i < offers.size(); ++i) {
     if (offers[i].known()) order.push_back(i);
   }
-  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return std::tuple(offers[i].cost, offers[i].error); });
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return kByCost(offers[i]); });
   std::vector<std::size_t> front;
   double best = std::numeric_limits<double>::infinity();
   for (const std::size_t i : order) {
-    if (!(offers[i].error < best)) continue;
-    best = offers[i].error;
+    if (!(offers[i].assured() < best)) continue;
+    best = offers[i].assured();
     front.push_back(i);
   }
   return front;

@@ -19,8 +19,8 @@ struct Offer {
   [[nodiscard]] bool known() const;
 };
 
-/// The offers that none other beats: no other one costs no more and errs no more, one of the two less. By ascending
-/// cost; of equal offers the first. Offers that are not known are left out.
+/// The offers that none other beats: no other one costs no more and has no larger assured error, one of the two less.
+/// By ascending cost; of equal offers the first. Offers that are not known are left out.
 [[nodiscard]] std::vector<std::size_t> pareto_front(std::span<const Offer> offers);
 
 /// The cheapest offer that is assured to keep to `limit`; of equally cheap ones the better.

@@ -50,10 +50,10 @@ std::string front_data(Figure& figure, std::vector<ParetoPoint> front, const Lim
     error.push_back(std::max(value, y.low));
   };
   for (std::size_t k = 0; k < front.size(); ++k) {
-    add(front[k].cost, k == 0 ? y.high : front[k - 1].error);
-    add(front[k].cost, front[k].error);
+    add(front[k].cost, k == 0 ? y.high : front[k - 1].assured);
+    add(front[k].cost, front[k].assured);
   }
-  if (!front.empty()) add(x.high, front.back().error);
+  if (!front.empty()) add(x.high, front.back().assured);
   return figure.data({to_vector(cost), to_vector(error)});
 }
 
@@ -65,7 +65,7 @@ void label_front(Figure& figure, const std::vector<ParetoPoint>& front, const Li
   };
   std::vector<std::pair<double, double>> taken;
   for (const ParetoPoint& point : front) {
-    const double height = std::max(point.error, y.low);
+    const double height = std::max(point.assured, y.low);
     const std::pair<double, double> here = {place(point.cost, x), place(height, y)};
     const bool free = std::ranges::none_of(taken, [&](const auto& other) {
       return std::abs(other.first - here.first) < kCloseX && std::abs(other.second - here.second) < kCloseY;
@@ -101,10 +101,10 @@ Figure pareto_diagram(const std::vector<ParetoPoint>& points, const ParetoLabels
   std::ranges::sort(front, {}, &ParetoPoint::cost);
 
   figure.command("set logscale xy; set format y '%g'; set format x '%g'");
-  figure.command("set margins screen 0.09, screen 0.98, screen 0.1, screen 0.83");
+  figure.command("set margins screen 0.115, screen 0.98, screen 0.1, screen 0.83");
   figure.command("set key at screen 0.985,0.925 right top horizontal maxrows 2 width 1");
   figure.command(fmt::format("set xrange {}; set yrange {}", x.text(), y.text()));
-  figure.command(fmt::format("set label 3 \"{}\" at screen 0.09,0.965 left", literal(labels.title)));
+  figure.command(fmt::format("set label 3 \"{}\" at screen 0.115,0.965 left", literal(labels.title)));
   figure.command(fmt::format("set xlabel \"{}\"; set ylabel \"{}\"", labels.cost, labels.error));
   if (labels.noise > y.low) {
     figure.command(
@@ -115,8 +115,9 @@ Figure pareto_diagram(const std::vector<ParetoPoint>& points, const ParetoLabels
   }
   label_front(figure, front, x, y);
 
-  std::string plot = fmt::format("plot {} using 1:2 with lines linewidth 1.2 linecolor rgb '#777777' title 'front'",
-                                 front_data(figure, front, x, y));
+  std::string plot = fmt::format(
+      "plot {} using 1:2 with lines linewidth 1.2 linecolor rgb '#777777' title 'front of errors or their scatter'",
+      front_data(figure, front, x, y));
   const std::vector<std::string> groups = groups_of(points);
   for (std::size_t g = 0; g < groups.size(); ++g) {
     std::vector<double> cost, error;

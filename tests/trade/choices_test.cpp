@@ -39,6 +39,11 @@ TEST(ParetoFront, HoldsExactlyWhatNothingElseBeats) {
   }
 }
 
+TEST(ParetoFront, DoesNotTellErrorsWithinTheirScatterApart) {
+  const std::vector<Offer> offers = {{1.0, 0.4, 0.5}, {2.0, 0.1, 0.5}, {3.0, 0.2, 0.3}};
+  EXPECT_EQ(pareto_front(offers), (std::vector<std::size_t>{0, 2}));
+}
+
 TEST(ParetoFront, LeavesOutWhatIsNotKnown) {
   const std::vector<Offer> offers = {{kNone, 1.0}, {1.0, kNone}, {2.0, 3.0, kNone}, {3.0, 2.0}};
   EXPECT_EQ(pareto_front(offers), std::vector<std::size_t>{3});
@@ -92,6 +97,20 @@ TEST(Choices, WhatAgreesByChanceIsNotChosen) {
   EXPECT_EQ(choice.sentence,
             "for dE under 1 % use 6 POM: 4 times faster than the scene as it stands (dE 0.4 ± 0.05 %)");
   EXPECT_EQ(recommendation(study, Measure::kDe, 1.0), choice.sentence);
+}
+
+TEST(Choices, TheSceneStandsWhereOthersAreHardlyFaster) {
+  Study study = made_study();
+  study.rows[1].cost.cpu = 7.9;
+  EXPECT_EQ(choose(study, {.limit = 1.0, .duration = 10.0}).row, 0U);
+  EXPECT_EQ(choose(study, {.limit = 1.0, .budget = 8.45, .duration = 10.0}).row, 1U) << "8.4 s against 8.5 s";
+}
+
+TEST(Choices, AllModesAreNoReduction) {
+  Study study = made_study();
+  study.rows[1].variant.scene.structure = fem::ChainOptions{.masses = 6};
+  study.rows[1].variant.reduction = Reduction{.basis = scene::BasisChoice::kPom, .modes = 6};
+  EXPECT_EQ(choose(study, {.limit = 1.0, .duration = 10.0}).row, 0U);
 }
 
 TEST(Choices, ABudgetCountsSetUpAndTheLengthOfTheRun) {
