@@ -34,10 +34,11 @@ struct Limits {
   [[nodiscard]] std::string text() const { return fmt::format("[{:.4g}:{:.4g}]", low, high); }
 };
 
+/// All groups, those without a point to draw too: so each keeps its colour in the figures of other measures.
 std::vector<std::string> groups_of(const std::vector<ParetoPoint>& points) {
   std::vector<std::string> groups;
   for (const ParetoPoint& point : points) {
-    if (drawable(point) && std::ranges::find(groups, point.group) == groups.end()) groups.push_back(point.group);
+    if (std::ranges::find(groups, point.group) == groups.end()) groups.push_back(point.group);
   }
   return groups;
 }
@@ -115,9 +116,8 @@ Figure pareto_diagram(const std::vector<ParetoPoint>& points, const ParetoLabels
   }
   label_front(figure, front, x, y);
 
-  std::string plot = fmt::format(
-      "plot {} using 1:2 with lines linewidth 1.2 linecolor rgb '#777777' title 'front of errors or their scatter'",
-      front_data(figure, front, x, y));
+  std::string plot = fmt::format("plot {} using 1:2 with lines linewidth 1.2 linecolor rgb '#777777' title 'front'",
+                                 front_data(figure, front, x, y));
   const std::vector<std::string> groups = groups_of(points);
   for (std::size_t g = 0; g < groups.size(); ++g) {
     std::vector<double> cost, error;
@@ -126,6 +126,7 @@ Figure pareto_diagram(const std::vector<ParetoPoint>& points, const ParetoLabels
       cost.push_back(point.cost);
       error.push_back(std::max(point.error, y.low));
     }
+    if (cost.empty()) continue;
     plot += fmt::format(", {} using 1:2 with points pointtype {} pointsize {} linecolor rgb '{}' title \"{}\"",
                         figure.data({to_vector(cost), to_vector(error)}), kSymbols[g % kSymbols.size()],
                         g == 0 ? 2.0 : 1.1, kColours[g % kColours.size()], literal(groups[g]));
