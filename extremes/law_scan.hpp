@@ -28,12 +28,13 @@ struct ScanFigures {
   void merge(const ScanFigures& other);
 };
 
-/// Limits for ScanFigures. Simpson's rule over samples 1/25 of the fastest rate apart leaves some 1e-7 of the motion,
-/// extrapolation over three samples some 1e-4 of a guard; the rest is rounding and the flow's tolerance of 1e-9.
+/// Limits for ScanFigures. Simpson's rule over samples 1/25 of the fastest rate apart leaves up to 1e-4 of the motion
+/// where a law is steep, extrapolation over three samples some 1e-4 of a guard; the rest is rounding and the flow's
+/// tolerance of 1e-9.
 struct ScanLimits {
   double guard = 1e-8;
   double law = 1e-7;
-  double motion = 1e-5;
+  double motion = 1e-3;
   double spurious = 1e-2;
 };
 

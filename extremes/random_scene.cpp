@@ -252,8 +252,10 @@ class SceneWriter {
     const double damping = chance(0.3) ? 0.0 : uniform(0.05, 1.0) * stiffness_ / rate_;
     line("law = \"clearance\"\nloss = \"{}\"", chance(0.5) ? "gap" : "zero-force");
     const auto stop = [&](const std::string& name) {
+      const bool closed = chance(0.1);
+      closed_ = closed_ || closed;
       fill(name + " = { stiffness = #, damping = #, gap = # }",
-           {stiffness_ * scatter(1.0, 100.0), damping, chance(0.1) ? 0.0 : size_ * uniform(0.05, 0.8)});
+           {stiffness_ * scatter(1.0, 100.0), damping, closed ? 0.0 : size_ * uniform(0.05, 0.8)});
     };
     const int sides = integer(0, 3);
     if (sides != 1) stop("left");
@@ -330,7 +332,7 @@ class SceneWriter {
 
   void start() {
     const double kind = uniform(0.0, 1.0);
-    if (kind < 0.15) return;
+    if (kind < 0.15 && !closed_) return;  // at rest just on a stop rounding decides
     const double size = size_ * uniform(0.0, 2.0);
     std::vector<double> q, v;
     const double bend = uniform(-size, size), swing = uniform(-size, size) * rate_;
@@ -354,7 +356,7 @@ class SceneWriter {
   Random random_;
   std::string text_;
   int dofs_ = 1;
-  bool beam_ = false, linear_ = false;
+  bool beam_ = false, linear_ = false, closed_ = false;
   std::vector<int> places_;
   double length_ = 1.0;
   /// Typical spring, rate and displacement; and the counterpart's speed at the start.

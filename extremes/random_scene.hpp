@@ -18,7 +18,7 @@ namespace slipmode::extremes {
 ///   clearance of both rules; constant, affine or vibrating normal loads; tilt) or laws at constant load in any mixture
 ///   (Coulomb, Stribeck, tanh, Dahl, LuGre);
 /// - drive: a belt (at rest, constant, ramp), a shaker, a force of up to three harmonics (piecewise-linear laws);
-/// - start: rest, random, or every contact exactly on its guard (sliding speed zero).
+/// - start: rest (but for stops without a gap), random, or contacts exactly on their guard (sliding speed zero).
 [[nodiscard]] std::string random_scene_text(std::uint64_t seed, std::uint64_t index);
 
 }  // namespace slipmode::extremes

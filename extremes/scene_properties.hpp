@@ -13,10 +13,11 @@ namespace slipmode::extremes {
 struct SceneCheck {
   std::uint64_t index = 0;
   ScanFigures scan;
-  double energy = 0.0;       ///< |residual| of the energy audit
-  double restart = 0.0;      ///< distance at the end between the run and one taken up at an event, mode and all
-  double reduction = 0.0;    ///< distance at the end between full and all-modes reduced model, as a share of sizes
-  bool refused = false;      ///< reported as beyond the method (undamped resonance), with a message that says so
+  double energy = 0.0;     ///< |residual| of the energy audit
+  double restart = 0.0;    ///< distance at the end between the run and one taken up at an event, mode and all
+  double reduction = 0.0;  ///< distance at the end between full and all-modes reduced model, as a share of sizes
+  bool refused = false;  ///< reported as beyond the method (undamped resonance, pairs that lose digits), with a message
+  bool still = false;    ///< nothing moved: not judged
   std::uint64_t digest = 0;  ///< of final state and event times
   std::vector<Violation> violations;
 };
@@ -32,7 +33,7 @@ struct SceneCheck {
 
 /// Many scenes together.
 struct SceneSurvey {
-  std::int64_t scenes = 0, refused = 0;
+  std::int64_t scenes = 0, refused = 0, still = 0;
   ScanFigures scan;
   double energy = 0.0, restart = 0.0, reduction = 0.0;  ///< largest
   std::uint64_t digest = 0;                             ///< of all scenes' digests in order: the same for any threads

@@ -14,6 +14,8 @@ namespace {
 constexpr double kTie = 1e-9;
 // Relative to max K_ii/M_ii: larger eigenvalues need no second look.
 constexpr double kSuspiciouslySmall = 1e-8;
+// Relative to the same: a λ below minus that is no rounding.
+constexpr double kIndefinite = 1e-13;
 
 double stiffness_to_mass(const Structure& structure) {
   const auto diagonal = [](const auto& m) { return Eigen::VectorXd(m.diagonal()); };
@@ -31,10 +33,12 @@ double quotient_of_impurity(const Eigen::VectorXd& values, double largest) {
 }
 
 // λ of a shape whose computed λ is so small that the eigensolver's own rounding may hide it.
-double reconsider(const Structure& structure, double lambda, const Eigen::VectorXd& shape, double impurity) {
+double reconsider(const Structure& structure, double lambda, const Eigen::VectorXd& shape, double impurity,
+                  double largest) {
   const double quotient = shape.dot(multiply(structure.K(), shape).col(0));
   const double rounding = rounding_of_quotient(structure.K(), shape) + impurity;
-  if (quotient < -rounding) {
+  // Of a projected K the terms themselves have been rounded, at the size of what cancelled in them.
+  if (quotient < -std::max(rounding, kIndefinite * largest)) {
     throw InvalidInput(
         fmt::format("natural modes: K is not positive semi-definite, a shape has φᵀKφ = {:.3g}; check "
                     "the signs of the stiffness matrix",
@@ -66,7 +70,7 @@ void fix_signs(Eigen::MatrixXd& shapes) {
 Modes conventional_modes(const Structure& structure, EigenPairs pairs) {
   const double largest = stiffness_to_mass(structure), impurity = quotient_of_impurity(pairs.values, largest);
   for (Eigen::Index k = 0; k < pairs.values.size() && pairs.values(k) <= kSuspiciouslySmall * largest; ++k) {
-    pairs.values(k) = reconsider(structure, pairs.values(k), pairs.vectors.col(k), impurity);
+    pairs.values(k) = reconsider(structure, pairs.values(k), pairs.vectors.col(k), impurity, largest);
   }
   fix_signs(pairs.vectors);
   return {pairs.values.cwiseSqrt(), std::move(pairs.vectors)};
