@@ -1,5 +1,6 @@
 #include "cli/file_figures.hpp"
 
+#include "cli/exponents_figures.hpp"
 #include "cli/figures/bifurcation.hpp"
 #include "cli/figures/deviation.hpp"
 #include "cli/figures/energy_shares.hpp"
@@ -11,6 +12,7 @@
 #include "cli/map_figures.hpp"
 #include "cli/orbit_figures.hpp"
 #include "cli/portraits.hpp"
+#include "cli/series_figures.hpp"
 #include "cli/shaken_figures.hpp"
 #include "cli/shaken_model.hpp"
 #include "cli/skeleton_figures.hpp"
@@ -242,6 +244,8 @@ std::vector<FileFigure> belt_figures_of(const StoreReader& store) {
 std::vector<FileFigure> figures_of(const StoreReader& store) {
   if (std::vector<FileFigure> maps = map_figures_of(store); !maps.empty()) return maps;
   if (std::vector<FileFigure> skeletons = skeleton_figures_of(store); !skeletons.empty()) return skeletons;
+  if (std::vector<FileFigure> series = series_figures_of(store); !series.empty()) return series;
+  if (std::vector<FileFigure> exponents = exponents_figures_of(store); !exponents.empty()) return exponents;
   if (std::vector<FileFigure> fronts = trade_figures_of(store); !fronts.empty()) return fronts;
   std::vector<FileFigure> orbits = orbit_figures_of(store);
   if (!orbits.empty()) {

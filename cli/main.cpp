@@ -123,6 +123,7 @@ int run_main(int argc, char** argv) {
       "Help on a verb: slipmode VERB --help");
   std::vector<Verb> verbs = {add_run(app),   add_modes(app),    add_simulate(app), add_pod(app), add_reduce(app),
                              add_sweep(app), add_validate(app), add_plot(app),     add_info(app)};
+  verbs.push_back(add_diagnose(app));
   verbs.push_back(add_trade(app));
   verbs.push_back(add_advise(app));
   std::ranges::move(add_orbit(app), std::back_inserter(verbs));

@@ -1,0 +1,236 @@
+#include "cli/diagnose.hpp"
+
+#include "cli/diagnose_model.hpp"
+#include "cli/figures/gnuplot.hpp"
+#include "cli/series_figures.hpp"
+#include "cli/series_findings.hpp"
+#include "cli/series_input.hpp"
+#include "cli/series_store.hpp"
+#include "cli/verbs.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <algorithm>
+#include <filesystem>
+
+namespace slipmode::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct DiagnoseArguments {
+  DiagnoseRequest request;
+  SeriesRequest series;
+  diagnostics::StudyOptions study;
+  std::vector<std::string> tools;
+  std::optional<double> strobe;
+  std::string unit = "bits";
+};
+
+std::vector<diagnostics::SeriesTool> tools_of(const std::vector<std::string>& words) {
+  std::vector<diagnostics::SeriesTool> tools;
+  for (const std::string& word : words) {
+    const auto found = std::ranges::find(diagnostics::kSeriesTools, word,
+                                         [](auto tool) { return std::string(diagnostics::to_string(tool)); });
+    if (found == diagnostics::kSeriesTools.end()) {
+      std::vector<std::string> names;
+      for (const auto tool : diagnostics::kSeriesTools) names.emplace_back(diagnostics::to_string(tool));
+      throw InvalidInput(fmt::format("--tools {}: no such tool; valid: {}", word, fmt::join(names, ", ")));
+    }
+    tools.push_back(*found);
+  }
+  return tools;
+}
+
+/// What makes the numbers doubtful, and what to use instead.
+std::vector<std::string> warnings_of(const diagnostics::SeriesStudy& study, const SeriesInput& input) {
+  if (!study.smoothness || !study.smoothness->doubtful) return {};
+  std::string text = fmt::format(
+      "the record is not smooth: {:.3g} % of it in flat stretches, {:.2g} kinks per mean period, as stick and slip "
+      "make; "
+      "embedding and all that builds on it are doubtful.",
+      100.0 * study.smoothness->flat_share, study.smoothness->kinks_per_period);
+  text += input.smoother.empty() ? " Take a channel far from the contacts, a velocity rather than a force"
+                                 : fmt::format(" Take the channel farthest from the contacts: {}", input.smoother);
+  return {text};
+}
+
+/// The file figures are drawn from: the one asked for, or one in their folder.
+std::string diagnosis_file(const DiagnoseRequest& request) {
+  if (!request.output.empty() || request.figures.empty()) return request.output;
+  return (fs::path(request.figures) / "diagnosis.h5").string();
+}
+
+Report diagnosis_report(const diagnostics::SeriesStudy& study, const SeriesInput& input,
+                        const DiagnoseArguments& arguments) {
+  const std::vector<Finding> findings = findings_of(study, arguments.request.bits);
+  const std::vector<std::string> warnings = warnings_of(study, input);
+  Report report;
+  report.data = {{"verb", "diagnose"}, {"series", study.series.name}, {"what", input.what}};
+  report.text = fmt::format("{}: {}\n", study.series.name, input.what);
+  if (study.verdict) {
+    report.data["verdict"] = diagnostics::to_string(study.verdict->motion);
+    report.data["reason"] = study.verdict->reason;
+    report.text +=
+        fmt::format("Verdict: {}: {}\n", diagnostics::to_string(study.verdict->motion), study.verdict->reason);
+  }
+  report.data["findings"] = findings_json(findings);
+  report.data["warnings"] = warnings;
+  report.text += findings_text(findings);
+  for (const std::string& warning : warnings) report.text += fmt::format("Warning: {}\n", warning);
+  Json not_run = Json::array();
+  for (const diagnostics::ToolFailure& failure : study.failures) {
+    not_run.push_back({{"tool", diagnostics::to_string(failure.tool)}, {"reason", failure.reason}});
+    report.text += fmt::format("No {}: {}\n", diagnostics::to_string(failure.tool), failure.reason);
+  }
+  report.data["not_run"] = not_run;
+  const std::string file = diagnosis_file(arguments.request);
+  if (file.empty()) return report;
+  scene::StoreWriter writer(file);
+  save(writer, study, input, findings);
+  writer.commit();
+  report.data["file"] = file;
+  report.text += fmt::format("Numbers and curves: {}\n", file);
+  if (arguments.request.figures.empty()) return report;
+  report.data["figures"] = draw_series_figures(scene::StoreReader(file), arguments.request.figures);
+  report.text += fmt::format("Figures: {}\n", arguments.request.figures);
+  return report;
+}
+
+Report diagnose_series(const Session& session, DiagnoseArguments arguments) {
+  arguments.series.input = arguments.request.input;
+  arguments.study.tools = tools_of(arguments.tools);
+  if (!arguments.request.output.empty()) require_writable(arguments.request.output);
+  if (!arguments.request.figures.empty()) {
+    figures::require_gnuplot();
+    fs::create_directories(arguments.request.figures);
+    require_writable(fs::path(arguments.request.figures) / "diagnosis.h5");
+  }
+  const SeriesInput input = read_series(arguments.series);
+  arguments.study.strobe = arguments.strobe.value_or(input.drive_period);
+  if (session.seed) arguments.study.seed = *session.seed;
+  ProgressLine line("diagnose", session.progress_mode());
+  arguments.study.run = session.parallel(line);
+  return diagnosis_report(diagnostics::study_series(input.series, arguments.study), input, arguments);
+}
+
+void add_record_options(CLI::App& command, DiagnoseArguments& arguments) {
+  constexpr const char* kGroup = "Record";
+  command.add_option("--time", arguments.series.time, "column or dataset with the instants, when not called time")
+      ->group(kGroup);
+  command
+      .add_option("--interval", arguments.series.interval, "between samples, for a file without instants; 1 for a map")
+      ->check(CLI::PositiveNumber)
+      ->group(kGroup);
+  command.add_option("--from", arguments.series.from, "leaves out what is earlier")->group(kGroup);
+  command.add_option("--to", arguments.series.to, "leaves out what is later")->group(kGroup);
+  command.add_option("--every", arguments.series.every, "keeps every so many-th sample")
+      ->check(CLI::PositiveNumber)
+      ->group(kGroup);
+  command.add_option("--member", arguments.series.member, "of an ensemble, from 1")
+      ->check(CLI::PositiveNumber)
+      ->group(kGroup);
+}
+
+void add_tool_options(CLI::App& command, DiagnoseArguments& arguments) {
+  constexpr const char* kGroup = "Tools";
+  diagnostics::StudyOptions& study = arguments.study;
+  command.add_option("--tools", arguments.tools, "only these, e.g. information,wolf; all without")
+      ->delimiter(',')
+      ->group(kGroup);
+  command.add_option("--unit", arguments.unit, "of exponents and information: bits or nats")
+      ->check(CLI::IsMember({"bits", "nats"}))
+      ->group(kGroup);
+  command.add_option("--delay", study.delay, "of the embedding [samples]; else by mutual information")
+      ->check(CLI::PositiveNumber)
+      ->group(kGroup);
+  command.add_option("--dimension", study.dimension, "of the embedding; else by false neighbours")
+      ->check(CLI::Range(1, 100))
+      ->group(kGroup);
+  command.add_option("--window", study.window, "neighbours nearer in time are left out [samples]; else found")
+      ->check(CLI::PositiveNumber)
+      ->group(kGroup);
+  command.add_option("--bins", study.bins, "of equal width for mutual information, e.g. 5,10,20")
+      ->delimiter(',')
+      ->check(CLI::Range(2, 1000))
+      ->group(kGroup);
+  command.add_option("--max-dimension", study.max_dimension, "up to which false neighbours are counted")
+      ->check(CLI::Range(1, 50))
+      ->group(kGroup);
+  command.add_option("--ratio", study.ratio, "first criterion for a false neighbour; 3.162 is S4's")
+      ->check(CLI::PositiveNumber)
+      ->group(kGroup);
+  command.add_option("--size", study.size, "second criterion [standard deviations]")
+      ->check(CLI::PositiveNumber)
+      ->group(kGroup);
+  command.add_option("--accepted", study.accepted, "share of false neighbours at which a dimension is enough")
+      ->check(CLI::Range(0.0, 1.0))
+      ->group(kGroup);
+  command.add_option("--evolution", study.evolution, "samples Wolf's pairs are followed; else about a loop")
+      ->check(CLI::PositiveNumber)
+      ->group(kGroup);
+  command.add_option("--angle", study.angle, "Wolf's replacements turn no more than this [rad]")
+      ->check(CLI::PositiveNumber)
+      ->group(kGroup);
+  command.add_option("--rate", study.rate, "share of pairs that recur in the recurrence plot")
+      ->check(CLI::Range(1e-6, 0.999))
+      ->group(kGroup);
+  command
+      .add_option("--strobe", arguments.strobe,
+                  "time between section points; else the drive's period, without a drive upward through the mean (0)")
+      ->check(CLI::NonNegativeNumber)
+      ->group(kGroup);
+  command.add_option("--references", study.references, "points each tool examines")
+      ->check(CLI::Range(100, 100000000))
+      ->group(kGroup);
+  command.add_option("--surrogates", study.surrogates, "records of the same spectrum to compare with, 19 or more")
+      ->check(CLI::Range(19, 100000))
+      ->group(kGroup);
+}
+
+/// Options that only a model has: those the verb got from `begin` up to `end`.
+struct ModelOptions {
+  std::size_t begin, end;
+};
+
+void refuse_model_options(const CLI::App& command, const ModelOptions& of_models) {
+  const auto options = command.get_options();
+  for (std::size_t k = of_models.begin; k < of_models.end; ++k) {
+    if (options[k]->count() == 0) continue;
+    throw InvalidInput(fmt::format("{}: for models only; INPUT is then a scene (.toml)", options[k]->get_name()));
+  }
+}
+
+}  // namespace
+
+Verb add_diagnose(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "diagnose", "what a record or a model is: periodic, quasi-periodic, chaotic; exponents, dimensions");
+  const auto arguments = std::make_shared<DiagnoseArguments>();
+  command
+      ->add_option("INPUT", arguments->request.input,
+                   "a record: FILE or FILE:SERIES, a result file (HDF5) or CSV with a header; or a scene (.toml)")
+      ->required();
+  command->add_option("-o,--output", arguments->request.output, "also store numbers and curves (HDF5)");
+  command->add_option("--figures", arguments->request.figures, "folder for all figures, svg and png");
+  add_record_options(*command, *arguments);
+  add_tool_options(*command, *arguments);
+  command->footer(
+      "Example:\n  slipmode diagnose run.h5                    # the velocity farthest from the contacts\n"
+      "  slipmode diagnose run.h5:v/3 --unit nats -o v3.h5 --figures v3\n"
+      "  slipmode diagnose lorenz.csv:x --to 500 --tools information,false-neighbours\n"
+      "  slipmode diagnose henon.csv --interval 1");
+  const std::size_t begin = command->get_options().size();
+  const ModelDiagnosis diagnose_model = add_model_diagnosis(*command);
+  const ModelOptions of_models{begin, command->get_options().size()};
+  return {command, [command, arguments, of_models, diagnose_model](const Session& session) {
+            arguments->request.bits = arguments->unit == "bits";
+            if (fs::path(arguments->request.input).extension() == ".toml") {
+              return diagnose_model(session, arguments->request);
+            }
+            refuse_model_options(*command, of_models);
+            return diagnose_series(session, *arguments);
+          }};
+}
+
+}  // namespace slipmode::cli

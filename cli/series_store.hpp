@@ -1,0 +1,24 @@
+#pragma once
+
+#include "cli/series_findings.hpp"
+#include "cli/series_input.hpp"
+#include "scene/store.hpp"
+
+#include <string>
+#include <vector>
+
+namespace slipmode::cli {
+
+inline constexpr const char* kDiagnosisGroup = "diagnosis";
+
+/// Name of something in that group.
+[[nodiscard]] inline std::string diagnosis_path(const std::string& name) {
+  return std::string(kDiagnosisGroup) + "/" + name;
+}
+
+/// Writes group `diagnosis`: the record, every number, every curve. Exponents of curves are in nats, information in
+/// bits; the table `diagnosis/findings` is in the units of `findings`.
+void save(scene::StoreWriter& store, const diagnostics::SeriesStudy& study, const SeriesInput& input,
+          const std::vector<Finding>& findings);
+
+}  // namespace slipmode::cli
