@@ -17,7 +17,7 @@ namespace {
 
 struct ValidateArguments {
   std::string scene, input, output;
-  bool no_sweep = false;
+  bool no_sweep = false, verdict = false;
 };
 
 Report run_shaken(const Session& session, const ValidateArguments& arguments, scene::Scene scene,
@@ -39,10 +39,16 @@ Report run(const Session& session, const ValidateArguments& arguments) {
   const scene::Scene scene = session.load(arguments.scene);
   refuse_force(scene, "validate");
   const dynamics::HybridSystem full = scene::build_system(scene);
-  if (is_shaken(scene)) return run_shaken(session, arguments, scene, full);
+  if (is_shaken(scene)) {
+    if (arguments.verdict)
+      throw InvalidInput(
+          "--verdict: expected a belt, found a shaker; there 'slipmode diagnose SCENE FILE --verdict' does it");
+    return run_shaken(session, arguments, scene, full);
+  }
   const auto candidates = load_candidates(scene, full.structure(), arguments.input);
   diagnostics::ValidationOptions options = validation_options(scene, candidates);
   if (arguments.no_sweep) options.sweep_values.clear();
+  if (arguments.verdict) options.verdict = verdict_options(scene);
   const diagnostics::ValidationReport result =
       validate_into(session, scene, full, candidates, options, arguments.output);
 
@@ -65,6 +71,8 @@ Verb add_validate(CLI::App& app) {
   command->add_option("-o,--output", arguments->output, "result file (HDF5)")->required();
   command->add_flag("--no-sweep", arguments->no_sweep,
                     "leave the bifurcation diagram out; under a shaker: the drive's own frequency only");
+  command->add_flag("--verdict", arguments->verdict,
+                    "also exponents, dimensions, delay, embedding, spectrum, stick of full and reduced side by side");
   command->footer("Example:\n  slipmode validate datasets/chain10/scene.toml pod.h5 -o validation.h5");
   return {command, [arguments](const Session& session) { return run(session, *arguments); }};
 }

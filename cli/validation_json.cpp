@@ -1,3 +1,4 @@
+#include "cli/exponents_store.hpp"
 #include "cli/sweep_store.hpp"
 #include "cli/validation_store.hpp"
 
@@ -98,6 +99,10 @@ Json to_json(const ValidationReport& report) {
                           {"mean_wasserstein", b.mean_wasserstein},
                           {"median_wasserstein", b.median_wasserstein},
                           {"mean_hausdorff", b.mean_hausdorff}};
+  }
+  if (report.verdict) {
+    out["verdict"] = verdict_json(*report.verdict);
+    out["exponents"] = exponents_json(exponents_of(*report.verdict));
   }
   if (report.cost) {
     const auto& c = *report.cost;

@@ -78,6 +78,17 @@ std::vector<diagnostics::Candidate> load_candidates(const scene::Scene& scene, c
   return pom_and_lnm(scene, structure, pod::pod(ensemble));
 }
 
+diagnostics::ModelVerdictOptions verdict_options(const scene::Scene& scene) {
+  constexpr double kShareOfDuration = 0.2, kIntervalsOfExponents = 1000.0;
+  diagnostics::ModelVerdictOptions options{.sample = scene.time.sample};
+  options.tangent.transient = scene.validation.transient;
+  options.tangent.duration = kShareOfDuration * scene.validation.lyapunov_duration;
+  options.tangent.interval = options.tangent.duration / kIntervalsOfExponents;
+  options.tangent.seed = scene.ensemble.seed;
+  options.tangent.flow = scene.flow;
+  return options;
+}
+
 diagnostics::ValidationOptions validation_options(const scene::Scene& scene,
                                                   const std::vector<diagnostics::Candidate>& candidates) {
   const auto& spec = scene.validation;

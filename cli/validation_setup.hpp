@@ -29,6 +29,9 @@ namespace slipmode::cli {
                                                                   const fem::Structure& structure,
                                                                   const std::string& file);
 
+/// What the verdict runs by [validation] and [time]: exponents over a fifth of lyapunov_duration.
+[[nodiscard]] diagnostics::ModelVerdictOptions verdict_options(const scene::Scene& scene);
+
 /// [validation] and [reduction] as options; progress, stop flag and sink are left to the caller.
 [[nodiscard]] diagnostics::ValidationOptions validation_options(const scene::Scene& scene,
                                                                 const std::vector<diagnostics::Candidate>& candidates);

@@ -1,5 +1,6 @@
 #include "cli/validation_store.hpp"
 
+#include "cli/exponents_store.hpp"
 #include "cli/sweep_store.hpp"
 #include "scene/table.hpp"
 
@@ -173,6 +174,7 @@ void store_validation(scene::StoreWriter& writer, const ValidationReport& report
   scene::save(writer, "validation/orbits", orbit_table(report, units));
   if (report.bifurcation) store_bifurcation(writer, *report.bifurcation, units);
   if (report.cost) store_cost(writer, *report.cost, units);
+  if (report.verdict) store_verdict(writer, *report.verdict, units);
   if (report.sweep) {
     const SweepAxis axis = sweep_axis("drive.speed", units);
     const std::string reduced = fmt::format("reduced model, {} {}s", report.chosen, report.candidates.front().name);

@@ -1,3 +1,4 @@
+#include "cli/exponents_store.hpp"
 #include "cli/sweep_store.hpp"
 #include "cli/text_table.hpp"
 #include "cli/validation_store.hpp"
@@ -174,6 +175,7 @@ std::string summary_text(const ValidationReport& report) {
     out += fmt::format("  same period at {:.1f} % of the values, median distance of slip states {}\n",
                        100.0 * report.bifurcation->same_period, fixed(report.bifurcation->median_wasserstein, 3));
   }
+  if (report.verdict) out += fmt::format("\n{}", verdict_text(*report.verdict, true));
   if (report.cost) {
     const auto& cost = *report.cost;
     out += fmt::format("\nOne run of {:g} time units: full {:.3f} ms, {} {}s {:.3f} ms, speed-up {:.2f}\n",

@@ -81,6 +81,7 @@ void TangentWalk::clear_balance() {
 
 std::vector<Event> TangentWalk::push(double duration) {
   std::vector<Event> events;
+  dropped_ = -1;
   const double end = state_.time + duration;
   const double rounding = 4e-16 * std::abs(end);
   for (double left = duration; left > rounding; left = end - state_.time) {
@@ -107,7 +108,7 @@ std::vector<Event> TangentWalk::push(double duration) {
     }
     shortest_ = std::min(shortest_, longest_);
     if (contracted || least > 0.25 * std::log(kContraction)) longest_ = std::min(interval_, 2.0 * longest_);
-    dropped_ = first_missing(next.columns, kept);
+    if (kept < frame_.cols()) dropped_ = first_missing(next.columns, kept);
     frame_ = next.directions.leftCols(kept);
     growth_.head(kept) += next.log_growth.head(kept);
     lost_ = std::max(lost_, kept < expected ? directions_of(system_) - kept : most);
@@ -169,11 +170,11 @@ void TangentWalk::cross(double duration) {
   const Eigen::MatrixXd frame = frame_;
   const std::vector<Event> events = push(duration);
   // A direction that had lasted is gone, though one that slip gave back is left: it takes its place in the frame only.
-  if (dropped_ < frame.cols() && dropped_ < directions_of(system_) - lost_) ++lost_;
+  if (dropped_ >= 0 && dropped_ < directions_of(system_) - lost_) ++lost_;
   const auto relevant = std::ranges::count_if(events, changes_volume);
   if (relevant == 1) {
     const Event event = *std::ranges::find_if(events, changes_volume);
-    if (event.kind == EventKind::kStick && dropped_ < frame.cols()) {
+    if (event.kind == EventKind::kStick && dropped_ >= 0) {
       const Eigen::VectorXd normal = metric_.enter(volume_->normal(before, event.contact));
       balance_->events += std::log(std::abs(normal.dot(frame.col(dropped_))));
     } else if (event.kind == EventKind::kRelease) {

@@ -59,7 +59,7 @@ class TangentWalk {
   Eigen::MatrixXd frame_;  ///< in the metric's coordinates
   Eigen::VectorXd growth_;
   Eigen::Index lost_ = 0;
-  Eigen::Index dropped_ = 0;  ///< the first column that the last piece took out of the frame; their number: none
+  Eigen::Index dropped_ = -1;  ///< the first column that the last push took out of the frame; −1: none
   double interval_, longest_, shortest_, margin_;
   std::optional<PhaseVolume> volume_ = {};
   std::optional<VolumeBalance> balance_ = {};

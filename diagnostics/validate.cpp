@@ -49,7 +49,8 @@ class Validation {
     report_.chosen = options.chosen > 0 ? options.chosen : modes_for_share(candidates.front().captured, 0.99);
     prepare_reductions();
     total_ = 3 + full_orbits_.size() + reductions_.size() * (1 + full_orbits_.size()) +
-             2 * options.sweep_values.size() + (options.cost_duration > 0.0 ? 1 : 0);
+             2 * options.sweep_values.size() + (options.verdict ? candidates.size() + 1 : 0) +
+             (options.cost_duration > 0.0 ? 1 : 0);
   }
 
   ValidationReport run() {
@@ -57,6 +58,7 @@ class Validation {
       run_full();
       run_reduced();
       run_sweep();
+      run_verdict();
       run_cost();
     } catch (const Interrupted&) {
       report_.interrupted = true;
@@ -252,6 +254,19 @@ class Validation {
     done_ += 2 * options_.sweep_values.size();
     if (report_.sweep->interrupted) throw Interrupted();
     report_.bifurcation = compare_sweeps(report_.sweep->full, report_.sweep->reduced);
+  }
+
+  void run_verdict() {
+    if (!options_.verdict) return;
+    ModelVerdictOptions judging = *options_.verdict;
+    judging.parallel = batch();
+    std::vector<VerdictCandidate> candidates;
+    for (const Candidate& candidate : candidates_) {
+      const Eigen::Index modes = std::min(report_.chosen, candidate.basis.modes());
+      candidates.push_back({fmt::format("{} {}s", modes, candidate.name), candidate.basis.truncated(modes)});
+    }
+    report_.verdict = model_verdict(full_model_.system(options_.speed), report_.full.end, candidates, judging);
+    done_ += candidates.size() + 1;
   }
 
   void run_cost() {

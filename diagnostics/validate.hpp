@@ -5,6 +5,7 @@
 #include "diagnostics/cost.hpp"
 #include "diagnostics/lyapunov.hpp"
 #include "diagnostics/sweep.hpp"
+#include "diagnostics/verdict.hpp"
 #include "pod/basis.hpp"
 
 #include <optional>
@@ -45,6 +46,8 @@ struct ValidationOptions {
   LyapunovOptions lyapunov = {};
   double cost_duration = 10000.0;  ///< simulated time of a timed run; 0: no timing [s]
   int cost_repeats = 5;
+  /// Verdict on the full model and every candidate at `chosen` modes, from the end of the full attractor; empty: none.
+  std::optional<ModelVerdictOptions> verdict = {};
   ParallelOptions parallel = {};  ///< parallel.progress counts jobs: runs, cells of the tables, swept values
   SweepSink sink = {};            ///< of the sweep
 };
@@ -90,7 +93,8 @@ struct ValidationReport {
   Eigen::Index chosen = 0;
   std::optional<PairedSweep> sweep = {};  ///< first candidate at `chosen` modes
   std::optional<BifurcationComparison> bifurcation = {};
-  double sweep_wall = 0.0;        ///< both models' sweep; values recalled from an earlier run take no time [s of clock]
+  double sweep_wall = 0.0;  ///< both models' sweep; values recalled from an earlier run take no time [s of clock]
+  std::optional<VerdictTable> verdict = {};
   std::optional<Cost> cost = {};  ///< first candidate at `chosen` modes
   bool interrupted = false;       ///< then later parts are missing
 };

@@ -112,19 +112,24 @@ void read_series(ModelFindings& findings, const ModelVerdictOptions& options) {
   });
   const Eigen::Index lag =
       std::isfinite(findings.delay.value) ? static_cast<Eigen::Index>(findings.delay.value) : decorrelation_lag(series);
-  const auto dimension = [&](const Series& part) {
-    return found(
-        false_neighbours(
-            part, {.lag = lag, .max_dimension = options.max_dimension, .references = options.references, .run = alone})
-            .dimension);
+  const auto neighbours = [&](const Series& part) {
+    return false_neighbours(
+        part, {.lag = lag, .max_dimension = options.max_dimension, .references = options.references, .run = alone});
   };
+  int embedding = options.max_dimension;
   attempt(findings, "embedding", [&] {
-    findings.embedding = {.value = dimension(series),
-                          .halves = {dimension(first_half(series)), dimension(second_half(series))}};
+    const FalseNeighbours all = neighbours(series);
+    Eigen::Index best = 0;
+    const double least = all.share.minCoeff(&best);
+    embedding = all.dimension > 0 ? all.dimension : static_cast<int>(best) + 1;
+    if (all.dimension == 0)
+      findings.notes.push_back(fmt::format("no embedding: {:.2g} % of the neighbours are false even in dimension {}",
+                                           100.0 * least, embedding));
+    findings.embedding = {
+        .value = found(all.dimension),
+        .halves = {found(neighbours(first_half(series)).dimension), found(neighbours(second_half(series)).dimension)}};
   });
   attempt(findings, "correlation dimension", [&] {
-    const int embedding =
-        std::isfinite(findings.embedding.value) ? static_cast<int>(findings.embedding.value) : options.max_dimension;
     const CorrelationDimension correlation = correlation_dimension(
         series, {.embedding = {.dimension = embedding, .lag = lag}, .references = options.references, .run = alone});
     findings.correlation = {.value = correlation.dimension,
