@@ -97,6 +97,10 @@ TEST_F(TradeVerbs, AdviceNamesEveryEffectWithOneSentence) {
   EXPECT_EQ(names, expected);
   // Without the falling slope the belt does not excite the masses: what moves them is needed.
   EXPECT_EQ(json["effects"][0]["verdict"], "needed");
+  // The contact is in the middle of three masses: the antisymmetric mode 2 never moves, modes 1 and 3 do.
+  EXPECT_EQ(json["effects"][3]["verdict"], "needed");
+  EXPECT_EQ(json["effects"][4]["verdict"], "can be left out");
+  EXPECT_EQ(json["effects"][5]["verdict"], "needed");
 }
 
 }  // namespace

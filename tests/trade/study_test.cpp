@@ -174,7 +174,9 @@ TEST(Study, AllModesAreTheFullModelAndFewerAreFurtherAway) {
   const auto dX = [&](const std::string& name) { return at(row_of(done, name).error, Measure::kDx); };
   EXPECT_LT(dX("3 LNM"), 1e-4) << "all modes; tolerance 1e-9 against 1e-12 over 10 units";
   EXPECT_LT(dX("scene as it stands"), 1e-4);
-  EXPECT_GT(dX("1 LNM"), dX("2 LNM"));
+  // Mode 2 of three masses is antisymmetric and the contact is in the middle: friction never moves it, and what the
+  // starts give it decays (2e-5 of dX are left).
+  EXPECT_NEAR(dX("1 LNM"), dX("2 LNM"), 1e-3 * dX("1 LNM"));
   EXPECT_GT(dX("2 LNM"), 1.0);
   // The regularised law's error is of the order of ε (dynamics' own statement): a tenth of it, a tenth of that.
   const double ratio = dX("tanh, eps 0.02") / dX("tanh, eps 0.002");
