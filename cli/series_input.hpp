@@ -29,7 +29,7 @@ struct SeriesInput {
 /// Reads a record from one of our HDF5 files, any other, or CSV with a header.
 ///
 /// SERIES of HDF5 is a dataset, and its column from 1 or by the degree of freedom's name: `trajectory/v/3`, `v/3`,
-/// `v/q3`, `sensors/6`, `snapshots/1`. Without it the velocity (of an ensemble the displacement) farthest from the
+/// `v/x3`, `sensors/6`, `snapshots/1`. Without it the velocity (of an ensemble the displacement) farthest from the
 /// contacts is taken, as S4 section 3.2 does: most links away. SERIES of CSV is a column's name or number from 1.
 /// @throws InvalidInput  for files that cannot be read, columns that are not there (naming those that are), instants
 ///                       that are not equally spaced, cells without a number in the stretch kept (naming the line)

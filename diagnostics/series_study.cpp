@@ -12,7 +12,7 @@ namespace slipmode::diagnostics {
 namespace {
 
 constexpr Eigen::Index kWithoutBins = 4000;    // samples of the bin-free estimator
-constexpr Eigen::Index kTestedSamples = 2048;  // as series_verdict
+constexpr Eigen::Index kTestedSamples = 8192;  // by surrogates
 
 bool is_exponent_tool(SeriesTool tool) {
   switch (tool) {
@@ -109,7 +109,7 @@ class SeriesExamination {
       if (named(tool)) throw;
       out.failures.push_back({tool, refusal.what()});
     } catch (const NumericalFailure& failure) {
-      if (named(tool)) throw;
+      if (named(tool) && out.settings.tools.size() == 1) throw;
       out.failures.push_back({tool, failure.what()});
     }
   }
@@ -127,6 +127,8 @@ class SeriesExamination {
         return find_dimension();
       case SeriesTool::kVerdict:
         out.verdict = series_verdict(series(), {.references = std::min<Eigen::Index>(out.settings.references, 4000),
+                                                .surrogate_samples = kTestedSamples,
+                                                .forecasts = forecasts(),
                                                 .embedding = out.embedding(),
                                                 .run = run_});
         return;
@@ -259,6 +261,11 @@ class SeriesExamination {
                              out.delay.samples, out.window));
   }
 
+  Eigen::Index forecasts() const {
+    constexpr Eigen::Index kMost = 2000;
+    return std::min(out.settings.references, kMost);
+  }
+
   void follow_one_pair() {
     // wolf_exponent wants a hundred evolutions.
     const Eigen::Index most =
@@ -292,8 +299,9 @@ class SeriesExamination {
     const bool kantz = method == DivergenceMethod::kKantz;
     const Eigen::Index stride = kantz ? fine_stride() : loop_part(8.0);
     const int steps = std::max(10, static_cast<int>(std::min(samples, longest) / static_cast<double>(stride)));
-    // Kantz starts at a radius, from which saturation may be nearer than a loop.
-    const double width = out.sampled_map || kantz ? 0.0 : out.loop * series().interval;
+    // Kantz starts at a radius, from which saturation may be nearer than a loop by crossings of the mean.
+    const auto loop = kantz ? static_cast<double>(std::min(loop_part(1.0), 4 * out.delay.samples)) : out.loop;
+    const double width = out.sampled_map ? 0.0 : loop * series().interval;
     return divergence(series(), {.embedding = out.embedding(),
                                  .method = method,
                                  .steps = steps,
@@ -346,6 +354,7 @@ class SeriesExamination {
     out.surrogates = surrogate_test(start, {.surrogates = out.settings.surrogates,
                                             .embedding = out.embedding(),
                                             .ahead = out.delay.samples,
+                                            .references = forecasts(),
                                             .seed = out.settings.seed,
                                             .run = run_});
   }

@@ -132,7 +132,7 @@ struct SeriesStudy {
 /// Same result for any number of threads.
 /// @throws InvalidInput  for fewer than 100 samples, options out of range, too few samples for a dimension or delay
 ///                       that was given, or a tool named in `tools` that cannot run
-/// @throws NumericalFailure  of a tool named in `tools`
+/// @throws NumericalFailure  of the only tool named in `tools`
 /// @throws Interrupted       when run.stop is set
 [[nodiscard]] SeriesStudy study_series(const Series& series, const StudyOptions& options = {});
 

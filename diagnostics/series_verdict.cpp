@@ -84,8 +84,9 @@ class Examination {
   }
 
   SurrogateTest surrogates(const Embedding& embedding) const {
-    const Series start = part(series_, 0, std::min<Eigen::Index>(series_.values.size(), kSurrogateSamples));
-    return surrogate_test(start, {.embedding = embedding, .ahead = embedding.lag, .run = options_.run});
+    const Series start = part(series_, 0, std::min(series_.values.size(), options_.surrogate_samples));
+    return surrogate_test(
+        start, {.embedding = embedding, .ahead = embedding.lag, .references = options_.forecasts, .run = options_.run});
   }
 
   ExponentSpectrum spectrum(const Embedding& embedding) const {
@@ -113,7 +114,7 @@ class Examination {
   }
 
  private:
-  static constexpr Eigen::Index kSurrogateSamples = 2048, kForecasts = 500;
+  static constexpr Eigen::Index kForecasts = 500;
 
   Eigen::Index delay() const {
     if (sampled_map()) return 1;
@@ -146,7 +147,7 @@ std::optional<std::string> unsettled(const Series& series, const VerdictOptions&
 
 /// Decides between everything that does not repeat itself.
 void decide_aperiodic(SeriesVerdict& out, const Examination& examination, double interval) {
-  constexpr double kGoodForecast = 0.1, kErrors = 3.0, kPerLoop = 0.01;
+  constexpr double kGoodForecast = 0.1, kErrors = 3.0, kClear = 3.0, kPerLoop = 0.01;
   out.embedding = examination.embedding();
   out.surrogates = examination.surrogates(out.embedding);
   const double forecast = out.surrogates.error;
@@ -160,7 +161,8 @@ void decide_aperiodic(SeriesVerdict& out, const Examination& examination, double
                     largest, error, forecast);
     return;
   }
-  if (!out.surrogates.rejected || forecast > kBadForecast) {
+  const bool by_chance = forecast > kBadForecast && out.surrogates.distance < kClear;
+  if (!out.surrogates.rejected || by_chance) {
     out.motion = SeriesMotion::kNoise;
     out.reason = fmt::format("forecasts miss by {:.2g} deviations, rank {} of {} among surrogates", forecast,
                              out.surrogates.rank, out.surrogates.settings.surrogates);

@@ -28,6 +28,8 @@ struct VerdictOptions {
   Eigen::Index references = 4000;  ///< points examined by each tool
   /// Largest mean squared difference of the record and itself one period later, over twice its variance.
   double repeat = 1e-5;
+  Eigen::Index surrogate_samples = 2048;    ///< of the record's start that are told from noise; many-dimensional: more
+  Eigen::Index forecasts = 500;             ///< made per series in that test
   std::optional<Embedding> embedding = {};  ///< empty: delay by mutual information, dimension by false neighbours
   ParallelOptions run = {};
 };
@@ -63,7 +65,8 @@ struct SeriesVerdict {
 ///  1. not settled   the variances of the halves differ by a factor above 1.5, or only one half repeats itself, unless
 ///                   forecasts miss by more than 0.6 deviations;
 ///  2. periodic      the record repeats itself (find_repeat);
-///  3. noise         forecasts are no better than on surrogates, or miss by more than 0.6 deviations;
+///  3. noise         forecasts are no better than on surrogates, or miss by more than 0.6 deviations and are better
+///                   than those by less than three of their standard deviations;
 ///  4. quasi-periodic  the largest exponent is zero: below three of its errors or 0.01 per loop; forecasts miss by <
 ///  0.1;
 ///  5. chaotic       the largest exponent is above three errors by fitted Jacobians, and neighbours diverge in both
