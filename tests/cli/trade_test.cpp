@@ -78,8 +78,8 @@ TEST_F(TradeVerbs, BadInputIsRefusedAndSaysWhatIsValid) {
   refused({"trade", "free.toml", "--budget", "-1s"}, "--budget -1s: expected a time");
   refused({"trade", "free.toml", "--set", "drive.speed={ from = 0.1, to = 0.2, begin = 0.0, end = 9.0 }"}, "one speed");
   refused({"trade", "two.toml", "--axes", "law", "--set", "validation.limit=100.0", "--set", "validation.block=100.0",
-           "--set", "validation.transient=10.0", "--set", "validation.cost_duration=50.0", "--budget", "0.001ms",
-           "--write", "picked.toml"},
+           "--set", "validation.transient=10.0", "--set", "validation.cost_duration=50.0", "--set",
+           "validation.horizon=2.0", "--budget", "0.001ms", "--write", "picked.toml"},
           "the cheapest that exists: ");
 }
 
