@@ -126,6 +126,7 @@ int run_main(int argc, char** argv) {
   verbs.push_back(add_diagnose(app));
   verbs.push_back(add_trade(app));
   verbs.push_back(add_advise(app));
+  verbs.push_back(add_selftest(app));
   std::ranges::move(add_orbit(app), std::back_inserter(verbs));
   for (const Verb& verb : verbs) add_common_options(*verb.command, session);
 

@@ -242,18 +242,36 @@ SceneSurvey survey_random_scenes(std::uint64_t seed, std::uint64_t first, std::u
   SceneSurvey survey;
   Digest digest;
   for (SceneCheck& check : checks) {
-    ++survey.scenes;
-    survey.refused += check.refused ? 1 : 0;
-    survey.still += check.still ? 1 : 0;
-    survey.scan.merge(check.scan);
-    survey.energy = std::max(survey.energy, check.energy);
-    survey.restart = std::max(survey.restart, check.restart);
-    survey.reduction = std::max(survey.reduction, check.reduction);
+    SceneSurvey one{.scenes = 1,
+                    .refused = check.refused ? 1 : 0,
+                    .still = check.still ? 1 : 0,
+                    .scan = check.scan,
+                    .energy = check.energy,
+                    .restart = check.restart,
+                    .reduction = check.reduction,
+                    .digest = 0,
+                    .failed = {}};
     digest.add(check.digest);
-    if (!check.violations.empty()) survey.failed.push_back(std::move(check));
+    if (!check.violations.empty()) one.failed.push_back(std::move(check));
+    survey.merge(std::move(one));
   }
   survey.digest = digest.value();
   return survey;
+}
+
+void SceneSurvey::merge(SceneSurvey next) {
+  scenes += next.scenes;
+  refused += next.refused;
+  still += next.still;
+  scan.merge(next.scan);
+  energy = std::max(energy, next.energy);
+  restart = std::max(restart, next.restart);
+  reduction = std::max(reduction, next.reduction);
+  Digest both;
+  both.add(digest);
+  both.add(next.digest);
+  digest = both.value();
+  failed.insert(failed.end(), next.failed.begin(), next.failed.end());
 }
 
 bool same_bytes_on_threads(std::uint64_t seed, std::uint64_t index, int threads, int starts) {

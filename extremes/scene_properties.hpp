@@ -38,6 +38,9 @@ struct SceneSurvey {
   double energy = 0.0, restart = 0.0, reduction = 0.0;  ///< largest
   std::uint64_t digest = 0;                             ///< of all scenes' digests in order: the same for any threads
   std::vector<SceneCheck> failed;                       ///< those with violations, in order
+
+  /// Adds the scenes that follow. Digests depend on how a survey is cut into blocks.
+  void merge(SceneSurvey next);
 };
 
 /// Scenes first … first + count − 1 of a seed, on several threads. @throws Interrupted
