@@ -4,6 +4,7 @@
 #include "cli/diagnose_sweep.hpp"
 #include "cli/exponents_figures.hpp"
 #include "cli/exponents_store.hpp"
+#include "cli/validation_setup.hpp"
 #include "diagnostics/shared_starts.hpp"
 #include "rom/reduce.hpp"
 #include "scene/provenance.hpp"
@@ -78,10 +79,11 @@ diagnostics::VerdictTable judge_models(const Session& session, const scene::Scen
   constexpr double kSamplesPerPeriod = 16.0;
   const std::optional<double> period = subjects.full.drive().period();
   ProgressLine line("verdict", session.progress_mode());
-  return diagnostics::model_verdict(subjects.full, subjects.start, subjects.candidates,
-                                    {.tangent = options,
-                                     .sample = period ? *period / kSamplesPerPeriod : scene.time.sample,
-                                     .parallel = session.parallel(line)});
+  diagnostics::ModelVerdictOptions judging = verdict_options(scene);
+  judging.tangent = options;
+  if (period) judging.sample = *period / kSamplesPerPeriod;
+  judging.parallel = session.parallel(line);
+  return diagnostics::model_verdict(subjects.full, subjects.start, subjects.candidates, judging);
 }
 
 /// The file figures are drawn from: the one asked for, or one in their folder.

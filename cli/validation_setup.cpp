@@ -80,7 +80,10 @@ std::vector<diagnostics::Candidate> load_candidates(const scene::Scene& scene, c
 
 diagnostics::ModelVerdictOptions verdict_options(const scene::Scene& scene) {
   constexpr double kShareOfDuration = 0.2, kIntervalsOfExponents = 1000.0;
+  constexpr double kLeastRecord = 2000.0, kLargestRecord = 20000.0;
   diagnostics::ModelVerdictOptions options{.sample = scene.time.sample};
+  const double samples = std::clamp(scene.time.duration / scene.time.sample, kLeastRecord, kLargestRecord);
+  options.samples = static_cast<Eigen::Index>(samples);
   options.tangent.transient = scene.validation.transient;
   options.tangent.duration = kShareOfDuration * scene.validation.lyapunov_duration;
   options.tangent.interval = options.tangent.duration / kIntervalsOfExponents;

@@ -29,7 +29,8 @@ namespace slipmode::cli {
                                                                   const fem::Structure& structure,
                                                                   const std::string& file);
 
-/// What the verdict runs by [validation] and [time]: exponents over a fifth of lyapunov_duration.
+/// What the verdict runs by [validation] and [time]: exponents over a fifth of lyapunov_duration, a record
+/// of 2,000 to 20,000 samples.
 [[nodiscard]] diagnostics::ModelVerdictOptions verdict_options(const scene::Scene& scene);
 
 /// [validation] and [reduction] as options; progress, stop flag and sink are left to the caller.
