@@ -10,7 +10,9 @@ namespace slipmode::trade {
 
 namespace {
 
-constexpr double kHorizonSamples = 1000.0;
+/// Samples up to a belt's horizon, and numbers that all its records together may hold: long chains are sampled coarser.
+constexpr double kHorizonSamples = 1000.0, kFewestSamples = 100.0;
+constexpr double kHorizonNumbers = 4e6;
 constexpr double kHorizonPeriods = 10.0;
 constexpr Eigen::Index kSectionSamples = 32;
 constexpr double kTimedPeriods = 50.0;
@@ -24,9 +26,10 @@ Schedule on_belt(const scene::Scene& scene) {
   s.duration = spec.limit;
   s.sample = scene.time.sample;
   s.horizon = spec.horizon;
-  s.horizon_sample = spec.horizon / kHorizonSamples;
   s.gap = 2.0 * spec.horizon;
   s.starts = std::max(1, spec.horizon_starts / s.runs);
+  const double fits = kHorizonNumbers / static_cast<double>(scene.size() * s.starts * s.runs);
+  s.horizon_sample = spec.horizon / std::clamp(std::floor(fits), kFewestSamples, kHorizonSamples);
   s.timed = spec.cost_duration > 0.0 ? spec.cost_duration : spec.block;
   s.repeats = spec.cost_repeats;
   return s;

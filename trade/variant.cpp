@@ -30,6 +30,14 @@ void cut_table(std::string& text, const std::string& name) {
   text.erase(begin, end == std::string::npos ? std::string::npos : end - begin);
 }
 
+/// Fewer elements have fewer modes to compare.
+void drop_modes_beyond(scene::Scene& scene) {
+  for (std::vector<int>* modes : {&scene.validation.modes, &scene.shaken.modes}) {
+    std::erase_if(*modes, [&scene](int L) { return L > scene.size(); });
+  }
+  scene.reduction.choice.modes = std::min(scene.reduction.choice.modes, scene.size());
+}
+
 }  // namespace
 
 std::string_view to_string(Axis axis) { return kAxes[static_cast<std::size_t>(axis)]; }
@@ -54,6 +62,7 @@ std::string scene_text(const Variant& variant) {
     scene.reduction.basis = variant.reduction->basis;
     scene.reduction.choice.modes = variant.reduction->modes;
   }
+  drop_modes_beyond(scene);
   std::string text = scene::scene_to_toml(scene);
   for (const char* table : {"initial", "ensemble", "reduction", "validation"}) {
     const bool said = std::string_view(table) == "reduction" && variant.reduction;
