@@ -120,7 +120,7 @@ std::vector<FileFigure> trade_figures_of(const scene::StoreReader& store) {
        {Measure::kDe, Measure::kDx, Measure::kPoints, Measure::kSpread, Measure::kEnergy, Measure::kStick}) {
     if (!has_values(fronts, measure)) continue;
     out.push_back({fmt::format("pareto_{}", trade::to_string(measure)),
-                   fmt::format("{} over time", trade::describe(measure)),
+                   fmt::format("time against {}", trade::describe(measure)),
                    [&store, measure] { return front_of(fronts_of(store), measure); }});
   }
   return out;
