@@ -168,7 +168,9 @@ ModelDiagnosis add_model_diagnosis(CLI::App& command) {
   command.add_option("--modes", models->modes, "of MODELS; else as [reduction] chooses")
       ->check(CLI::PositiveNumber)
       ->group(kGroup);
-  command.add_option("--exponents", models->exponents, "how many, the largest; else all, four with --over")
+  command
+      .add_option("--exponents", models->exponents,
+                  "how many, the largest; else all, eight of more than 64, four with --over")
       ->check(CLI::PositiveNumber)
       ->group(kGroup);
   command.add_option("--transient", models->transient, "time run first; else that of [time]")
@@ -176,7 +178,7 @@ ModelDiagnosis add_model_diagnosis(CLI::App& command) {
       ->group(kGroup);
   command
       .add_option("--duration", models->duration,
-                  "time measured; else that of [time], 2000 periods of a drive, with --over a quarter")
+                  "time measured; else that of [time], 500 periods of a drive, with --over a quarter")
       ->check(CLI::PositiveNumber)
       ->group(kGroup);
   command

@@ -12,7 +12,10 @@
 namespace slipmode::cli {
 namespace {
 
-constexpr double kUsualPeriods = 2000.0, kUsualIntervals = 1000.0;
+constexpr double kUsualPeriods = 500.0, kUsualIntervals = 1000.0;
+
+/// Above so many directions the leading ones only are measured unless more are asked for.
+constexpr Eigen::Index kAllUpTo = 64, kLeading = 8;
 
 /// A basis with the share of energy in its first L vectors; empty where that is not known.
 struct BasisOption {
@@ -73,7 +76,8 @@ diagnostics::TangentOptions tangent_options(const Session& session, const scene:
   options.transient = request.transient.value_or(scene.time.transient);
   options.duration = request.duration.value_or(usual);
   options.interval = request.interval.value_or(period ? *period : options.duration / kUsualIntervals);
-  options.exponents = request.exponents;
+  const bool many = 2 * full.size() + full.internal_size() > kAllUpTo;
+  options.exponents = request.exponents == 0 && many ? kLeading : request.exponents;
   options.seed = scene.ensemble.seed;
   options.flow = scene.flow;
   options.flow.audit = false;

@@ -16,7 +16,7 @@ struct ModelRequest {
   std::vector<std::string> files;  ///< a POD, an ensemble or a reduced model each
   bool verdict = false;
   Eigen::Index modes = 0;      ///< of bases with a choice; 0: as the scene chooses
-  Eigen::Index exponents = 0;  ///< 0: all; over a key: four
+  Eigen::Index exponents = 0;  ///< 0: all, eight of more than 64 directions; over a key: four
   std::optional<double> transient, duration, interval;
   std::string over;  ///< KEY=FROM:TO:STEP; empty: none
   bool follow = false;
@@ -32,7 +32,7 @@ struct DiagnoseSubjects {
 /// @throws InvalidInput  for files without a basis, or more modes than there are
 [[nodiscard]] DiagnoseSubjects diagnose_subjects(const scene::Scene& scene, const ModelRequest& request);
 
-/// Times as asked, else by the scene: its transient; the longer of duration and transient, or 2,000 periods of a drive;
+/// Times as asked, else by the scene: its transient; the longer of duration and transient, or 500 periods of a drive;
 /// a thousand intervals, or one per period.
 [[nodiscard]] diagnostics::TangentOptions tangent_options(const Session& session, const scene::Scene& scene,
                                                           const dynamics::HybridSystem& full,

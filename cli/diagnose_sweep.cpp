@@ -115,7 +115,7 @@ ExponentPoint measure_at(const SweptModel& model, std::size_t index, double valu
   try {
     const dynamics::HybridSystem system = model.system(value);
     const Eigen::Index all = 2 * system.size() + system.internal_size();
-    options.exponents = std::min(options.exponents == 0 ? kSweptExponents : options.exponents, all);
+    options.exponents = std::min(options.exponents, all);
     const diagnostics::LyapunovSpectrum spectrum = diagnostics::lyapunov_spectrum(system, start, options);
     out = {.nats = spectrum.nats, .error = spectrum.error, .failure = spectrum.failure};
   } catch (const NumericalFailure& failure) {
@@ -187,6 +187,7 @@ Report diagnose_over(const Session& session, const scene::Scene& scene, const Di
   check_values(scene, over);
   std::vector<SweptModel> swept = swept_models(scene, over, models);
   diagnostics::TangentOptions options = tangent_options(session, scene, scene::build_system(scene), models);
+  if (models.exponents == 0) options.exponents = kSweptExponents;
   if (!models.duration) options.duration *= kSweptShare;
 
   const std::string task = fmt::format("slipmode diagnose --over {}{} --exponents {} --duration {} --renormalise {} {}",

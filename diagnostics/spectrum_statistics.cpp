@@ -28,6 +28,11 @@ Eigen::MatrixXd stretches(const Eigen::MatrixXd& rates, Eigen::Index count) {
 /// negative sum.
 double dimension_of(Eigen::VectorXd exponents, Eigen::Index zero, Eigen::Index size) {
   if (zero >= 0) exponents[zero] = 0.0;
+  // A neutral direction (a floating structure's) leaves rounding of either sign.
+  constexpr double kRounding = 1e-12;
+  const double largest = exponents.unaryExpr([](double x) { return std::isfinite(x) ? std::abs(x) : 0.0; }).maxCoeff();
+  for (double& exponent : exponents)
+    if (std::abs(exponent) <= kRounding * largest) exponent = 0.0;
   if (exponents.size() < size && exponents.sum() >= 0.0) return kUnknown;
   return kaplan_yorke_dimension(exponents);
 }
