@@ -64,7 +64,7 @@ double unequal_coefficients() {
 /// Distance of Stribeck's law from a Coulomb law over two stick-slip cycles.
 double stribeck_distance(double alpha, const Coulomb& limit) {
   const auto run = [](const friction::Law& law) {
-    return motion(one_mass(law, Belt::constant(0.3), 0.05), state_of(0.0, 0.0), 12.0);
+    return motion(one_mass(law, Belt::constant(0.3), 0.05), state_of(0.0, 0.3), 12.0);
   };
   return distance(run(Stribeck{0.4, 0.2, alpha}), run(limit));
 }
@@ -124,9 +124,9 @@ std::vector<ExtremeCase> friction_cases() {
        [] {
          return std::abs(order(stribeck_distance(1e-4, {0.4, 0.4}), stribeck_distance(1e-6, {0.4, 0.4}), 100.0) - 1.0);
        }},
-      {"Stribeck, alpha to 1e6", "distance of the order in 1/alpha from 1 (log alpha/alpha), to Coulomb", 0.2,
+      {"Stribeck, alpha to 1e5", "distance of the order in 1/alpha from 1 (log alpha/alpha), to Coulomb", 0.2,
        [] {
-         return std::abs(order(stribeck_distance(1e4, {0.4, 0.2}), stribeck_distance(1e6, {0.4, 0.2}), 100.0) - 1.0);
+         return std::abs(order(stribeck_distance(1e3, {0.4, 0.2}), stribeck_distance(1e5, {0.4, 0.2}), 100.0) - 1.0);
        }},
       {"contact spring 1e4 to 1e8, stuck", "distance of the order in 1/K_c from 1", 0.05,
        [] {

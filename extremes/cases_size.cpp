@@ -100,7 +100,7 @@ double audit_of_ten() {
 std::vector<ExtremeCase> size_cases() {
   const char* wave = "contact beside that of 100 masses, until the far end is felt";
   const char* frequency = "first frequency beside its transcendental equation, relative";
-  const char* digits = "the same; rounding of the elements is amplified by n^4 (limit: eps n^4)";
+  const char* digits = "first frequency: rounding grows as n^4 (limit: eps n^4), relative";
   return {
       {"1 mass", "stick-slip period beside its closed form, relative", 1e-12,
        [] {

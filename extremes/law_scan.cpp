@@ -325,7 +325,9 @@ class Scan {
       const double at =
           guards(k) * (1 + x) * (2 + x) / 2 - guards(k - 1) * x * (2 + x) + guards(k - 2) * x * (1 + x) / 2;
       const double third = std::abs(guards(k) - 3 * guards(k - 1) + 3 * guards(k - 2) - guards(k - 3));
-      const double excess = std::max(0.0, std::abs(at) - 4.0 * third);
+      // The least of two guards has a kink where they change places.
+      const double second = std::abs(guards(k) - 2 * guards(k - 1) + guards(k - 2));
+      const double excess = std::max(0.0, std::abs(at) - 4.0 * third - 4.0 * second);
       figures_.spurious = std::max(figures_.spurious, excess);
       if (excess > limits_.spurious)
         violate("spurious event", fmt::format("contact {}: its guard is {:.2g} at the event at t = {:.9g}", c, at, t));

@@ -27,6 +27,9 @@ constexpr double kSameMotion = 1e-5;
 /// Speeds up to this are rounding: forces that all contacts hold leave nothing that moves, and nothing to measure by.
 constexpr double kStill = 1e-9;
 
+/// Of the flow: what two runs of one scene differ by must be rounding, not steps of different lengths.
+constexpr double kTolerance = 1e-11;
+
 /// FNV-1a over the bits of doubles.
 class Digest {
  public:
@@ -141,6 +144,7 @@ class SceneChecker {
     options_.sample = 0.04 / fastest_rate(*system_, start_);
     options_.duration = std::min(options_.duration, 6000.0 * options_.sample);
     options_.transient = 0.0;
+    options_.flow.tolerance = kTolerance;
   }
 
   void simulate() {
