@@ -13,7 +13,7 @@ namespace slipmode::cli {
 namespace {
 
 struct AdviseArguments {
-  std::string scene, output, error = "1%";
+  std::string scene, output, measure, error = "1%";
 };
 
 std::vector<trade::Variant> variants_of(const scene::Scene& scene, const std::vector<trade::Effect>& effects) {
@@ -57,6 +57,8 @@ Report run(const Session& session, const AdviseArguments& arguments) {
   if (!arguments.output.empty()) require_writable(arguments.output);
   const scene::Scene scene = session.load(arguments.scene);
   const double limit = parse_percent("--error", arguments.error);
+  std::optional<trade::Measure> only;
+  if (!arguments.measure.empty()) only = parse_measure(arguments.measure);
   const trade::Schedule schedule = trade::schedule_of(scene);
   const std::vector<trade::Effect> effects = trade::effects_of(scene);
   Report report;
@@ -69,7 +71,7 @@ Report run(const Session& session, const AdviseArguments& arguments) {
     Json list = Json::array();
     report.text = study_text(done, scene);
     for (std::size_t i = 0; i < effects.size(); ++i) {
-      advice.push_back(trade::advise(effects[i], done.rows.front(), done.rows[i + 1], limit));
+      advice.push_back(trade::advise(effects[i], done.rows.front(), done.rows[i + 1], limit, only));
       list.push_back(json_of(effects[i], advice.back()));
       report.text += advice.back().sentence + '\n';
     }
@@ -95,6 +97,8 @@ Verb add_advise(CLI::App& app) {
   const auto arguments = std::make_shared<AdviseArguments>();
   command->add_option("SCENE", arguments->scene, "scene file (TOML)")->required();
   command->add_option("-o,--output", arguments->output, "result file (HDF5)");
+  command->add_option("--measure", arguments->measure,
+                      "the one output that counts: dX, dE, points, spread, energy, stick; default: all");
   command->add_option("--error", arguments->error, "change of an output that matters; default 1%");
   command->footer("Example:\n  slipmode advise datasets/beam_12hz/scene.toml");
   return {command, [arguments](const Session& session) { return run(session, *arguments); }};

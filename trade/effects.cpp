@@ -223,7 +223,8 @@ std::string_view to_string(Verdict verdict) {
 
 std::vector<Effect> effects_of(const scene::Scene& scene) { return Effects(scene).list(); }
 
-EffectAdvice advise(const Effect& effect, const Row& full, const Row& without, double limit) {
+EffectAdvice advise(const Effect& effect, const Row& full, const Row& without, double limit,
+                    std::optional<Measure> only) {
   EffectAdvice out{.time_share = without.cost.cpu / full.cost.cpu};
   if (!without.failure.empty()) {
     out.verdict = Verdict::kFailed;
@@ -234,7 +235,7 @@ EffectAdvice advise(const Effect& effect, const Row& full, const Row& without, d
   bool above = false;
   for (std::size_t m = 0; m < kMeasures; ++m) {
     const double error = without.error[m], noise = without.noise[m];
-    if (std::isnan(error)) continue;
+    if (std::isnan(error) || (only && static_cast<std::size_t>(*only) != m)) continue;
     above = above || error > limit;
     if (const double found = weight(error, noise, limit); found > largest) {
       largest = found;

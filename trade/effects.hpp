@@ -41,6 +41,8 @@ struct EffectAdvice {
 
 /// @param full   the scene with all effects; its cost is what time_share is of
 /// @param limit  change that matters [%]
-[[nodiscard]] EffectAdvice advise(const Effect& effect, const Row& full, const Row& without, double limit);
+/// @param only   the one output that counts; empty: all
+[[nodiscard]] EffectAdvice advise(const Effect& effect, const Row& full, const Row& without, double limit,
+                                  std::optional<Measure> only = {});
 
 }  // namespace slipmode::trade

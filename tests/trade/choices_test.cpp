@@ -158,6 +158,10 @@ TEST(Advice, IsNeededOnlyBeyondLimitAndScatter) {
   EXPECT_EQ(verdict(0.5, 3.0).verdict, Verdict::kSpare);
   EXPECT_EQ(verdict(5.0, 1.0).measure, Measure::kSpread);
   EXPECT_DOUBLE_EQ(verdict(5.0, 1.0).time_share, 0.5);
+  // dE is only 0.1 % off: where it alone counts, the same row can be left out.
+  const Row without = row("without", Axis::kEffect, 4.0, 0.1, 5.0);
+  EXPECT_EQ(advise(effect, full, without, 1.0).verdict, Verdict::kNeeded);
+  EXPECT_EQ(advise(effect, full, without, 1.0, Measure::kDe).verdict, Verdict::kSpare);
   Row failed = row("without", Axis::kEffect, kNone, kNone);
   failed.failure = "no convergence";
   EXPECT_EQ(advise(effect, full, failed, 1.0).verdict, Verdict::kFailed);
