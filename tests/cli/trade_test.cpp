@@ -13,7 +13,6 @@
 
 namespace {
 
-using namespace slipmode;
 using namespace slipmode::tests;
 
 class TradeVerbs : public testing::Test {
@@ -42,8 +41,8 @@ TEST_F(TradeVerbs, TableFileFiguresAndSceneSayTheSame) {
                                 "--error", "5%", "--write", "picked.toml"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const auto json = outcome.json();
-  const scene::StoreReader store(folder.path() / "trade.h5");
-  const scene::Table table = scene::load_table(store, "trade/candidates");
+  const slipmode::scene::StoreReader store(folder.path() / "trade.h5");
+  const slipmode::scene::Table table = slipmode::scene::load_table(store, "trade/candidates");
   const auto& candidates = json["trade"]["candidates"];
   ASSERT_EQ(table.rows(), candidates.size() + 1) << "the reference is the first row";
   for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -62,7 +61,7 @@ TEST_F(TradeVerbs, TableFileFiguresAndSceneSayTheSame) {
   ASSERT_NE(row, candidates.end());
   EXPECT_LE((*row)["error_percent"]["dE"].get<double>(), 5.0);
   EXPECT_NE(json["choice"]["sentence"].get<std::string>().find("for dE under 5 % use"), std::string::npos);
-  const scene::Scene written = scene::load_scene(folder.path() / "picked.toml");
+  const slipmode::scene::Scene written = slipmode::scene::load_scene(folder.path() / "picked.toml");
   if (picked.find("tolerance 1e-03") != std::string::npos) {
     EXPECT_EQ(written.flow.tolerance, 1e-3);
   }
