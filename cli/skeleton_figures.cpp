@@ -143,8 +143,8 @@ Figure orbit_spectrum(const StoreReader& store) {
         const auto f = static_cast<Eigen::Index>(matched.numbers("full")[row]) - 1;
         const auto r = static_cast<Eigen::Index>(matched.numbers("reduced")[row]) - 1;
         out.series.push_back({.title = row == 0 ? "the same orbit" : "",
-                              .x = Eigen::Vector2d(points[0].period(f), points[1].period(r)),
-                              .y = Eigen::Vector2d((points[0].*value)(f), (points[1].*value)(r)),
+                              .x = to_vector({points[0].period(f), points[1].period(r)}),
+                              .y = to_vector({(points[0].*value)(f), (points[1].*value)(r)}),
                               .look = Series::Look::kLine,
                               .colour = figures::kLnmColour});
       }
