@@ -19,7 +19,7 @@ constexpr std::uint64_t kBlock = 300;
 /// Without options: a short look.
 constexpr std::uint64_t kDefaultScenes = 300;
 
-Json to_json(const extremes::ExtremeResult& result) {
+Json result_json(const extremes::ExtremeResult& result) {
   Json row = {{"case", result.name},
               {"law", result.law},
               {"measured", std::isfinite(result.measured) ? Json(result.measured) : Json(nullptr)},
@@ -44,7 +44,7 @@ int add_extremes(const Session& session, const Request& request, Report& out) {
     failed += result.holds ? 0 : 1;
     table.add({result.name, fmt::format("{:.2g}", result.measured), fmt::format("{:.2g}", result.limit),
                result.holds ? "yes" : "NO", result.note.empty() ? result.law : result.law + ": " + result.note});
-    rows.push_back(to_json(result));
+    rows.push_back(result_json(result));
   }
   line.update(cases.size(), cases.size());
   out.text += table.str() + fmt::format("{} of {} cases hold\n", static_cast<int>(rows.size()) - failed, rows.size());

@@ -22,12 +22,12 @@ pod::Ensemble moments(const pod::PodResult& result) {
 diagnostics::Candidate reduced_candidate(const scene::StoreReader& store, const std::string& group, Eigen::Index n) {
   const pod::Basis basis = scene::load_basis(store, group, n);
   const bool known = basis.energy.size() == basis.modes();
-  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
   return {.name = basis.kind == pod::BasisKind::kPom   ? "POM"
                   : basis.kind == pod::BasisKind::kLnm ? "LNM"
                                                        : "user",
           .basis = basis,
-          .captured = known ? cumulative(basis.energy) : Eigen::VectorXd::Constant(basis.modes(), kUnknown)};
+          .captured = known ? cumulative(basis.energy) : Eigen::VectorXd::Constant(basis.modes(), kNotKnown)};
 }
 
 }  // namespace
