@@ -12,7 +12,8 @@
 namespace slipmode::cli {
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr const char* kNotLookedFor = "not looked for";
+constexpr double kNoErrorKnown = std::numeric_limits<double>::quiet_NaN();
 
 /// Collects findings of one study in the units asked for.
 class FindingList {
@@ -46,20 +47,20 @@ class FindingList {
 
   void facts() {
     const auto samples = static_cast<double>(study_.series.values.size());
-    add("samples", "samples", samples, kUnknown, "", fmt::format("every {:g} {}", interval(), time_));
+    add("samples", "samples", samples, kNoErrorKnown, "", fmt::format("every {:g} {}", interval(), time_));
     add("mean", "mean", study_.mean, study_.deviation / std::sqrt(std::max(1.0, samples / correlated())), values_,
         fmt::format("decorrelated after {} samples", study_.decorrelation));
-    add("deviation", "standard deviation", study_.deviation, kUnknown, values_);
-    add("rms", "root mean square", study_.root_mean_square, kUnknown, values_);
-    add("mean_period", "mean period", study_.loop * interval(), kUnknown, time_,
+    add("deviation", "standard deviation", study_.deviation, kNoErrorKnown, values_);
+    add("rms", "root mean square", study_.root_mean_square, kNoErrorKnown, values_);
+    add("mean_period", "mean period", study_.loop * interval(), kNoErrorKnown, time_,
         study_.sampled_map ? fmt::format("{:.3g} samples: taken as a map", study_.loop)
                            : fmt::format("{:.4g} samples, by upward crossings of the mean", study_.loop));
     add("decorrelation", "autocorrelation time", static_cast<double>(study_.decorrelation) * interval(),
         0.5 * interval(), time_, "first below 1/e");
     if (study_.smoothness) {
-      add("flat_share", "flat stretches", 100.0 * study_.smoothness->flat_share, kUnknown, "%", "of the samples");
-      add("kinks", "kinks", study_.smoothness->coarse ? kUnknown : study_.smoothness->kinks_per_period, kUnknown, "",
-          study_.smoothness->coarse ? "too few samples per period to tell" : "per mean period");
+      add("flat_share", "flat stretches", 100.0 * study_.smoothness->flat_share, kNoErrorKnown, "%", "of the samples");
+      add("kinks", "kinks", study_.smoothness->coarse ? kNoErrorKnown : study_.smoothness->kinks_per_period,
+          kNoErrorKnown, "", study_.smoothness->coarse ? "too few samples per period to tell" : "per mean period");
     }
   }
 
@@ -67,11 +68,13 @@ class FindingList {
 
   void embedding() {
     const diagnostics::Delay& delay = study_.delay;
-    add("delay", "delay", static_cast<double>(delay.samples), 0.5 * static_cast<double>(delay.highest - delay.lowest),
-        "samples",
-        delay.lowest < delay.highest
-            ? fmt::format("{}; {} to {} over estimators and halves", delay.origin, delay.lowest, delay.highest)
-            : delay.origin);
+    if (delay.origin != kNotLookedFor) {
+      add("delay", "delay", static_cast<double>(delay.samples), 0.5 * static_cast<double>(delay.highest - delay.lowest),
+          "samples",
+          delay.lowest < delay.highest
+              ? fmt::format("{}; {} to {} over estimators and halves", delay.origin, delay.lowest, delay.highest)
+              : delay.origin);
+    }
     if (!study_.information.empty()) {
       const diagnostics::MutualInformation& first = study_.information.front();
       const Eigen::Index at = std::min<Eigen::Index>(delay.samples, first.bits.size() - 1);
@@ -79,6 +82,7 @@ class FindingList {
           first.error * (bits_ ? 1.0 : std::numbers::ln2), bits_ ? "bit" : "nat", "equal numbers in 16 bins");
     }
     const diagnostics::EmbeddingDimension& dimension = study_.dimension;
+    if (dimension.origin == kNotLookedFor) return;
     std::string settings = dimension.origin;
     if (study_.false_neighbours) {
       const diagnostics::FalseNeighbourOptions& used = study_.false_neighbours->settings;
@@ -91,7 +95,7 @@ class FindingList {
     Eigen::Index level = 0;
     while (level < study_.cao->E1.size() && study_.cao->E1(level) < kLevel) ++level;
     add("cao_level", "Cao's E1 above 0.9 from",
-        level < study_.cao->E1.size() ? static_cast<double>(level + 1) : kUnknown, kUnknown, "", "dimension");
+        level < study_.cao->E1.size() ? static_cast<double>(level + 1) : kNoErrorKnown, kNoErrorKnown, "", "dimension");
     Eigen::Index least = 0;
     study_.cao->E2.minCoeff(&least);
     add("cao_least_E2", "Cao's least E2", study_.cao->E2(least), study_.cao->E2_error(least), "",
@@ -165,13 +169,13 @@ class FindingList {
       add("determinism", "determinism", plot.determinism, plot.determinism_error, "",
           fmt::format("of recurrences: rate {:.3g}, radius {:.3g}, {} points every {:.3g} {}", plot.rate,
                       plot.settings.radius, plot.points, plot.interval, time_));
-      add("longest_line", "longest recurrence", static_cast<double>(plot.longest) * plot.interval, kUnknown, time_,
+      add("longest_line", "longest recurrence", static_cast<double>(plot.longest) * plot.interval, kNoErrorKnown, time_,
           "diagonal line of the recurrence plot");
     }
     if (study_.section && study_.section->time.size() > 1) {
       const bool strobe = study_.section->settings.cut == diagnostics::Cut::kStrobe;
-      add("return_time", "time between section points", study_.section->mean_return, study_.section->return_error,
-          time_,
+      add("return_time", "time between section points", study_.section->mean_return,
+          strobe ? kNoErrorKnown : study_.section->return_error, time_,
           fmt::format("{} points, {}", study_.section->time.size(),
                       strobe ? "once per period of the drive" : "upward through the mean"));
     }
@@ -180,18 +184,18 @@ class FindingList {
   void motion() {
     if (study_.surrogates) {
       const diagnostics::SurrogateTest& test = *study_.surrogates;
-      add("forecast_error", "forecast error", test.error, kUnknown, "deviations",
+      add("forecast_error", "forecast error", test.error, kNoErrorKnown, "deviations",
           fmt::format("{} samples ahead, mean of five neighbours", test.settings.ahead));
-      add("surrogate_p", "chance of linear noise", test.p, kUnknown, "",
+      add("surrogate_p", "chance of linear noise", test.p, kNoErrorKnown, "",
           fmt::format("rank {} of {} surrogates, {:.3g} of their deviations below their mean", test.rank,
                       test.of_surrogates.size(), test.distance));
     }
     if (!study_.verdict) return;
     if (study_.verdict->motion == diagnostics::SeriesMotion::kPeriodic) {
-      add("period", "period", study_.verdict->T, kUnknown, time_,
+      add("period", "period", study_.verdict->T, kNoErrorKnown, time_,
           fmt::format("{} {}", study_.verdict->period, study_.sampled_map ? "samples" : "loops"));
     }
-    add("mismatch", "least mismatch after a shift", study_.verdict->repeat.mismatch, kUnknown, "",
+    add("mismatch", "least mismatch after a shift", study_.verdict->repeat.mismatch, kNoErrorKnown, "",
         "mean squared difference over twice the variance");
   }
 

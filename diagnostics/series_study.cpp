@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace slipmode::diagnostics {
 
@@ -302,14 +303,24 @@ class SeriesExamination {
     // Kantz starts at a radius, from which saturation may be nearer than a loop by crossings of the mean.
     const auto loop = kantz ? static_cast<double>(std::min(loop_part(1.0), 4 * out.delay.samples)) : out.loop;
     const double width = out.sampled_map ? 0.0 : loop * series().interval;
-    return divergence(series(), {.embedding = out.embedding(),
-                                 .method = method,
-                                 .steps = steps,
-                                 .stride = stride,
-                                 .window = out.window,
-                                 .references = out.settings.references,
-                                 .region = {.least_rise = 0.3, .least_width = width},
-                                 .run = run_});
+    Divergence found = divergence(series(), {.embedding = out.embedding(),
+                                             .method = method,
+                                             .steps = steps,
+                                             .stride = stride,
+                                             .window = out.window,
+                                             .references = out.settings.references,
+                                             .region = {.least_rise = 0.3, .least_width = width},
+                                             .run = run_});
+    if (found.exponent < -3.0 * found.error) {
+      constexpr double kNoTime = std::numeric_limits<double>::quiet_NaN();
+      throw NumericalFailure(
+          fmt::format(
+              "divergence of {}: expected neighbours that part at a steady rate somewhere, found the straightest "
+              "part of the curve to fall at {:.3g}; too few samples for so many dimensions",
+              series().name, found.exponent),
+          kNoTime, {}, kNoTime);
+    }
+    return found;
   }
 
   void fit_jacobians() {

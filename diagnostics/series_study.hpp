@@ -56,9 +56,9 @@ struct StudyOptions {
   int max_dimension = 10;      ///< for false neighbours
   double ratio = 15.0, size = 2.0, accepted = 0.01;  ///< as FalseNeighbourOptions
   Eigen::Index evolution = 0;  ///< of Wolf [samples]; 0: a mean period, at most four delays; 1 for a map
-  double angle = 0.2;                                ///< of Wolf [rad]
-  double rate = 0.05;                                ///< of recurrence
-  double strobe = 0.0;  ///< > 0: the section is taken once per this time [time unit]; 0: upward through the mean
+  double angle = 0.2;          ///< of Wolf [rad]
+  double rate = 0.05;          ///< of recurrence
+  double strobe = 0.0;         ///< > 0: the section is taken once per this time [time unit]; 0: upward through the mean
   Eigen::Index references = 5000;  ///< points examined by each tool, evenly spaced
   int surrogates = 19;
   std::uint64_t seed = 1;    ///< of the surrogates
@@ -69,7 +69,7 @@ struct StudyOptions {
 struct Delay {
   Eigen::Index samples = 1;
   Eigen::Index lowest = 1, highest = 1;  ///< first minima over all curves and both halves of the record
-  std::string origin;                    ///< "given", "first minimum of mutual information", …
+  std::string origin;                    ///< "given", "not looked for", "first minimum of mutual information", …
 };
 
 /// The dimension and how far its share of false neighbours pins it down.

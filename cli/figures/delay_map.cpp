@@ -19,7 +19,7 @@ Figure delay_map(const DelayMap& map) {
   const std::string data = figure.data({map.now, map.later, map.last});
   figure.command("unset key");
   figure.command("set multiplot");
-  figure.command("set lmargin at screen 0.075; set rmargin at screen 0.475");
+  figure.command("set lmargin at screen 0.095; set rmargin at screen 0.485");
   figure.command("set bmargin at screen 0.13; set tmargin at screen 0.93");
   figure.command(fmt::format("set xrange {0}; set yrange {0}; set zrange {0}", range));
   figure.command(fmt::format("set title \"delay {}\" offset 0,-0.6", literal(map.delay)));
