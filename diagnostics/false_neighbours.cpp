@@ -48,9 +48,9 @@ std::vector<Step> steps(const Series& series, int dimension, Metric metric, cons
   const Eigen::Index count = options.references == 0 ? tree.size() : std::min(options.references, tree.size());
   const double floor = options.resolution * deviation(series.values);
   std::vector<Step> out(static_cast<std::size_t>(count));
-  constexpr std::size_t kBlock = 256;
-  rethrow_first(parallel_for((out.size() + kBlock - 1) / kBlock, options.run, [&](std::size_t block) {
-    for (std::size_t r = block * kBlock; r < std::min(out.size(), (block + 1) * kBlock); ++r) {
+  constexpr std::size_t kChunk = 256;
+  rethrow_first(parallel_for((out.size() + kChunk - 1) / kChunk, options.run, [&](std::size_t block) {
+    for (std::size_t r = block * kChunk; r < std::min(out.size(), (block + 1) * kChunk); ++r) {
       const Eigen::Index i = static_cast<Eigen::Index>(r) * tree.size() / count;
       const Neighbour near = tree.nearest(i, 1, {.window = options.window}).front();
       out[r] = {.distance = std::max(near.distance, floor),
