@@ -15,7 +15,7 @@ namespace slipmode::diagnostics {
 namespace {
 
 constexpr double kNoDistance = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kBlock = 128;
+constexpr std::size_t kColumnBlock = 128;
 
 DivergenceOptions checked(const Series& series, DivergenceOptions options) {
   if (options.steps < 2 || options.stride < 1 || options.window < 0 || !(options.radius >= 0.0) ||
@@ -158,10 +158,10 @@ Divergence divergence(const Series& series, const DivergenceOptions& options) {
   const Followed followed(series, settings);
   if (settings.method == DivergenceMethod::kKantz && settings.radius == 0.0) settings.radius = followed.usual_radius();
   Eigen::MatrixXd logs(settings.steps + 1, followed.count());
-  const auto blocks = (static_cast<std::size_t>(logs.cols()) + kBlock - 1) / kBlock;
+  const auto blocks = (static_cast<std::size_t>(logs.cols()) + kColumnBlock - 1) / kColumnBlock;
   rethrow_first(parallel_for(blocks, settings.run, [&](std::size_t block) {
-    const auto begin = static_cast<Eigen::Index>(block * kBlock);
-    const auto end = std::min<Eigen::Index>(logs.cols(), begin + static_cast<Eigen::Index>(kBlock));
+    const auto begin = static_cast<Eigen::Index>(block * kColumnBlock);
+    const auto end = std::min<Eigen::Index>(logs.cols(), begin + static_cast<Eigen::Index>(kColumnBlock));
     for (Eigen::Index r = begin; r < end; ++r) logs.col(r) = followed.follow(r, settings.radius);
   }));
   for (const double last : logs.bottomRows(1).reshaped()) out.references += std::isnan(last) ? 0 : 1;
