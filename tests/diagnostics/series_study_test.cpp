@@ -12,15 +12,14 @@
 namespace slipmode::diagnostics {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 /// Greatest distance of the section's instants from where sin t rises through zero, t = 2πk.
 double crossing_error(int order, double interval) {
   const auto series = fixtures::sine(static_cast<Eigen::Index>(100.0 / interval), interval);
   const Section cut = section(series, {.embedding = {.dimension = 2, .lag = 3}, .level = 0.0, .order = order});
   double error = 0.0;
   for (Eigen::Index k = 0; k < cut.time.size(); ++k) {
-    error = std::max(error, std::abs(cut.time(k) - 2.0 * kPi * std::round(cut.time(k) / (2.0 * kPi))));
+    error = std::max(
+        error, std::abs(cut.time(k) - 2.0 * std::numbers::pi * std::round(cut.time(k) / (2.0 * std::numbers::pi))));
   }
   return error;
 }
@@ -46,7 +45,7 @@ TEST(Section, TakesAllDelayCoordinatesAtOneInstant) {
     }
     EXPECT_LT(std::cos(down.time(k)), 0.0);
   }
-  EXPECT_NEAR(down.mean_return, 2.0 * kPi, 1e-8);
+  EXPECT_NEAR(down.mean_return, 2.0 * std::numbers::pi, 1e-8);
   EXPECT_LT(down.return_error, 1e-8);
 }
 
@@ -55,16 +54,18 @@ TEST(Section, FindsMaximaBetweenSamples) {
   ASSERT_GT(tops.time.size(), 40);
   for (Eigen::Index k = 0; k < tops.time.size(); ++k) {
     EXPECT_NEAR(tops.points(0, k), 1.0, 1e-8);
-    EXPECT_NEAR(std::fmod(tops.time(k), 2.0 * kPi), 0.5 * kPi, 1e-5);
+    EXPECT_NEAR(std::fmod(tops.time(k), 2.0 * std::numbers::pi), 0.5 * std::numbers::pi, 1e-5);
   }
 }
 
 // Once per period a periodic record is one point; the second tone of a torus goes round a circle.
 TEST(Section, StrobesADrivenRecord) {
-  const Section one = section(fixtures::sine(3000, 0.1), {.cut = Cut::kStrobe, .period = 2.0 * kPi, .phase = 0.25});
-  EXPECT_NEAR(one.time(0), 0.5 * kPi, 1e-12);
+  const Section one =
+      section(fixtures::sine(3000, 0.1), {.cut = Cut::kStrobe, .period = 2.0 * std::numbers::pi, .phase = 0.25});
+  EXPECT_NEAR(one.time(0), 0.5 * std::numbers::pi, 1e-12);
   EXPECT_LT((one.points.colwise() - one.points.col(0)).cwiseAbs().maxCoeff(), 1e-7);
-  const Section circle = section(fixtures::two_torus(3000, 0.1), {.cut = Cut::kStrobe, .period = 2.0 * kPi});
+  const Section circle =
+      section(fixtures::two_torus(3000, 0.1), {.cut = Cut::kStrobe, .period = 2.0 * std::numbers::pi});
   const Eigen::ArrayXd phase = std::numbers::sqrt2 * circle.time.array();
   EXPECT_LT((circle.points.row(0).transpose().array() - 0.5 * phase.sin()).abs().maxCoeff(), 1e-6);
 }
@@ -79,7 +80,7 @@ TEST(Section, RefusesWhatItCannotCut) {
 // A sine of 40 samples per period in two dimensions is a circle: x_i and x_j are near when i − j is near a multiple of
 // the period, at every i. So whole diagonals recur, and the rate is the number of those gaps over 40.
 TEST(Recurrence, OfACircleIsWholeDiagonals) {
-  const double interval = 2.0 * kPi / 40.0;
+  const double interval = 2.0 * std::numbers::pi / 40.0;
   // The chord of two intervals is 2 sin(interval) < 4 sin(interval/2) = 0.314, that of three 0.467: gaps within two of
   // a multiple of 40 recur, five in forty.
   const Recurrence plot = recurrence(fixtures::sine(1010, interval), {.embedding = {.dimension = 2, .lag = 10},
@@ -133,8 +134,8 @@ TEST(StudySeries, LeavesExponentsOfAPeriodicRecordOutAndSaysSo) {
   EXPECT_EQ(study.verdict->motion, SeriesMotion::kPeriodic);
   EXPECT_FALSE(study.wolf || study.divergence || study.kantz || study.jacobians || study.correlation);
   EXPECT_EQ(study.failures.size(), 6U);
-  EXPECT_NEAR(study.peak, 1.0 / (2.0 * kPi), study.peak_error);
-  EXPECT_NEAR(study.section->mean_return, 2.0 * kPi, 1e-8);
+  EXPECT_NEAR(study.peak, 1.0 / (2.0 * std::numbers::pi), study.peak_error);
+  EXPECT_NEAR(study.section->mean_return, 2.0 * std::numbers::pi, 1e-8);
 }
 
 TEST(StudySeries, UsesWhatWasGivenAndRunsWhatWasNamed) {
