@@ -82,7 +82,8 @@ TEST_F(Diagnose, GivesTheSameNumbersInTextJsonFileAndUnits) {
   const scene::Table exponents = scene::load_table(store, "diagnosis/exponents");
   EXPECT_EQ(exponents.numbers("exponent")[0], nats.json()["findings"]["jacobians_1"]["value"].get<double>());
   EXPECT_EQ(store.vector("diagnosis/series/values").size(), 2000);
-  for (const std::string figure : nats.json()["figures"]) {
+  const std::vector<std::string> figures = nats.json()["figures"];
+  for (const std::string& figure : figures) {
     for (const std::string extension : {".svg", ".png"}) {
       EXPECT_TRUE(is_figure(folder.path() / "figures" / (figure + extension))) << figure;
     }

@@ -55,7 +55,9 @@ TEST(ModelVerdict, AllModesAreTheFullModelUntilChaosPartsThem) {
   EXPECT_LT(b.spectrum_distance.value, 1e-3);
   EXPECT_GT(a.spectrum_distance.value, 1e-3);  // its halves are 200 different units each
   EXPECT_EQ(a.delay.value, b.delay.value);
-  EXPECT_EQ(a.embedding.value, b.embedding.value);
+  // Where no dimension qualifies in so short a record there is none for either.
+  EXPECT_TRUE(a.embedding.value == b.embedding.value ||
+              (std::isnan(a.embedding.value) && std::isnan(b.embedding.value)));
   EXPECT_GT(a.stick_fraction.value, 0.3);
   EXPECT_LT(a.stick_fraction.value, 0.8);
   EXPECT_NEAR(a.stick_fraction.value, 0.5 * (a.stick_fraction.halves[0] + a.stick_fraction.halves[1]), 1e-12);
