@@ -13,8 +13,9 @@ namespace {
 
 /// Natural frequencies below this share of the fastest are rigid-body motion.
 constexpr double kRigid = 1e-8;
-/// Damping counts as diagonal in the regime's modes when the rest is below this share of it.
-constexpr double kSymmetric = 1e-12;
+/// Rounding: damping counts as diagonal in the regime's modes when the rest is below this share of it, and a direction
+/// as projected out when no more than this share of it is left.
+constexpr double kRounding = 1e-12;
 
 /// Rows of a [2m x k] matrix spread to padded pairs [2np x k].
 Eigen::MatrixXd spread(const Eigen::MatrixXd& rows, Eigen::Index np) {
@@ -158,12 +159,12 @@ void RegimeBuilder::make_symmetric_pairs(Regime& out) {
   auto [omega, shapes] = base_modes();
   ModalModel& pairs = out.pairs;
   Eigen::MatrixXd D = shapes.transpose() * (Z_.transpose() * C_ * Z_) * shapes;
-  if ((D - D.transpose()).norm() <= kSymmetric * D.norm()) D = (D + D.transpose()).eval() / 2.0;
+  if ((D - D.transpose()).norm() <= kRounding * D.norm()) D = (D + D.transpose()).eval() / 2.0;
   separate_rigid_modes(omega, shapes, D);
   const Eigen::VectorXd diagonal = D.diagonal();
   const bool kept = rayleigh_ && spring_.isZero(0.0) && damper_.isZero(0.0);
   const Eigen::MatrixXd no_rate = Eigen::MatrixXd::Zero(m, m);
-  if (kept || (D - Eigen::MatrixXd(diagonal.asDiagonal())).norm() <= kSymmetric * D.norm()) {
+  if (kept || (D - Eigen::MatrixXd(diagonal.asDiagonal())).norm() <= kRounding * D.norm()) {
     pairs.proportional = true;
     pairs.omega = pairs.damping = pairs.g11 = pairs.g12 = pairs.g21 = pairs.g22 = Eigen::VectorXd::Zero(pairs.np);
     pairs.omega.head(m) = omega;
@@ -200,9 +201,13 @@ void RegimeBuilder::make_general_pairs(Regime& out) {
     omega(m + j) = std::sqrt(load(oscillators_[static_cast<std::size_t>(j)]).stiffness);
   Eigen::MatrixXd own_damping = shapes.transpose() * (Z_.transpose() * C_ * Z_) * shapes;
   Eigen::MatrixXd W = Eigen::MatrixXd::Zero(m, nc_);  // of the contacts that add what is not in the base modes
-  for (Eigen::Index c = 0; c < nc_; ++c)
-    if (spring_(c) < 0.0 || load(c).oscillates())
-      W.col(c) = shapes.transpose() * (Z_.transpose() * modal_.directions.col(c));
+  for (Eigen::Index c = 0; c < nc_; ++c) {
+    if (!(spring_(c) < 0.0 || load(c).oscillates())) continue;
+    const auto w = modal_.directions.col(c);
+    const Eigen::VectorXd moved = Z_.transpose() * w;
+    // A held contact does not move. What the projection leaves of it is rounding, which scaled up would couple.
+    if (moved.norm() > kRounding * w.norm()) W.col(c) = shapes.transpose() * moved;
+  }
   separate_rigid_modes(base_omega, shapes, own_damping, &W);
   Eigen::MatrixXd damping = Eigen::MatrixXd::Zero(N, N);
   damping.topLeftCorner(m, m) = own_damping;
