@@ -156,12 +156,6 @@ void add_figures(const BeamRow& row, Row& out_row) {
   add("dopri5 error", median(row.peers[2].errors));
 }
 
-double process_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 /// One sweep of a model; a line and figures.
 void sweep(const BeamModel& model, const scene::Scene& scene, const std::vector<double>& frequencies, bool audit,
            Row& out_row) {

@@ -8,14 +8,14 @@
 namespace slipmode::bench {
 namespace {
 
-constexpr double kBasisFrequency = 12.0, kTransientCycles = 100.0, kBasisCycles = 100.0, kSamplesPerCycle = 64.0;
+constexpr double kBasisFrequency = 12.0, kBasisTransient = 100.0, kBasisCycles = 100.0, kSamplesPerCycle = 64.0;
 
 /// Modal functions as the scene's [sensors] and [reduction] say.
 pod::Basis pomf_basis(const scene::Scene& scene, const fem::Beam& beam, const dynamics::HybridSystem& system) {
   const double period = 1.0 / kBasisFrequency;
   const auto run = dynamics::simulate(system.with_drive(scene::drive_at(scene, kBasisFrequency)), system.rest(),
-                                      {.duration = (kTransientCycles + kBasisCycles) * period,
-                                       .transient = kTransientCycles * period,
+                                      {.duration = (kBasisTransient + kBasisCycles) * period,
+                                       .transient = kBasisTransient * period,
                                        .sample = period / kSamplesPerCycle,
                                        .keep_events = false,
                                        .flow = {.audit = false}});

@@ -21,13 +21,6 @@ ChainProblem thousand_masses() {
   return problem;
 }
 
-/// CPU time of the whole process, all threads [s].
-double process_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 /// Largest resident size of this process so far [GiB].
 double peak_gib() {
   rusage usage{};

@@ -12,12 +12,12 @@ namespace {
 
 using Beam = EventBeam<double>;
 
-int rhs(realtype t, N_Vector y, N_Vector dy, void* user) {
+int beam_rhs(realtype t, N_Vector y, N_Vector dy, void* user) {
   static_cast<const Beam*>(user)->derivative(N_VGetArrayPointer(y), N_VGetArrayPointer(dy), t);
   return 0;
 }
 
-int guards(realtype t, N_Vector y, realtype* out_g, void* user) {
+int beam_guards(realtype t, N_Vector y, realtype* out_g, void* user) {
   static_cast<const Beam*>(user)->guards(N_VGetArrayPointer(y), t, out_g);
   return 0;
 }
@@ -59,12 +59,12 @@ ShakenRun run_shaken_cvode(ShakenMethod method, const ShakenProblem& problem, co
   CvodeSolver solver(method == ShakenMethod::kAdams ? CV_ADAMS : CV_BDF, beam.size());
   std::copy(start.y.begin(), start.y.end(), solver.data());
   double t = start.time;
-  check_cvode(CVodeInit(solver.memory, rhs, t, solver.y), "CVodeInit");
+  check_cvode(CVodeInit(solver.memory, beam_rhs, t, solver.y), "CVodeInit");
   check_cvode(CVodeSStolerances(solver.memory, tolerance, tolerance * energy_norm(start.y)), "CVodeSStolerances");
   check_cvode(CVodeSetUserData(solver.memory, &beam), "CVodeSetUserData");
   check_cvode(CVodeSetMaxNumSteps(solver.memory, kCvodeMaxSteps), "CVodeSetMaxNumSteps");
   set_iteration(method, solver, beam.size());
-  check_cvode(CVodeRootInit(solver.memory, 2, guards), "CVodeRootInit");
+  check_cvode(CVodeRootInit(solver.memory, 2, beam_guards), "CVodeRootInit");
   int falling[2] = {-1, -1};
   check_cvode(CVodeSetRootDirection(solver.memory, falling), "CVodeSetRootDirection");
   check_cvode(CVodeSetNoInactiveRootWarn(solver.memory), "CVodeSetNoInactiveRootWarn");

@@ -8,14 +8,14 @@
 namespace slipmode::bench {
 namespace {
 
-std::vector<double> plain(const Eigen::VectorXd& values) { return {values.begin(), values.end()}; }
+std::vector<double> numbers_of(const Eigen::VectorXd& values) { return {values.begin(), values.end()}; }
 
 /// D, its diagonal alone where the rest is rounding.
 std::vector<double> damping_of(const Eigen::MatrixXd& D) {
   constexpr double kRounding = 1e-9;
   const Eigen::VectorXd diagonal = D.diagonal();
   const Eigen::MatrixXd rest = D - Eigen::MatrixXd(diagonal.asDiagonal());
-  if (rest.norm() <= kRounding * D.norm()) return plain(diagonal);
+  if (rest.norm() <= kRounding * D.norm()) return numbers_of(diagonal);
   std::vector<double> rows;
   for (Eigen::Index i = 0; i < D.rows(); ++i) {
     for (Eigen::Index j = 0; j < D.cols(); ++j) rows.push_back(D(i, j));
@@ -42,10 +42,10 @@ ShakenCoordinates::ShakenCoordinates(const dynamics::HybridSystem& system) {
   const Eigen::VectorXd load = system.load().size() > 0 ? Eigen::VectorXd(modes.shapes.transpose() * system.load())
                                                         : Eigen::VectorXd::Zero(system.size());
   problem_ = {.n = static_cast<int>(system.size()),
-              .omega = plain(modes.omega),
+              .omega = numbers_of(modes.omega),
               .damping = damping_of(D),
-              .load = plain(load),
-              .direction = plain(modes.shapes.transpose() * contact.direction),
+              .load = numbers_of(load),
+              .direction = numbers_of(modes.shapes.transpose() * contact.direction),
               .offset = contact.offset,
               .stiffness = law->stiffness,
               .static_plus = coefficient(law->mu_s, 1.0),
