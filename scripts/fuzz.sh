@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Feeds the readers of scenes, CSV files and result files with mutated input: scripts/fuzz.sh [SECONDS EACH] [TARGET...]
-# Targets: scene csv store. Stops with an error at the first crash, hang or leak; the input is kept in build/fuzz.
-# Needs clang (apt-get install clang) and the release build; only the readers are compiled again, instrumented.
+# Targets: scene csv store, all at once. A crash, hang or leak is an error; the input is kept in build/fuzz.
+# Installs clang if it is missing. Uses the release build; only the readers are compiled again, instrumented.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -10,6 +10,7 @@ targets=("${@:2}")
 [[ ${#targets[@]} -gt 0 ]] || targets=(scene csv store)
 release=${SLIPMODE_BUILD:-build/release}
 out=build/fuzz
+scripts/install_packages.sh clang
 [[ -f $release/libslipmode.a ]] || scripts/build.sh release
 mkdir -p "$out"
 
@@ -36,7 +37,8 @@ build() {
     "${compiler[@]}" "${flags[@]}" -fsanitize=fuzzer-no-link -c "$source" -o "$object"
     objects+=("$object")
   done
-  clang++ -fsanitize=fuzzer,address,undefined "${objects[@]}" "${libraries[@]}" -o "$out/$1_fuzz"
+  # The library's objects hold several sources each: what they have of the readers too gives way to what comes first.
+  clang++ -fsanitize=fuzzer,address,undefined -Wl,--allow-multiple-definition "${objects[@]}" "${libraries[@]}" -o "$out/$1_fuzz"
 }
 
 # Seeds from what the project has anyway.
@@ -55,12 +57,30 @@ seed() {
   [[ $1 != scene ]] || cp fuzz/corpus/scene/* "$out/scene_seeds/"
 }
 
+run() {
+  local dictionary=()
+  [[ ! -f fuzz/$1.dict ]] || dictionary=(-dict="../../fuzz/$1.dict")
+  (cd "$out" && "./$1_fuzz" "${dictionary[@]}" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 \
+    -max_len=65536 -print_final_stats=1 -artifact_prefix="$1_" "$1_corpus" "$1_seeds" >"$1.log" 2>&1)
+}
+
 for target in "${targets[@]}"; do
   build "$target"
   seed "$target"
-  dictionary=()
-  [[ ! -f fuzz/$target.dict ]] || dictionary=(-dict="fuzz/$target.dict")
-  (cd "$out" && "./${target}_fuzz" "${dictionary[@]/fuzz\//../../fuzz/}" -max_total_time="$seconds" -timeout=10 \
-    -rss_limit_mb=2048 -max_len=65536 -print_final_stats=1 -artifact_prefix="${target}_" \
-    "${target}_corpus" "${target}_seeds" 2>&1 | grep -vE '^#[0-9]+\s+(NEW|REDUCE|pulse)' || exit 1)
 done
+declare -A running
+for target in "${targets[@]}"; do
+  run "$target" &
+  running[$target]=$!
+done
+failed=0
+for target in "${targets[@]}"; do
+  if wait "${running[$target]}"; then
+    echo "fuzz $target: $(grep -oP 'number_of_executed_units:\s*\K[0-9]+' "$out/$target.log") inputs, no crash, hang or leak"
+  else
+    tail -40 "$out/$target.log" >&2
+    echo "fuzz $target: failed; the input is in $out" >&2
+    failed=1
+  fi
+done
+exit "$failed"

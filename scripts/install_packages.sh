@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs the Debian packages slipmode builds with. Says nothing when none is missing.
+# Installs the Debian packages slipmode builds with, and those named. Says nothing when none is missing.
 set -euo pipefail
 
 packages=(
@@ -12,6 +12,7 @@ packages=(
   libgtest-dev libgmock-dev libbenchmark-dev libsundials-dev libboost-dev
   # figures
   gnuplot-nox
+  "$@"
 )
 
 installed=$(dpkg-query --show --showformat='${db:Status-Status} ${Package}\n' "${packages[@]}" 2>/dev/null || true)
