@@ -73,7 +73,7 @@ struct Timed {
 };
 
 void add(Row& row, const std::string& series, const std::string& tool, double wanted, const Timed& t) {
-  row.lines.push_back(fmt::format("{:>10} {:>28} {:>12.2f} {:>12.0f} {:>8.0f} {:>8} {:>10.1e}", series, tool, t.seconds,
+  row.lines.push_back(fmt::format("{:>10} {:>28} {:>12.2f} {:>12.0f} {:>8.1f} {:>8} {:>10.1e}", series, tool, t.seconds,
                                   t.all_pairs_seconds, t.all_pairs_seconds / t.seconds, wanted, t.apart));
   const std::string name = series + "_" + (tool.starts_with("false") ? "false_neighbours" : "correlation_sum");
   row.figures.emplace_back(name + "_s", t.seconds);
