@@ -1,9 +1,11 @@
 #include "cli/diagnose_sweep.hpp"
 
+#include "cli/json_values.hpp"
 #include "cli/sweep_report.hpp"
 #include "cli/sweep_request.hpp"
 #include "cli/sweep_store.hpp"
 #include "cli/validation_setup.hpp"
+#include "core/none.hpp"
 #include "diagnostics/shared_starts.hpp"
 #include "rom/reduce.hpp"
 #include "scene/journal.hpp"
@@ -23,7 +25,6 @@ namespace {
 constexpr Eigen::Index kSweptExponents = 4;
 /// Time measured at each value, of that of a single spectrum.
 constexpr double kSweptShare = 0.25;
-constexpr double kNoExponent = std::numeric_limits<double>::quiet_NaN();
 
 /// One model over the key.
 struct SweptModel {
@@ -128,7 +129,7 @@ ExponentPoint measure_at(const SweptModel& model, std::size_t index, double valu
 Eigen::MatrixXd exponent_columns(const std::vector<ExponentPoint>& points, Eigen::VectorXd ExponentPoint::*part) {
   Eigen::Index rows = 0;
   for (const ExponentPoint& point : points) rows = std::max(rows, point.nats.size());
-  Eigen::MatrixXd out = Eigen::MatrixXd::Constant(rows, static_cast<Eigen::Index>(points.size()), kNoExponent);
+  Eigen::MatrixXd out = Eigen::MatrixXd::Constant(rows, static_cast<Eigen::Index>(points.size()), kNone);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::VectorXd& values = points[i].*part;
     out.col(static_cast<Eigen::Index>(i)).head(values.size()) = values;
@@ -171,7 +172,7 @@ std::string exponent_summary(const SweptModel& model, const std::vector<Exponent
   }
   json = {{"model", model.title}, {"values", points.size()},
           {"chaotic", chaotic},   {"two_positive", hyper},
-          {"failed", failed},     {"largest_nats", std::isfinite(largest) ? Json(largest) : Json(nullptr)}};
+          {"failed", failed},     {"largest_nats", json_number(largest)}};
   return fmt::format(
       "{}: {} values, {} with a positive exponent, {} with two or more, {} failed; largest {:.4f} bit per unit of "
       "time\n",

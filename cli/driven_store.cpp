@@ -1,12 +1,12 @@
 #include "cli/driven_store.hpp"
 
 #include "cli/journal_cursor.hpp"
+#include "core/none.hpp"
 #include "scene/table.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <functional>
-#include <limits>
 #include <map>
 #include <memory>
 #include <utility>
@@ -20,8 +20,6 @@ using diagnostics::DrivenLabel;
 using diagnostics::DrivenMotion;
 using diagnostics::DrivenPoint;
 using diagnostics::DrivenRepeat;
-
-constexpr double kNoFigure = std::numeric_limits<double>::quiet_NaN();
 
 void append_exponent(std::vector<double>& values, const std::optional<diagnostics::LyapunovExponent>& exponent) {
   values.push_back(exponent ? 1.0 : 0.0);
@@ -62,9 +60,9 @@ class ValueTable {
     motion("jumps", "", "jumps of contact points", [](const DrivenMotion& m) { return double(m.jumps); });
     motion("mean_energy", units.energy, "mean energy", [](const DrivenMotion& m) { return m.mean_energy; });
     motion("exponent", units.rate, "largest Lyapunov exponent; NaN: not asked for",
-           [](const DrivenMotion& m) { return m.exponent ? m.exponent->nats : kNoFigure; });
+           [](const DrivenMotion& m) { return m.exponent ? m.exponent->nats : kNone; });
     motion("exponent_error", units.rate, "its standard error",
-           [](const DrivenMotion& m) { return m.exponent ? m.exponent->error : kNoFigure; });
+           [](const DrivenMotion& m) { return m.exponent ? m.exponent->error : kNone; });
     motion("events", "", "events located in all cycles", [](const DrivenMotion& m) { return double(m.events); });
     motion("audit_residual", "1", "energy balance relative to the energy exchanged",
            [](const DrivenMotion& m) { return m.audit_residual; });
@@ -105,7 +103,7 @@ class ValueTable {
   }
   void motion(std::string name, std::string unit, std::string what, std::function<double(const DrivenMotion&)> get) {
     number(std::move(name), std::move(unit), std::move(what),
-           [get = std::move(get)](const DrivenPoint& point) { return point.ok() ? get(point.settled) : kNoFigure; });
+           [get = std::move(get)](const DrivenPoint& point) { return point.ok() ? get(point.settled) : kNone; });
   }
   void text(std::string name, std::string what, std::function<std::string(const DrivenMotion&)> get) {
     texts_.push_back({std::move(name), {"", std::move(what)}, std::move(get)});

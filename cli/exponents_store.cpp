@@ -1,5 +1,6 @@
 #include "cli/exponents_store.hpp"
 
+#include "cli/json_values.hpp"
 #include "scene/table.hpp"
 
 #include <fmt/format.h>
@@ -10,8 +11,6 @@ namespace {
 
 using diagnostics::LyapunovSpectrum;
 using diagnostics::VolumeBalance;
-
-std::vector<double> exponent_column(const Eigen::VectorXd& values) { return {values.begin(), values.end()}; }
 
 void store_balance(scene::StoreWriter& writer, const std::string& group, const VolumeBalance& balance,
                    const Units& units) {
@@ -39,11 +38,11 @@ void store_model_exponents(scene::StoreWriter& writer, const std::string& group,
   scene::save(
       writer, group + "/values",
       scene::Table{"one row per exponent, descending",
-                   {{"nats", {units.rate, "exponent; -inf: a direction that is lost"}, exponent_column(spectrum.nats)},
-                    {"bits", {"bit per unit of time", "the same over ln 2"}, exponent_column(bits)},
-                    {"error", {units.rate, "standard error, eight stretches"}, exponent_column(spectrum.error)},
-                    {"first_half", {units.rate, "from the first half"}, exponent_column(first)},
-                    {"second_half", {units.rate, "from the second half"}, exponent_column(second)}}});
+                   {{"nats", {units.rate, "exponent; -inf: a direction that is lost"}, json_list(spectrum.nats)},
+                    {"bits", {"bit per unit of time", "the same over ln 2"}, json_list(bits)},
+                    {"error", {units.rate, "standard error, eight stretches"}, json_list(spectrum.error)},
+                    {"first_half", {units.rate, "from the first half"}, json_list(first)},
+                    {"second_half", {units.rate, "from the second half"}, json_list(second)}}});
   Eigen::VectorXd times(spectrum.rates.cols());
   for (Eigen::Index j = 0; j < times.size(); ++j) times[j] = spectrum.interval * static_cast<double>(j + 1);
   writer.write(group + "/time", times, {units.time, "ends of the intervals, from the start of measuring"});
@@ -56,12 +55,6 @@ void store_model_exponents(scene::StoreWriter& writer, const std::string& group,
   if (spectrum.balance) store_balance(writer, group + "/balance", *spectrum.balance, units);
 }
 
-/// JSON has no infinities.
-Json exponent_json(double value) {
-  if (std::isfinite(value)) return value;
-  return std::isnan(value) ? Json(nullptr) : Json(value < 0.0 ? "-inf" : "inf");
-}
-
 Json exponent_list(const Eigen::VectorXd& values) {
   Json out = Json::array();
   for (const double value : values) out.push_back(exponent_json(value));
@@ -69,6 +62,11 @@ Json exponent_list(const Eigen::VectorXd& values) {
 }
 
 }  // namespace
+
+Json exponent_json(double value) {
+  if (std::isinf(value)) return value < 0.0 ? "-inf" : "inf";
+  return json_number(value);
+}
 
 void store_exponents(scene::StoreWriter& writer, const std::vector<ModelExponents>& models, const Units& units) {
   for (std::size_t i = 0; i < models.size(); ++i)

@@ -24,6 +24,8 @@ struct ModelExponents {
 void store_exponents(scene::StoreWriter& writer, const std::vector<ModelExponents>& models, const Units& units);
 /// Side by side as a table for a terminal, with what they add up to. @param bits  rather than nats
 [[nodiscard]] std::string exponents_text(const std::vector<ModelExponents>& models, bool bits);
+/// A number; infinities as words, NaN as null: JSON has none of them.
+[[nodiscard]] Json exponent_json(double value);
 [[nodiscard]] Json exponents_json(const std::vector<ModelExponents>& models);
 
 /// Writes the table `verdict`, a row for every figure of every model.

@@ -158,9 +158,6 @@ std::string verdict_text(const VerdictTable& verdict, bool bits) {
 }
 
 Json verdict_json(const VerdictTable& verdict) {
-  const auto number = [](double value) {
-    return std::isfinite(value) ? Json(value) : std::isnan(value) ? Json(nullptr) : Json("-inf");
-  };
   Json out = {{"channel", verdict.channel + 1}, {"sample", verdict.sample}};
   const std::vector<VerdictRow> rows = verdict_rows(verdict, 1.0, "nat");
   for (std::size_t i = 0; i < verdict.models.size(); ++i) {
@@ -169,8 +166,8 @@ Json verdict_json(const VerdictTable& verdict) {
     if (!model.failure.empty()) one["failure"] = model.failure;
     for (const VerdictRow& row : rows) {
       const Halved& value = row.values[i];
-      one["figures"][row.name] = {{"value", number(value.value)},
-                                  {"halves", {number(value.halves[0]), number(value.halves[1])}},
+      one["figures"][row.name] = {{"value", exponent_json(value.value)},
+                                  {"halves", {exponent_json(value.halves[0]), exponent_json(value.halves[1])}},
                                   {"unit", row.unit}};
     }
     one["notes"] = model.notes;

@@ -5,6 +5,7 @@
 #include "cli/figures/panels.hpp"
 #include "cli/figures/style.hpp"
 #include "cli/map_store.hpp"
+#include "core/none.hpp"
 #include "scene/table.hpp"
 
 #include <fmt/format.h>
@@ -57,7 +58,6 @@ figures::HeatMapLayout map_layout(const StoreReader& store) {
 
 /// Crossings of period-1 orbits: those of other orders count more periods and are left out.
 Figure crossings(const StoreReader& store) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   figures::HeatMapLayout layout = map_layout(store);
   layout.value_label = "regime changes per period";
   layout.high = 16.0;
@@ -82,7 +82,6 @@ Figure multipliers(const StoreReader& store) {
 }
 
 Figure orders(const StoreReader& store) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   figures::HeatMapLayout layout = map_layout(store);
   layout.value_label = "period, in periods of the drive";
   layout.low = 1.0;

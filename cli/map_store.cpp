@@ -1,6 +1,7 @@
 #include "cli/map_store.hpp"
 
 #include "cli/journal_cursor.hpp"
+#include "core/none.hpp"
 
 #include <fmt/format.h>
 #include <functional>
@@ -193,7 +194,6 @@ void store_strobe(scene::StoreWriter& writer, const SweepAxis& axis, const std::
       const Eigen::Index contacts = std::max<Eigen::Index>(point.alternating.size(), 1);
       for (Eigen::Index c = 0; c < contacts; ++c) {
         const bool ok = point.failure.empty();
-        constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
         parameter.push_back(point.parameter);
         contact.push_back(static_cast<double>(c));
         order.push_back(point.order);

@@ -1,6 +1,6 @@
 #include "cli/orbit_report.hpp"
 
-#include "cli/json_list.hpp"
+#include "cli/json_values.hpp"
 #include "cli/text_table.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+#include "cli/json_values.hpp"
 #include "cli/pipeline.hpp"
 #include "cli/text_table.hpp"
 #include "cli/validation_store.hpp"
@@ -7,8 +8,6 @@
 
 namespace slipmode::cli {
 namespace {
-
-std::vector<double> to_list(const Eigen::VectorXd& values) { return {values.begin(), values.end()}; }
 
 Json ensemble_json(const PipelineResult& result) {
   Json failures = Json::array();
@@ -37,11 +36,11 @@ std::string payback(double runs) {
 
 Json to_json(const PipelineResult& result, const scene::Scene& scene) {
   Json out = {{"verb", "run"}, {"title", scene.title}, {"units", scene.units}};
-  out["modes"] = {{"slipping_omega", to_list(result.slipping)}, {"sticking_omega", to_list(result.sticking)}};
+  out["modes"] = {{"slipping_omega", json_list(result.slipping)}, {"sticking_omega", json_list(result.sticking)}};
   if (result.ensemble) out["ensemble"] = ensemble_json(result);
   if (result.pod) {
     out["pod"] = {{"rank", result.pod->rank},
-                  {"shares", to_list(result.pod->shares)},
+                  {"shares", json_list(result.pod->shares)},
                   {"chosen_modes", result.chosen},
                   {"chosen_energy", result.pod->shares.head(result.chosen).sum()}};
   }

@@ -1,3 +1,4 @@
+#include "cli/json_values.hpp"
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
 #include "extremes/cases.hpp"
@@ -22,7 +23,7 @@ constexpr std::uint64_t kDefaultScenes = 300;
 Json result_json(const extremes::ExtremeResult& result) {
   Json row = {{"case", result.name},
               {"law", result.law},
-              {"measured", std::isfinite(result.measured) ? Json(result.measured) : Json(nullptr)},
+              {"measured", json_number(result.measured)},
               {"limit", result.limit},
               {"ok", result.holds}};
   if (!result.note.empty()) row["note"] = result.note;

@@ -1,19 +1,19 @@
 #include "cli/series_findings.hpp"
 
+#include "cli/json_values.hpp"
 #include "cli/text_table.hpp"
+#include "core/none.hpp"
 #include "diagnostics/kaplan_yorke.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace slipmode::cli {
 namespace {
 
 constexpr const char* kNotLookedFor = "not looked for";
-constexpr double kNoErrorKnown = std::numeric_limits<double>::quiet_NaN();
 
 /// Collects findings of one study in the units asked for.
 class FindingList {
@@ -47,20 +47,20 @@ class FindingList {
 
   void facts() {
     const auto samples = static_cast<double>(study_.series.values.size());
-    add("samples", "samples", samples, kNoErrorKnown, "", fmt::format("every {:g} {}", interval(), time_));
+    add("samples", "samples", samples, kNone, "", fmt::format("every {:g} {}", interval(), time_));
     add("mean", "mean", study_.mean, study_.deviation / std::sqrt(std::max(1.0, samples / correlated())), values_,
         fmt::format("decorrelated after {} samples", study_.decorrelation));
-    add("deviation", "standard deviation", study_.deviation, kNoErrorKnown, values_);
-    add("rms", "root mean square", study_.root_mean_square, kNoErrorKnown, values_);
-    add("mean_period", "mean period", study_.loop * interval(), kNoErrorKnown, time_,
+    add("deviation", "standard deviation", study_.deviation, kNone, values_);
+    add("rms", "root mean square", study_.root_mean_square, kNone, values_);
+    add("mean_period", "mean period", study_.loop * interval(), kNone, time_,
         study_.sampled_map ? fmt::format("{:.3g} samples: taken as a map", study_.loop)
                            : fmt::format("{:.4g} samples, by upward crossings of the mean", study_.loop));
     add("decorrelation", "autocorrelation time", static_cast<double>(study_.decorrelation) * interval(),
         0.5 * interval(), time_, "first below 1/e");
     if (study_.smoothness) {
-      add("flat_share", "flat stretches", 100.0 * study_.smoothness->flat_share, kNoErrorKnown, "%", "of the samples");
-      add("kinks", "kinks", study_.smoothness->coarse ? kNoErrorKnown : study_.smoothness->kinks_per_period,
-          kNoErrorKnown, "", study_.smoothness->coarse ? "too few samples per period to tell" : "per mean period");
+      add("flat_share", "flat stretches", 100.0 * study_.smoothness->flat_share, kNone, "%", "of the samples");
+      add("kinks", "kinks", study_.smoothness->coarse ? kNone : study_.smoothness->kinks_per_period, kNone, "",
+          study_.smoothness->coarse ? "too few samples per period to tell" : "per mean period");
     }
   }
 
@@ -94,8 +94,8 @@ class FindingList {
     constexpr double kLevel = 0.9;
     Eigen::Index level = 0;
     while (level < study_.cao->E1.size() && study_.cao->E1(level) < kLevel) ++level;
-    add("cao_level", "Cao's E1 above 0.9 from",
-        level < study_.cao->E1.size() ? static_cast<double>(level + 1) : kNoErrorKnown, kNoErrorKnown, "", "dimension");
+    add("cao_level", "Cao's E1 above 0.9 from", level < study_.cao->E1.size() ? static_cast<double>(level + 1) : kNone,
+        kNone, "", "dimension");
     Eigen::Index least = 0;
     study_.cao->E2.minCoeff(&least);
     add("cao_least_E2", "Cao's least E2", study_.cao->E2(least), study_.cao->E2_error(least), "",
@@ -169,13 +169,13 @@ class FindingList {
       add("determinism", "determinism", plot.determinism, plot.determinism_error, "",
           fmt::format("of recurrences: rate {:.3g}, radius {:.3g}, {} points every {:.3g} {}", plot.rate,
                       plot.settings.radius, plot.points, plot.interval, time_));
-      add("longest_line", "longest recurrence", static_cast<double>(plot.longest) * plot.interval, kNoErrorKnown, time_,
+      add("longest_line", "longest recurrence", static_cast<double>(plot.longest) * plot.interval, kNone, time_,
           "diagonal line of the recurrence plot");
     }
     if (study_.section && study_.section->time.size() > 1) {
       const bool strobe = study_.section->settings.cut == diagnostics::Cut::kStrobe;
       add("return_time", "time between section points", study_.section->mean_return,
-          strobe ? kNoErrorKnown : study_.section->return_error, time_,
+          strobe ? kNone : study_.section->return_error, time_,
           fmt::format("{} points, {}", study_.section->time.size(),
                       strobe ? "once per period of the drive" : "upward through the mean"));
     }
@@ -184,18 +184,18 @@ class FindingList {
   void motion() {
     if (study_.surrogates) {
       const diagnostics::SurrogateTest& test = *study_.surrogates;
-      add("forecast_error", "forecast error", test.error, kNoErrorKnown, "deviations",
+      add("forecast_error", "forecast error", test.error, kNone, "deviations",
           fmt::format("{} samples ahead, mean of five neighbours", test.settings.ahead));
-      add("surrogate_p", "chance of linear noise", test.p, kNoErrorKnown, "",
+      add("surrogate_p", "chance of linear noise", test.p, kNone, "",
           fmt::format("rank {} of {} surrogates, {:.3g} of their deviations below their mean", test.rank,
                       test.of_surrogates.size(), test.distance));
     }
     if (!study_.verdict) return;
     if (study_.verdict->motion == diagnostics::SeriesMotion::kPeriodic) {
-      add("period", "period", study_.verdict->T, kNoErrorKnown, time_,
+      add("period", "period", study_.verdict->T, kNone, time_,
           fmt::format("{} {}", study_.verdict->period, study_.sampled_map ? "samples" : "loops"));
     }
-    add("mismatch", "least mismatch after a shift", study_.verdict->repeat.mismatch, kNoErrorKnown, "",
+    add("mismatch", "least mismatch after a shift", study_.verdict->repeat.mismatch, kNone, "",
         "mean squared difference over twice the variance");
   }
 
@@ -240,12 +240,11 @@ std::string findings_text(const std::vector<Finding>& findings) {
 }
 
 Json findings_json(const std::vector<Finding>& findings) {
-  const auto number = [](double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); };
   Json out = Json::object();
   for (const Finding& finding : findings) {
     out[finding.key] = {{"quantity", finding.quantity},
-                        {"value", number(finding.value)},
-                        {"error", number(finding.error)},
+                        {"value", json_number(finding.value)},
+                        {"error", json_number(finding.error)},
                         {"unit", finding.unit},
                         {"settings", finding.settings}};
   }

@@ -1,6 +1,6 @@
 #include "cli/series_store.hpp"
 
-#include "cli/json_list.hpp"
+#include "cli/json_values.hpp"
 #include "scene/provenance.hpp"
 #include "scene/table.hpp"
 

@@ -1,6 +1,6 @@
 #include "cli/shaken_bases.hpp"
 
-#include "cli/json_list.hpp"
+#include "cli/json_values.hpp"
 #include "cli/steps.hpp"
 #include "cli/text_table.hpp"
 #include "fem/modes.hpp"

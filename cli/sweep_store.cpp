@@ -1,11 +1,11 @@
 #include "cli/sweep_store.hpp"
 
 #include "cli/journal_cursor.hpp"
+#include "core/none.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <memory>
 #include <utility>
@@ -98,7 +98,6 @@ SweepAxis sweep_axis(const std::string& key, const Units& units) {
 
 void store_sweep(scene::StoreWriter& writer, const std::string& group, const std::string& title, const SweepAxis& axis,
                  const Units& units, const std::vector<SweepPoint>& points) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> parameter, period, T, stick, energy, rate, time, events;
   std::vector<std::string> motion, failure;
   std::vector<double> slip_parameter, slip_contact, slip_displacement;

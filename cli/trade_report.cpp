@@ -1,5 +1,6 @@
 #include "cli/trade_report.hpp"
 
+#include "cli/json_values.hpp"
 #include "cli/text_table.hpp"
 #include "cli/units.hpp"
 #include "scene/table.hpp"
@@ -72,8 +73,6 @@ scene::Table candidate_table(const Study& study, const scene::Scene& scene) {
 }
 
 /// Values that are not finite have no number in JSON.
-Json json_number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 Json json_of(const Study& study, const Row& row, double duration) {
   Json errors = Json::object(), noise = Json::object();
   for (std::size_t m = 0; m < trade::kMeasures; ++m) {

@@ -1,12 +1,12 @@
 #include "cli/validation_setup.hpp"
 
 #include "cli/steps.hpp"
+#include "core/none.hpp"
 #include "rom/reduce.hpp"
 #include "scene/records.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <limits>
 
 namespace slipmode::cli {
 namespace {
@@ -22,12 +22,11 @@ pod::Ensemble moments(const pod::PodResult& result) {
 diagnostics::Candidate reduced_candidate(const scene::StoreReader& store, const std::string& group, Eigen::Index n) {
   const pod::Basis basis = scene::load_basis(store, group, n);
   const bool known = basis.energy.size() == basis.modes();
-  constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
   return {.name = basis.kind == pod::BasisKind::kPom   ? "POM"
                   : basis.kind == pod::BasisKind::kLnm ? "LNM"
                                                        : "user",
           .basis = basis,
-          .captured = known ? cumulative(basis.energy) : Eigen::VectorXd::Constant(basis.modes(), kNotKnown)};
+          .captured = known ? cumulative(basis.energy) : Eigen::VectorXd::Constant(basis.modes(), kNone)};
 }
 
 }  // namespace

@@ -2,10 +2,10 @@
 
 #include "cli/exponents_store.hpp"
 #include "cli/sweep_store.hpp"
+#include "core/none.hpp"
 #include "scene/table.hpp"
 
 #include <fmt/format.h>
-#include <limits>
 
 namespace slipmode::cli {
 namespace {
@@ -14,8 +14,6 @@ using diagnostics::CandidateReport;
 using diagnostics::OrbitRow;
 using diagnostics::ShareRow;
 using diagnostics::ValidationReport;
-
-constexpr double kNoRow = std::numeric_limits<double>::quiet_NaN();
 
 /// One column of numbers, a value per row of all candidates in turn.
 template <class Rows, class Value>
@@ -39,10 +37,10 @@ std::vector<std::string> texts(const ValidationReport& report, Rows rows, Value 
 scene::Table share_table(const ValidationReport& report, const Units& units) {
   const auto numbers = [&report](auto value) { return column(report, &CandidateReport::shares, value); };
   const auto when_ok = [&numbers](auto value) {
-    return numbers([value](const ShareRow& row) { return row.failure.empty() ? value(row) : kNoRow; });
+    return numbers([value](const ShareRow& row) { return row.failure.empty() ? value(row) : kNone; });
   };
   const auto settled = [&numbers](auto value) {
-    return numbers([value](const ShareRow& row) { return row.attractor ? value(row) : kNoRow; });
+    return numbers([value](const ShareRow& row) { return row.attractor ? value(row) : kNone; });
   };
   const auto words = [&report](auto value) { return texts(report, &CandidateReport::shares, value); };
   return {"energy shares and deviations against the number of modes, at the table's speed",
@@ -82,7 +80,7 @@ scene::Table share_table(const ValidationReport& report, const Units& units) {
             settled([](const ShareRow& row) { return row.distance.mean_energy_percent; })},
            {"lyapunov",
             {"bit per unit of time", "largest exponent of an aperiodic motion"},
-            numbers([](const ShareRow& row) { return row.lyapunov ? row.lyapunov->bits : kNoRow; })},
+            numbers([](const ShareRow& row) { return row.lyapunov ? row.lyapunov->bits : kNone; })},
            {"failure", {"", "why there is no result"}, words([](const auto&, const ShareRow& row) {
               return row.failure;
             })}}};
@@ -91,10 +89,10 @@ scene::Table share_table(const ValidationReport& report, const Units& units) {
 scene::Table orbit_table(const ValidationReport& report, const Units& units) {
   const auto compared = [&report](auto value) {
     return column(report, &CandidateReport::orbits,
-                  [value](const OrbitRow& row) { return row.comparison ? value(*row.comparison) : kNoRow; });
+                  [value](const OrbitRow& row) { return row.comparison ? value(*row.comparison) : kNone; });
   };
   const auto in_phase = [&compared](auto value) {
-    return compared([value](const diagnostics::OrbitComparison& c) { return c.same_period ? value(c) : kNoRow; });
+    return compared([value](const diagnostics::OrbitComparison& c) { return c.same_period ? value(c) : kNone; });
   };
   const auto words = [&report](auto value) { return texts(report, &CandidateReport::orbits, value); };
   using Comparison = diagnostics::OrbitComparison;

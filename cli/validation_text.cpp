@@ -2,10 +2,10 @@
 #include "cli/sweep_store.hpp"
 #include "cli/text_table.hpp"
 #include "cli/validation_store.hpp"
+#include "core/none.hpp"
 
 #include <fmt/format.h>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numbers>
 
@@ -17,16 +17,14 @@ using diagnostics::OrbitRow;
 using diagnostics::ShareRow;
 using diagnostics::ValidationReport;
 
-constexpr double kBlank = std::numeric_limits<double>::quiet_NaN();
-
 std::vector<std::string> share_cells(const ShareRow& row) {
   const bool ok = row.failure.empty();
   return {fixed(row.energy, 2),
-          fixed(ok ? row.horizon.dX : kBlank, 2),
-          fixed(ok ? row.horizon.dE : kBlank, 2),
-          fixed(row.attractor ? row.distance.wasserstein : kBlank, 3),
+          fixed(ok ? row.horizon.dX : kNone, 2),
+          fixed(ok ? row.horizon.dE : kNone, 2),
+          fixed(row.attractor ? row.distance.wasserstein : kNone, 3),
           row.attractor ? motion_text(row.attractor->period) : "failed",
-          fixed(row.lyapunov ? row.lyapunov->bits : kBlank, 4)};
+          fixed(row.lyapunov ? row.lyapunov->bits : kNone, 4)};
 }
 
 /// One row per number of modes, all bases side by side.

@@ -1,20 +1,18 @@
 #include "diagnostics/compare.hpp"
 
 #include "core/errors.hpp"
+#include "core/none.hpp"
 #include "diagnostics/point_sets.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace slipmode::diagnostics {
 
 namespace {
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// The run from `start`, lifted: column k at k·sample.
 Record simulate_record(const Model& model, double parameter, const dynamics::State& start, double duration,

@@ -1,6 +1,7 @@
 #include "diagnostics/divergence.hpp"
 
 #include "core/errors.hpp"
+#include "core/none.hpp"
 #include "diagnostics/neighbours.hpp"
 
 #include <fmt/format.h>
@@ -14,7 +15,6 @@ namespace slipmode::diagnostics {
 
 namespace {
 
-constexpr double kNoDistance = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kColumnBlock = 128;
 
 DivergenceOptions checked(const Series& series, DivergenceOptions options) {
@@ -76,7 +76,7 @@ class Followed {
     Eigen::VectorXd logs(options_.steps + 1);
     for (int k = 0; k <= options_.steps; ++k) {
       const double distance = tree_.distance(i + k * options_.stride, j + k * options_.stride);
-      logs(k) = distance > 0.0 ? std::log(distance) : kNoDistance;
+      logs(k) = distance > 0.0 ? std::log(distance) : kNone;
     }
     return logs;
   }
@@ -109,7 +109,7 @@ class Followed {
     }
     Eigen::VectorXd logs(options_.steps + 1);
     for (int k = 0; k <= options_.steps; ++k) {
-      logs(k) = nearest.distance > 0.0 ? std::log(nearest.distance) : kNoDistance;
+      logs(k) = nearest.distance > 0.0 ? std::log(nearest.distance) : kNone;
       if (k == options_.steps) break;
       nearest = from_path(i + (k + 1) * options_.stride, nearest.index + options_.stride);
     }
@@ -118,7 +118,7 @@ class Followed {
 
   Eigen::VectorXd follow_all(Eigen::Index i, double radius) const {
     const std::vector<Neighbour> near = tree_.within(i, radius, allowed_);
-    Eigen::VectorXd logs = Eigen::VectorXd::Constant(options_.steps + 1, kNoDistance);
+    Eigen::VectorXd logs = Eigen::VectorXd::Constant(options_.steps + 1, kNone);
     if (near.size() < static_cast<std::size_t>(options_.least_neighbours)) return logs;
     for (int k = 0; k <= options_.steps; ++k) {
       const Eigen::Index ahead = options_.embedding.span() + k * options_.stride;
@@ -173,7 +173,7 @@ Divergence divergence(const Series& series, const DivergenceOptions& options) {
             settings.method == DivergenceMethod::kKantz
                 ? fmt::format("; radius {:.4g} is too small, {:.4g} would do", settings.radius, followed.usual_radius())
                 : "; the record repeats itself exactly"),
-        kNoDistance, {}, kNoDistance);
+        kNone, {}, kNone);
   }
   const Eigen::Index half = logs.cols() / 2;
   out.time = Eigen::VectorXd::LinSpaced(settings.steps + 1, 0.0, settings.steps) *

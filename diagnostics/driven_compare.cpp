@@ -1,6 +1,7 @@
 #include "diagnostics/driven_compare.hpp"
 
 #include "core/errors.hpp"
+#include "core/none.hpp"
 #include "diagnostics/point_sets.hpp"
 #include "diagnostics/timing.hpp"
 
@@ -8,19 +9,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace slipmode::diagnostics {
 
 namespace {
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-
 double mean_of(const std::vector<double>& values) {
   double sum = 0.0;
   for (const double value : values) sum += value;
-  return values.empty() ? kMissing : sum / static_cast<double>(values.size());
+  return values.empty() ? kNone : sum / static_cast<double>(values.size());
 }
 
 std::vector<double> section_points(const DrivenMotion& motion, Eigen::Index reading) {
@@ -60,7 +58,7 @@ DrivenAgreement compare_driven(const std::vector<DrivenPoint>& full, const std::
   DrivenAgreement out;
   std::vector<double> hausdorffs, found;
   for (std::size_t i = 0; i < full.size(); ++i) {
-    out.wasserstein.push_back(kMissing);
+    out.wasserstein.push_back(kNone);
     if (!full[i].ok() || !reduced[i].ok()) {
       ++out.failed;
       continue;
@@ -79,7 +77,7 @@ DrivenAgreement compare_driven(const std::vector<DrivenPoint>& full, const std::
     out.same_period /= static_cast<double>(out.values);
   }
   out.mean_wasserstein = mean_of(found);
-  out.median_wasserstein = found.empty() ? kMissing : detail::median(found);
+  out.median_wasserstein = found.empty() ? kNone : detail::median(found);
   out.mean_hausdorff = mean_of(hausdorffs);
   return out;
 }
@@ -97,7 +95,7 @@ double hysteresis(const std::vector<DrivenPoint>& forward, const std::vector<Dri
     const bool apart = repeats && agreement.wasserstein[i] > kSame;
     different += up.label != down.label || !same_period(up.period, down.period) || apart ? 1.0 : 0.0;
   }
-  return agreement.values > 0 ? different / static_cast<double>(agreement.values) : kMissing;
+  return agreement.values > 0 ? different / static_cast<double>(agreement.values) : kNone;
 }
 
 std::vector<AmplitudePeak> amplitude_peaks(const std::vector<DrivenPoint>& points, Eigen::Index reading) {

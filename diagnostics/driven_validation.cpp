@@ -1,6 +1,7 @@
 #include "diagnostics/driven_validation.hpp"
 
 #include "core/errors.hpp"
+#include "core/none.hpp"
 #include "diagnostics/timing.hpp"
 #include "rom/reduce.hpp"
 
@@ -8,14 +9,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 namespace slipmode::diagnostics {
 
 namespace {
 
-constexpr double kNoBand = std::numeric_limits<double>::quiet_NaN();
 constexpr double kTrustedDistance = 0.1, kTrustedNoise = 2.0, kTrustedShare = 0.9;
 
 void check(const DrivenCase& full, const std::vector<DrivenCandidate>& candidates,
@@ -53,7 +52,7 @@ std::vector<Eigen::Index> sizes(const DrivenCandidate& candidate, const std::vec
 
 /// Fills trusted_share and band.
 void judge(const std::vector<double>& values, const DrivenAgreement& noise, DrivenRow& row) {
-  row.band = {kNoBand, kNoBand};
+  row.band = {kNone, kNone};
   std::size_t trusted = 0, run = 0, longest = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!trusted_at(row.agreement.wasserstein[i], noise.wasserstein[i])) {

@@ -4,6 +4,7 @@
 #include "core/errors.hpp"
 #include "diagnostics/kaplan_yorke.hpp"
 #include "diagnostics/neighbours.hpp"
+#include "diagnostics/stretches.hpp"
 
 #include <fmt/format.h>
 
@@ -17,7 +18,7 @@ namespace slipmode::diagnostics {
 
 namespace {
 
-constexpr Eigen::Index kLeastSteps = 100, kSegments = 8;
+constexpr Eigen::Index kLeastSteps = 100;
 
 SpectrumOptions checked(const Series& series, SpectrumOptions options) {
   if (options.neighbours < 2 * options.embedding.dimension || options.window < 0) {
@@ -65,7 +66,7 @@ ExponentSpectrum exponent_spectrum(const Series& series, const SpectrumOptions& 
   const Series known = part(series, 0, series.values.size() - lag);
   const NeighbourTree tree(delay_vectors(known, settings.embedding), Metric::kEuclidean);
   out.steps = (tree.size() - 1) / lag + 1;
-  out.steps -= out.steps % kSegments;
+  out.steps -= out.steps % kStretches;
   Eigen::MatrixXd rows(d, out.steps);
   constexpr Eigen::Index kBlock = 64;
   rethrow_first(
@@ -77,8 +78,8 @@ ExponentSpectrum exponent_spectrum(const Series& series, const SpectrumOptions& 
       }));
   Eigen::MatrixXd frame = Eigen::MatrixXd::Identity(d, d), jacobian = Eigen::MatrixXd::Zero(d, d);
   jacobian.topRightCorner(d - 1, d - 1).setIdentity();
-  const Eigen::Index stretch = out.steps / kSegments;
-  Eigen::MatrixXd growth = Eigen::MatrixXd::Zero(d, kSegments);
+  const Eigen::Index stretch = out.steps / kStretches;
+  Eigen::MatrixXd growth = Eigen::MatrixXd::Zero(d, kStretches);
   for (Eigen::Index n = 0; n < out.steps; ++n) {
     jacobian.bottomRows(1) = rows.col(n).transpose();
     const Eigen::HouseholderQR<Eigen::MatrixXd> qr(jacobian * frame);
@@ -87,9 +88,7 @@ ExponentSpectrum exponent_spectrum(const Series& series, const SpectrumOptions& 
   }
   growth /= static_cast<double>(stretch * lag) * series.interval;
   const Eigen::VectorXd mean = growth.rowwise().mean();
-  const Eigen::VectorXd error =
-      ((growth.colwise() - mean).rowwise().squaredNorm() / static_cast<double>(kSegments * (kSegments - 1)))
-          .cwiseSqrt();
+  const Eigen::VectorXd error = standard_error(growth);
   std::vector<Eigen::Index> order(static_cast<std::size_t>(d));
   std::iota(order.begin(), order.end(), Eigen::Index{0});
   std::stable_sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) { return mean(a) > mean(b); });

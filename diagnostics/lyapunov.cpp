@@ -2,8 +2,10 @@
 
 #include "core/decompositions.hpp"
 #include "core/errors.hpp"
+#include "core/none.hpp"
 #include "core/random.hpp"
 #include "diagnostics/model.hpp"
+#include "diagnostics/stretches.hpp"
 
 #include <fmt/format.h>
 
@@ -18,31 +20,13 @@ namespace slipmode::diagnostics {
 
 namespace {
 
-constexpr std::size_t kPieces = 8;
-
 /// Exponent and its scatter from the log growth of every interval.
 LyapunovExponent summarise(const std::vector<double>& logs, double interval) {
-  const std::size_t count = logs.size();
-  LyapunovExponent result{.renormalisations = static_cast<int>(count)};
-  double sum = 0.0;
-  for (const double log : logs) sum += log;
-  result.nats = sum / (static_cast<double>(count) * interval);
+  const Eigen::Map<const Eigen::RowVectorXd> rates(logs.data(), static_cast<Eigen::Index>(logs.size()));
+  LyapunovExponent result{.nats = rates.sum() / (static_cast<double>(rates.size()) * interval),
+                          .renormalisations = static_cast<int>(logs.size())};
   result.bits = result.nats / std::numbers::ln2;
-  const std::size_t stretch = count / kPieces;
-  if (stretch == 0) {
-    result.error = std::numeric_limits<double>::quiet_NaN();
-    return result;
-  }
-  double mean = 0.0;
-  double square = 0.0;
-  for (std::size_t s = 0; s < kPieces; ++s) {
-    double part = 0.0;
-    for (std::size_t k = s * stretch; k < (s + 1) * stretch; ++k) part += logs[k];
-    part /= static_cast<double>(stretch) * interval;
-    mean += part / kPieces;
-    square += part * part / kPieces;
-  }
-  result.error = std::sqrt(std::max(0.0, square - mean * mean) / (kPieces - 1));
+  result.error = rates.size() < kStretches ? kNone : standard_error(stretch_means(rates))(0) / interval;
   return result;
 }
 

@@ -1,12 +1,12 @@
 #include "diagnostics/series_study.hpp"
 
 #include "core/errors.hpp"
+#include "core/none.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace slipmode::diagnostics {
 
@@ -312,13 +312,12 @@ class SeriesExamination {
                                              .region = {.least_rise = 0.3, .least_width = width},
                                              .run = run_});
     if (found.exponent < -3.0 * found.error) {
-      constexpr double kNoTime = std::numeric_limits<double>::quiet_NaN();
       throw NumericalFailure(
           fmt::format(
               "divergence of {}: expected neighbours that part at a steady rate somewhere, found the straightest "
               "part of the curve to fall at {:.3g}; too few samples for so many dimensions",
               series().name, found.exponent),
-          kNoTime, {}, kNoTime);
+          kNone, {}, kNone);
     }
     return found;
   }

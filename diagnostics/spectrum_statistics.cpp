@@ -1,6 +1,8 @@
 #include "diagnostics/spectrum_statistics.hpp"
 
+#include "core/none.hpp"
 #include "diagnostics/kaplan_yorke.hpp"
+#include "diagnostics/stretches.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,17 +14,7 @@
 namespace slipmode::diagnostics {
 namespace {
 
-constexpr Eigen::Index kStretches = 8;
 constexpr double kLost = -std::numeric_limits<double>::infinity();
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-
-/// Means of `rates` over stretches of equal length, one column each; what does not fill the last is left out.
-Eigen::MatrixXd stretches(const Eigen::MatrixXd& rates, Eigen::Index count) {
-  const Eigen::Index length = rates.cols() / count;
-  Eigen::MatrixXd means(rates.rows(), count);
-  for (Eigen::Index s = 0; s < count; ++s) means.col(s) = rates.middleCols(s * length, length).rowwise().mean();
-  return means;
-}
 
 /// @param zero  index of the exponent to be taken as zero, or −1. NaN where leading exponents alone do not reach a
 /// negative sum.
@@ -33,7 +25,7 @@ double dimension_of(Eigen::VectorXd exponents, Eigen::Index zero, Eigen::Index s
   const double largest = exponents.unaryExpr([](double x) { return std::isfinite(x) ? std::abs(x) : 0.0; }).maxCoeff();
   for (double& exponent : exponents)
     if (std::abs(exponent) <= kRounding * largest) exponent = 0.0;
-  if (exponents.size() < size && exponents.sum() >= 0.0) return kUnknown;
+  if (exponents.size() < size && exponents.sum() >= 0.0) return kNone;
   return kaplan_yorke_dimension(exponents);
 }
 
@@ -88,19 +80,17 @@ void summarise(LyapunovSpectrum& spectrum, const Eigen::Ref<const Eigen::MatrixX
   spectrum.rates.topRows(finite) = ordered;
   spectrum.nats = Eigen::VectorXd::Constant(k, kLost);
   spectrum.nats.head(finite) = mean(order);
-  spectrum.halves = Eigen::MatrixXd::Constant(k, 2, m < 2 ? kUnknown : kLost);
+  spectrum.halves = Eigen::MatrixXd::Constant(k, 2, m < 2 ? kNone : kLost);
   spectrum.error = Eigen::VectorXd::Constant(k, 0.0);
-  spectrum.error.head(finite).setConstant(kUnknown);
-  spectrum.dimension_error = kUnknown;
-  if (m >= 2) spectrum.halves.topRows(finite) = stretches(ordered, 2);
+  spectrum.error.head(finite).setConstant(kNone);
+  spectrum.dimension_error = kNone;
+  if (m >= 2) spectrum.halves.topRows(finite) = stretch_means(ordered, 2);
   if (m < kStretches) {
     spectrum.dimension = dimension_of(spectrum.nats, vanishing(spectrum, finite), spectrum.size);
     return;
   }
-  const Eigen::MatrixXd parts = stretches(ordered, kStretches);
-  const Eigen::MatrixXd deviations = parts.colwise() - parts.rowwise().mean();
-  spectrum.error.head(finite) =
-      (deviations.rowwise().squaredNorm() / (kStretches * (kStretches - 1))).array().sqrt().matrix();
+  const Eigen::MatrixXd parts = stretch_means(ordered);
+  spectrum.error.head(finite) = standard_error(parts);
   const Eigen::Index zero = vanishing(spectrum, finite);
   spectrum.dimension = dimension_of(spectrum.nats, zero, spectrum.size);
   spectrum.dimension_error = dimension_error(parts, k - finite, zero, spectrum.size);

@@ -2,11 +2,11 @@
 
 #include "core/errors.hpp"
 #include "diagnostics/neighbours.hpp"
+#include "diagnostics/stretches.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -15,8 +15,6 @@
 namespace slipmode::diagnostics {
 
 namespace {
-
-constexpr int kParts = 8;
 
 WolfOptions checked(const Series& series, WolfOptions options) {
   if (options.evolution < 1 || options.window < 0 || !(options.smallest >= 0.0) ||
@@ -95,8 +93,8 @@ WolfExponent wolf_exponent(const Series& series, const WolfOptions& options) {
   const double sigma = std::sqrt((series.values.array() - series.values.mean()).square().mean());
   const NeighbourTree tree(delay_vectors(series, settings.embedding), Metric::kEuclidean);
   const Pair pair(tree, settings, sigma);
-  const Eigen::Index evolutions = (tree.size() - 1) / settings.evolution / kParts * kParts;
-  std::array<double, kParts> growth{};
+  const Eigen::Index evolutions = (tree.size() - 1) / settings.evolution / kStretches * kStretches;
+  Eigen::RowVectorXd growth = Eigen::RowVectorXd::Zero(kStretches);
   Eigen::Index j = pair.nearest(0);
   double distances = 0.0;
   for (Eigen::Index n = 0; n < evolutions; ++n) {
@@ -115,14 +113,13 @@ WolfExponent wolf_exponent(const Series& series, const WolfOptions& options) {
     j += settings.evolution;
     const double after = tree.distance(i + settings.evolution, j);
     // A pair that meets exactly has no logarithm; it counts as unchanged and is replaced next.
-    if (after > 0.0) growth[static_cast<std::size_t>(n * kParts / evolutions)] += std::log(after / before);
+    if (after > 0.0) growth(n * kStretches / evolutions) += std::log(after / before);
   }
   const double time = static_cast<double>(evolutions * settings.evolution) * series.interval;
-  const Eigen::Map<const Eigen::ArrayXd> stretches(growth.data(), kParts);
-  const Eigen::ArrayXd rates = stretches * kParts / time;
+  const Eigen::RowVectorXd rates = growth * static_cast<double>(kStretches) / time;
   out.nats = rates.mean();
   out.bits = out.nats / std::numbers::ln2;
-  out.error = std::sqrt((rates - out.nats).square().sum() / (kParts * (kParts - 1)));
+  out.error = standard_error(rates)(0);
   out.evolutions = static_cast<int>(evolutions);
   out.mean_distance = distances / static_cast<double>(evolutions);
   return out;

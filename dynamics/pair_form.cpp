@@ -2,10 +2,10 @@
 
 #include "core/decompositions.hpp"
 #include "core/errors.hpp"
+#include "core/none.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <vector>
 
@@ -19,8 +19,6 @@ constexpr double kSmallestScale = 1e-8;
 
 /// Largest error of a state that is turned into pairs and back.
 constexpr double kLargestGap = 1e-7;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
@@ -60,7 +58,7 @@ PairForm pair_form(const Eigen::MatrixXd& A) {
   }
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(Eigen::MatrixXd(A(rest, rest)));
   if (solver.info() != Eigen::Success)
-    throw NumericalFailure("eigenvalues of the damped structure did not converge", kNaN, {}, kNaN);
+    throw NumericalFailure("eigenvalues of the damped structure did not converge", kNone, {}, kNone);
   const Eigen::VectorXcd values = solver.eigenvalues();
   Eigen::MatrixXcd vectors = Eigen::MatrixXcd::Zero(2 * n, values.size());
   vectors(rest, Eigen::all) = solver.eigenvectors();
@@ -89,7 +87,7 @@ PairForm pair_form(const Eigen::MatrixXd& A) {
     throw NumericalFailure("the damping makes two modes coincide (condition number of the eigenvectors " +
                                std::to_string(condition) +
                                ", at most 1e10 is workable): change the damping or a contact's stiffness slightly",
-                           kNaN, {}, condition);
+                           kNone, {}, condition);
   form.T_inverse = form.T.inverse();
   return form;
 }
@@ -108,7 +106,7 @@ void check_pair_form(const PairForm& form, const Eigen::VectorXd& scale) {
             "parts that float and hardly feel their damping; remove what no force reaches, or damp or hold it "
             "more",
             error, kLargestGap),
-        kNaN, {}, error);
+        kNone, {}, error);
 }
 
 BalancedState balanced_state(const Eigen::VectorXd& omega, const Eigen::MatrixXd& damping,

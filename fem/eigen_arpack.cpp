@@ -14,7 +14,6 @@ namespace slipmode::fem::detail {
 
 namespace {
 
-constexpr int kMaxRestarts = 1000;
 constexpr double kRoundingUnit = 0.0;  // ARPACK reads this as the machine's rounding unit
 
 // The arrays that dsaupd fills and dseupd reads.

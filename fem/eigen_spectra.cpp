@@ -15,7 +15,6 @@ namespace slipmode::fem::detail {
 namespace {
 
 constexpr double kTolerance = 1e-12;
-constexpr Eigen::Index kMostRestarts = 1000;
 
 // One step of inverse iteration, then the best pairs within its range. A rigid-body mode's eigenvalue dominates the
 // inverse, so Lanczos finds the others with an error relative to that one; this step makes it relative to their own.
@@ -44,7 +43,7 @@ EigenPairs solve_spectra(const Structure& structure, const Holds& holds, Eigen::
       inverse, mass, count, subspace, inverse.shift());
   solver.init();
   const Eigen::Index converged =
-      solver.compute(Spectra::SortRule::LargestMagn, kMostRestarts, kTolerance, Spectra::SortRule::SmallestAlge);
+      solver.compute(Spectra::SortRule::LargestMagn, kMaxRestarts, kTolerance, Spectra::SortRule::SmallestAlge);
   if (solver.info() != Spectra::CompInfo::Successful) {
     throw NumericalFailure(fmt::format("natural modes: shift-invert Lanczos converged for {} of {} modes after {} "
                                        "restarts; ask for fewer or use the dense method",

@@ -11,6 +11,8 @@ namespace slipmode::fem::detail {
 
 /// From this size on few modes are sought by iteration rather than all by dense decomposition [degrees of freedom].
 inline constexpr Eigen::Index kDenseLimit = 500;
+/// Of Lanczos, before it is given up.
+inline constexpr int kMaxRestarts = 1000;
 
 /// Solutions of K φ = λ M φ with φᵀMφ = 1, ascending in λ = ω². Signs of the columns are arbitrary.
 struct EigenPairs {

@@ -1,6 +1,7 @@
 #include "pod/assemble.hpp"
 
 #include "core/errors.hpp"
+#include "core/none.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -12,7 +13,6 @@ namespace slipmode::pod {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 double rank_threshold(const Decomposition& d, const PodOptions& options) {
   if (options.rank_tolerance > 0.0) return options.rank_tolerance * d.sigma[0];

@@ -1,5 +1,6 @@
 #include "core/decompositions.hpp"
 #include "core/errors.hpp"
+#include "core/none.hpp"
 #include "pod/assemble.hpp"
 #include "pod/centred.hpp"
 
@@ -16,7 +17,6 @@ Decomposition decompose_covariance(const Eigen::MatrixXd& snapshots, const PodOp
   centred.for_each_block([&](const auto& block) { covariance.selfadjointView<Eigen::Lower>().rankUpdate(block); });
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
   if (eigen.info() != Eigen::Success) {
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     throw NumericalFailure(fmt::format("POD: eigenvalues of the {} x {} covariance did not converge", n, n), kNone, {},
                            kNone);
   }

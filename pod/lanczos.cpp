@@ -1,5 +1,6 @@
 #include "core/decompositions.hpp"
 #include "core/errors.hpp"
+#include "core/none.hpp"
 #include "pod/assemble.hpp"
 #include "pod/centred.hpp"
 
@@ -12,8 +13,6 @@
 namespace slipmode::pod {
 
 namespace {
-
-constexpr double kNoTime = std::numeric_limits<double>::quiet_NaN();
 
 /// y ↦ (X − q̄)(X − q̄)ᵀ y, one pass over the snapshots.
 class GramOperator {
@@ -56,7 +55,7 @@ Leading leading(const Centred& centred, Eigen::Index count) {
     throw NumericalFailure(fmt::format("POD: Lanczos found not all of {} leading modes of {} degrees of freedom in {} "
                                        "restarts; ask for fewer modes or use the QR method",
                                        count, centred.rows(), kMaxRestarts),
-                           kNoTime, {}, kNoTime);
+                           kNone, {}, kNone);
   }
   // A negative Ritz value is rounding about zero.
   return {solver.eigenvalues().cwiseMax(0.0).cwiseSqrt(), solver.eigenvectors()};

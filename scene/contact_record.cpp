@@ -1,5 +1,6 @@
 #include "scene/contact_record.hpp"
 
+#include "core/none.hpp"
 #include "core/overloaded.hpp"
 #include "scene/scene_words.hpp"
 
@@ -7,18 +8,15 @@
 #include <fmt/ranges.h>
 #include <array>
 #include <cmath>
-#include <limits>
 
 namespace slipmode::scene {
 
 namespace {
 
-constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
-
 /// The numbers of all laws; NaN where a law has none.
 struct LawNumbers {
-  double mu_s = kAbsent, mu_k = kAbsent, alpha = kAbsent, epsilon = kAbsent;
-  double stiffness = kAbsent, stribeck_speed = kAbsent, damping = kAbsent, viscous = kAbsent;
+  double mu_s = kNone, mu_k = kNone, alpha = kNone, epsilon = kNone;
+  double stiffness = kNone, stribeck_speed = kNone, damping = kNone, viscous = kNone;
 };
 
 LawNumbers numbers_of(const friction::Law& law) {
@@ -44,7 +42,7 @@ LawNumbers numbers_of(const friction::Law& law) {
 constexpr Eigen::Index kStopNumbers = 3;
 
 Eigen::VectorXd stop_numbers(const std::optional<friction::Stop>& stop) {
-  if (!stop) return Eigen::VectorXd::Constant(kStopNumbers, kAbsent);
+  if (!stop) return Eigen::VectorXd::Constant(kStopNumbers, kNone);
   return Eigen::VectorXd{{stop->stiffness, stop->damping, stop->gap}};
 }
 
@@ -107,7 +105,7 @@ const std::array<LawColumn, 8>& law_columns() {
 constexpr Eigen::Index kOscillatorNumbers = 6;
 
 Eigen::VectorXd oscillator_numbers(const friction::NormalLoad& load) {
-  if (!load.oscillator) return Eigen::VectorXd::Constant(kOscillatorNumbers, kAbsent);
+  if (!load.oscillator) return Eigen::VectorXd::Constant(kOscillatorNumbers, kNone);
   const friction::NormalOscillator& own = *load.oscillator;
   return Eigen::VectorXd{
       {own.mass, own.support_stiffness, own.support_damping, own.spring_stiffness, own.spring_damping, own.slope}};
@@ -177,7 +175,7 @@ std::vector<friction::Contact> load_contacts(const StoreReader& store, const std
   const std::vector<std::string> laws = store.texts(group + "/law", count);
   std::vector<LawNumbers> numbers(names.size());
   for (const LawColumn& column : law_columns()) {
-    const Eigen::VectorXd values = numbers_or(store, group + "/" + column.name, count, kAbsent);
+    const Eigen::VectorXd values = numbers_or(store, group + "/" + column.name, count, kNone);
     for (std::size_t c = 0; c < numbers.size(); ++c) {
       numbers[c].*column.number = values(static_cast<Eigen::Index>(c));
     }
@@ -186,10 +184,10 @@ std::vector<friction::Contact> load_contacts(const StoreReader& store, const std
   const Eigen::VectorXd slope = numbers_or(store, group + "/normal_load_slope", count, 0.0);
   const Eigen::MatrixXd oscillator = store.has(group + "/oscillator")
                                          ? store.columns(group + "/oscillator", kOscillatorNumbers, count)
-                                         : Eigen::MatrixXd::Constant(kOscillatorNumbers, count, kAbsent);
+                                         : Eigen::MatrixXd::Constant(kOscillatorNumbers, count, kNone);
   const bool stopped = store.has(group + "/stops");  // not in files of versions that had no clearance
   const Eigen::MatrixXd stops = stopped ? store.columns(group + "/stops", 2 * kStopNumbers, count)
-                                        : Eigen::MatrixXd::Constant(2 * kStopNumbers, count, kAbsent);
+                                        : Eigen::MatrixXd::Constant(2 * kStopNumbers, count, kNone);
   const std::vector<std::string> losses =
       stopped ? store.texts(group + "/loss", count) : std::vector<std::string>(names.size());
   const Eigen::VectorXd tilt = numbers_or(store, group + "/tilt", count, 0.0);

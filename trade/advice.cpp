@@ -1,6 +1,7 @@
 #include "trade/advice.hpp"
 
 #include "core/errors.hpp"
+#include "core/none.hpp"
 #include "trade/variants.hpp"
 
 #include <fmt/format.h>
@@ -13,8 +14,6 @@
 namespace slipmode::trade {
 
 namespace {
-
-constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 
 const Row* row_as_it_stands(const Study& study) {
   const auto found = std::ranges::find(study.rows, Axis::kScene, [](const Row& row) { return row.variant.axis; });
@@ -51,7 +50,7 @@ bool keeps_all(const Variant& variant) { return variant.reduction && variant.red
 std::vector<Offer> sound_offers(const Study& study, Measure measure, double limit) {
   std::vector<Offer> offers = study.offers(measure);
   for (std::size_t i = 0; i < offers.size(); ++i) {
-    if (!is_alike(study.rows[i], limit) || keeps_all(study.rows[i].variant)) offers[i].error = kNotKnown;
+    if (!is_alike(study.rows[i], limit) || keeps_all(study.rows[i].variant)) offers[i].error = kNone;
   }
   return offers;
 }
@@ -121,12 +120,12 @@ std::string percent_text(double value) {
 
 double speed_up(const Study& study, const Row& row) {
   const Row* own = row_as_it_stands(study);
-  return own == nullptr ? kNotKnown : own->cost.cpu / row.cost.cpu;
+  return own == nullptr ? kNone : own->cost.cpu / row.cost.cpu;
 }
 
 double break_even(const Study& study, const Row& row, double duration) {
   const Row* own = row_as_it_stands(study);
-  if (own == nullptr || !std::isfinite(row.cost.cpu)) return kNotKnown;
+  if (own == nullptr || !std::isfinite(row.cost.cpu)) return kNone;
   const double saved = (own->cost.cpu - row.cost.cpu) * duration / row.cost.simulated;
   if (!(saved > 0.0)) return std::numeric_limits<double>::infinity();
   return row.basis_seconds > 0.0 ? (row.basis_seconds + row.cost.setup) / saved : 0.0;

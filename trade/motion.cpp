@@ -1,19 +1,18 @@
 #include "trade/motion.hpp"
 
 #include "core/errors.hpp"
+#include "core/none.hpp"
 #include "diagnostics/model.hpp"
 #include "diagnostics/point_sets.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace slipmode::trade {
 
 namespace {
 
-constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 /// Numbers a piece of a record may hold.
 constexpr double kPiece = 2e6;
 
@@ -59,7 +58,7 @@ class Gathered {
     const double about = 0.5 * mean.dot(fem::multiply(model_.model.system.structure().K(), mean).col(0));
     out_.energy = (kinetic_ + strain_) / count - about;
     const auto contacts = static_cast<double>(model_.model.system.contacts().size());
-    out_.stick = tells_stick(model_.model.system) ? stuck_ / (contacts * schedule_.sample * count) : kNoValue;
+    out_.stick = tells_stick(model_.model.system) ? stuck_ / (contacts * schedule_.sample * count) : kNone;
     out_.end = std::move(end);
     return std::move(out_);
   }
@@ -91,7 +90,7 @@ double rms(const std::vector<double>& values) {
 
 /// Of the reading's rms [%].
 double distance(const std::vector<double>& a, const std::vector<double>& b, double scale) {
-  if (a.empty() || b.empty() || !(scale > 0.0)) return kNoValue;
+  if (a.empty() || b.empty() || !(scale > 0.0)) return kNone;
   return 100.0 * diagnostics::wasserstein(a, b) / scale;
 }
 
@@ -123,7 +122,7 @@ Motion run_motion(const Case& model, const dynamics::State& start, double transi
 
 Values motion_distance(const Motion& reference, const Motion& other) {
   Values values;
-  values.fill(kNoValue);
+  values.fill(kNone);
   const double scale = rms(reference.readings);
   at(values, Measure::kPoints) = distance(reference.points, other.points, scale);
   at(values, Measure::kSpread) = distance(reference.readings, other.readings, scale);

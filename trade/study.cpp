@@ -1,20 +1,19 @@
 #include "trade/study.hpp"
 
 #include "core/errors.hpp"
+#include "core/none.hpp"
 #include "diagnostics/driven.hpp"
 #include "trade/horizon.hpp"
 #include "trade/motion.hpp"
 #include "trade/variants.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <mutex>
 
 namespace slipmode::trade {
 
 namespace {
 
-constexpr double kUnmeasured = std::numeric_limits<double>::quiet_NaN();
 /// Of starts about the scene's own where [ensemble] has none: enough for a chaotic motion to forget.
 constexpr double kSpread = 1e-4;
 
@@ -106,9 +105,9 @@ class Work {
 
   [[nodiscard]] Finished errors_of(const Variant& variant) const {
     Finished out;
-    out.error.fill(kUnmeasured);
+    out.error.fill(kNone);
     out.noise = scatter_;
-    at(out.noise, Measure::kDx) = at(out.noise, Measure::kDe) = kUnmeasured;
+    at(out.noise, Measure::kDx) = at(out.noise, Measure::kDe) = kNone;
     try {
       const Case candidate = build_case(variant, bases_);
       const Motion motion = run_motion(candidate, carried(*model_, candidate, motions_.front().end),

@@ -1,5 +1,6 @@
 // Fronts, choices and sentences: pure arithmetic, on made-up offers.
 
+#include "core/none.hpp"
 #include "core/errors.hpp"
 #include "core/random.hpp"
 #include "trade/advice.hpp"
@@ -13,8 +14,6 @@
 
 namespace slipmode::trade {
 namespace {
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 TEST(ParetoFront, HoldsExactlyWhatNothingElseBeats) {
   // Costs and errors from a coarse grid, so that equal ones occur. The definition itself is what is compared with.
