@@ -1,6 +1,6 @@
 #include "dynamics/audit_forms.hpp"
 
-#include "dynamics/pair_kernels.hpp"
+#include "dynamics/kernels/kernels.hpp"
 
 #include <Eigen/Dense>
 #include <cmath>
@@ -155,7 +155,7 @@ double AuditForms::value(const Form& form, double t, const Eigen::VectorXd& free
   double sum = free.dot(form.cosine) * p.cosine + free.dot(form.sine) * p.sine + free.dot(form.resting);
   for (Eigen::Index j = 0; j < form.Y.cols(); ++j) {
     const Eigen::Index from = j / kLanes * kLanes;
-    sum += free(j) * dot_padded(form.Y.col(j).data() + from, free.data() + from, free.size() - from);
+    sum += free(j) * kernels::kernels().dot(form.Y.col(j).data() + from, free.data() + from, free.size() - from);
   }
   // ∫ uᵀPu over the stay, with the integrals of 1, cos θ, sin θ, cos² θ, cos θ sin θ and sin² θ.
   const double w = overlay_.omega(), stay = t - begin_;

@@ -1,7 +1,5 @@
 #include "dynamics/bernstein.hpp"
 
-#include "dynamics/pair_kernels.hpp"
-
 #include <algorithm>
 #include <cmath>
 
@@ -64,30 +62,18 @@ std::optional<FirstRoot> search(const BernsteinPolynomial& p, double lo, double 
   return search(right, lo + width / 2, width / 2);
 }
 
-/// De Casteljau's halving of degree-7 Bernstein coefficients as two matrices.
-struct Halving {
-  Eigen::Matrix<double, 8, 8> left = Eigen::Matrix<double, 8, 8>::Zero(), right = left;
-  Halving() {
-    for (int k = 0; k < 8; ++k) {
-      double binomial = std::pow(0.5, k);
-      for (int j = 0; j <= k; ++j) {
-        left(k, j) = right(7 - k, 7 - j) = binomial;
-        binomial *= static_cast<double>(k - j) / (j + 1);
-      }
-    }
-  }
-};
-
 }  // namespace
 
-bool stays_above(const V8& coefficients, double bound, int halvings) {
-  static const Halving half;
-  if (min8(coefficients) > bound) return true;
-  if (halvings == 0 || coefficients[0] <= bound || coefficients[7] <= bound) return false;
-  alignas(64) double lanes[8];
-  store8(lanes, coefficients);
-  return stays_above(matrix8_times(half.left.data(), lanes), bound, halvings - 1) &&
-         stays_above(matrix8_times(half.right.data(), lanes), bound, halvings - 1);
+bool stays_above(const std::array<double, 8>& coefficients, double bound, int halvings) {
+  if (*std::min_element(coefficients.begin(), coefficients.end()) > bound) return true;
+  if (halvings == 0 || coefficients.front() <= bound || coefficients.back() <= bound) return false;
+  // De Casteljau's rule at one half.
+  std::array<double, 8> left = coefficients, right = coefficients;
+  for (std::size_t level = 1; level < 8; ++level) {
+    for (std::size_t k = 7; k >= level; --k) left[k] = 0.5 * (left[k - 1] + left[k]);
+    for (std::size_t k = 0; k < 8 - level; ++k) right[k] = 0.5 * (right[k] + right[k + 1]);
+  }
+  return stays_above(left, bound, halvings - 1) && stays_above(right, bound, halvings - 1);
 }
 
 double BernsteinPolynomial::operator()(double t) const {

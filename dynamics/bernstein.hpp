@@ -1,7 +1,5 @@
 #pragma once
 
-#include "core/v8.hpp"
-
 #include <array>
 #include <optional>
 
@@ -33,6 +31,6 @@ struct FirstRoot {
 
 /// Whether a polynomial of degree 7 stays above `bound` on [0, 1], by its convex hull on up to 2^halvings parts. A
 /// false says nothing.
-[[nodiscard]] bool stays_above(const V8& coefficients, double bound, int halvings);
+[[nodiscard]] bool stays_above(const std::array<double, 8>& coefficients, double bound, int halvings);
 
 }  // namespace slipmode::dynamics

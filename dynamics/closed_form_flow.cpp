@@ -1,7 +1,7 @@
 #include "dynamics/closed_form_flow.hpp"
 
 #include "core/errors.hpp"
-#include "dynamics/pair_kernels.hpp"
+#include "dynamics/kernels/kernels.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -101,18 +101,8 @@ double ClosedFormFlow::drive_velocity(double t, const Eigen::VectorXd& inputs) c
 
 void ClosedFormFlow::measure_amplitudes() {
   const Regime& r = tables_->regime();
-  const auto np = r.pairs.np;
-  for (Eigen::Index i = 0; i < np; i += kLanes) {
-    V8 a = load8(x_.data() + i), b = load8(x_.data() + np + i);
-    const double* particular = r.particular.data() + i;
-    for (Eigen::Index k = 0; k < inputs_.size(); ++k, particular += 2 * np) {
-      a -= load8(particular) * inputs_(k);
-      b -= load8(particular + np) * inputs_(k);
-    }
-    a *= load8(r.scale1.data() + i);
-    b *= load8(r.scale2.data() + i);
-    store8(amplitude_.data() + i, (a < 0.0 ? -a : a) + (b < 0.0 ? -b : b));
-  }
+  kernels::kernels().amplitudes(r.pairs.np, x_.data(), r.particular.data(), inputs_.data(), inputs_.size(),
+                                r.scale1.data(), r.scale2.data(), amplitude_.data());
 }
 
 bool ClosedFormFlow::step(double t_limit) {

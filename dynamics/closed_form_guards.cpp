@@ -1,8 +1,9 @@
 #include "dynamics/closed_form_flow.hpp"
-#include "dynamics/pair_kernels.hpp"
+#include "dynamics/kernels/kernels.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -108,7 +109,7 @@ ClosedFormFlow::GuardValue ClosedFormFlow::evaluate(const Guard& guard, double t
   const Regime& r = tables_->regime();
   const auto k = guard.output;
   double value = r.output(k, x_, inputs_);
-  double rate = dot_padded(r.row1.col(k).data(), x_.data(), x_.size()) + r.coefficient1.col(k).dot(inputs_);
+  double rate = kernels::kernels().dot(r.row1.col(k).data(), x_.data(), x_.size()) + r.coefficient1.col(k).dot(inputs_);
   if (const DriveOverlay* overlay = regime_->overlay.get()) {
     const DrivePhase phase = phase_at(t);
     value += overlay->outputs.at(k, phase);
@@ -192,9 +193,10 @@ ClosedFormFlow::Search ClosedFormFlow::search(int level) const {
   const RegimeWindow& w = tables_->window(level);
   const DriveOverlay* overlay = regime_->overlay.get();
   const auto np = r.pairs.np, ni = r.inputs();
+  const kernels::Kernels& vector = kernels::kernels();
   Search found;
   Eigen::Index computed = -1;
-  V8 output{};
+  alignas(64) std::array<double, kNodes> output{}, values;
   double remainder = 0.0;
   for (std::size_t g = 0; g < guards_.size(); ++g) {
     const Guard& guard = guards_[g];
@@ -202,9 +204,9 @@ ClosedFormFlow::Search ClosedFormFlow::search(int level) const {
     const auto k = guard.output;
     if (k != computed) {
       computed = k;
-      output = node_sums(w.from_state.data() + 8 * 2 * np * k, x_.data(), 2 * np) +
-               node_sums(w.from_inputs.data() + 8 * ni * k, inputs_.data(), ni);
-      remainder = dot_padded(w.remainder.col(k).data(), amplitude_.data(), np);
+      vector.node_sums(w.from_inputs.data() + kNodes * ni * k, inputs_.data(), ni, nullptr, output.data());
+      vector.node_sums(w.from_state.data() + kNodes * 2 * np * k, x_.data(), 2 * np, output.data(), output.data());
+      remainder = kernels::kernels().dot(w.remainder.col(k).data(), amplitude_.data(), np);
       if (overlay) {
         // c cos j(θ₀ + ωτ) + s sin j(θ₀ + ωτ) by the window's cos jωτ and sin jωτ.
         DrivePhase p;
@@ -212,23 +214,22 @@ ClosedFormFlow::Search ClosedFormFlow::search(int level) const {
         for (const DriveOverlay::Window& harmonic : overlay->window(level, tables_->length(level))) {
           p = p.times(phase_);
           const double c = overlay->outputs.c(k, j), s = overlay->outputs.s(k, j);
-          output += (c * p.cosine + s * p.sine) * harmonic.cosine + (s * p.cosine - c * p.sine) * harmonic.sine;
+          vector.add_scaled(c * p.cosine + s * p.sine, harmonic.cosine.data(), output.data(), kNodes);
+          vector.add_scaled(s * p.cosine - c * p.sine, harmonic.sine.data(), output.data(), kNodes);
           remainder += harmonic.remainder * overlay->outputs.magnitude(k, j);
           ++j;
         }
       }
     }
-    const V8 values = guard.constant + guard.sign * output;
-    const double least = min8(values);
+    for (std::size_t j = 0; j < kNodes; ++j) values[j] = guard.constant + guard.sign * output[j];
+    const double least = *std::min_element(values.begin(), values.end());
     if (least > remainder || stays_above(values, remainder, kHalvings)) {
       found.spare = std::min(found.spare, std::max(least, 0.0) / std::max(remainder, 1e-300));
       continue;
     }
-    alignas(64) double lanes[kNodes];
-    store8(lanes, values);
     BernsteinPolynomial polynomial;
     polynomial.degree = kNodes - 1;
-    std::copy_n(lanes, kNodes, polynomial.coefficient.begin());
+    std::copy_n(values.begin(), kNodes, polynomial.coefficient.begin());
     judge(polynomial, remainder, kTouching * scale(guard), static_cast<int>(g), found);
   }
   return found;

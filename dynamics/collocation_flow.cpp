@@ -1,7 +1,6 @@
 #include "dynamics/collocation_flow.hpp"
 
 #include "core/errors.hpp"
-#include "dynamics/pair_kernels.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -44,6 +43,7 @@ CollocationFlow::CollocationFlow(const HybridSystem& system, const StepTables& t
       model_(tables.model()),
       resolver_(system, model_, options),
       options_(options),
+      within_(tables, options.audit),
       nc_(model_.contacts),
       begin_(start.time),
       point_(std::move(start)),
@@ -69,6 +69,7 @@ CollocationFlow::CollocationFlow(const HybridSystem& system, const StepTables& t
   if (any_bristle_) start_bristles();
   resolver_.start(point_);
   if (any_bristle_) refresh_bristles();
+  single_ = nc_ == 1 && !any_bristle_;
   restart_steps();
 }
 
@@ -100,7 +101,6 @@ bool CollocationFlow::step(double t_limit) {
           x_begin_, error);
     h = tables_.step(level);
     const Collocation& table = tables_.collocation(level);
-    free_velocities(table);
     guess_forces(level, retry);
     solved_ = solve_forces(table, h);
     step_level_ = level;
@@ -136,13 +136,15 @@ bool CollocationFlow::step(double t_limit) {
   const bool at_guard = guard.contact >= 0 && guard.theta * h <= remaining;
 
   if (tau < h) {
-    advance_within(tables_, x_begin_.data(), forces_.data(), level, tau, point_.x.data());
+    within_.begin(x_begin_.data(), forces_.data(), level);
+    within_.state(tau, point_.x.data());
     if (at_guard)
       refine_event(guard, tau, point_.x);
     else
       resolver_.hold(begin_ + tau, point_.modes, point_.x.data());  // between nodes a stick is only nearly held
   } else {
-    propagate(tables_.propagator(level), x_begin_.data(), forces_.data(), nc_, model_.np, point_.x.data());
+    kernels_.propagate(tables_.propagator(level).arrays(tables_.loaded()), x_begin_.data(), forces_.data(),
+                       point_.x.data());
   }
   point_.time = tau == remaining ? limit : begin_ + tau;
   // A shaker's velocity feels the rounding of the time.
@@ -167,9 +169,12 @@ bool CollocationFlow::step(double t_limit) {
   }
   fresh_ = false;
   std::fill(point_.multiplicity.begin(), point_.multiplicity.end(), 0);
-  const RadauTables::Vector8 last = nodes_.lagrange(tau / h);
-  for (int c = 0; c < nc_; ++c)
-    point_.force(c) = tau < h ? forces_.segment<kNodes>(kNodes * c).dot(last) : forces_(kNodes * c + kNodes - 1);
+  if (tau < h) {
+    const RadauTables::Vector8 last = nodes_.lagrange(tau / h);
+    for (int c = 0; c < nc_; ++c) point_.force(c) = forces_.segment<kNodes>(kNodes * c).dot(last);
+  } else {
+    for (int c = 0; c < nc_; ++c) point_.force(c) = forces_(kNodes * c + kNodes - 1);
+  }
   if (any_bristle_) {
     for (int c = 0; c < nc_; ++c)  // as long as its speed is rounding, a bristle's direction means nothing
       if (bristled(c) && unmoved(c)) point_.multiplicity[static_cast<std::size_t>(c)] = 2;
@@ -225,10 +230,11 @@ std::size_t CollocationFlow::stuck_count() const {
   return static_cast<std::size_t>(std::count(point_.modes.begin(), point_.modes.end(), ContactMode::kStick));
 }
 
-void CollocationFlow::evaluate(double t, Eigen::VectorXd& out_x, Eigen::VectorXd& out_force) const {
+void CollocationFlow::evaluate(double t, Eigen::VectorXd& out_x, Eigen::VectorXd& out_force) {
   const double h = tables_.step(step_level_), tau = std::clamp(t - begin_, 0.0, h);
   out_x.resize(2 * model_.np);
-  advance_within(tables_, x_begin_.data(), forces_.data(), step_level_, tau, out_x.data());
+  within_.begin(x_begin_.data(), forces_.data(), step_level_);
+  within_.state(tau, out_x.data());
   resolver_.hold(t, step_modes_, out_x.data());
   if (any_bristle_) {
     out_force.resize(nc_);

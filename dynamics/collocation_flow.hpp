@@ -3,6 +3,7 @@
 #include "dynamics/bernstein.hpp"
 #include "dynamics/event_resolver.hpp"
 #include "dynamics/step_tables.hpp"
+#include "dynamics/within_step.hpp"
 
 #include <Eigen/Core>
 #include <vector>
@@ -32,7 +33,7 @@ class CollocationFlow {
   [[nodiscard]] const FlowStatistics& statistics() const { return statistics_; }
 
   /// State and contact forces at a time within the last step.
-  void evaluate(double t, Eigen::VectorXd& out_x, Eigen::VectorXd& out_force) const;
+  void evaluate(double t, Eigen::VectorXd& out_x, Eigen::VectorXd& out_force);
 
   /// Carries these tangent vectors along, with saltation at events [2np x k].
   /// A direction that would break a stick is projected along the contact's force: the friction impulse of re-sticking.
@@ -59,7 +60,9 @@ class CollocationFlow {
   void guess_forces(int level, bool retry);
   [[nodiscard]] int foreseen_level(int level) const;
   bool solve_forces(const Collocation& table, double h);
-  bool solve_single_slip(const Collocation& table);
+  /// One rigid contact, without bristles.
+  bool solve_single(const Collocation& table);
+  bool solve_single_smooth(const Collocation& table);
   bool solve_coupled(const Collocation& table, double h);
   [[nodiscard]] double force_error() const;
   [[nodiscard]] Guarded first_guard() const;
@@ -67,13 +70,12 @@ class CollocationFlow {
   [[nodiscard]] double velocity_scale(int c, const Eigen::VectorXd& x) const;
   [[nodiscard]] bool too_early(const Guarded& guard) const;
   [[nodiscard]] double deepest_overshoot() const;
-  void refine_event(const Guarded& guard, double& tau, Eigen::VectorXd& x) const;
-  void nudge(const RadauTables::Vector8& basis, double shift, Eigen::VectorXd& x) const;
+  void refine_event(const Guarded& guard, double& tau, Eigen::VectorXd& x);
   [[nodiscard]] double stick_force(int c, const Eigen::VectorXd& x, double tau,
                                    const RadauTables::Vector8& basis) const;
   void account(int level, double tau);
-  void account_whole(int level, const double* x, const double* forces, const double* velocities, double begin);
-  void account_rest(int level, const double* x, const double* forces, double begin, double rest);
+  /// ∫ Σ λ v_drive dt over [0, tau] of the step.
+  [[nodiscard]] double driven_work(double h, double tau) const;
   void restart_steps();
 
   [[nodiscard]] bool bristled(int c) const {
@@ -108,9 +110,13 @@ class CollocationFlow {
   const StepTables& tables_;
   const RadauTables& nodes_ = radau();
   const ModalModel& model_;
+  const kernels::Kernels& kernels_ = kernels::kernels();
   EventResolver resolver_;
   FlowOptions options_;
+  WithinStep within_;
   int nc_;
+  bool single_ = false;              ///< one rigid contact, without bristles
+  const double* ahead_ = nullptr;    ///< takes the last step's velocities to this one's nodes, where that is the guess
   std::vector<double> steep_speed_;  ///< sliding speed at which a law is just resolved by the largest step [m/s]
 
   double begin_;

@@ -1,8 +1,8 @@
 #include "dynamics/collocation_flow.hpp"
-#include "dynamics/pair_kernels.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -17,64 +17,62 @@ constexpr double kAtLimit = 1e-10;
 constexpr double kEarly = 1.0 / 64.0;
 /// Halvings tried to show that a stick force stays below its limit.
 constexpr int kMarginHalvings = 2;
-/// Shifts below this share of the step are made by two terms of Taylor's series.
-constexpr double kShortShift = 1e-7;
 constexpr int kRefinements = 20;
 
 }  // namespace
 
 CollocationFlow::Guarded CollocationFlow::first_guard() const {
   Guarded first{2.0, -1, false};
-  const auto consider = [&](const V8& b, double start, int degree, int c, int multiplicity) {
-    BernsteinPolynomial p;
-    p.degree = degree;
-    alignas(64) double lanes[kNodes];
-    store8(lanes, b);
-    if (degree == kNodes) {
-      p.coefficient[0] = start;
-      std::copy_n(lanes, kNodes, p.coefficient.begin() + 1);
-      for (int k = 0; k < multiplicity; ++k) p.coefficient[static_cast<std::size_t>(k)] = 0.0;
-    } else {
-      std::copy_n(lanes, kNodes, p.coefficient.begin());
-    }
+  const auto consider = [&](const BernsteinPolynomial& p, int c) {
     if (const auto root = first_root(p); root && root->at < first.theta) first = {root->at, c, root->touching};
   };
   const RadauTables& t = nodes_;
+  alignas(64) std::array<double, kNodes> guard;
   for (int c = 0; c < nc_; ++c) {
     const auto i = static_cast<std::size_t>(c);
     const ContactForces& law = laws()[i];
     if (!law.sticks() && !bristled(c)) continue;
+    BernsteinPolynomial p;
     if (point_.modes[i] == ContactMode::kStick) {
-      const V8 b = matrix8_times(t.bernstein7.data(), forces_.data() + kNodes * c);
+      const double most = kernels_.force_guard(t.bernstein7.data(), forces_.data() + kNodes * c, guard.data());
+      if (most < law.static_limit * (1.0 - kAtLimit)) continue;
+      p.degree = kNodes - 1;
       for (const double sign : {1.0, -1.0}) {
-        V8 margin = law.static_limit - sign * b;
+        std::array<double, kNodes> margin;
+        for (std::size_t k = 0; k < kNodes; ++k) margin[k] = law.static_limit - sign * guard[k];
         if (std::abs(margin[0]) <= kAtLimit * law.static_limit) margin[0] = 0.0;  // on the guard: where to, shows next
-        if (!stays_above(margin, 0.0, kMarginHalvings)) consider(margin, 0.0, kNodes - 1, c, 0);
+        if (stays_above(margin, 0.0, kMarginHalvings)) continue;
+        std::ranges::copy(margin, p.coefficient.begin());
+        consider(p, c);
       }
       continue;
     }
     const double sign = sign_of(point_.modes[i]);
-    alignas(64) double speed[kNodes];
-    store8(speed, sign * (load8(drive_nodes_.data() + kNodes * c) - load8(velocity_.data() + kNodes * c)));
     const int multiplicity = point_.multiplicity[i];
     if ((multiplicity > 0 || bristled(c)) && unmoved(c)) continue;
     const double start =
         multiplicity > 0
             ? 0.0
             : std::max(0.0, sign * (drive().velocity(begin_) - resolver_.contact_velocity(c, x_begin_.data())));
-    V8 b = matrix8_times(t.bernstein8.data(), speed) + start * load8(t.bernstein8_start.data());
-    if (multiplicity == 2)
-      b[0] = std::numeric_limits<double>::max();  // zero by the order of contact, whatever rounding says
-    if (min8(b) > 0.0) continue;
-    consider(b, start, kNodes, c, multiplicity);
+    double least = kernels_.speed_guard(t.bernstein8.data(), t.bernstein8_start.data(), start, sign,
+                                        drive_nodes_.data() + kNodes * c, velocity_.data() + kNodes * c, guard.data());
+    if (multiplicity == 2) least = *std::min_element(guard.begin() + 1, guard.end());  // the first is zero: see below
+    if (least > 0.0) continue;
+    p.degree = kNodes;
+    p.coefficient[0] = start;
+    std::ranges::copy(guard, p.coefficient.begin() + 1);
+    // Zero by the order of contact, whatever rounding says.
+    std::fill_n(p.coefficient.begin(), multiplicity, 0.0);
+    consider(p, c);
   }
   return first;
 }
 
 bool CollocationFlow::unmoved(int c) const {
   // So soon after its start that sliding has no speed beyond rounding, and its sign means nothing.
-  const V8 speed = load8(drive_nodes_.data() + kNodes * c) - load8(velocity_.data() + kNodes * c);
-  return std::max(max8(speed), -min8(speed)) <= kUnmoved * velocity_scale(c, x_begin_);
+  const double fastest =
+      (drive_nodes_.segment<kNodes>(kNodes * c) - velocity_.segment<kNodes>(kNodes * c)).cwiseAbs().maxCoeff();
+  return fastest <= kUnmoved * velocity_scale(c, x_begin_);
 }
 
 double CollocationFlow::velocity_scale(int c, const Eigen::VectorXd& x) const {
@@ -95,14 +93,14 @@ double CollocationFlow::deepest_overshoot() const {
   for (int c = 0; c < nc_; ++c) {
     const auto i = static_cast<std::size_t>(c);
     if (laws()[i].kind != ContactForces::Kind::kStribeck || point_.modes[i] == ContactMode::kStick) continue;
-    const V8 speed =
-        sign_of(point_.modes[i]) * (load8(drive_nodes_.data() + kNodes * c) - load8(velocity_.data() + kNodes * c));
-    deepest = std::max(deepest, -laws()[i].alpha * min8(speed));
+    const double sign = sign_of(point_.modes[i]);
+    for (int j = kNodes * c; j < kNodes * (c + 1); ++j)
+      deepest = std::max(deepest, laws()[i].alpha * sign * (velocity_(j) - drive_nodes_(j)));
   }
   return deepest;
 }
 
-void CollocationFlow::refine_event(const Guarded& guard, double& tau, Eigen::VectorXd& x) const {
+void CollocationFlow::refine_event(const Guarded& guard, double& tau, Eigen::VectorXd& x) {
   // Newton on the guard's exact value; the polynomial that announced it was only close.
   if (guard.touching) return;
   const double h = tables_.step(step_level_);
@@ -122,7 +120,7 @@ void CollocationFlow::refine_event(const Guarded& guard, double& tau, Eigen::Vec
       const double sign = sign_of(point_.modes[i]);
       value = sign * (V - resolver_.contact_velocity(c, x.data()));
       double acceleration =
-          dot_padded(model_.acceleration_row.col(c).data(), x.data(), 2 * model_.np) + model_.load_acceleration(c);
+          kernels_.dot(model_.acceleration_row.col(c).data(), x.data(), 2 * model_.np) + model_.load_acceleration(c);
       for (int d = 0; d < nc_; ++d)
         acceleration += model_.mobility(c, d) * forces_.segment<kNodes>(kNodes * d).dot(basis);
       rate = sign * (a - acceleration);
@@ -132,10 +130,7 @@ void CollocationFlow::refine_event(const Guarded& guard, double& tau, Eigen::Vec
     if (!(std::abs(shift) < 1e-2 * h) || tau + shift <= 0.0) return;
     tau += shift;
     if (std::abs(shift) <= kNegligibleShift * h) return;
-    if (std::abs(shift) < kShortShift * h)
-      nudge(basis, shift, x);
-    else
-      advance_within(tables_, x_begin_.data(), forces_.data(), step_level_, tau, x.data());
+    within_.state(tau, x.data());
     // Newton squares its error; the factor shows in two shifts, and before that is bounded by a usual curvature.
     const double factor = previous > 0.0 ? std::abs(shift) / (previous * previous) : std::abs(usual_rate / rate) / h;
     if (factor * shift * shift <= kNegligibleShift * h) return;
@@ -143,32 +138,11 @@ void CollocationFlow::refine_event(const Guarded& guard, double& tau, Eigen::Vec
   }
 }
 
-void CollocationFlow::nudge(const RadauTables::Vector8& basis, double shift, Eigen::VectorXd& x) const {
-  // Two terms of Taylor's series: the third is below rounding for so short a shift.
-  const ModalModel& m = model_;
-  const auto np = m.np;
-  for (Eigen::Index i = 0; i < np; i += kLanes) {
-    const V8 g11 = load8(m.g11.data() + i), g12 = load8(m.g12.data() + i);
-    const V8 g21 = load8(m.g21.data() + i), g22 = load8(m.g22.data() + i);
-    const V8 x1 = load8(x.data() + i), x2 = load8(x.data() + np + i);
-    V8 rate1 = g11 * x1 + g12 * x2 + load8(m.load.data() + i);
-    V8 rate2 = g21 * x1 + g22 * x2 + load8(m.load.data() + np + i);
-    for (int c = 0; c < nc_; ++c) {
-      const double force = forces_.segment<kNodes>(kNodes * c).dot(basis);
-      rate1 += load8(m.input.col(c).data() + i) * force;
-      rate2 += load8(m.input.col(c).data() + np + i) * force;
-    }
-    const double half = shift * shift / 2.0;
-    store8(x.data() + i, x1 + rate1 * shift + (g11 * rate1 + g12 * rate2) * half);
-    store8(x.data() + np + i, x2 + rate2 * shift + (g21 * rate1 + g22 * rate2) * half);
-  }
-}
-
 double CollocationFlow::stick_force(int c, const Eigen::VectorXd& x, double tau,
                                     const RadauTables::Vector8& basis) const {
   const double a = drive_acceleration(begin_, tau);
   if (nc_ == 1)
-    return (a - dot_padded(model_.acceleration_row.data(), x.data(), 2 * model_.np) - model_.load_acceleration(0)) /
+    return (a - kernels_.dot(model_.acceleration_row.data(), x.data(), 2 * model_.np) - model_.load_acceleration(0)) /
            model_.mobility(0, 0);
   Eigen::VectorXd force(nc_);
   std::vector<bool> stuck(point_.modes.size());

@@ -1,6 +1,5 @@
 #include "core/decompositions.hpp"
 #include "dynamics/collocation_flow.hpp"
-#include "dynamics/pair_kernels.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,13 +13,10 @@ constexpr int kNewtonLimit = 12;
 }  // namespace
 
 void CollocationFlow::free_velocities(const Collocation& table) {
-  for (int c = 0; c < nc_; ++c) {
-    const double* free = table.free.data() + kNodes * 2 * model_.np * c;
-    V8 sum = load8(table.load.data() + kNodes * c);
-    sum += node_sums(free, x_begin_.data(), model_.n);
-    sum += node_sums(free + kNodes * model_.np, x_begin_.data() + model_.np, model_.n);
-    store8(free_.data() + kNodes * c, sum);
-  }
+  const Eigen::Index np = model_.np;
+  for (int c = 0; c < nc_; ++c)
+    kernels_.node_sums(table.free.data() + kNodes * 2 * np * c, x_begin_.data(), 2 * np, table.load.data() + kNodes * c,
+                       free_.data() + kNodes * c);
 }
 
 void CollocationFlow::guess_forces(int level, bool retry) {
@@ -28,29 +24,26 @@ void CollocationFlow::guess_forces(int level, bool retry) {
   // start.
   const RadauTables& t = nodes_;
   const int finer = level - step_level_;
+  ahead_ = nullptr;
   for (int c = 0; c < nc_; ++c) {
     double* forces = forces_.data() + kNodes * c;
+    const auto halve = [&](int times) {
+      for (int halving = 0; halving < times; ++halving) kernels_.matrix8(t.left_half.data(), forces, forces);
+    };
     if (solved_ && retry) {
-      for (int halving = 0; halving < finer; ++halving) store8(forces, matrix8_times(t.left_half.data(), forces));
+      halve(finer);
     } else if (solved_ && finer >= -1 && finer + 1 < static_cast<int>(t.following.size())) {
       const double* ahead = t.following[static_cast<std::size_t>(finer + 1)].data();
       const auto i = static_cast<std::size_t>(c);
-      if (laws()[i].kind == ContactForces::Kind::kStribeck && point_.modes[i] != ContactMode::kStick) {
-        // Sliding speed is smoother than the force, and continues better.
-        const double sign = sign_of(point_.modes[i]);
-        const double* velocity = velocity_.data() + kNodes * c;
-        const V8 speed = sign * (load8(drive_nodes_.data() + kNodes * c) - matrix8_times(ahead, velocity));
-        store8(forces,
-               sign * (laws()[i].kinetic + laws()[i].drop * exp8(-laws()[i].alpha * (speed > 0.0 ? speed : V8{}))));
-      } else {
-        store8(forces, matrix8_times(ahead, forces));
-      }
+      if (laws()[i].kind == ContactForces::Kind::kStribeck && single_ && point_.modes[i] != ContactMode::kStick)
+        ahead_ = ahead;  // sliding speed is smoother than the force, and continues better
+      else
+        kernels_.matrix8(ahead, forces, forces);
     } else if (fresh_ && !retry && nc_ == 1) {
-      store8(forces, point_.force(0) * load8(first_shape_.data()));
-      for (int halving = first_level_; halving < level; ++halving)
-        store8(forces, matrix8_times(t.left_half.data(), forces));
+      forces_ = point_.force(0) * first_shape_;
+      halve(level - first_level_);
     } else {
-      store8(forces, broadcast8(point_.force(c)));
+      Eigen::Map<RadauTables::Vector8>(forces).setConstant(point_.force(c));
     }
   }
 }
@@ -83,63 +76,58 @@ int CollocationFlow::foreseen_level(int level) const {
 bool CollocationFlow::solve_forces(const Collocation& table, double h) {
   const RadauTables::Vector8 drive_speed = drive_velocities(begin_, h);
   for (int c = 0; c < nc_; ++c) drive_nodes_.segment<kNodes>(kNodes * c) = drive_speed;
-  if (nc_ != 1 || any_bristle_) return solve_coupled(table, h);
-
-  double* forces = forces_.data();
-  if (point_.modes[0] == ContactMode::kStick) {
-    const V8 held = load8(drive_speed.data());
-    store8(free_.data(), held - load8(free_.data()));
-    store8(forces, matrix8_times(table.kernel_inverse.data(), free_.data()));
-    store8(velocity_.data(), held);
-    return true;
-  }
-  if (laws()[0].is_constant()) {
-    store8(forces, broadcast8(sign_of(point_.modes[0]) * laws()[0].kinetic));
-    store8(velocity_.data(), load8(free_.data()) + matrix8_times(table.kernel.data(), forces));
-    return true;
-  }
-  return solve_single_slip(table);
+  if (single_) return solve_single(table);
+  free_velocities(table);
+  return solve_coupled(table, h);
 }
 
-bool CollocationFlow::solve_single_slip(const Collocation& table) {
+bool CollocationFlow::solve_single(const Collocation& table) {
   const ContactForces& law = laws()[0];
-  const V8 free = load8(free_.data()), drive_speed = load8(drive_nodes_.data());
-  const bool smooth = !law.sticks();
-  const double sign = smooth ? 1.0 : sign_of(point_.modes[0]);
-  const double velocity_scale = smooth ? law.epsilon : 1.0 / law.alpha;
-  const V8 clip = broadcast8(-kLargestOvershoot * 2);
+  if (law.kind == ContactForces::Kind::kSmooth) return solve_single_smooth(table);
+  const double sign = sign_of(point_.modes[0]);
+  const kernels::Trial trial{model_.n,
+                             model_.np,
+                             table.free.data(),
+                             table.load.data(),
+                             table.kernel.data(),
+                             table.kernel_norm,
+                             x_begin_.data(),
+                             drive_nodes_.data(),
+                             sign,
+                             law.kinetic,
+                             law.drop,
+                             law.alpha,
+                             ahead_,
+                             newton_change_,
+                             forces_.data(),
+                             velocity_.data()};
+  if (point_.modes[0] == ContactMode::kStick) {
+    kernels_.solve_stick(trial, table.kernel_inverse.data());
+    return true;
+  }
+  if (!law.is_constant()) return kernels_.solve_stribeck(trial);
+  forces_.setConstant(sign * law.kinetic);
+  kernels_.solve_sliding(trial);
+  return true;
+}
 
-  alignas(64) double force[kNodes];
-  V8 v = free + matrix8_times(table.kernel.data(), forces_.data());
+bool CollocationFlow::solve_single_smooth(const Collocation& table) {
+  const ContactForces& law = laws()[0];
+  free_velocities(table);
+  RadauTables::Vector8 force, slope, delta, residual, v = free_ + table.kernel * forces_;
   for (int iteration = 0; iteration < kNewtonLimit; ++iteration) {
-    V8 lambda, slope;
-    if (smooth) {
-      alignas(64) double l[kNodes], d[kNodes], s[kNodes];
-      store8(s, drive_speed - v);
-      for (int j = 0; j < kNodes; ++j) {
-        l[j] = law.smooth(s[j], d[j]);
-        d[j] = -d[j];
-      }
-      lambda = load8(l);
-      slope = load8(d);
-    } else {
-      V8 scaled = law.alpha * sign * (drive_speed - v);  // α times sliding speed
-      const auto inside = scaled > clip;
-      scaled = inside ? scaled : clip;
-      const V8 e = law.drop * exp8(-scaled);
-      lambda = sign * (law.kinetic + e);
-      slope = inside ? law.alpha * e : V8{};
+    for (int j = 0; j < kNodes; ++j) {
+      force(j) = law.smooth(drive_nodes_(j) - v(j), slope(j));
+      slope(j) = -slope(j);
     }
-    store8(force, lambda);
-    const V8 residual = free + matrix8_times(table.kernel.data(), force) - v;
-    V8 delta;
-    if (!solve_newton(table.kernel.data(), table.kernel_norm, newton_change_, slope, residual, delta)) return false;
+    residual = free_ + table.kernel * force - v;
+    if (!kernels_.solve_nodes(table.kernel.data(), slope.data(), residual.data(), delta.data())) return false;
     v += delta;
-    const double change = max8(abs8(delta));
+    const double change = delta.cwiseAbs().maxCoeff();
     if (!(change < 1e12)) return false;
-    if (change < newton_change_ * velocity_scale || change < 1e-14) {
-      store8(forces_.data(), lambda + slope * delta);
-      store8(velocity_.data(), v);
+    if (change < newton_change_ * law.epsilon || change < 1e-14) {
+      forces_ = force + slope.cwiseProduct(delta);
+      velocity_ = v;
       return true;
     }
   }
@@ -246,9 +234,10 @@ double CollocationFlow::force_error() const {
   for (int c = 0; c < nc_; ++c) {
     const auto i = static_cast<std::size_t>(c);
     if (laws()[i].kind == ContactForces::Kind::kFree) continue;
-    const V8 forces = load8(forces_.data() + kNodes * c);
-    const double sixth = std::abs(sum8(forces * load8(nodes_.legendre6.data())));
-    const double seventh = std::abs(sum8(forces * load8(nodes_.legendre7.data())));
+    double sixth, seventh;
+    kernels_.two_dots(nodes_.legendre6.data(), nodes_.legendre7.data(), forces_.data() + kNodes * c, sixth, seventh);
+    sixth = std::abs(sixth);
+    seventh = std::abs(seventh);
     // The first coefficient left out, if the sequence keeps falling as it does.
     const double next = seventh * std::min(1.0, seventh / std::max(sixth, 1e-300));
     worst = std::max(worst, next / laws()[i].static_limit);

@@ -1,7 +1,6 @@
 #include "dynamics/collocation_flow.hpp"
 
 #include "core/decompositions.hpp"
-#include "dynamics/pair_kernels.hpp"
 
 #include <cmath>
 
@@ -50,11 +49,16 @@ void CollocationFlow::push_tangents(int level, double tau) {
       right.row(row) *= slope;
     }
   const Eigen::MatrixXd forces = jacobian.partialPivLu().solve(right);
-  Eigen::VectorXd from(2 * np), to(2 * np), column(size);
+  WithinStep within(tables_, false, WithinStep::Load::kLeftOut);
+  const kernels::StepArrays whole = tables_.propagator(level).arrays(false);
+  Eigen::VectorXd to(2 * np);
   for (Eigen::Index k = 0; k < tangents_.cols(); ++k) {
-    from = tangents_.col(k);
-    column = forces.col(k);
-    advance_within<Load::kLeftOut>(tables_, from.data(), column.data(), level, tau, to.data());
+    if (tau < tables_.step(level)) {
+      within.begin(tangents_.col(k).data(), forces.col(k).data(), level);
+      within.state(tau, to.data());
+    } else {
+      kernels_.propagate(whole, tangents_.col(k).data(), forces.col(k).data(), to.data());
+    }
     tangents_.col(k) = to;
   }
 }

@@ -154,12 +154,9 @@ const std::vector<DriveOverlay::Window>& DriveOverlay::window(int level, double 
       cosine(j) = std::cos(w * lobatto().point(j) * h);
       sine(j) = std::sin(w * lobatto().point(j) * h);
     }
-    alignas(64) std::array<double, 8> lanes;
     Window own;
-    Eigen::Map<Eigen::Matrix<double, 8, 1>>(lanes.data()) = lobatto().bernstein * cosine;
-    own.cosine = load8(lanes.data());
-    Eigen::Map<Eigen::Matrix<double, 8, 1>>(lanes.data()) = lobatto().bernstein * sine;
-    own.sine = load8(lanes.data());
+    Eigen::Map<Eigen::Matrix<double, 8, 1>>(own.cosine.data()) = lobatto().bernstein * cosine;
+    Eigen::Map<Eigen::Matrix<double, 8, 1>>(own.sine.data()) = lobatto().bernstein * sine;
     own.remainder = std::min(kInterpolationGain, interpolation_share(w, h));
     slot.push_back(own);
   }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "core/v8.hpp"
 #include "dynamics/regime.hpp"
 #include "friction/drive.hpp"
 
@@ -68,7 +67,7 @@ class DriveOverlay {
   /// Bernstein coefficients of cos jωτ and sin jωτ over a window 0 ≤ τ ≤ h of this level, and the share of their size
   /// that interpolation leaves out.
   struct Window {
-    V8 cosine, sine;
+    alignas(64) std::array<double, 8> cosine, sine;
     double remainder = 0.0;
   };
   /// One per order.

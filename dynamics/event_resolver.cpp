@@ -2,7 +2,7 @@
 
 #include "core/decompositions.hpp"
 #include "core/errors.hpp"
-#include "dynamics/pair_kernels.hpp"
+#include "dynamics/kernels/kernels.hpp"
 
 #include <cmath>
 
@@ -45,7 +45,7 @@ EventResolver::EventResolver(const HybridSystem& system, const ModalModel& model
 }
 
 double EventResolver::contact_displacement(int c, const double* x) const {
-  return dot_padded(model_.displacement_row.col(c).data(), x, 2 * model_.np);
+  return kernels::kernels().dot(model_.displacement_row.col(c).data(), x, 2 * model_.np);
 }
 
 const double* EventResolver::own_states(const HybridPoint& point, int c) const {
@@ -195,7 +195,7 @@ Instant EventResolver::instant(const HybridPoint& point, const std::vector<Conta
 }
 
 double EventResolver::contact_velocity(int c, const double* x) const {
-  return dot_padded(model_.velocity_row.col(c).data(), x, 2 * model_.np);
+  return kernels::kernels().dot(model_.velocity_row.col(c).data(), x, 2 * model_.np);
 }
 
 bool EventResolver::at_belt_speed(double time, int c, const double* x) const {

@@ -1,6 +1,6 @@
 #include "core/errors.hpp"
 #include "dynamics/event_resolver.hpp"
-#include "dynamics/pair_kernels.hpp"
+#include "dynamics/kernels/kernels.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -60,8 +60,7 @@ void EventResolver::settle_single(HybridPoint& point) {
   const double force_before = point.force(0), gap = drive_.velocity(point.time) - contact_velocity(0, point.x.data());
   const double impulse = gap / model_.mobility(0, 0);
   const double* input = model_.input.data();
-  for (Eigen::Index i = 0; i < 2 * model_.np; i += kLanes)
-    store8(point.x.data() + i, load8(point.x.data() + i) + impulse * load8(input + i));
+  kernels::kernels().add_scaled(impulse, input, point.x.data(), 2 * model_.np);
   const SingleResolution next =
       resolve_single(instant(point.time, point.x.data()), before == ContactMode::kStick, force_before > 0 ? 1.0 : -1.0);
   point.modes[0] = next.mode;
@@ -165,8 +164,9 @@ void EventResolver::record(const HybridPoint& point, int contact, EventKind kind
   Event e{point.time, contact, kind, before, before, 0.0, 0.0, 0.0};
   if (contact >= 0) {
     e.after = point.modes[static_cast<std::size_t>(contact)];
-    e.displacement = dot_padded(model_.displacement_row.col(contact).data(), point.x.data(), 2 * model_.np) +
-                     model_.contact_offset(contact);
+    e.displacement =
+        kernels::kernels().dot(model_.displacement_row.col(contact).data(), point.x.data(), 2 * model_.np) +
+        model_.contact_offset(contact);
     e.velocity = contact_velocity(contact, point.x.data());
     e.force = point.force(contact);
   }

@@ -1,7 +1,6 @@
 #include "dynamics/modal_model.hpp"
 
 #include "core/decompositions.hpp"
-#include "core/v8.hpp"
 #include "dynamics/pair_form.hpp"
 #include "fem/modes.hpp"
 
@@ -175,7 +174,7 @@ void ModalModel::measure_rates() {
   }
 }
 
-double ModalModel::viscous_power(const Eigen::VectorXd& x) const {
+double ModalModel::viscous_power(const Eigen::Ref<const Eigen::VectorXd>& x) const {
   if (dissipation_root.size() > 0) return (dissipation_root * x).squaredNorm();
   return damping.dot(x.tail(np).cwiseAbs2());
 }

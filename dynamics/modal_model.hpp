@@ -7,6 +7,11 @@
 
 namespace slipmode::dynamics {
 
+/// The lanes of a vector register that pairs are padded to.
+inline constexpr Eigen::Index kLanes = 8;
+/// `count` rounded up to a whole number of lanes.
+constexpr Eigen::Index padded(Eigen::Index count) { return (count + kLanes - 1) / kLanes * kLanes; }
+
 /// The structure in its undamped natural modes q = Φ η: η̈ + D η̇ + diag(ω²) η = p + Σ w_c λ_c.
 struct ModalCoordinates {
   Eigen::VectorXd omega;       ///< ω [n, rad/s]
@@ -58,7 +63,7 @@ struct ModalModel {
   /// Sets `fastest` from the blocks of G.
   void measure_rates();
   /// q̇ᵀCq̇ of a state [W].
-  [[nodiscard]] double viscous_power(const Eigen::VectorXd& x) const;
+  [[nodiscard]] double viscous_power(const Eigen::Ref<const Eigen::VectorXd>& x) const;
   /// ẋ under these contact forces and the constant load.
   [[nodiscard]] Eigen::VectorXd rate(const Eigen::VectorXd& x, const Eigen::VectorXd& force) const;
   [[nodiscard]] bool has_shapes() const { return to_q.size() > 0; }

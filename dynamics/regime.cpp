@@ -1,7 +1,7 @@
 #include "dynamics/regime.hpp"
 
 #include "core/decompositions.hpp"
-#include "dynamics/pair_kernels.hpp"
+#include "dynamics/kernels/kernels.hpp"
 #include "dynamics/regime_build.hpp"
 
 #include <algorithm>
@@ -101,7 +101,7 @@ void Regime::advance_inputs(Eigen::VectorXd& inputs, double t) const {
 }
 
 double Regime::output(Eigen::Index k, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs) const {
-  return dot_padded(row.col(k).data(), x.data(), x.size()) + coefficient.col(k).dot(inputs);
+  return kernels::kernels().dot(row.col(k).data(), x.data(), x.size()) + coefficient.col(k).dot(inputs);
 }
 
 void Regime::differentiate(Eigen::VectorXd& r, Eigen::VectorXd& k) const {

@@ -79,6 +79,7 @@ struct Regime {
   double growth = 0.0;  ///< largest rate at which free motion grows, 0 if none does [1/s]
   Eigen::MatrixXd B;    ///< [2np x ni]; the drive's columns act through ι as described above
   Eigen::VectorXd B_follows;    ///< Σ over contacts that follow the drive of their columns of B
+  Eigen::MatrixXd forcing;      ///< B with B_follows beside it [2np x (ni+1)]
   Eigen::MatrixXd row;          ///< outputs, columns [2np x no]
   Eigen::MatrixXd coefficient;  ///< outputs' dependence on ι, columns [ni x no]
   Eigen::MatrixXd row1, row2;   ///< first and second derivatives of the outputs

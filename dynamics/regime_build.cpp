@@ -1,7 +1,6 @@
 #include "dynamics/regime_build.hpp"
 
 #include "core/decompositions.hpp"
-#include "core/v8.hpp"
 #include "dynamics/pair_form.hpp"
 #include "fem/modes.hpp"
 

@@ -28,6 +28,8 @@ void RegimeBuilder::make_inputs(Regime& out) const {
   out.B_follows = Eigen::VectorXd::Zero(out.B.rows());
   for (Eigen::Index c = 0; c < nc_; ++c)
     if (out.follows[static_cast<std::size_t>(c)]) out.B_follows += out.B.col(c);
+  out.forcing.resize(out.B.rows(), out.B.cols() + 1);
+  out.forcing << out.B, out.B_follows;
   const Eigen::MatrixXd dissipation = (modal_.damping + modal_.damping.transpose()) / 2.0;
   out.viscous_cross = ((P_all_.transpose() * dissipation) * Z_ * at_.to_rate).transpose();
   out.viscous_drive = P_all_.dot(dissipation * P_all_);

@@ -1,5 +1,5 @@
 #include "core/decompositions.hpp"
-#include "core/v8.hpp"
+#include "dynamics/kernels/kernels.hpp"
 #include "dynamics/lobatto.hpp"
 #include "dynamics/regime.hpp"
 
@@ -18,6 +18,10 @@ constexpr double kTopPhase = 4294967296.0;
 constexpr double kTabulatedPhase = 0.25;
 /// Quadrature over this many radians at once.
 constexpr double kQuadraturePhase = 4.0;
+/// Powers of t in a regime's inputs: constant, linear, quadratic.
+constexpr int kForcingPowers = 3;
+/// Inputs (and one) whose coefficients need no heap.
+constexpr Eigen::Index kFewInputs = 8;
 /// Exponent beyond which a growing window is useless anyway.
 constexpr double kLargestExponent = 200.0;
 
@@ -179,25 +183,15 @@ void RegimeTables::make(RegimeWindow& out, int level) const {
 }
 
 void apply(const RegimeStep& s, const double* x, const Eigen::VectorXd& inputs, double* out_x) {
-  const auto np = s.e11.size(), ni = inputs.size();
-  for (Eigen::Index i = 0; i < np; i += kLanes) {
-    const V8 x1 = load8(x + i), x2 = load8(x + np + i);
-    V8 y1 = load8(s.e11.data() + i) * x1 + load8(s.e12.data() + i) * x2;
-    V8 y2 = load8(s.e21.data() + i) * x1 + load8(s.e22.data() + i) * x2;
-    const double* response = s.response.data() + i;
-    for (Eigen::Index k = 0; k < ni; ++k, response += 2 * np) {
-      y1 += load8(response) * inputs(k);
-      y2 += load8(response + np) * inputs(k);
-    }
-    store8(out_x + i, y1);
-    store8(out_x + np + i, y2);
-  }
+  kernels::kernels().propagate({s.e11.size(), static_cast<int>(inputs.size()), s.e11.data(), s.e12.data(), s.e21.data(),
+                                s.e22.data(), nullptr, s.response.data()},
+                               x, inputs.data(), out_x);
 }
 
 void advance(const RegimeTables& tables, double t, Eigen::VectorXd& x, Eigen::VectorXd& inputs) {
   const Regime& r = tables.regime();
   const ModalModel& m = r.pairs;
-  const auto np = m.np, ni = r.inputs(), V = r.speed_input();
+  const auto ni = r.inputs(), V = r.speed_input();
   const bool tabulated = r.rate * t > kTabulatedPhase;
   for (int level = tabulated ? tables.level_covering(t) : 0;
        level < RegimeTables::kLevels && r.rate * t > kTabulatedPhase;) {
@@ -211,40 +205,27 @@ void advance(const RegimeTables& tables, double t, Eigen::VectorXd& x, Eigen::Ve
     t -= h;
   }
   if (t == 0.0) return;
-  // x⁽ᵏ⁾ tᵏ/k!, with f = B ι, ḟ = B_follows V + B_V a, f̈ = B_follows a.
+  // f = B ι, ḟ = B_follows V + B_V a, f̈ = B_follows a.
   const double speed = inputs(V), acceleration = inputs(V + 1);
   const double phase = r.rate * std::abs(t);
   int terms = 3;
   for (double size = phase * phase * phase / 6.0; size > 1e-17;) size *= phase / ++terms;
-  for (Eigen::Index i = 0; i < np; i += kLanes) {
-    const V8 g11 = load8(m.g11.data() + i), g12 = load8(m.g12.data() + i);
-    const V8 g21 = load8(m.g21.data() + i), g22 = load8(m.g22.data() + i);
-    V8 y1 = load8(x.data() + i), y2 = load8(x.data() + np + i), sum1 = y1, sum2 = y2;
-    for (int k = 0; k < terms; ++k) {
-      V8 next1 = g11 * y1 + g12 * y2, next2 = g21 * y1 + g22 * y2;
-      const double* held = r.B_follows.data() + i;
-      const double* moving = r.B.data() + 2 * np * V + i;
-      if (k == 0)
-        for (Eigen::Index d = 0; d < ni; ++d) {
-          next1 += load8(r.B.data() + 2 * np * d + i) * inputs(d);
-          next2 += load8(r.B.data() + 2 * np * d + np + i) * inputs(d);
-        }
-      if (k == 1) {
-        next1 += (load8(held) * speed + load8(moving) * acceleration) * t;
-        next2 += (load8(held + np) * speed + load8(moving + np) * acceleration) * t;
-      }
-      if (k == 2) {
-        next1 += load8(held) * (acceleration * t * t / 2.0);
-        next2 += load8(held + np) * (acceleration * t * t / 2.0);
-      }
-      y1 = next1 * (t / (k + 1));
-      y2 = next2 * (t / (k + 1));
-      sum1 += y1;
-      sum2 += y2;
-    }
-    store8(x.data() + i, sum1);
-    store8(x.data() + np + i, sum2);
+  alignas(64) double few[kNodes * kFewInputs];
+  Eigen::VectorXd many;
+  double* coefficient = few;
+  if (ni + 1 > kFewInputs) {
+    many.resize(kNodes * (ni + 1));
+    coefficient = many.data();
   }
+  for (Eigen::Index d = 0; d <= ni; ++d) {
+    double* of = coefficient + kNodes * d;
+    of[0] = d < ni ? inputs(d) * t : 0.0;
+    of[1] = (d == V ? acceleration : d == ni ? speed : 0.0) * t * t;
+    of[2] = (d == ni ? acceleration / 2.0 : 0.0) * t * t * t;
+  }
+  kernels::kernels().taylor({m.np, static_cast<int>(ni + 1), m.g11.data(), m.g12.data(), m.g21.data(), m.g22.data(),
+                             nullptr, r.forcing.data(), kForcingPowers},
+                            x.data(), coefficient, t, terms, x.data());
   r.advance_inputs(inputs, t);
 }
 

@@ -37,7 +37,9 @@ int gauss_points(double phase) { return 16 + static_cast<int>(std::ceil(phase));
 }  // namespace
 
 StepTables::StepTables(const ModalModel& model)
-    : model_(model), top_(kLongestPhase / (model.fastest > 0 ? model.fastest : 1.0)) {}
+    : model_(model),
+      top_(kLongestPhase / (model.fastest > 0 ? model.fastest : 1.0)),
+      loaded_(!model.load.isZero(0.0)) {}
 
 void StepTables::propagate_to(double end, double h, Propagator& out) const {
   const auto& m = model_;

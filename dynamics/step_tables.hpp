@@ -1,5 +1,6 @@
 #pragma once
 
+#include "dynamics/kernels/kernels.hpp"
 #include "dynamics/lazy_levels.hpp"
 #include "dynamics/modal_model.hpp"
 #include "dynamics/nodes.hpp"
@@ -16,6 +17,11 @@ struct Propagator {
   Eigen::VectorXd e11, e12, e21, e22;  ///< e^{Gh} [np]
   Eigen::VectorXd load;                ///< ∫ e^{G(h−t)} p dt [2np]
   Eigen::MatrixXd response;            ///< ∫ e^{G(h−t)} b_c ℓ_j(t/h) dt, column 8c + j [2np x 8nc]
+
+  [[nodiscard]] kernels::StepArrays arrays(bool loaded) const {
+    return {e11.size(), static_cast<int>(response.cols()), e11.data(),     e12.data(), e21.data(),
+            e22.data(), loaded ? load.data() : nullptr,    response.data()};
+  }
 };
 
 /// The scalar Volterra equations of a step: contact velocities at the nodes,
@@ -28,7 +34,35 @@ struct Collocation {
   Eigen::MatrixXd kernel_inverse;  ///< used when every contact sticks [8nc x 8nc]
 };
 
-/// States at the points of a quadrature rule that integrates squares of velocities to rounding, for the energy audit.
+/// Work of a step as forms of the state and of the forces at the nodes, exact for forces of degree 7: see
+/// kernels::WorkArrays. Without proportional damping the forms hold the contacts' work only, and the loss is integrated
+/// over NodeStates.
+struct WorkForms {
+  Eigen::MatrixXd work, loss;                ///< contact c in columns [2np c, 2np (c+1)) [8 x 2np nc]
+  Eigen::MatrixXd work_load, loss_load;      ///< [8 x nc]
+  Eigen::MatrixXd work_kernel, loss_kernel;  ///< column nc c + d: the 8 x 8 block of contacts c and d [64 x nc²]
+  Eigen::VectorXd s11, s12, s22;             ///< [np]
+  Eigen::VectorXd linear;                    ///< [2np]
+  double constant = 0.0;
+
+  [[nodiscard]] kernels::WorkArrays arrays(bool loaded) const {
+    return {s11.size(),
+            static_cast<int>(work_load.cols()),
+            work.data(),
+            loss.data(),
+            work_load.data(),
+            loss_load.data(),
+            work_kernel.data(),
+            loss_kernel.data(),
+            s11.data(),
+            s12.data(),
+            s22.data(),
+            loaded ? linear.data() : nullptr,
+            constant};
+  }
+};
+
+/// States at the points of a quadrature rule that integrates squares of velocities to rounding.
 struct NodeStates {
   GaussRule rule;
   std::vector<Propagator> node;  ///< propagator to each point, forces given at the nodes of the whole step
@@ -48,22 +82,26 @@ class StepTables {
   [[nodiscard]] const Collocation& collocation(int level) const {
     return collocations_.get(level, [&](Collocation& out) { make(out, level); });
   }
-  [[nodiscard]] const NodeStates& node_states(int level) const {
-    return node_states_.get(level, [&](NodeStates& out) { make(out, level); });
-  }
   [[nodiscard]] const ModalModel& model() const { return model_; }
+  /// A constant load acts.
+  [[nodiscard]] bool loaded() const { return loaded_; }
+  /// Work of the contacts and viscous loss over a whole step. @param forces  at its nodes [8nc]
+  [[nodiscard]] kernels::Work work(int level, const double* x, const double* forces) const;
 
  private:
   void make(Propagator& out, int level) const;
   void make(Collocation& out, int level) const;
   void make(NodeStates& out, int level) const;
+  void make(WorkForms& out, int level) const;
   /// Propagator to the time end·h of a step of size h whose forces are given at the nodes of [0, h].
   void propagate_to(double end, double h, Propagator& out) const;
 
   const ModalModel& model_;
   double top_;
+  bool loaded_;
   LazyLevels<Propagator, kLevels> propagators_;
   LazyLevels<Collocation, kLevels> collocations_;
+  LazyLevels<WorkForms, kLevels> work_forms_;
   LazyLevels<NodeStates, kLevels> node_states_;
 };
 

@@ -1,0 +1,30 @@
+// Built once for every width: see CMakeLists.txt beside it.
+
+#include "dynamics/kernels/kernel_set.hpp"
+
+#define SLIPMODE_TEXT_OF(name) #name
+#define SLIPMODE_TEXT(name) SLIPMODE_TEXT_OF(name)
+
+namespace slipmode::dynamics::kernels::SLIPMODE_KERNEL_SET {
+
+const Kernels kSet{
+    .name = SLIPMODE_TEXT(SLIPMODE_KERNEL_SET),
+    .dot = dot,
+    .add_scaled = add_scaled,
+    .node_sums = node_sums,
+    .matrix8 = matrix8,
+    .solve_stribeck = solve_stribeck,
+    .solve_stick = solve_stick,
+    .solve_sliding = solve_sliding,
+    .solve_nodes = solve_nodes,
+    .two_dots = two_dots,
+    .speed_guard = speed_guard,
+    .force_guard = force_guard,
+    .propagate = propagate,
+    .work = work,
+    .taylor = taylor,
+    .taylor_points = taylor_points,
+    .amplitudes = amplitudes,
+};
+
+}  // namespace slipmode::dynamics::kernels::SLIPMODE_KERNEL_SET

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "dynamics/kernels/kernels.hpp"
+
+// The kernels of one width, in a namespace of its name: what every source here defines, and what kernel_set.cpp
+// gathers.
+
+namespace slipmode::dynamics::kernels {
+
+namespace SLIPMODE_KERNEL_SET {
+
+double dot(const double* a, const double* b, Index size);
+void add_scaled(double a, const double* x, double* y, Index size);
+void node_sums(const double* columns, const double* x, Index count, const double* start, double* out);
+void matrix8(const double* A, const double* x, double* out);
+
+bool solve_stribeck(const Trial& trial);
+void solve_stick(const Trial& trial, const double* inverse);
+void solve_sliding(const Trial& trial);
+bool solve_nodes(const double* A, const double* d, const double* r, double* out_delta);
+void two_dots(const double* a, const double* b, const double* x, double& out_a, double& out_b);
+double speed_guard(const double* bernstein, const double* by_start, double start, double sign, const double* drive,
+                   const double* velocity, double* out);
+double force_guard(const double* bernstein, const double* forces, double* out);
+void propagate(const StepArrays& step, const double* x, const double* forces, double* out_x);
+Work work(const WorkArrays& forms, const double* x, const double* forces);
+void taylor(const PairArrays& pairs, const double* x, const double* coefficient, double tau, int terms, double* out_x);
+void taylor_points(const PairArrays& pairs, const double* x, const double* coefficient, double tau, int terms,
+                   const double* shares, int points, double* out_x);
+
+void amplitudes(Index np, const double* x, const double* particular, const double* inputs, Index count,
+                const double* scale1, const double* scale2, double* out);
+
+extern const Kernels kSet;
+
+}  // namespace SLIPMODE_KERNEL_SET
+}  // namespace slipmode::dynamics::kernels

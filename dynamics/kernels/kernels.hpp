@@ -1,0 +1,123 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+/// The inner loops of the flows, compiled once for every vector width and chosen when the program starts: plain arrays
+/// in, plain arrays out, eight lanes at a time (collocation nodes, or pairs). Sums have one order whatever the width:
+/// AVX2 and AVX-512 give the same bytes.
+///
+/// Arrays are aligned to 64 bytes. `np` is the number of pairs padded to a multiple of eight; a state is [x₁; x₂], 2np.
+/// A table of eight nodes by columns is stored column by column.
+namespace slipmode::dynamics::kernels {
+
+using Index = std::ptrdiff_t;
+
+/// G of all pairs and what acts on them: ẋ = G x + load + Σ_c input_c λ_c.
+struct PairArrays {
+  Index np = 0;
+  int contacts = 0;
+  const double *g11, *g12, *g21, *g22;  ///< [np]
+  const double* load;                   ///< [2np]; null: none acts
+  const double* input;                  ///< [2np x contacts]
+  int powers = 8;                       ///< of t in the contacts' forces, from 0
+};
+
+/// x(h) = E x + load + response · forces.
+struct StepArrays {
+  Index np = 0;
+  int columns = 0;  ///< of `response`
+  const double *e11, *e12, *e21, *e22;
+  const double* load;      ///< [2np]; null: left out
+  const double* response;  ///< [2np x columns]
+};
+
+/// Work over a step as forms of the state and of the forces at the nodes, λ [8 contacts]:
+/// contact work Σ_c λ_cᵀ(work_c x + work_load_c + Σ_d work_kernel_cd λ_d), and the viscous loss
+/// Σ_i (s₁₁ x₁² + s₁₂ x₁x₂ + s₂₂ x₂²)_i + linear·x + constant + Σ_c λ_cᵀ(loss_c x + loss_load_c + Σ_d loss_kernel_cd
+/// λ_d).
+struct WorkArrays {
+  Index np = 0;
+  int contacts = 0;
+  const double *work, *loss;                ///< [8 x 2np contacts]
+  const double *work_load, *loss_load;      ///< [8 contacts]
+  const double *work_kernel, *loss_kernel;  ///< [8 x 8] blocks, those of d = 0 … for c = 0 first
+  const double *s11, *s12, *s22;            ///< [np]
+  const double* linear;                     ///< [2np]; null: no constant load
+  double constant = 0.0;
+};
+struct Work {
+  double contact = 0.0, loss = 0.0;
+};
+
+/// One contact over one trial step: what is known, what is sought.
+struct Trial {
+  Index n = 0, np = 0;
+  const double* free;    ///< velocities at the nodes by the state [8 x 2np]
+  const double* load;    ///< and by the load [8]
+  const double* kernel;  ///< and by the forces [8 x 8]
+  double kernel_norm = 0.0;
+  const double* x;      ///< state [2np]
+  const double* drive;  ///< V at the nodes [8]
+  /// Stribeck's law: λ = sign (kinetic + drop e^{−α sign (V − v)}).
+  double sign = 1.0, kinetic = 0.0, drop = 0.0, alpha = 0.0;
+  /// Takes the last step's velocities to these nodes; null: `forces` hold the guess [8 x 8].
+  const double* ahead;
+  double newton_change = 0.0;  ///< relative: Newton's next change is about the square of one this large
+  double* forces;              ///< [8]
+  double* velocity;            ///< of the last step, then of this one [8]
+};
+
+inline constexpr int kMostPoints = 9;
+
+/// What one width offers.
+struct Kernels {
+  const char* name;
+
+  double (*dot)(const double* a, const double* b, Index size);  ///< size a multiple of eight
+  /// y += a x.
+  void (*add_scaled)(double a, const double* x, double* y, Index size);
+  /// out = Σ_i column_i x_i + start [8]; start may be null.
+  void (*node_sums)(const double* columns, const double* x, Index count, const double* start, double* out);
+  /// y = A x, A [8 x 8].
+  void (*matrix8)(const double* A, const double* x, double* out);
+
+  /// Solves λ_j = law(v_j) at the nodes; v = free x + load + kernel λ. False without convergence: forces and velocity
+  /// are then worth nothing.
+  bool (*solve_stribeck)(const Trial& trial);
+  /// The forces that hold v = V: forces = inverse (V − free x − load).
+  void (*solve_stick)(const Trial& trial, const double* inverse);
+  /// Velocities under the forces given.
+  void (*solve_sliding)(const Trial& trial);
+  /// (I − A diag(d)) δ = r by elimination. False when it is singular to rounding.
+  bool (*solve_nodes)(const double* A, const double* d, const double* r, double* out_delta);
+  /// aᵀx and bᵀx [8].
+  void (*two_dots)(const double* a, const double* b, const double* x, double& out_a, double& out_b);
+  /// Bernstein coefficients 1 … 8 of sign (V − v) by its values at the nodes and at the start. @return  the least
+  double (*speed_guard)(const double* bernstein, const double* by_start, double start, double sign, const double* drive,
+                        const double* velocity, double* out);
+  /// Bernstein coefficients of the forces [8]. @return  the largest in size
+  double (*force_guard)(const double* bernstein, const double* forces, double* out);
+
+  /// In place if asked.
+  void (*propagate)(const StepArrays& step, const double* x, const double* forces, double* out_x);
+  Work (*work)(const WorkArrays& forms, const double* x, const double* forces);
+  /// x(τ) by Taylor's series of so many terms; in place if asked. @param coefficient  of (t/τ)^k in the contacts'
+  /// forces, times τ [8 x contacts]
+  void (*taylor)(const PairArrays& pairs, const double* x, const double* coefficient, double tau, int terms,
+                 double* out_x);
+  /// The same at shares of τ, at most kMostPoints. @param out_x  a state for each [2np x points]
+  void (*taylor_points)(const PairArrays& pairs, const double* x, const double* coefficient, double tau, int terms,
+                        const double* shares, int points, double* out_x);
+  /// scale₁ |x₁ − particular ι| + scale₂ |x₂ − particular ι| of each pair [np]. @param particular  [2np x count]
+  void (*amplitudes)(Index np, const double* x, const double* particular, const double* inputs, Index count,
+                     const double* scale1, const double* scale2, double* out);
+};
+
+/// The sets that this processor runs, widest first.
+[[nodiscard]] const std::vector<const Kernels*>& available();
+/// The set in use: the widest the processor runs, or the one SLIPMODE_KERNELS names (avx512, avx2, generic).
+/// @throws InvalidInput  for another name, or a set this processor does not run
+[[nodiscard]] const Kernels& kernels();
+
+}  // namespace slipmode::dynamics::kernels

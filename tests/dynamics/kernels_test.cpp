@@ -1,0 +1,127 @@
+// The kernel sets beside one another and beside plain arithmetic; whole runs under each set, byte by byte.
+
+#include "dynamics/kernels/kernels.hpp"
+#include "core/random.hpp"
+#include "dynamics/nodes.hpp"
+
+#include <gtest/gtest.h>
+#include <Eigen/Dense>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+namespace slipmode::dynamics::kernels {
+namespace {
+
+using Vector8 = RadauTables::Vector8;
+using Matrix8 = RadauTables::Matrix8;
+
+class EachKernelSet : public testing::TestWithParam<std::size_t> {
+ protected:
+  [[nodiscard]] const Kernels& set() const { return *available()[GetParam()]; }
+};
+
+Eigen::VectorXd numbers(Eigen::Index count, std::uint64_t seed, double size = 1.0) {
+  Random random(seed);
+  return Eigen::VectorXd::NullaryExpr(count, [&] { return random.uniform(-size, size); });
+}
+
+TEST_P(EachKernelSet, SumsAsPlainArithmeticDoes) {
+  for (const Eigen::Index size : {8, 16, 24, 80, 1000}) {
+    const Eigen::VectorXd a = numbers(size, 1), b = numbers(size, 2);
+    EXPECT_NEAR(set().dot(a.data(), b.data(), size), a.dot(b), 1e-15 * static_cast<double>(size));
+    Eigen::VectorXd y = b;
+    set().add_scaled(0.3, a.data(), y.data(), size);
+    EXPECT_LT((y - (b + 0.3 * a)).cwiseAbs().maxCoeff(), 1e-15);
+    const Eigen::MatrixXd columns = Eigen::Map<const Eigen::MatrixXd>(numbers(8 * size, 3).data(), 8, size);
+    Vector8 sums;
+    set().node_sums(columns.data(), a.data(), size, nullptr, sums.data());
+    EXPECT_LT((sums - columns * a).cwiseAbs().maxCoeff(), 1e-15 * static_cast<double>(size));
+  }
+}
+
+TEST_P(EachKernelSet, SolvesTheNewtonEquationsOfAStep) {
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    const Matrix8 A = 2.0 * radau().integral;
+    const Vector8 d = numbers(8, seed, 4.0).cwiseAbs(), r = numbers(8, 100 + seed);
+    const Matrix8 jacobian = Matrix8::Identity() - A * d.asDiagonal();
+    const Vector8 exact = jacobian.partialPivLu().solve(r);
+    Vector8 delta;
+    ASSERT_TRUE(set().solve_nodes(A.data(), d.data(), r.data(), delta.data()));
+    EXPECT_LT((delta - exact).norm(), 1e-11 * exact.norm() * jacobian.norm()) << "seed " << seed;
+  }
+}
+
+TEST_P(EachKernelSet, SlidesAsStribecksLawSays) {
+  // The collocation equations of a single mass on a belt, v = v₀ + h A λ/m: left over after solving them.
+  for (const double alpha : {0.5, 3.0, 20.0}) {
+    const double h = 0.05 / alpha;
+    const Matrix8 kernel = h * radau().integral;
+    const Vector8 drive = Vector8::Constant(0.3), load = Vector8::Constant(0.05);
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(64);
+    Vector8 forces = Vector8::Constant(0.9), velocity;
+    const Trial trial{.n = 0,
+                      .np = 0,
+                      .free = none.data(),
+                      .load = load.data(),
+                      .kernel = kernel.data(),
+                      .kernel_norm = kernel.cwiseAbs().rowwise().sum().maxCoeff(),
+                      .x = none.data(),
+                      .drive = drive.data(),
+                      .sign = 1.0,
+                      .kinetic = 0.6,
+                      .drop = 0.6,
+                      .alpha = alpha,
+                      .ahead = nullptr,
+                      .newton_change = 1e-7,
+                      .forces = forces.data(),
+                      .velocity = velocity.data()};
+    ASSERT_TRUE(set().solve_stribeck(trial));
+    EXPECT_LT((velocity - load - kernel * forces).cwiseAbs().maxCoeff(), 1e-14);
+    for (int j = 0; j < 8; ++j)
+      EXPECT_NEAR(forces(j), 0.6 + 0.6 * std::exp(-alpha * (drive(j) - velocity(j))), 1e-13) << "alpha " << alpha;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Widths, EachKernelSet, testing::Range<std::size_t>(0, available().size()),
+                         [](const auto& one) { return std::string(available()[one.param]->name); });
+
+TEST(KernelSets, OfTwoVectorWidthsGiveTheSameBytes) {
+  std::vector<const Kernels*> fused;
+  for (const Kernels* set : available())
+    if (std::string(set->name) != "generic") fused.push_back(set);
+  if (fused.size() < 2) GTEST_SKIP() << "this processor runs one vector width with fused multiply-add";
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    const Matrix8 kernel = (0.01 + 0.5 * std::fmod(0.37 * static_cast<double>(seed), 1.0)) * radau().integral;
+    const Eigen::VectorXd x = numbers(32, seed), free = numbers(8 * 32, 1000 + seed, 0.1), drive = numbers(8, 7);
+    std::vector<Vector8> out;
+    for (const Kernels* set : fused) {
+      Vector8 forces = Vector8::Constant(0.9), velocity = Vector8::Zero();
+      const Vector8 load = Vector8::Zero();
+      const Trial trial{.n = 13,
+                        .np = 16,
+                        .free = free.data(),
+                        .load = load.data(),
+                        .kernel = kernel.data(),
+                        .kernel_norm = kernel.cwiseAbs().rowwise().sum().maxCoeff(),
+                        .x = x.data(),
+                        .drive = drive.data(),
+                        .sign = 1.0,
+                        .kinetic = 0.6,
+                        .drop = 0.6,
+                        .alpha = 3.0,
+                        .ahead = nullptr,
+                        .newton_change = 1e-7,
+                        .forces = forces.data(),
+                        .velocity = velocity.data()};
+      static_cast<void>(set->solve_stribeck(trial));
+      out.push_back(forces);
+      out.push_back(velocity);
+    }
+    EXPECT_EQ(std::memcmp(out[0].data(), out[2].data(), sizeof(Vector8)), 0) << "seed " << seed;
+    EXPECT_EQ(std::memcmp(out[1].data(), out[3].data(), sizeof(Vector8)), 0) << "seed " << seed;
+  }
+}
+
+}  // namespace
+}  // namespace slipmode::dynamics::kernels
