@@ -16,15 +16,30 @@ Eigen::Matrix2d block(const ModalModel& pairs, Eigen::Index i) {
   return (Eigen::Matrix2d() << pairs.g11(i), pairs.g12(i), pairs.g21(i), pairs.g22(i)).finished();
 }
 
+/// Factors of a pair's components that make its block's entries of one size.
+Eigen::Vector2d scales(const ModalModel& pairs, Eigen::Index i) {
+  const double up = std::abs(pairs.g12(i)), down = std::abs(pairs.g21(i));
+  return {up > 0.0 && down > 0.0 ? std::sqrt(down / up) : 1.0, 1.0};
+}
+
 /// Slowest decay of a pair: the smallest −Re of its eigenvalues.
 double decay(const Eigen::Matrix2d& G) {
   const double half = G.trace() / 2.0, gap = half * half - G.determinant();
   return gap <= 0.0 ? -half : -half > 0.0 ? G.determinant() / (-half + std::sqrt(gap)) : -half - std::sqrt(gap);
 }
 
+/// q̇ᵀCq̇ of the steady motion as a form of its cosines and sines, the last two of nu. Constant inputs move nothing.
+Eigen::MatrixXd viscous_powers(const ModalModel& slipping, const DriveOverlay& overlay, Eigen::Index nu) {
+  const Eigen::VectorXd c = overlay.slipping.c.col(0), s = overlay.slipping.s.col(0);
+  Eigen::MatrixXd P = Eigen::MatrixXd::Zero(nu, nu);
+  P.bottomRightCorner<2, 2>() << slipping.viscous_power(c, c), slipping.viscous_power(c, s),
+      slipping.viscous_power(s, c), slipping.viscous_power(s, s);
+  return P;
+}
+
 }  // namespace
 
-std::unique_ptr<AuditForms> AuditForms::make(const Regime& r, const DriveOverlay& overlay) {
+std::unique_ptr<AuditForms> AuditForms::make(const Regime& r, const ModalModel& slipping, const DriveOverlay& overlay) {
   const ModalModel& pairs = r.pairs;
   const auto np = pairs.np, ni = r.inputs(), nu = ni + 2, nc = r.speed_input();
   if (overlay.orders() > 1) return nullptr;
@@ -49,7 +64,9 @@ std::unique_ptr<AuditForms> AuditForms::make(const Regime& r, const DriveOverlay
   Power contact = none(), drive = none(), viscous = none(), force = none();
   for (Eigen::Index c = 0; c < nc; ++c) {
     const Eigen::VectorXd f = r.force_row.col(c), v = r.velocity_row.col(c);
-    const Eigen::VectorXd f_steady = steady(f, r.force_coefficient.col(c));
+    Eigen::VectorXd f_steady = steady(f, r.force_coefficient.col(c));
+    // Not by the row: behind a stiff contact spring that is a small difference too.
+    f_steady.tail<2>() << overlay.force.c(c, 0), overlay.force.s(c, 0);
     const Eigen::VectorXd v_steady = steady(v, r.velocity_coefficient.col(c));
     if (r.spring(c) > 0.0) {  // ∫ λ wᵀq̇ dt = ∫ λ v_drive dt − [½ λ²/K_c]
       contact.R += f * speed.transpose();
@@ -67,15 +84,18 @@ std::unique_ptr<AuditForms> AuditForms::make(const Regime& r, const DriveOverlay
     force.R += v * u.transpose();
     force.P += steady(v, r.drive_coefficient.col(k)) * u.transpose();
   }
-  if (pairs.n > 0) {
-    if (pairs.dissipation_root.size() == 0)
-      viscous.Q.bottomRightCorner(np, np).diagonal() = pairs.damping;
-    else
-      viscous.Q = pairs.dissipation_root.transpose() * pairs.dissipation_root;
+  // The velocities of a steady motion are small differences of what its pairs hold: LᵀL would be a difference of their
+  // squares.
+  const Eigen::MatrixXd& L = pairs.dissipation_root;
+  if (pairs.n > 0 && L.size() == 0) {
+    viscous.Q.bottomRightCorner(np, np).diagonal() = pairs.damping;
+    viscous.R = 2.0 * viscous.Q * S;
+  } else if (pairs.n > 0) {
+    viscous.Q = L.transpose() * L;
+    viscous.R = 2.0 * (L.transpose() * (L * S));
   }
-  viscous.R = 2.0 * (viscous.Q * S + r.viscous_cross * speed.transpose());
-  viscous.P = S.transpose() * viscous.Q * S + 2.0 * (S.transpose() * r.viscous_cross) * speed.transpose() +
-              r.viscous_drive * speed * speed.transpose();
+  viscous.R += 2.0 * r.viscous_cross * speed.transpose();
+  viscous.P = viscous_powers(slipping, overlay, nu);
   if (!forms->integrate(contact, forms->contact_) || !forms->integrate(drive, forms->drive_) ||
       !forms->integrate(viscous, forms->viscous_) || !forms->integrate(force, forms->force_))
     return nullptr;
@@ -89,20 +109,24 @@ bool AuditForms::solve_quadratic(const Eigen::MatrixXd& Q, Eigen::MatrixXd& out_
   out_Y = Eigen::MatrixXd::Zero(2 * np, 2 * np);
   for (Eigen::Index i = 0; i < pairs.n; ++i)
     for (Eigen::Index j = i; j < pairs.n; ++j) {
+      // In scaled displacements, ω η, the blocks' entries are of one size, so that a slow decay is not lost beside ω².
+      const Eigen::Vector2d si = scales(pairs, i), sj = scales(pairs, j);
       Eigen::Matrix2d q;
       q << Q(i, j), Q(i, np + j), Q(np + i, j), Q(np + i, np + j);
       if (q.isZero(0.0)) continue;
+      q = (si.cwiseInverse().asDiagonal() * q * sj.cwiseInverse().asDiagonal()).eval();
       // (I ⊗ G_iᵀ + G_jᵀ ⊗ I) vec Y = vec Q, columns stacked.
-      const Eigen::Matrix2d Gi = block(pairs, i), Gj = block(pairs, j);
+      const Eigen::Matrix2d Gi = si.asDiagonal() * block(pairs, i) * si.cwiseInverse().asDiagonal();
+      const Eigen::Matrix2d Gj = sj.asDiagonal() * block(pairs, j) * sj.cwiseInverse().asDiagonal();
       Eigen::Matrix4d A = Eigen::Matrix4d::Zero();
       A.topLeftCorner<2, 2>() = A.bottomRightCorner<2, 2>() = Gi.transpose();
       A.topLeftCorner<2, 2>().diagonal().array() += Gj(0, 0);
       A.bottomRightCorner<2, 2>().diagonal().array() += Gj(1, 1);
       A.topRightCorner<2, 2>().diagonal().array() += Gj(1, 0);
       A.bottomLeftCorner<2, 2>().diagonal().array() += Gj(0, 1);
-      const Eigen::Vector4d y = A.fullPivLu().solve(Eigen::Map<const Eigen::Vector4d>(q.data()));
+      const Eigen::Vector4d y = A.partialPivLu().solve(Eigen::Map<const Eigen::Vector4d>(q.data()));
       if (!y.allFinite()) return false;
-      const Eigen::Map<const Eigen::Matrix2d> Y(y.data());
+      const Eigen::Matrix2d Y = si.asDiagonal() * Eigen::Map<const Eigen::Matrix2d>(y.data()) * sj.asDiagonal();
       const double both = i == j ? 1.0 : 2.0;
       out_Y(j, i) = both * Y(0, 0);
       out_Y(np + j, np + i) = both * Y(1, 1);
@@ -144,7 +168,6 @@ bool AuditForms::integrate(const Power& power, Form& out) const {
 void AuditForms::Form::set_inputs(const Eigen::VectorXd& inputs) {
   const auto ni = inputs.size();
   resting = constant * inputs;
-  mean = inputs.dot(steady.topLeftCorner(ni, ni) * inputs);
   along_cosine = inputs.dot(steady.col(ni).head(ni) + steady.row(ni).head(ni).transpose());
   along_sine = inputs.dot(steady.col(ni + 1).head(ni) + steady.row(ni + 1).head(ni).transpose());
 }
@@ -160,7 +183,6 @@ double AuditForms::value(const Form& form, double t, const Eigen::VectorXd& free
   // ∫ uᵀPu over the stay, with the integrals of 1, cos θ, sin θ, cos² θ, cos θ sin θ and sin² θ.
   const double w = overlay_.omega(), stay = t - begin_;
   const Eigen::MatrixXd& P = form.steady;
-  sum += stay * form.mean;
   sum += (form.along_cosine * p.sine - form.along_sine * p.cosine) / w;
   const double both = p.sine * p.cosine / (2.0 * w);
   sum += P(ni, ni) * (stay / 2.0 + both) + P(ni + 1, ni + 1) * (stay / 2.0 - both);

@@ -27,7 +27,8 @@ class AuditForms {
  public:
   /// Null where a mode has no damping to speak of, or drifts, or the drive has several harmonics: then the integrals
   /// have no such form.
-  [[nodiscard]] static std::unique_ptr<AuditForms> make(const Regime& regime, const DriveOverlay& overlay);
+  [[nodiscard]] static std::unique_ptr<AuditForms> make(const Regime& regime, const ModalModel& slipping,
+                                                        const DriveOverlay& overlay);
 
   /// Starts a stay. @param inputs  constant over the stay
   void begin(double t, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs);
@@ -43,10 +44,10 @@ class AuditForms {
     Eigen::VectorXd cosine, sine;  ///< y of the harmonic part [2np]
     Eigen::MatrixXd steady;        ///< uᵀ(this)u is what does not depend on x_f [(ni+2) x (ni+2)]
 
-    /// Under the inputs of a stay: y of the constant part [2np], and the mean, cos θ and sin θ parts of what does not
-    /// depend on x_f.
+    /// Under the inputs of a stay: y of the constant part [2np], and the cos θ and sin θ parts of what does not depend
+    /// on x_f. Constant inputs alone move nothing and have no power.
     Eigen::VectorXd resting;
-    double mean = 0.0, along_cosine = 0.0, along_sine = 0.0;
+    double along_cosine = 0.0, along_sine = 0.0;
 
     void set_inputs(const Eigen::VectorXd& inputs);
   };

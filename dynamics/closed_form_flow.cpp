@@ -61,8 +61,8 @@ void ClosedFormFlow::enter_regime() {
     visited_.push_back({roles, &tables, nullptr, nullptr, nullptr});
     Visited& now = visited_.back();
     if (resolver_.drive().belt() == nullptr) {
-      now.overlay = std::make_unique<DriveOverlay>(tables.regime(), resolver_.drive());
-      if (options_.audit) now.forms = AuditForms::make(tables.regime(), *now.overlay);
+      now.overlay = std::make_unique<DriveOverlay>(tables.regime(), slipping_, resolver_.drive());
+      if (options_.audit) now.forms = AuditForms::make(tables.regime(), slipping_, *now.overlay);
     }
     regime_ = &now;
     ++statistics_.regimes_built;

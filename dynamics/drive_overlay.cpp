@@ -1,6 +1,7 @@
 #include "dynamics/drive_overlay.hpp"
 
 #include "core/errors.hpp"
+#include "dynamics/harmonic_response.hpp"
 #include "dynamics/lobatto.hpp"
 
 #include <Eigen/Dense>
@@ -17,6 +18,7 @@ namespace {
 constexpr double kResonance = 1e-13;
 
 using Amplitudes = DriveOverlay::Amplitudes;
+using Complex = std::complex<double>;
 
 Amplitudes through(const Eigen::MatrixXd& rows, const Eigen::MatrixXd& coefficients, const Amplitudes& state,
                    const Amplitudes& inputs) {
@@ -44,6 +46,27 @@ Amplitudes driven_inputs(const Regime& r, const friction::Drive& drive) {
     }
   }
   return {std::move(c), std::move(s)};
+}
+
+/// @param load  what the inputs put into the pairs
+void refuse_resonance(const Regime& r, double w, const Eigen::VectorXcd& load) {
+  const auto np = r.pairs.np;
+  for (Eigen::Index i = 0; i < r.pairs.n; ++i) {
+    if (load(i) == 0.0 && load(np + i) == 0.0) continue;
+    const Complex determinant =
+        Complex(-r.pairs.g11(i), w) * Complex(-r.pairs.g22(i), w) - r.pairs.g12(i) * r.pairs.g21(i);
+    if (std::abs(determinant) <= kResonance * w * std::max(w, r.pair_rate(i)))
+      throw NumericalFailure("the drive's angular frequency of " + std::to_string(w) +
+                                 " rad/s is that of a mode without damping: its motion grows without bound; give the "
+                                 "structure damping or change the frequency",
+                             std::numeric_limits<double>::quiet_NaN(), {}, std::abs(determinant));
+  }
+}
+
+/// How much of an output is the force of its contact in stick.
+double force_share(RegimeOutput::Kind kind) {
+  if (kind == RegimeOutput::Kind::kForce || kind == RegimeOutput::Kind::kReserve) return 1.0;
+  return kind == RegimeOutput::Kind::kExcess ? -1.0 : 0.0;
 }
 
 }  // namespace
@@ -102,41 +125,41 @@ Eigen::VectorXd Amplitudes::rates(DrivePhase first) const {
   return out;
 }
 
-DriveOverlay::DriveOverlay(const Regime& r, const friction::Drive& drive) : inputs(driven_inputs(r, drive)) {
+DriveOverlay::DriveOverlay(const Regime& r, const ModalModel& slipping_model, const friction::Drive& drive)
+    : inputs(driven_inputs(r, drive)) {
   omega_ = drive.shaker() ? drive.shaker()->omega() : drive.force()->omega;
   phase_ = drive.shaker() ? drive.shaker()->phase : 0.0;
-  const auto np = r.pairs.np, orders_used = inputs.c.cols();
-  Eigen::MatrixXd state_c = Eigen::MatrixXd::Zero(2 * np, orders_used), state_s = state_c;
-  using Complex = std::complex<double>;
-  for (Eigen::Index j = 0; j < orders_used; ++j) {
+  const Complex way = drive.shaker() ? Complex(0.0, -drive.shaker()->amplitude) : 0.0;
+  const auto used = inputs.c.cols();
+  Eigen::MatrixXcd own(2 * r.pairs.np, used), lifted(slipping_model.input.rows(), used), forces(r.speed_input(), used);
+  for (Eigen::Index j = 0; j < used; ++j) {
     const double w = static_cast<double>(j + 1) * omega_;
-    const Eigen::VectorXd fc = r.B * inputs.c.col(j), fs = r.B * inputs.s.col(j);
-    for (Eigen::Index i = 0; i < r.pairs.n; ++i) {
-      const Complex f1(fc(i), -fs(i)), f2(fc(np + i), -fs(np + i));
-      if (f1 == 0.0 && f2 == 0.0) continue;
-      const Complex a(-r.pairs.g11(i), w), d(-r.pairs.g22(i), w);
-      const double b = -r.pairs.g12(i), c = -r.pairs.g21(i);
-      const Complex determinant = a * d - b * c;
-      if (std::abs(determinant) <= kResonance * w * std::max(w, r.pair_rate(i)))
-        throw NumericalFailure("the drive's angular frequency of " + std::to_string(w) +
-                                   " rad/s is that of a mode without damping: its motion grows without bound; give the "
-                                   "structure damping or change the frequency",
-                               std::numeric_limits<double>::quiet_NaN(), {}, std::abs(determinant));
-      const Complex x1 = (d * f1 - b * f2) / determinant, x2 = (a * f2 - c * f1) / determinant;
-      state_c(i, j) = x1.real();
-      state_s(i, j) = -x1.imag();
-      state_c(np + i, j) = x2.real();
-      state_s(np + i, j) = -x2.imag();
-    }
+    const Eigen::VectorXcd J = inputs.c.col(j) - Complex(0.0, 1.0) * inputs.s.col(j);
+    refuse_resonance(r, w, r.B * J);
+    const HarmonicResponse response = harmonic_response(r, slipping_model, w, way, J.tail(r.forces));
+    own.col(j) = r.from_slipping * response.slipping + r.from_oscillators * response.oscillators;
+    lifted.col(j) = response.slipping;
+    forces.col(j) = response.force;
   }
-  state = {std::move(state_c), std::move(state_s)};
-  outputs = through(r.row, r.coefficient, state, inputs);
-  force = through(r.force_row, r.force_coefficient, state, inputs);
+  state = {own.real(), -own.imag()};
+  slipping = {lifted.real(), -lifted.imag()};
+  force = {forces.real(), -forces.imag()};
   displacement = through(r.displacement_row, r.displacement_coefficient, state, inputs);
   velocity = through(r.velocity_row, r.velocity_coefficient, state, inputs);
   driven = through(r.drive_row, r.drive_coefficient, state, inputs);
-  slipping = {r.to_slipping * state.c + r.inputs_slipping * inputs.c,
-              r.to_slipping * state.s + r.inputs_slipping * inputs.s};
+  // Of forces, the rows would give a small difference of large numbers.
+  Eigen::MatrixXd rows = r.row, coefficients = r.coefficient,
+                  shares = Eigen::MatrixXd::Zero(r.speed_input(), r.row.cols());
+  for (Eigen::Index k = 0; k < rows.cols(); ++k) {
+    const RegimeOutput& output = r.outputs[static_cast<std::size_t>(k)];
+    const double share = force_share(output.kind);
+    if (share == 0.0) continue;
+    rows.col(k) -= share * r.force_row.col(output.contact);
+    coefficients.col(k) -= share * r.force_coefficient.col(output.contact);
+    shares(output.contact, k) = share;
+  }
+  const Amplitudes rest = through(rows, coefficients, state, inputs);
+  outputs = {rest.c + shares.transpose() * force.c, rest.s + shares.transpose() * force.s};
 }
 
 DrivePhase DriveOverlay::phase(double t) const {

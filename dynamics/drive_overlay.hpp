@@ -24,11 +24,11 @@ struct DrivePhase {
 /// forces. The state of the closed-form flow is what is left beside it, x − Σ_j X_cj cos jθ + X_sj sin jθ, and moves
 /// freely: tables of a regime serve every frequency and amplitude.
 ///
-/// (ijω − G) X_j = B J_j pair by pair, J_j the drive's part of the inputs.
+/// (ijω − G) X_j = B J_j, J_j the drive's part of the inputs, solved at the contacts (see `harmonic_response`).
 class DriveOverlay {
  public:
   /// @throws NumericalFailure  at resonance with a mode that has no damping: there is no steady response
-  DriveOverlay(const Regime& regime, const friction::Drive& drive);
+  DriveOverlay(const Regime& regime, const ModalModel& slipping, const friction::Drive& drive);
 
   /// Harmonics of each row: value = Σ_j c_j cos jθ + s_j sin jθ.
   struct Amplitudes {

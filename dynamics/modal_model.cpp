@@ -179,6 +179,11 @@ double ModalModel::viscous_power(const Eigen::Ref<const Eigen::VectorXd>& x) con
   return damping.dot(x.tail(np).cwiseAbs2());
 }
 
+double ModalModel::viscous_power(const Eigen::VectorXd& x, const Eigen::VectorXd& y) const {
+  if (dissipation_root.size() > 0) return (dissipation_root * x).dot(dissipation_root * y);
+  return damping.dot(x.tail(np).cwiseProduct(y.tail(np)));
+}
+
 Eigen::VectorXd ModalModel::rate(const Eigen::VectorXd& x, const Eigen::VectorXd& force) const {
   Eigen::VectorXd rate = input * force + load;
   rate.head(np) += g11.cwiseProduct(x.head(np)) + g12.cwiseProduct(x.tail(np));

@@ -64,6 +64,8 @@ struct ModalModel {
   void measure_rates();
   /// q̇ᵀCq̇ of a state [W].
   [[nodiscard]] double viscous_power(const Eigen::Ref<const Eigen::VectorXd>& x) const;
+  /// The same as a bilinear form of two states.
+  [[nodiscard]] double viscous_power(const Eigen::VectorXd& x, const Eigen::VectorXd& y) const;
   /// ẋ under these contact forces and the constant load.
   [[nodiscard]] Eigen::VectorXd rate(const Eigen::VectorXd& x, const Eigen::VectorXd& force) const;
   [[nodiscard]] bool has_shapes() const { return to_q.size() > 0; }

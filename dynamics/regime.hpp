@@ -1,6 +1,7 @@
 #pragma once
 
 #include "dynamics/lazy_levels.hpp"
+#include "dynamics/load_form.hpp"
 #include "dynamics/modal_model.hpp"
 #include "dynamics/nodes.hpp"
 
@@ -38,6 +39,14 @@ struct RegimeOutput {
   };
   int contact = 0;
   Kind kind = Kind::kSpeed;
+};
+
+/// How the force of a contact that is not held answers its own motion, about what is constant:
+/// λ = stiffness (d − y) − damping ẏ + friction (z ζ + z_rate ζ̇), y = wᵀq, d the way of the drive where it is followed.
+struct ContactAnswer {
+  double stiffness = 0.0, damping = 0.0;
+  double friction = 0.0;  ///< ±μ_k, sliding under a load that varies
+  LoadForm load;
 };
 
 /// The structure with its contacts in certain roles, as decoupled pairs driven by inputs that are polynomials of time
@@ -89,6 +98,7 @@ struct Regime {
   Eigen::MatrixXd displacement_row, displacement_coefficient;
   Eigen::MatrixXd drive_row, drive_coefficient;  ///< d_kᵀq̇ of each force direction [2np x nk], [ni x nk]
   Eigen::VectorXd spring;                        ///< K_c of sprung contacts, else 0 [nc]
+  std::vector<ContactAnswer> answers;            ///< of each contact [nc]
   Eigen::VectorXd slope;  ///< dλ/d(wᵀq) of contacts that slide under a load that depends on wᵀq alone, else 0 [nc]
 
   Eigen::MatrixXd from_slipping;    ///< state of the slipping model → x [2np x 2np_s]

@@ -276,9 +276,12 @@ void RegimeBuilder::fill(Regime& out) {
   out.roles = roles_;
   out.forces = nk_;
   for (const ContactRole r : roles_) out.follows.push_back(r == ContactRole::kHeld || r == ContactRole::kSprung);
+  for (Eigen::Index c = 0; c < nc_; ++c)
+    out.answers.push_back({spring_(c), damper_(c) - friction_(c) * load(c).v, friction_(c), load(c)});
   make_pairs(out);
   make_inputs(out);
   make_contact_rows(out);
+  refine_stick_rows(out);
   make_outputs(out);
   make_changes(out);
 }

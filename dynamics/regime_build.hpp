@@ -38,6 +38,8 @@ class RegimeBuilder {
   void set_blocks(ModalModel& pairs, const struct PairForm& form) const;
   void make_inputs(Regime& out) const;
   void make_contact_rows(Regime& out) const;
+  /// Of contacts that stick, without the cancellation behind a stiff spring or on a fine mesh.
+  void refine_stick_rows(Regime& out) const;
   void make_outputs(Regime& out) const;
   using AddOutput = std::function<void(Eigen::Index, RegimeOutput::Kind, Eigen::VectorXd, Eigen::VectorXd)>;
   void add_clearance_outputs(Eigen::Index c, const Regime& out, const AddOutput& add) const;

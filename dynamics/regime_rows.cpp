@@ -2,6 +2,9 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
 
 namespace slipmode::dynamics {
 
@@ -95,6 +98,40 @@ void RegimeBuilder::make_contact_rows(Regime& out) const {
       coefficient += friction_(c) * load(c).y * (P_.transpose() * w);
       coefficient(V_) += friction_(c) * load(c).v * w.dot(P_all_);
     }
+  }
+}
+
+void RegimeBuilder::refine_stick_rows(Regime& out) const {
+  // A contact's stretch, or the stiffness of a fine mesh times its deformation, gives the force of a slow motion as a
+  // small difference. The equations of the slipping pairs give it too, b λ = T G − G_s T less what the other contacts
+  // exert, each with an error that its own rate and that of the motion make: least squares, weighted by these errors.
+  std::vector<Eigen::Index> open;
+  for (Eigen::Index c = 0; c < nc_; ++c)
+    if (out.follows[static_cast<std::size_t>(c)]) open.push_back(c);
+  const ModalModel &own = out.pairs, &s = slipping_;
+  if (open.empty() || own.n == 0) return;
+  const Eigen::MatrixXd T = modal_.from_eta * (Z_ * at_.to_y) + modal_.from_eta_rate * (Z_ * at_.to_rate);
+  const Eigen::MatrixXd b = s.input(Eigen::all, open);
+  for (Eigen::Index i = 0; i < own.n; ++i) {
+    const std::array<Eigen::Index, 2> pair{i, own.np + i};
+    const Eigen::MatrixXd t = T(Eigen::all, pair);
+    const Eigen::Matrix2d G = (Eigen::Matrix2d() << own.g11(i), own.g12(i), own.g21(i), own.g22(i)).finished();
+    Eigen::MatrixXd missing = t * G;
+    missing.topRows(s.np) -= s.g11.asDiagonal() * t.topRows(s.np) + s.g12.asDiagonal() * t.bottomRows(s.np);
+    missing.bottomRows(s.np) -= s.g21.asDiagonal() * t.topRows(s.np) + s.g22.asDiagonal() * t.bottomRows(s.np);
+    for (Eigen::Index c = 0; c < nc_; ++c)
+      if (!out.follows[static_cast<std::size_t>(c)]) missing -= s.input.col(c) * out.force_row(pair, c).transpose();
+    const double rate = std::sqrt(std::max(std::abs(G.determinant()), G.squaredNorm() * 1e-16));
+    Eigen::VectorXd weight(2 * s.np);
+    for (Eigen::Index k = 0; k < s.np; ++k) {
+      const double slip_rate = s.proportional ? std::abs(s.g21(k)) / std::max(rate, 1e-300) + std::abs(s.g22(k))
+                                              : std::hypot(s.g11(k), s.g12(k)) + std::hypot(s.g21(k), s.g22(k));
+      weight(k) = weight(s.np + k) = 1.0 / std::max(rate + slip_rate, 1e-300);
+    }
+    out.force_row(pair, open) = (weight.asDiagonal() * b)
+                                    .colPivHouseholderQr()
+                                    .solve(Eigen::MatrixXd(weight.asDiagonal() * missing))
+                                    .transpose();
   }
 }
 

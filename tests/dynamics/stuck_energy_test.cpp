@@ -1,0 +1,115 @@
+// A contact that sticks on a shaker for many cycles: what goes in by the contact is what damping takes, however much
+// stiffer than the structure the contact is. Expected: the closed form of the steady motion, written here in long
+// double.
+#include "dynamics/simulate.hpp"
+#include "fem/chain.hpp"
+#include "fem/modes.hpp"
+#include "fixtures/cantilever_beam.hpp"
+#include "fixtures/scenes.hpp"
+
+#include <gtest/gtest.h>
+#include <complex>
+#include <numbers>
+
+namespace slipmode::dynamics {
+namespace {
+
+using namespace slipmode::fixtures;
+using Long = long double;
+using Complex = std::complex<Long>;
+
+constexpr double kCycles = 600.0, kRatio = 0.01, kAmplitude = 3e-3;
+
+/// A structure in its natural modes, each with the damping ratio of this file, and the contact's direction there.
+struct Modal {
+  Eigen::VectorXd omega, direction;
+  Eigen::MatrixXd shapes;
+};
+
+/// Steady motion stuck to d = A sin Ωt behind a contact spring: λ (1/K_c + H) = d with H = Σ w²/(ω² − Ω² + 2iζωΩ).
+struct Steady {
+  State start;      ///< at t = 0
+  Long loss = 0.0;  ///< mean viscous loss, Ω/2 |λ|² (−Im H)
+};
+
+Steady steady_motion(const Modal& m, Long compliance, Long omega) {
+  const auto answer = [&](Eigen::Index i) {
+    const Long w = m.omega(i);
+    return static_cast<Long>(m.direction(i)) / Complex(w * w - omega * omega, 2.0L * kRatio * w * omega);
+  };
+  Complex H = 0.0L;
+  for (Eigen::Index i = 0; i < m.omega.size(); ++i) H += static_cast<Long>(m.direction(i)) * answer(i);
+  const Complex force = Complex(0.0L, -static_cast<Long>(kAmplitude)) / (compliance + H);
+  Eigen::VectorXd eta(m.omega.size()), rate = eta;
+  for (Eigen::Index i = 0; i < eta.size(); ++i) {
+    const Complex own = answer(i) * force;
+    eta(i) = static_cast<double>(own.real());
+    rate(i) = static_cast<double>(-omega * own.imag());
+  }
+  Steady out{state(m.shapes * eta, m.shapes * rate), -omega / 2.0L * std::norm(force) * H.imag()};
+  if (compliance > 0.0L)
+    out.start.internal = Eigen::VectorXd::Constant(1, static_cast<double>((force * compliance).real()));
+  out.start.modes = {ContactMode::kStick};
+  return out;
+}
+
+/// @param stiffness  K_c; 0: rigid
+void expect_balance(const fem::Structure& structure, const Eigen::VectorXd& direction, double stiffness,
+                    double frequency_hz) {
+  SCOPED_TRACE(testing::Message() << "K_c = " << stiffness << ", " << frequency_hz << " Hz");
+  const fem::Modes modes = fem::natural_modes(structure, structure.size());
+  const friction::Shaker shaker{.amplitude = kAmplitude, .frequency_hz = frequency_hz};
+  friction::Contact contact{direction, friction::Coulomb{1.0, 1.0}, 1e6};
+  if (stiffness > 0.0) contact.law = friction::CompliantCoulomb{1.0, 1.0, stiffness};
+  const HybridSystem system(structure, {contact}, shaker);
+  const Steady expected = steady_motion({modes.omega, modes.shapes.transpose() * direction, modes.shapes},
+                                        stiffness > 0.0 ? 1.0L / stiffness : 0.0L, shaker.omega());
+  const SimulateOptions options{.duration = kCycles / frequency_hz, .flow = {.method = FlowMethod::kClosedForm}};
+  const Trajectory run = simulate(system, expected.start, options);
+  EXPECT_TRUE(run.events.empty());
+  EXPECT_LT(std::abs(run.audit.residual()), 1e-11);
+  EXPECT_NEAR(run.audit.viscous_loss / static_cast<double>(expected.loss * options.duration), 1.0, 1e-10);
+  EXPECT_NEAR(run.audit.drive_work / static_cast<double>(expected.loss * options.duration), 1.0, 1e-10);
+  // Set in motion with a jerk a rigid contact would slide first, and a force of 1e6 N would leave nothing but rounding.
+  if (stiffness == 0.0) return;
+  EXPECT_LT(std::abs(simulate(system, system.rest(), options).audit.residual()), 1e-10);
+}
+
+TEST(StuckEnergy, OneMassBalancesBehindAnyContactSpring) {
+  const double k = 4.0, m = 0.0155;
+  const auto one = [](double value) -> fem::Matrix { return Eigen::MatrixXd::Constant(1, 1, value); };
+  const fem::Structure mass(one(m), one(2.0 * kRatio * std::sqrt(k * m)), one(k));
+  for (const double stiffness : {1e4, 1e6, 1e8, 1e10})
+    for (const double frequency : {0.3, 5.0}) expect_balance(mass, unit(1, 0), stiffness, frequency);
+}
+
+TEST(StuckEnergy, TheBeamBalancesBehindAnyContactSpringAndWithoutOne) {
+  fem::BeamOptions options = source_beam(40);
+  options.tip.extension = 0.064;
+  options.damping = fem::ModalRatios{{kRatio}};
+  const fem::Beam beam(options);
+  const Eigen::VectorXd tip = beam.displacement_row(beam.reach());
+  for (const double stiffness : {1e4, 2e4, 1e6, 1e8, 1e10, 0.0})
+    for (const double frequency : {5.0, 7.0}) expect_balance(beam.structure(), tip, stiffness, frequency);
+}
+
+TEST(StuckEnergy, SeveralContactsBalanceUnderAShakerAndUnderForces) {
+  const int n = 6;
+  const fem::Structure structure = fem::chain({.masses = n, .damping = 0.01});
+  const auto coulomb = [&](int at, friction::Law law) { return friction::Contact{unit(n, at), std::move(law), 1e9}; };
+  friction::Force force{.omega = 0.7};
+  force.harmonics.push_back({.amplitude = 1.3, .phase = 0.4});
+  const std::vector<friction::Contact> contacts{coulomb(1, friction::CompliantCoulomb{1.0, 1.0, 1e5}),
+                                                coulomb(3, friction::Coulomb{1.0, 1.0}),
+                                                coulomb(5, friction::CompliantCoulomb{1.0, 1.0, 1e4})};
+  const HybridSystem shaken(structure, contacts, friction::Shaker{0.5, 0.11, std::numbers::pi / 2.0});
+  const HybridSystem forced(structure, contacts, force, {}, unit(n, 0));
+  for (const HybridSystem& system : {shaken, forced}) {
+    const Trajectory run = simulate(system, system.rest(), {.duration = 2000.0});
+    EXPECT_TRUE(run.events.empty());
+    EXPECT_LT(std::abs(run.audit.residual()), 1e-11);
+  }
+}
+
+}  // namespace
+}  // namespace slipmode::dynamics
