@@ -1,19 +1,28 @@
 # One object library per folder, so that a folder can be built and tested alone; all are gathered into `slipmode`.
 
+include(CheckCXXCompilerFlag)
+
 add_library(slipmode_flags INTERFACE)
 target_compile_options(slipmode_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-  # GCC 12 warns about the undefined operands in its own AVX-512 intrinsics (GCC bug 105593).
+  # GCC 12 warns about the undefined operands in its own AVX-512 intrinsics (GCC bug 105593), which Eigen uses.
   target_compile_options(slipmode_flags INTERFACE -Wno-maybe-uninitialized -Wno-uninitialized)
-  # Vectors of eight doubles stay within inlined functions of one library: how they would be passed does not matter.
-  target_compile_options(slipmode_flags INTERFACE -Wno-psabi)
 endif()
 if(SLIPMODE_WERROR)
   target_compile_options(slipmode_flags INTERFACE -Werror)
 endif()
 if(SLIPMODE_ARCH AND NOT SLIPMODE_SANITIZE)
+  string(MAKE_C_IDENTIFIER "SLIPMODE_ACCEPTS_${SLIPMODE_ARCH}" accepted)
+  check_cxx_compiler_flag(-march=${SLIPMODE_ARCH} ${accepted})
+  if(NOT ${accepted})
+    message(FATAL_ERROR "SLIPMODE_ARCH: ${CMAKE_CXX_COMPILER} takes no -march=${SLIPMODE_ARCH} "
+      "(known to work: x86-64-v2, x86-64-v3, x86-64-v4, native, or empty for the compiler's default)")
+  endif()
   target_compile_options(slipmode_flags INTERFACE -march=${SLIPMODE_ARCH})
 endif()
+# GCC's own default; clang would fuse multiplications and additions within one expression only, and the hot loops, written
+# in small inlined functions, would lose most of their fused operations. README.md says what it means for results.
+target_compile_options(slipmode_flags INTERFACE -ffp-contract=fast)
 if(SLIPMODE_SANITIZE)
   # Checks of each pointer before each use double the time to compile; null and stray pointers the address sanitizer finds.
   target_compile_options(slipmode_flags INTERFACE -fsanitize=address,undefined
@@ -21,8 +30,9 @@ if(SLIPMODE_SANITIZE)
   target_link_options(slipmode_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
-# Eigen's alignment must be the same in the library and in whoever links it, whatever -march each uses.
-set(SLIPMODE_PUBLIC_DEFINITIONS EIGEN_MAX_ALIGN_BYTES=64)
+# Eigen's alignment, of what is on the heap and of arrays of fixed size, must be the same in the library and in whoever
+# links it, whatever -march each uses.
+set(SLIPMODE_PUBLIC_DEFINITIONS EIGEN_MAX_ALIGN_BYTES=64 EIGEN_MAX_STATIC_ALIGN_BYTES=16)
 
 function(slipmode_module name)
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${name}/*.cpp)
