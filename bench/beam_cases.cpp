@@ -2,6 +2,7 @@
 
 #include "bench/beam_models.hpp"
 #include "bench/clock.hpp"
+#include "bench/machine.hpp"
 #include "bench/shaken_peers.hpp"
 
 #include <fmt/format.h>
@@ -17,7 +18,7 @@ using dynamics::State;
 constexpr double kCycles = 600.0, kTransientCycles = 100.0;
 constexpr double kTolerance = 1e-9, kTightTolerance = 1e-12, kReferenceTolerance = 1e-14;
 constexpr int kRepeats = 5;
-constexpr double kWantedCvode = 300.0, kWantedOdeint = 25.0;
+constexpr double kWantedCvode = 300.0, kWantedOdeintStuck = 25.0;
 constexpr std::array kPeers = {ShakenMethod::kAdams, ShakenMethod::kBdf, ShakenMethod::kDopri5};
 
 /// What one method needs and how wrong it is.
@@ -35,18 +36,22 @@ struct Figures {
 struct BeamRow {
   std::string model;
   double frequency = 0.0;
+  WantedBeam wanted;
   double events = 0.0;                             ///< per cycle, over 600
-  double long_seconds = 0.0, audit_seconds = 0.0;  ///< of slipmode, per cycle, over 600: audit off and on
-  Figures slipmode;
+  double long_seconds = 0.0, plain_seconds = 0.0;  ///< of slipmode, per cycle, over 600: audit on and off
+  Figures slipmode;                                ///< audit on
   std::array<Figures, kPeers.size()> peers;
   Figures tight;                  ///< dopri5 at 1e-12
   double reference_events = 0.0;  ///< per cycle, on the stretches
 
   [[nodiscard]] double ratio_cvode() const { return std::min(peers[0].seconds, peers[1].seconds) / slipmode.seconds; }
   [[nodiscard]] double ratio_odeint() const { return peers[2].seconds / slipmode.seconds; }
+  [[nodiscard]] double ratio_tight() const { return tight.seconds / slipmode.seconds; }
+  [[nodiscard]] double wanted_odeint() const { return events > 0.0 ? wanted.odeint : kWantedOdeintStuck; }
+  [[nodiscard]] double wanted_tight() const { return events > 0.0 ? wanted.tight : 0.0; }
 };
 
-dynamics::Trajectory advance(const HybridSystem& system, const State& from, double duration, bool audit = false) {
+dynamics::Trajectory advance(const HybridSystem& system, const State& from, double duration, bool audit = true) {
   return dynamics::simulate(system, from, {.duration = duration, .flow = {.audit = audit}});
 }
 
@@ -71,16 +76,16 @@ std::vector<State> starts_of(const HybridSystem& system, const BeamModel& model,
 }
 
 void time_slipmode(BeamRow& row, const HybridSystem& system, const State& start, double period) {
-  std::vector<double> plain, audited;
+  std::vector<double> audited, plain;
   for (int i = 0; i < kRepeats; ++i) {
-    plain.push_back(thread_seconds_of([&] {
+    audited.push_back(thread_seconds_of([&] {
       const auto run = advance(system, start, kCycles * period);
       row.events = static_cast<double>(changes(run)) / kCycles;
     }));
-    audited.push_back(thread_seconds_of([&] { (void)advance(system, start, kCycles * period, true); }));
+    plain.push_back(thread_seconds_of([&] { (void)advance(system, start, kCycles * period, false); }));
   }
-  row.long_seconds = median(plain) / kCycles;
-  row.audit_seconds = median(audited) / kCycles;
+  row.long_seconds = median(audited) / kCycles;
+  row.plain_seconds = median(plain) / kCycles;
 }
 
 BeamRow measure(const BeamModel& model, const scene::Scene& scene, double frequency) {
@@ -88,7 +93,8 @@ BeamRow measure(const BeamModel& model, const scene::Scene& scene, double freque
   const ShakenCoordinates coordinates(system);
   const double period = 1.0 / frequency, duration = model.stretch * period;
   const double cycles = model.stretch * model.stretches;
-  BeamRow row{.model = model.name, .frequency = frequency, .slipmode = {}, .peers = {}, .tight = {}};
+  BeamRow row{
+      .model = model.name, .frequency = frequency, .wanted = model.wanted, .slipmode = {}, .peers = {}, .tight = {}};
   const std::vector<State> starts = starts_of(system, model, period);
   time_slipmode(row, system, starts.front(), period);
   for (const State& start : starts) {
@@ -116,12 +122,15 @@ BeamRow measure(const BeamModel& model, const scene::Scene& scene, double freque
 
 std::string line(const BeamRow& row) {
   const auto microseconds = [](double seconds) { return fmt::format("{:10.3g}", 1e6 * seconds); };
-  std::string out = fmt::format("{:<7}{:6.1f}{:9.2f}{}{} |{:9.2f}{}", row.model, row.frequency, row.events,
-                                microseconds(row.long_seconds), microseconds(row.audit_seconds), row.reference_events,
-                                microseconds(row.slipmode.seconds));
+  const auto wanted = [](double ratio) { return ratio > 0.0 ? fmt::format("{:.0f}", wanted_share() * ratio) : "-"; };
+  std::string out =
+      fmt::format("{:<7}{:6.1f}{:9.2f}{}{}{:6.2f} |{:9.2f}{}", row.model, row.frequency, row.events,
+                  microseconds(row.long_seconds), microseconds(row.plain_seconds), row.long_seconds / row.plain_seconds,
+                  row.reference_events, microseconds(row.slipmode.seconds));
   for (const Figures& peer : row.peers) out += microseconds(peer.seconds);
-  return out + fmt::format("{}{:9.0f}{:7.0f}{:8.1f}{:7.0f}{:8.1f}", microseconds(row.tight.seconds), row.ratio_cvode(),
-                           kWantedCvode, row.ratio_odeint(), kWantedOdeint, row.tight.seconds / row.slipmode.seconds);
+  return out + fmt::format("{}{:9.0f}{:>7}{:8.1f}{:>7}{:8.1f}{:>7}", microseconds(row.tight.seconds), row.ratio_cvode(),
+                           wanted(kWantedCvode), row.ratio_odeint(), wanted(row.wanted_odeint()), row.ratio_tight(),
+                           wanted(row.wanted_tight()));
 }
 
 std::string error_line(const BeamRow& row) {
@@ -142,7 +151,7 @@ void add_figures(const BeamRow& row, Row& out_row) {
   add("events per cycle", row.events);
   add("slipmode seconds per cycle, 600 cycles", row.long_seconds);
   add("slipmode seconds per cycle", row.slipmode.seconds);
-  add("slipmode seconds per cycle, 600 cycles, audit on", row.audit_seconds);
+  add("slipmode seconds per cycle, 600 cycles, audit off", row.plain_seconds);
   add("Adams seconds per cycle", row.peers[0].seconds);
   add("BDF seconds per cycle", row.peers[1].seconds);
   add("dopri5 seconds per cycle", row.peers[2].seconds);
@@ -154,6 +163,12 @@ void add_figures(const BeamRow& row, Row& out_row) {
   add("dopri5 at 1e-12 seconds per cycle", row.tight.seconds);
   add("dopri5 at 1e-12 error", median(row.tight.errors));
   add("dopri5 error", median(row.peers[2].errors));
+  out_row.timed.push_back({.name = fmt::format("beam {} {:g} Hz", row.model, row.frequency),
+                           .ms = 1e7 * row.long_seconds,
+                           .audit_on_off = row.long_seconds / row.plain_seconds,
+                           .ratio_cvode = row.ratio_cvode(),
+                           .ratio_dopri5 = row.ratio_odeint(),
+                           .error = median(row.slipmode.errors)});
 }
 
 /// One sweep of a model; a line and figures.
@@ -175,15 +190,16 @@ void sweep(const BeamModel& model, const scene::Scene& scene, const std::vector<
     events += point.settled.events;
     if (audit) residual = std::max(residual, std::abs(point.settled.audit_residual));
   }
-  std::string text = fmt::format("{:<7}{:>5}{:9}{:12}{:10.2f}{:10.2f}{:10.2f}{:9.0f}", model.name, audit ? "on" : "off",
-                                 frequencies.size(), events, wall, cpu, 0.5 * cpu, model.sweep_target);
+  std::string text = fmt::format("{:<7}{:>5}{:9}{:12}{:10.2f}{:10.2f}{:9}", model.name, audit ? "on" : "off",
+                                 frequencies.size(), events, wall, cpu,
+                                 audit ? fmt::format("{:.0f}", model.wanted.sweep_cpu_seconds / wanted_share()) : "-");
   if (audit) text += fmt::format("{:12.1e}", residual);
   if (failed > 0) text += fmt::format("   failed: {}", failed);
   out_row.lines.push_back(text);
   const std::string name = fmt::format("{} audit {}: ", model.name, audit ? "on" : "off");
   out_row.figures.emplace_back(name + "wall seconds", wall);
   out_row.figures.emplace_back(name + "CPU seconds", cpu);
-  out_row.figures.emplace_back(name + "wanted wall seconds", model.sweep_target);
+  if (audit) out_row.timed.push_back({.name = "beam sweep " + model.name, .ms = 1e3 * cpu});
   if (audit) out_row.figures.emplace_back(name + "largest audit residual", residual);
 }
 
@@ -195,10 +211,11 @@ Row measure_beam(bool quick) {
       quick ? std::vector{12.0, 41.1} : std::vector{8.0, 12.0, 20.0, 30.0, 41.1, 55.0};
   Row out;
   std::vector<BeamRow> rows;
-  out.lines = {"CPU time in µs per cycle; left: 600 cycles, right: the stretches of the errors",
-               fmt::format("{:<7}{:>6}{:>9}{:>10}{:>10} |{:>9}{:>10}{:>10}{:>10}{:>10}{:>10}{:>9}{:>7}{:>8}{:>7}{:>8}",
-                           "beam", "Hz", "events", "slipmode", "audit on", "events", "slipmode", "Adams", "BDF",
-                           "dopri5", "at 1e-12", "CVODE/", "wanted", "dopri5/", "wanted", "1e-12/")};
+  out.lines = {
+      "CPU time in µs per cycle; left: 600 cycles, right: the stretches of the errors",
+      fmt::format("{:<7}{:>6}{:>9}{:>10}{:>10}{:>6} |{:>9}{:>10}{:>10}{:>10}{:>10}{:>10}{:>9}{:>7}{:>8}{:>7}{:>8}{:>7}",
+                  "beam", "Hz", "events", "slipmode", "audit off", "on/", "events", "slipmode", "Adams", "BDF",
+                  "dopri5", "at 1e-12", "CVODE/", "wanted", "dopri5/", "wanted", "1e-12/", "wanted")};
   for (const BeamModel& model : beam_models(scene)) {
     for (const double frequency : frequencies) {
       rows.push_back(measure(model, scene, frequency));
@@ -219,7 +236,7 @@ Row measure_beam_sweep(std::size_t model, bool quick) {
   const std::vector<double> frequencies = diagnostics::sweep_values(5.0, 60.0, quick ? 1.0 : 0.1);
   const BeamModel chosen = beam_models(scene).at(model);
   Row out;
-  out.lines = {"sweep  audit   values      events    wall s     CPU s     CPU/2   wanted    residual"};
+  out.lines = {"sweep  audit   values      events    wall s     CPU s   wanted    residual"};
   for (const bool audit : {true, false}) sweep(chosen, scene, frequencies, audit, out);
   return out;
 }

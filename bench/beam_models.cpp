@@ -40,11 +40,15 @@ std::vector<BeamModel> beam_models(const scene::Scene& scene) {
   std::vector<BeamModel> models;
   models.push_back({.name = "POMF-3",
                     .shaken = diagnostics::reduced_case(full, pomf_basis(scene, beam, full.system)),
-                    .sweep_target = 5.0});
+                    .wanted = {.odeint = 20.0, .tight = 60.0, .sweep_cpu_seconds = 10.0}});
   models.push_back({.name = "LNM-10",
                     .shaken = diagnostics::reduced_case(full, rom::lnm_basis(full.system.structure(), 10)),
-                    .sweep_target = 15.0});
-  models.push_back({.name = "FE-80", .shaken = full, .stretches = 10, .stretch = 0.1, .sweep_target = 120.0});
+                    .wanted = {.odeint = 40.0, .sweep_cpu_seconds = 30.0}});
+  models.push_back({.name = "FE-80",
+                    .shaken = full,
+                    .stretches = 10,
+                    .stretch = 0.1,
+                    .wanted = {.odeint = 60.0, .sweep_cpu_seconds = 60.0}});
   return models;
 }
 

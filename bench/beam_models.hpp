@@ -8,13 +8,20 @@
 
 namespace slipmode::bench {
 
+/// What the project asks of kernels of eight doubles; 0: nothing.
+struct WantedBeam {
+  double odeint = 0.0;             ///< ratio to dopri5 while the tip slips
+  double tight = 0.0;              ///< the same to dopri5 at 1e-12
+  double sweep_cpu_seconds = 0.0;  ///< of the sweep of 551 frequencies
+};
+
 /// One model of the friction-excited beam.
 struct BeamModel {
   std::string name;
   diagnostics::DrivenCase shaken;  ///< read at the scene's gauge
   int stretches = 8;               ///< on which peers are timed and errors taken, evenly over the phases of the drive
   double stretch = 10.0;           ///< their length, in cycles
-  double sweep_target = 0.0;       ///< of the sweep of 551 frequencies [s]
+  WantedBeam wanted = {};
 };
 
 /// The scene of datasets/beam_sweep.

@@ -1,5 +1,7 @@
 #include "bench/cases.hpp"
 
+#include "bench/machine.hpp"
+
 namespace slipmode::bench {
 
 std::vector<ComparisonCase> comparison_cases(bool quick) {
@@ -8,10 +10,10 @@ std::vector<ComparisonCase> comparison_cases(bool quick) {
     ChainProblem problem = ten;
     problem.name = name;
     problem.belt = belt;
-    return ComparisonCase{.problem = problem};
+    return ComparisonCase{.problem = problem, .wanted_odeint = 40.0};
   };
   std::vector<ComparisonCase> cases;
-  cases.push_back({.problem = ten, .wanted_cvode = 300.0, .wanted_odeint = 25.0});
+  cases.push_back({.problem = ten, .wanted_cvode = 300.0, .wanted_odeint = 18.0});
   cases.push_back(at_speed("stribeck10-v0.45", 0.45));
   cases.push_back(at_speed("stribeck10-v0.41", 0.41));
   cases.push_back(at_speed("stribeck10-v0.05", 0.05));
@@ -19,7 +21,7 @@ std::vector<ComparisonCase> comparison_cases(bool quick) {
   ChainProblem coulomb = ten;
   coulomb.name = "coulomb10";
   coulomb.coulomb = true;
-  cases.push_back({.problem = coulomb, .wanted_cvode = 1500.0, .wanted_odeint = 100.0});
+  cases.push_back({.problem = coulomb, .wanted_cvode = 2000.0, .wanted_odeint = 120.0});
 
   ChainProblem hundred = ten;
   hundred.name = "stribeck100";
@@ -29,7 +31,7 @@ std::vector<ComparisonCase> comparison_cases(bool quick) {
   ChainProblem rich = hundred;
   rich.name = "stribeck100-ground";
   rich.ground = 0.25;
-  cases.push_back({.problem = rich, .repeats = 3});
+  cases.push_back({.problem = rich, .wanted_odeint = 40.0, .repeats = 3});
 
   ChainProblem thousand = ten;
   thousand.name = "stribeck1000";
@@ -40,8 +42,13 @@ std::vector<ComparisonCase> comparison_cases(bool quick) {
                    .peer_duration = 2000.0,
                    .stretches = 5,
                    .wanted_cvode = 500.0,
-                   .wanted_odeint = 30.0,
-                   .repeats = 3});
+                   .wanted_odeint = 40.0,
+                   .repeats = 3,
+                   .setup_counts = true});
+  for (ComparisonCase& c : cases) {
+    c.wanted_cvode *= wanted_share();
+    c.wanted_odeint *= wanted_share();
+  }
   if (quick) {
     for (ComparisonCase& c : cases) {
       c.duration *= 0.1;

@@ -16,8 +16,9 @@ struct ComparisonCase {
   double peer_duration = 1e4;  ///< peers' part of it, from its beginning
   double stretch = 100.0;      ///< length of the stretches on which errors are taken: short enough against 1/λ_1
   int stretches = 16;
-  double wanted_cvode = 0.0, wanted_odeint = 0.0;  ///< ratios asked for; 0: none
+  double wanted_cvode = 0.0, wanted_odeint = 0.0;  ///< ratios asked for with these kernels; 0: none
   int repeats = 9;                                 ///< of slipmode's timed run; peers are repeated less
+  bool setup_counts = false;                       ///< the ratios are those of 10⁴ units with slipmode's set-up
 };
 
 /// What one method needs and how wrong it is. Times are CPU seconds of one thread.
@@ -35,18 +36,23 @@ struct Comparison {
   ComparisonCase setting;
   MethodFigures slipmode, cvode, odeint;
   long reference_events = 0;
-  double audit_seconds = 0.0;  ///< slipmode's timed run with the energy audit on
+  double plain_seconds = 0.0;  ///< slipmode's timed run with the energy audit off
   double audit_residual = 0.0;
   double setup_rows_seconds = 0.0;    ///< frequencies, contact rows and step tables: all a run from rest needs
   double setup_shapes_seconds = 0.0;  ///< the same with mode shapes, for runs from a given state
 
-  [[nodiscard]] double ratio_cvode() const { return cvode.seconds / slipmode.seconds; }
-  [[nodiscard]] double ratio_odeint() const { return odeint.seconds / slipmode.seconds; }
+  [[nodiscard]] double ratio_cvode() const { return cvode.seconds / paid(); }
+  [[nodiscard]] double ratio_odeint() const { return odeint.seconds / paid(); }
+
+ private:
+  [[nodiscard]] double paid() const {
+    return slipmode.seconds + (setting.setup_counts ? 1e-4 * setup_rows_seconds : 0.0);
+  }
 };
 
 /// Measures one row. Peers run at relative and absolute tolerance 1e-9. slipmode runs at the loosest tolerance of
 /// 1e-4, 3e-5, 1e-5, ... at which it finds every event and neither its median nor its worst error exceeds that of
-/// either peer; its audit is off, as the peers have none.
+/// either peer, with its energy audit on.
 [[nodiscard]] Comparison compare(const ComparisonCase& setting);
 
 /// The smooth stand-in with BDF on the same stretches.

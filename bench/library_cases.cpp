@@ -2,7 +2,7 @@
 
 #include "bench/chain_system.hpp"
 #include "bench/clock.hpp"
-#include "diagnostics/cost.hpp"
+#include "bench/machine.hpp"
 #include "diagnostics/model.hpp"
 #include "diagnostics/sweep.hpp"
 #include "pod/accumulator.hpp"
@@ -13,6 +13,9 @@
 
 namespace slipmode::bench {
 namespace {
+
+/// Of the Stribeck sweep on two threads [s], with kernels of eight doubles.
+constexpr double kWantedSweep = 0.2;
 
 ChainProblem thousand_masses() {
   ChainProblem problem;
@@ -59,70 +62,45 @@ Row measure_sweep(bool coulomb, bool quick) {
   const diagnostics::Model model = diagnostics::belt_model(system);
   const auto speeds = diagnostics::sweep_values(0.5, quick ? 0.401 : 0.001, 0.001);
   diagnostics::SweepOptions options;
-  options.settle = {.transient = 1000.0,
-                    .block = 4000.0,
-                    .limit = 4000.0,
-                    .energy_samples = 0,
-                    .flow = {.tolerance = 1e-7, .audit = false}};
-  double seconds[2] = {0.0, 0.0}, cpu[2] = {0.0, 0.0};
+  options.settle = {
+      .transient = 1000.0, .block = 4000.0, .limit = 4000.0, .energy_samples = 0, .flow = {.tolerance = 1e-7}};
   std::int64_t events = 0;
   (void)dynamics::simulate(system, system.rest(), {.duration = 100.0, .flow = options.settle.flow});
-  for (const int threads : {1, 2}) {
+  struct Seconds {
+    double wall, cpu;
+  };
+  const auto measure = [&](int threads, bool audit) {
     options.parallel.threads = threads;
-    std::vector<double> repeats, cpu_repeats;
+    options.settle.flow.audit = audit;
+    std::vector<double> wall, cpu;
     for (int i = 0; i < 3; ++i) {
       const double begin = wall_seconds(), cpu_begin = process_seconds();
       const auto result = diagnostics::sweep(model, speeds, system.rest(), options);
-      repeats.push_back(wall_seconds() - begin);
-      cpu_repeats.push_back(process_seconds() - cpu_begin);
+      wall.push_back(wall_seconds() - begin);
+      cpu.push_back(process_seconds() - cpu_begin);
       events = 0;
       for (const auto& point : result.points) events += point.settled.events;
     }
-    seconds[threads - 1] = median(repeats);
-    cpu[threads - 1] = median(cpu_repeats);
-  }
-  const char* law = coulomb ? "Coulomb" : "Stribeck";
-  return {
-      {fmt::format("{} sweep, {} speeds x 5,000 units, {} events: {:.3f} s on one thread (CPU {:.3f} s), {:.3f} s on "
-                   "two (CPU {:.3f} s), speed-up {:.2f}",
-                   law, speeds.size(), events, seconds[0], cpu[0], seconds[1], cpu[1], seconds[0] / seconds[1])},
-      {{"speeds", static_cast<double>(speeds.size())},
-       {"events", static_cast<double>(events)},
-       {"one_thread_seconds", seconds[0]},
-       {"two_threads_seconds", seconds[1]},
-       {"one_thread_cpu_seconds", cpu[0]},
-       {"two_threads_cpu_seconds", cpu[1]},
-       {"speed_up", seconds[0] / seconds[1]}}};
-}
-
-Row measure_reduction(bool quick) {
-  const auto system = system_of(thousand_masses());
-  const Eigen::Index snapshots = quick ? 500 : 4000;
-  SnapshotStream stream(system, 0.5);
-  const double begin = wall_seconds();
-  pod::Ensemble ensemble{stream.next(snapshots)};
-  const double simulated = wall_seconds();
-  const pod::PodResult modes = pod::pod(ensemble, {.choice = {.modes = 6}});
-  const double end = wall_seconds();
-  const double duration = quick ? 500.0 : 1e4;
-  const auto cost = diagnostics::measure_cost(system, modes.basis, start_on_attractor(system, 500.0), duration, 5,
-                                              {.tolerance = 1e-7, .audit = false});
-  const double share = modes.basis.energy.sum();
-  return {{fmt::format("1,000 masses, six POMs ({:.2f} % of the energy): full {:.2f} ms, reduced {:.3f} ms per {:.0f} "
-                       "units: {:.0f} times",
-                       100.0 * share, 1e3 * cost.full_cpu, 1e3 * cost.reduced_cpu, duration,
-                       cost.full_cpu / cost.reduced_cpu),
-           fmt::format("  basis: run {:.2f} s, decomposition {:.2f} s; projection {:.3f} s; paid for after {:.0f} runs",
-                       simulated - begin, end - simulated, cost.projection_wall, cost.break_even(end - begin))},
-          {{"energy_share", share},
-           {"duration", duration},
-           {"full_cpu_seconds", cost.full_cpu},
-           {"reduced_cpu_seconds", cost.reduced_cpu},
-           {"ratio", cost.full_cpu / cost.reduced_cpu},
-           {"basis_run_seconds", simulated - begin},
-           {"basis_decomposition_seconds", end - simulated},
-           {"projection_seconds", cost.projection_wall},
-           {"break_even_runs", cost.break_even(end - begin)}}};
+    return Seconds{median(wall), median(cpu)};
+  };
+  const Seconds one = measure(1, true), two = measure(2, true), plain = measure(2, false);
+  const std::string wanted = coulomb ? "" : fmt::format(" (wanted {:.2f})", kWantedSweep / wanted_share());
+  return {.lines = {fmt::format(
+              "{} sweep, {} speeds x 5,000 units, {} events: {:.3f} s on one thread, {:.3f} s on two{} (CPU {:.3f} s), "
+              "speed-up {:.2f}; audit off {:.3f} s on two",
+              coulomb ? "Coulomb" : "Stribeck", speeds.size(), events, one.wall, two.wall, wanted, two.cpu,
+              one.wall / two.wall, plain.wall)},
+          .figures = {{"speeds", static_cast<double>(speeds.size())},
+                      {"events", static_cast<double>(events)},
+                      {"one_thread_seconds", one.wall},
+                      {"two_threads_seconds", two.wall},
+                      {"one_thread_cpu_seconds", one.cpu},
+                      {"two_threads_cpu_seconds", two.cpu},
+                      {"two_threads_audit_off_seconds", plain.wall},
+                      {"speed_up", one.wall / two.wall}},
+          .timed = {{.name = coulomb ? "sweep-coulomb" : "sweep-stribeck",
+                     .ms = 1e3 * two.wall,
+                     .audit_on_off = two.cpu / plain.cpu}}};
 }
 
 Row measure_pod(bool quick) {
@@ -156,7 +134,8 @@ Row measure_pod(bool quick) {
        {"stream_cpu_seconds", stream_seconds},
        {"stream_peak_gib", stream_peak},
        {"matrix_cpu_seconds", matrix_seconds},
-       {"matrix_peak_gib", matrix_peak}}};
+       {"matrix_peak_gib", matrix_peak}},
+      {{.name = "pod streamed", .ms = 1e3 * stream_seconds}, {.name = "pod matrix", .ms = 1e3 * matrix_seconds}}};
 }
 
 }  // namespace slipmode::bench

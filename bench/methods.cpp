@@ -59,10 +59,10 @@ MethodFigures errors_of(const Method& method, const std::vector<Truth>& truth, d
   return figures;
 }
 
-Method slipmode_method(const HybridSystem& system, double tolerance) {
-  return [&system, tolerance](const State& start, double duration) {
-    const auto run =
-        dynamics::simulate(system, start, {.duration = duration, .flow = {.tolerance = tolerance, .audit = false}});
+Method slipmode_method(const HybridSystem& system, double tolerance, Audit audit) {
+  return [&system, tolerance, audit](const State& start, double duration) {
+    const auto run = dynamics::simulate(
+        system, start, {.duration = duration, .flow = {.tolerance = tolerance, .audit = audit == Audit::kOn}});
     PeerRun result{plain(run.final_state.q), plain(run.final_state.v), {}, 0};
     for (const auto& event : run.events) {
       if (event.before != event.after) result.event_times.push_back(event.time);

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <cmath>
-#include <fstream>
 
 namespace slipmode::bench {
 namespace {
@@ -14,20 +13,31 @@ std::string wanted(double ratio) { return ratio > 0.0 ? fmt::format("{:.0f}", ra
 }  // namespace
 
 std::string time_header() {
-  return fmt::format("{:<19} {:>6} {:>9} {:>9} {:>9} {:>9} {:>8} {:>6} {:>8} {:>6} {:>8} {:>8}", "", "events",
-                     "slipmode", "audit on", "CVODE", "dopri5", "CVODE/", "wanted", "dopri5/", "wanted", "set-up",
-                     "+shapes") +
-         fmt::format("\n{:<19} {:>6} {:>9} {:>9} {:>9} {:>9} {:>8} {:>6} {:>8} {:>6} {:>8} {:>8}", "case", "/unit",
-                     "ms/1e4", "ms/1e4", "ms/1e4", "ms/1e4", "slipmode", "", "slipmode", "", "ms", "ms");
+  constexpr const char* kForm = "{:<19} {:>6} {:>9} {:>9} {:>6} {:>9} {:>9} {:>8} {:>6} {:>8} {:>6} {:>8} {:>8}";
+  return fmt::format(kForm, "", "events", "slipmode", "audit off", "on/", "CVODE", "dopri5", "CVODE/", "wanted",
+                     "dopri5/", "wanted", "set-up", "+shapes") +
+         "\n" +
+         fmt::format(kForm, "case", "/unit", "ms/1e4", "ms/1e4", "off", "ms/1e4", "ms/1e4", "slipmode", "", "slipmode",
+                     "", "ms", "ms");
 }
 
 std::string time_line(const Comparison& row) {
   return fmt::format(
-      "{:<19} {:>6.3f} {:>9.3f} {:>9.3f} {:>9.1f} {:>9.2f} {:>8.0f} {:>6} {:>8.1f} {:>6} {:>8.2f} {:>8.2f}",
+      "{:<19} {:>6.3f} {:>9.3f} {:>9.3f} {:>6.2f} {:>9.1f} {:>9.2f} {:>8.0f} {:>6} {:>8.1f} {:>6} {:>7.2f}{} {:>8.2f}",
       row.setting.problem.name, row.slipmode.events_per_unit, per_ten_thousand(row.slipmode.seconds),
-      per_ten_thousand(row.audit_seconds), per_ten_thousand(row.cvode.seconds), per_ten_thousand(row.odeint.seconds),
-      row.ratio_cvode(), wanted(row.setting.wanted_cvode), row.ratio_odeint(), wanted(row.setting.wanted_odeint),
-      1e3 * row.setup_rows_seconds, 1e3 * row.setup_shapes_seconds);
+      per_ten_thousand(row.plain_seconds), row.slipmode.seconds / row.plain_seconds,
+      per_ten_thousand(row.cvode.seconds), per_ten_thousand(row.odeint.seconds), row.ratio_cvode(),
+      wanted(row.setting.wanted_cvode), row.ratio_odeint(), wanted(row.setting.wanted_odeint),
+      1e3 * row.setup_rows_seconds, row.setting.setup_counts ? "+" : " ", 1e3 * row.setup_shapes_seconds);
+}
+
+Timed timed(const Comparison& row) {
+  return {.name = row.setting.problem.name,
+          .ms = per_ten_thousand(row.slipmode.seconds),
+          .audit_on_off = row.slipmode.seconds / row.plain_seconds,
+          .ratio_cvode = row.ratio_cvode(),
+          .ratio_dopri5 = row.ratio_odeint(),
+          .error = row.slipmode.error};
 }
 
 std::string error_header() {
@@ -64,14 +74,6 @@ std::string events_header() {
 std::string events_line(const EventAgreement& row) {
   return fmt::format("{:<19} {:>8} {:>12.1e} {:>10.1e} {:>10.1e}{}", row.name, row.events, row.difference,
                      row.error_slipmode, row.error_cvode, row.holds() ? "" : "  apart");
-}
-
-std::string cpu_model() {
-  std::ifstream file("/proc/cpuinfo");
-  for (std::string line; std::getline(file, line);) {
-    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
-  }
-  return "unknown";
 }
 
 }  // namespace slipmode::bench

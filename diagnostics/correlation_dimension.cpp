@@ -1,7 +1,7 @@
 #include "diagnostics/correlation_dimension.hpp"
 
 #include "core/errors.hpp"
-#include "diagnostics/neighbours.hpp"
+#include "diagnostics/close_pairs.hpp"
 
 #include <fmt/format.h>
 
@@ -14,8 +14,6 @@
 namespace slipmode::diagnostics {
 
 namespace {
-
-using Counts = std::vector<std::int64_t>;
 
 CorrelationOptions checked(const Series& series, CorrelationOptions options) {
   const bool fits = options.radii >= 8 && options.smallest > 0.0 && options.largest > options.smallest &&
@@ -35,21 +33,6 @@ CorrelationOptions checked(const Series& series, CorrelationOptions options) {
   return options;
 }
 
-/// Pairs of a block of references with all points outside the window, per radius.
-Counts count_block(const NeighbourTree& tree, const std::vector<double>& radii, Eigen::Index window, Eigen::Index begin,
-                   Eigen::Index end, Eigen::Index references) {
-  Counts counts(radii.size(), 0);
-  for (Eigen::Index r = begin; r < end; ++r) {
-    const Eigen::Index i = r * tree.size() / references;
-    tree.add_counts(i, radii, counts);
-    for (Eigen::Index j = std::max<Eigen::Index>(0, i - window); j <= std::min(tree.size() - 1, i + window); ++j) {
-      const auto from = std::lower_bound(radii.begin(), radii.end(), tree.distance(i, j));
-      for (auto at = from; at != radii.end(); ++at) --counts[static_cast<std::size_t>(at - radii.begin())];
-    }
-  }
-  return counts;
-}
-
 Eigen::VectorXd local_slopes(const Eigen::VectorXd& log_radius, const Eigen::VectorXd& log_sum) {
   const Eigen::Index n = log_radius.size();
   Eigen::VectorXd slopes(n);
@@ -61,14 +44,13 @@ Eigen::VectorXd local_slopes(const Eigen::VectorXd& log_radius, const Eigen::Vec
   return slopes;
 }
 
-/// Allowed pairs of the references begin … end − 1.
-double pairs_of(const NeighbourTree& tree, Eigen::Index window, Eigen::Index begin, Eigen::Index end,
-                Eigen::Index references) {
+/// Pairs of all references with points outside the window.
+double allowed_pairs(Eigen::Index points, Eigen::Index window, Eigen::Index references) {
   double pairs = 0.0;
-  for (Eigen::Index r = begin; r < end; ++r) {
-    const Eigen::Index i = r * tree.size() / references;
-    const Eigen::Index inside = std::min(tree.size() - 1, i + window) - std::max<Eigen::Index>(0, i - window) + 1;
-    pairs += static_cast<double>(tree.size() - inside);
+  for (Eigen::Index r = 0; r < references; ++r) {
+    const Eigen::Index i = r * points / references;
+    const Eigen::Index inside = std::min(points - 1, i + window) - std::max<Eigen::Index>(0, i - window) + 1;
+    pairs += static_cast<double>(points - inside);
   }
   return pairs;
 }
@@ -79,33 +61,24 @@ CorrelationDimension correlation_dimension(const Series& series, const Correlati
   CorrelationDimension out;
   out.settings = checked(series, options);
   const auto& settings = out.settings;
-  const NeighbourTree tree(delay_vectors(series, settings.embedding), Metric::kMaximum);
-  out.references = settings.references == 0 ? tree.size() : std::min(settings.references, tree.size());
+  const Eigen::MatrixXd points = delay_vectors(series, settings.embedding);
+  out.references = settings.references == 0 ? points.cols() : std::min(settings.references, points.cols());
   const double range = series.values.maxCoeff() - series.values.minCoeff();
   const Eigen::VectorXd log_radius = Eigen::VectorXd::LinSpaced(settings.radii, std::log(settings.smallest * range),
                                                                 std::log(settings.largest * range));
-  out.radius = log_radius.array().exp();
+  // One by one: what Eigen takes several at a time it rounds by other rules than the rest, and how many is the
+  // processor's affair.
+  out.radius = log_radius.unaryExpr([](double x) { return std::exp(x); });
   const std::vector<double> radii(out.radius.begin(), out.radius.end());
 
   constexpr Eigen::Index kBlocks = 64;  // even, so that the halves of the references are whole blocks
-  std::vector<Counts> counts(kBlocks);
-  const auto edge = [&](Eigen::Index block) { return block * out.references / kBlocks; };
-  rethrow_first(parallel_for(counts.size(), settings.run, [&](std::size_t b) {
-    const auto block = static_cast<Eigen::Index>(b);
-    counts[b] = count_block(tree, radii, settings.window, edge(block), edge(block + 1), out.references);
-  }));
-  const auto sum_over = [&](Eigen::Index from, Eigen::Index to) {
-    Eigen::VectorXd sum = Eigen::VectorXd::Zero(settings.radii);
-    for (Eigen::Index b = from; b < to; ++b) {
-      for (Eigen::Index k = 0; k < sum.size(); ++k) {
-        sum(k) += static_cast<double>(counts[static_cast<std::size_t>(b)][static_cast<std::size_t>(k)]);
-      }
-    }
-    return sum;
-  };
-  const Eigen::VectorXd close = sum_over(0, kBlocks);
-  out.C = close / pairs_of(tree, settings.window, 0, out.references, out.references);
-  const Eigen::VectorXd log_sum = out.C.array().log();
+  const ClosePairs pairs = close_pairs(
+      points, radii, {.window = settings.window, .references = out.references, .blocks = kBlocks, .run = settings.run});
+  const Eigen::VectorXd of_half[2] = {pairs.counts.leftCols(kBlocks / 2).rowwise().sum().cast<double>(),
+                                      pairs.counts.rightCols(kBlocks / 2).rowwise().sum().cast<double>()};
+  const Eigen::VectorXd close = of_half[0] + of_half[1];
+  out.C = close / allowed_pairs(points.cols(), settings.window, out.references);
+  const Eigen::VectorXd log_sum = out.C.unaryExpr([](double x) { return std::log(x); });
   out.local_slope = local_slopes(log_radius, log_sum);
 
   Eigen::Index begin = 0, end = settings.radii;
@@ -126,7 +99,7 @@ CorrelationDimension correlation_dimension(const Series& series, const Correlati
   out.plateau = fit_line(log_radius, log_sum, begin + local.begin, begin + local.end);
   out.dimension = out.plateau.slope;
   for (const int h : {0, 1}) {
-    const Eigen::VectorXd half = sum_over(h == 0 ? 0 : kBlocks / 2, h == 0 ? kBlocks / 2 : kBlocks).cwiseMax(0.5);
+    const Eigen::VectorXd half = of_half[h].cwiseMax(0.5);
     out.of_halves[h] = fit_line(log_radius, half.array().log(), out.plateau.begin, out.plateau.end).slope;
   }
   out.error = std::hypot(0.5 * (out.of_halves[0] - out.of_halves[1]), out.plateau.curvature);

@@ -15,13 +15,24 @@ struct Line {
   double slope, intercept, residual;
 };
 
+/// Sums term by term: Eigen's are taken in an order that depends on the width of the processor's vectors.
 Line line_through(const Eigen::VectorXd& x, const Eigen::VectorXd& y, Eigen::Index begin, Eigen::Index count) {
-  const auto xs = x.segment(begin, count).array();
-  const auto ys = y.segment(begin, count).array();
-  const double x_mean = xs.mean(), y_mean = ys.mean();
-  const double slope = ((xs - x_mean) * (ys - y_mean)).sum() / (xs - x_mean).square().sum();
+  const auto sum = [&](const auto& term) {
+    double value = 0.0;
+    for (Eigen::Index k = begin; k < begin + count; ++k) value += term(x(k), y(k));
+    return value;
+  };
+  const auto n = static_cast<double>(count);
+  const double x_mean = sum([](double a, double) { return a; }) / n,
+               y_mean = sum([](double, double b) { return b; }) / n;
+  const double slope = sum([&](double a, double b) { return (a - x_mean) * (b - y_mean); }) /
+                       sum([&](double a, double) { return (a - x_mean) * (a - x_mean); });
   const double intercept = y_mean - slope * x_mean;
-  return {slope, intercept, std::sqrt((ys - slope * xs - intercept).square().mean())};
+  const double square = sum([&](double a, double b) {
+    const double miss = b - slope * a - intercept;
+    return miss * miss;
+  });
+  return {slope, intercept, std::sqrt(square / n)};
 }
 
 }  // namespace

@@ -17,8 +17,8 @@ namespace slipmode::diagnostics {
 
 namespace {
 
-constexpr Eigen::Index kLeaf = 12;
-constexpr std::size_t kDeepest = 128;  // twice the bits of an index: halves can never nest deeper
+constexpr Eigen::Index kLeaf = 64, kGroup = 8;  // points of a leaf, and those whose distances are found at once
+constexpr std::size_t kDeepest = 128;           // twice the bits of an index: halves can never nest deeper
 
 bool nearer(const Neighbour& a, const Neighbour& b) {
   return std::tie(a.distance, a.index) < std::tie(b.distance, b.index);
@@ -40,8 +40,23 @@ NeighbourTree::NeighbourTree(Eigen::MatrixXd points, Metric metric)
   order_.resize(static_cast<std::size_t>(points_.cols()));
   std::iota(order_.begin(), order_.end(), Eigen::Index{0});
   build(0, points_.cols());
-  sorted_.resize(points_.rows(), points_.cols());
-  for (Eigen::Index k = 0; k < points_.cols(); ++k) sorted_.col(k) = points_.col(order_[static_cast<std::size_t>(k)]);
+}
+
+Eigen::Index NeighbourTree::filled_up(const Node& leaf) {
+  return (leaf.end - leaf.begin + kGroup - 1) / kGroup * kGroup;
+}
+
+void NeighbourTree::store_leaf(Node& node) {
+  node.leaf = static_cast<Eigen::Index>(leaves_.size());
+  const Eigen::Index wide = filled_up(node);
+  leaves_.resize(leaves_.size() + static_cast<std::size_t>(wide * points_.rows()),
+                 std::numeric_limits<double>::infinity());
+  for (Eigen::Index j = node.begin; j < node.end; ++j) {
+    for (Eigen::Index k = 0; k < points_.rows(); ++k) {
+      leaves_[static_cast<std::size_t>(node.leaf + k * wide + j - node.begin)] =
+          points_(k, order_[static_cast<std::size_t>(j)]);
+    }
+  }
 }
 
 std::int32_t NeighbourTree::build(Eigen::Index begin, Eigen::Index end) {
@@ -54,7 +69,10 @@ std::int32_t NeighbourTree::build(Eigen::Index begin, Eigen::Index end) {
   }
   boxes_.insert(boxes_.end(), low.begin(), low.end());
   boxes_.insert(boxes_.end(), high.begin(), high.end());
-  if (end - begin <= kLeaf) return node;
+  if (end - begin <= kLeaf) {
+    store_leaf(nodes_.back());
+    return node;
+  }
   Eigen::Index axis = 0;
   (high - low).maxCoeff(&axis);
   const Eigen::Index middle = begin + (end - begin) / 2;
@@ -91,15 +109,33 @@ double NeighbourTree::least(std::int32_t node, const double* x) const {
   return value;
 }
 
-double NeighbourTree::most(std::int32_t node, const double* x) const {
+/// Between which powers those of the distances to all points of a node lie.
+NeighbourTree::Range NeighbourTree::range(std::int32_t node, const double* x) const {
   const double* low = boxes_.data() + 2 * points_.rows() * node;
   const double* high = low + points_.rows();
-  double value = 0.0;
+  Range value{0.0, 0.0};
   for (Eigen::Index k = 0; k < points_.rows(); ++k) {
-    const double gap = std::max(std::abs(x[k] - low[k]), std::abs(high[k] - x[k]));
-    value = euclidean_ ? value + gap * gap : std::max(value, gap);
+    const double above = x[k] - low[k], below = high[k] - x[k];
+    const double near = std::max(0.0, std::max(-above, -below)), far = std::max(std::abs(above), std::abs(below));
+    value = euclidean_ ? Range{value.least + near * near, value.most + far * far}
+                       : Range{std::max(value.least, near), std::max(value.most, far)};
   }
   return value;
+}
+
+/// power() of all points of a leaf; infinite for those that fill it up.
+void NeighbourTree::leaf_powers(const Node& leaf, const double* x, double* out) const {
+  using Group = Eigen::Array<double, kGroup, 1>;
+  const Eigen::Index wide = filled_up(leaf);
+  for (Eigen::Index j = 0; j < wide; j += kGroup) {
+    const double* at = leaves_.data() + leaf.leaf + j;
+    Group value = Group::Zero();
+    for (Eigen::Index k = 0; k < points_.rows(); ++k, at += wide) {
+      const Group gap = x[k] - Eigen::Map<const Group>(at);
+      value = euclidean_ ? Group(value + gap * gap) : Group(value.max(gap.abs()));
+    }
+    Eigen::Map<Group>(out + j) = value;
+  }
 }
 
 double NeighbourTree::distance(Eigen::Index i, Eigen::Index j) const {
@@ -134,10 +170,11 @@ std::vector<Neighbour> NeighbourTree::nearest(Eigen::Index i, std::size_t count,
   found.reserve(count + 1);
   const double* x = points_.col(i).data();
   double reach = std::numeric_limits<double>::infinity();
+  double powers[kLeaf];
   const auto take_leaf = [&](const Node& node) {
+    leaf_powers(node, x, powers);
     for (Eigen::Index k = node.begin; k < node.end; ++k) {
-      const Neighbour candidate{.index = order_[static_cast<std::size_t>(k)],
-                                .distance = power(x, sorted_.col(k).data())};
+      const Neighbour candidate{.index = order_[static_cast<std::size_t>(k)], .distance = powers[k - node.begin]};
       if (candidate.distance > reach || !may_be(i, candidate.index, allowed)) continue;
       found.insert(std::upper_bound(found.begin(), found.end(), candidate, nearer), candidate);
       if (found.size() > count) found.pop_back();
@@ -153,9 +190,11 @@ std::vector<Neighbour> NeighbourTree::within(Eigen::Index i, double radius, cons
   std::vector<Neighbour> found;
   const double* x = points_.col(i).data();
   double reach = to_power(radius);
+  double powers[kLeaf];
   const auto take_leaf = [&](const Node& node) {
+    leaf_powers(node, x, powers);
     for (Eigen::Index k = node.begin; k < node.end; ++k) {
-      const double value = power(x, sorted_.col(k).data());
+      const double value = powers[k - node.begin];
       const Eigen::Index j = order_[static_cast<std::size_t>(k)];
       if (value <= reach && may_be(i, j, allowed)) found.push_back({.index = j, .distance = from_power(value)});
     }
@@ -165,37 +204,35 @@ std::vector<Neighbour> NeighbourTree::within(Eigen::Index i, double radius, cons
   return found;
 }
 
-void NeighbourTree::add_counts(Eigen::Index i, std::span<const double> radii,
-                               std::span<std::int64_t> out_counts) const {
+Shells NeighbourTree::shells(std::span<const double> radii) const {
   std::vector<double> powers(radii.size());
   std::transform(radii.begin(), radii.end(), powers.begin(), [&](double r) { return to_power(r); });
-  std::vector<std::int64_t> shells(radii.size() + 1, 0);
-  count(0, points_.col(i).data(), powers, 0, powers.size(), shells);
-  std::partial_sum(shells.begin(), shells.end(), shells.begin());
-  for (std::size_t r = 0; r < radii.size(); ++r) out_counts[r] += shells[r];
+  return Shells(powers);
 }
 
-/// Adds the points of a node to the shell of the smallest radius that holds each; the answer is known to lie among
-/// shells low … high.
-void NeighbourTree::count(std::int32_t id, const double* x, std::span<const double> powers, std::size_t low,
-                          std::size_t high, std::span<std::int64_t> out_shells) const {
-  const auto shell = [&](double value, std::size_t from, std::size_t to) {
-    return static_cast<std::size_t>(std::lower_bound(powers.begin() + static_cast<std::ptrdiff_t>(from),
-                                                     powers.begin() + static_cast<std::ptrdiff_t>(to), value) -
-                                    powers.begin());
-  };
-  low = shell(least(id, x), low, high);
-  if (low == powers.size()) return;
+NeighbourTree::Work NeighbourTree::add_shells(Eigen::Index i, const Shells& shells,
+                                              std::span<std::int64_t> out_counts) const {
+  Work work;
+  count(0, points_.col(i).data(), shells, out_counts.data(), work);
+  return work;
+}
+
+void NeighbourTree::count(std::int32_t id, const double* x, const Shells& shells, std::int64_t* out_counts,
+                          Work& out_work) const {
+  ++out_work.boxes;
+  const Range box = range(id, x);
+  const std::size_t low = shells.of(box.least);
   const Node& node = nodes_[static_cast<std::size_t>(id)];
-  high = shell(most(id, x), low, high);
-  if (low == high) {
-    out_shells[low] += node.end - node.begin;
+  if (low + 1 == shells.count() || low == shells.of(box.most)) {
+    out_counts[low] += node.end - node.begin;
   } else if (node.left < 0) {
-    for (Eigen::Index k = node.begin; k < node.end; ++k)
-      ++out_shells[shell(power(x, sorted_.col(k).data()), low, high)];
+    out_work.points += node.end - node.begin;
+    double powers[kLeaf];
+    leaf_powers(node, x, powers);
+    for (Eigen::Index k = 0; k < node.end - node.begin; ++k) ++out_counts[shells.of(powers[k])];
   } else {
-    count(node.left, x, powers, low, high, out_shells);
-    count(node.right, x, powers, low, high, out_shells);
+    count(node.left, x, shells, out_counts, out_work);
+    count(node.right, x, shells, out_counts, out_work);
   }
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "diagnostics/shells.hpp"
+
 #include <Eigen/Core>
 #include <cstdint>
 #include <span>
@@ -51,11 +53,23 @@ class NeighbourTree {
   /// The allowed points no farther from point i than `radius`, by rising index.
   [[nodiscard]] std::vector<Neighbour> within(Eigen::Index i, double radius, const Allowed& allowed) const;
 
-  /// How many points, i among them, lie no farther from point i than each radius.
-  /// @param radii  ascending
-  /// @param out_counts  added to, one per radius
-  /// All radii in one walk: a box between two radii is counted whole.
-  void add_counts(Eigen::Index i, std::span<const double> radii, std::span<std::int64_t> out_counts) const;
+  /// What a walk over the tree looked at.
+  struct Work {
+    std::int64_t boxes = 0, points = 0;
+  };
+
+  /// Shells about a point for add_shells, between radii that ascend. @throws InvalidInput  as Shells
+  [[nodiscard]] Shells shells(std::span<const double> radii) const;
+
+  /// Adds the number of points, i among them, in each shell about point i.
+  /// @param out_counts  one per shell
+  /// All shells in one walk: a box within one shell is counted whole.
+  Work add_shells(Eigen::Index i, const Shells& shells, std::span<std::int64_t> out_counts) const;
+
+  /// Shell about point i that holds point j.
+  [[nodiscard]] std::size_t shell(Eigen::Index i, Eigen::Index j, const Shells& shells) const {
+    return shells.of(power(points_.col(i).data(), points_.col(j).data()));
+  }
 
   /// Distance of points i and j in the metric of the tree.
   [[nodiscard]] double distance(Eigen::Index i, Eigen::Index j) const;
@@ -65,22 +79,28 @@ class NeighbourTree {
     Eigen::Index begin, end;  // of order_
     std::int32_t left = -1;   // −1: a leaf
     std::int32_t right = -1;
+    Eigen::Index leaf = 0;  // a leaf's first number in leaves_
+  };
+  struct Range {
+    double least, most;
   };
 
   std::int32_t build(Eigen::Index begin, Eigen::Index end);
+  void store_leaf(Node& node);
+  [[nodiscard]] static Eigen::Index filled_up(const Node& leaf);
   [[nodiscard]] double power(const double* a, const double* b) const;
   [[nodiscard]] double least(std::int32_t node, const double* x) const;
-  [[nodiscard]] double most(std::int32_t node, const double* x) const;
+  [[nodiscard]] Range range(std::int32_t node, const double* x) const;
+  void leaf_powers(const Node& leaf, const double* x, double* out) const;
   [[nodiscard]] double to_power(double distance) const { return euclidean_ ? distance * distance : distance; }
   [[nodiscard]] double from_power(double value) const;
   template <typename Visit>
   void visit(const double* x, const Visit& visit_leaf, double& reach) const;
-  void count(std::int32_t node, const double* x, std::span<const double> powers, std::size_t low, std::size_t high,
-             std::span<std::int64_t> out_counts) const;
+  void count(std::int32_t node, const double* x, const Shells& shells, std::int64_t* out_counts, Work& out_work) const;
 
   Eigen::MatrixXd points_;           // in time order
-  Eigen::MatrixXd sorted_;           // the same, leaf by leaf
-  std::vector<Eigen::Index> order_;  // time index of each column of sorted_
+  std::vector<double> leaves_;       // leaf by leaf, coordinate by coordinate, filled up with points at infinity
+  std::vector<Eigen::Index> order_;  // time indices, leaf by leaf
   std::vector<Node> nodes_;
   std::vector<double> boxes_;  // per node: lower corner, upper corner
   bool euclidean_;

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <tuple>
 #include <vector>
 
@@ -66,9 +67,11 @@ TEST_P(NeighbourTreeOf, CountsAsManyAsItFinds) {
   for (double& x : points.reshaped()) x = random.normal();
   const NeighbourTree tree(points, metric);
   const std::vector<double> radii{0.01, 0.1, 0.3, 0.7, 1.0, 2.0, 20.0};
+  const Shells shells = tree.shells(radii);
   for (Eigen::Index i = 0; i < points.cols(); i += 29) {
-    std::vector<std::int64_t> counts(radii.size(), 0);
-    tree.add_counts(i, radii, counts);
+    std::vector<std::int64_t> counts(shells.count(), 0);
+    (void)tree.add_shells(i, shells, counts);
+    std::partial_sum(counts.begin(), counts.end(), counts.begin());
     for (std::size_t r = 0; r < radii.size(); ++r) {
       EXPECT_EQ(counts[r], 1 + static_cast<std::int64_t>(tree.within(i, radii[r], {}).size()));
     }
