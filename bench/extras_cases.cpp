@@ -58,8 +58,8 @@ Row measure_extras(bool quick) {
                  {"contact.0.normal_load={ constant = 3.0, oscillator = { mass = 0.1, support_stiffness = 10.0, "
                   "support_damping = 0.1, spring_stiffness = 1.0, spring_damping = 0.01, slope = 0.01 } }"}));
   const dynamics::SimulateOptions options{
-      .duration = quick ? 2e4 : 2e5, .keep_events = false, .output = dynamics::SimulateOptions::Output::kContacts};
-  const int repeats = quick ? 3 : 9;
+      .duration = quick ? 2e4 : 1e5, .keep_events = false, .output = dynamics::SimulateOptions::Output::kContacts};
+  const int repeats = quick ? 3 : 5;
   for (int k = -1; k < repeats; ++k) {  // the first round sets up
     for (Extra& extra : all) {
       const double seconds = thread_seconds_of(

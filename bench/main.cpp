@@ -143,14 +143,14 @@ void run_comparisons(const Request& request, Record& record, nlohmann::json& out
 }
 
 /// True when all event times agree.
-bool run_events(const Request& request, nlohmann::json& out) {
+bool run_events(const Request& request, Record& record, nlohmann::json& out) {
   if (!request.wants("events")) return true;
   say(request, events_header());
   bool all = true;
   for (const ComparisonCase& setting : comparison_cases(true)) {
     if (setting.problem.n > 10) continue;
     const EventAgreement row = check_events(setting.problem);
-    say(request, events_line(row));
+    say(request, events_line(row) + record.finish({}));
     out["events"].push_back(row);
     all = all && row.holds();
   }
@@ -192,7 +192,7 @@ int main(int argc, char** argv) {
     nlohmann::json out{{"machine", to_json(record.machine())}, {"quick", request.quick}};
     say(request, description(record.machine()) + "\n");
     run_comparisons(request, record, out);
-    const bool events_agree = run_events(request, out);
+    const bool events_agree = run_events(request, record, out);
     run_library_cases(request, record, out);
     record.close(out);
     if (request.json) fmt::print("{}\n", out.dump(2));
