@@ -33,6 +33,12 @@ CorrelationOptions checked(const Series& series, CorrelationOptions options) {
   return options;
 }
 
+/// One by one: what Eigen takes several at a time it rounds otherwise than the rest, and how many is the processor's
+/// affair.
+Eigen::VectorXd logarithm(const Eigen::VectorXd& x) {
+  return x.unaryExpr([](double value) { return std::log(value); });
+}
+
 Eigen::VectorXd local_slopes(const Eigen::VectorXd& log_radius, const Eigen::VectorXd& log_sum) {
   const Eigen::Index n = log_radius.size();
   Eigen::VectorXd slopes(n);
@@ -66,8 +72,6 @@ CorrelationDimension correlation_dimension(const Series& series, const Correlati
   const double range = series.values.maxCoeff() - series.values.minCoeff();
   const Eigen::VectorXd log_radius = Eigen::VectorXd::LinSpaced(settings.radii, std::log(settings.smallest * range),
                                                                 std::log(settings.largest * range));
-  // One by one: what Eigen takes several at a time it rounds by other rules than the rest, and how many is the
-  // processor's affair.
   out.radius = log_radius.unaryExpr([](double x) { return std::exp(x); });
   const std::vector<double> radii(out.radius.begin(), out.radius.end());
 
@@ -78,7 +82,7 @@ CorrelationDimension correlation_dimension(const Series& series, const Correlati
                                       pairs.counts.rightCols(kBlocks / 2).rowwise().sum().cast<double>()};
   const Eigen::VectorXd close = of_half[0] + of_half[1];
   out.C = close / allowed_pairs(points.cols(), settings.window, out.references);
-  const Eigen::VectorXd log_sum = out.C.unaryExpr([](double x) { return std::log(x); });
+  const Eigen::VectorXd log_sum = logarithm(out.C);
   out.local_slope = local_slopes(log_radius, log_sum);
 
   Eigen::Index begin = 0, end = settings.radii;
@@ -100,7 +104,7 @@ CorrelationDimension correlation_dimension(const Series& series, const Correlati
   out.dimension = out.plateau.slope;
   for (const int h : {0, 1}) {
     const Eigen::VectorXd half = of_half[h].cwiseMax(0.5);
-    out.of_halves[h] = fit_line(log_radius, half.array().log(), out.plateau.begin, out.plateau.end).slope;
+    out.of_halves[h] = fit_line(log_radius, logarithm(half), out.plateau.begin, out.plateau.end).slope;
   }
   out.error = std::hypot(0.5 * (out.of_halves[0] - out.of_halves[1]), out.plateau.curvature);
   return out;
