@@ -1,6 +1,7 @@
 #include "bench/machine.hpp"
 
 #include "bench/clock.hpp"
+#include "dynamics/kernels/kernels.hpp"
 #include "scene/provenance.hpp"
 
 #include <fmt/chrono.h>
@@ -8,7 +9,7 @@
 #include <unistd.h>
 #include <cstdlib>
 #include <fstream>
-#include <sstream>
+#include <string_view>
 #include <thread>
 
 namespace slipmode::bench {
@@ -51,13 +52,8 @@ void calibration_loop() {
 }  // namespace
 
 int kernel_lanes() {
-#if defined(__AVX512F__)
-  return 8;
-#elif defined(__AVX2__)
-  return 4;
-#else
-  return 2;
-#endif
+  const std::string_view name = dynamics::kernels::kernels().name;
+  return name == "avx512" ? 8 : name == "avx2" ? 4 : 2;
 }
 
 Machine this_machine() {
@@ -65,7 +61,7 @@ Machine this_machine() {
   return {.processor = processor_name(),
           .threads = static_cast<int>(std::thread::hardware_concurrency()),
           .vectors = vector_widths(),
-          .kernels = fmt::format("{} doubles", kernel_lanes()),
+          .kernels = dynamics::kernels::kernels().name,
           .compiler = scene::compiler(),
           .flags = SLIPMODE_BENCH_FLAGS,
           .arch = arch.empty() ? "compiler's default" : arch,

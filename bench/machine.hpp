@@ -9,7 +9,7 @@ struct Machine {
   std::string processor;  ///< as the system names it
   int threads = 0;        ///< it runs at once
   std::string vectors;    ///< widths it has
-  std::string kernels;    ///< those the library uses
+  std::string kernels;    ///< the set the library uses: avx512, avx2 or generic
   std::string compiler, flags, arch;
   std::string commit;  ///< with "-dirty" where files differed from it
   std::string date;    ///< UTC
