@@ -13,6 +13,16 @@ constexpr double kRootTolerance = 1e-6;
 
 constexpr std::size_t index(int k) { return static_cast<std::size_t>(k); }
 
+constexpr auto kBinomial = [] {
+  constexpr int most = BernsteinPolynomial::kMaxDegree;
+  std::array<std::array<double, most + 1>, most + 1> out{};
+  for (int n = 0; n <= most; ++n) {
+    out[index(n)][0] = 1.0;
+    for (int k = 1; k <= n; ++k) out[index(n)][index(k)] = out[index(n)][index(k - 1)] * (n - k + 1) / k;
+  }
+  return out;
+}();
+
 /// The single root of a polynomial that is positive just after 0 and not positive at 1: Newton on the power form, kept
 /// inside a shrinking bracket.
 double single_root(const BernsteinPolynomial& p) {
@@ -20,14 +30,12 @@ double single_root(const BernsteinPolynomial& p) {
       p.coefficient;  // forward differences, then × binomial
   for (int order = 1; order <= p.degree; ++order)
     for (int k = p.degree; k >= order; --k) power[index(k)] -= power[index(k - 1)];
-  double binomial = 1.0;
-  for (int k = 1; k <= p.degree; ++k) {
-    binomial *= static_cast<double>(p.degree - k + 1) / k;
-    power[index(k)] *= binomial;
-  }
-  double lo = 0.0, hi = 1.0, t = 0.5;
-  if (p.coefficient[0] > 0)
-    t = std::clamp(p.coefficient[0] / (p.coefficient[0] - p.coefficient[index(p.degree)]), 0.05, 0.95);
+  for (int k = 1; k <= p.degree; ++k) power[index(k)] *= kBinomial[index(p.degree)][index(k)];
+  // From where the control polygon crosses zero.
+  int last = 0;
+  while (p.coefficient[index(last + 1)] > 0 || p.coefficient[index(last)] <= 0) ++last;
+  const double above = p.coefficient[index(last)], below = p.coefficient[index(last + 1)];
+  double lo = 0.0, hi = 1.0, t = (last + above / (above - below)) / p.degree;
   for (int i = 0; i < 100; ++i) {
     double f = power[index(p.degree)], slope = 0.0;
     for (int k = p.degree - 1; k >= 0; --k) {

@@ -1,5 +1,7 @@
 #include "dynamics/collocation_flow.hpp"
 
+#include <array>
+
 namespace slipmode::dynamics {
 
 void CollocationFlow::account(int level, double tau) {
@@ -15,6 +17,21 @@ double CollocationFlow::driven_work(double h, double tau) const {
       driven +=
           h *
           nodes_.weight.cwiseProduct(forces_.segment<kNodes>(kNodes * c)).dot(drive_nodes_.segment<kNodes>(kNodes * c));
+    return driven;
+  }
+  if (drive().shaker() == nullptr) {  // ∫ λ (V + a t) dt by the powers of t/h in λ
+    const double V = drive().velocity(begin_), a = drive().acceleration(begin_), share = tau / h;
+    alignas(64) std::array<double, kNodes> power;
+    for (int c = 0; c < nc_; ++c) {
+      kernels_.matrix8(nodes_.monomial.data(), forces_.data() + kNodes * c, power.data());
+      double constant = 0.0, ramp = 0.0;
+      for (int k = kNodes - 1; k >= 0; --k) {
+        const double of = power[static_cast<std::size_t>(k)];
+        constant = constant * share + of / (k + 1);
+        ramp = ramp * share + of / (k + 2);
+      }
+      driven += tau * (constant * V + ramp * a * tau);
+    }
     return driven;
   }
   static const GaussRule rule = gauss_rule(kNodes);

@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace slipmode::dynamics {
 namespace {
@@ -45,6 +46,7 @@ CollocationFlow::CollocationFlow(const HybridSystem& system, const StepTables& t
       options_(options),
       within_(tables, options.audit),
       nc_(model_.contacts),
+      over_top_(1.0 / tables.step(0)),
       begin_(start.time),
       point_(std::move(start)),
       x_begin_(point_.x),
@@ -59,6 +61,8 @@ CollocationFlow::CollocationFlow(const HybridSystem& system, const StepTables& t
     steep_speed_.push_back(
         std::log(laws()[c].alpha * laws()[c].drop * model_.mobility(i, i) * tables_.step(0) / kGrowthPerStep) /
         laws()[c].alpha);
+    steep_fall_.push_back(std::numbers::ln2 / laws()[c].alpha);
+    over_limit_.push_back(1.0 / laws()[c].static_limit);
   }
   for (int c = 0; c < nc_; ++c) {
     any_bristle_ |= bristled(c);
@@ -109,7 +113,7 @@ bool CollocationFlow::step(double t_limit) {
       ++level;
       continue;
     }
-    error = force_error() * h / tables_.step(0);
+    error = force_error() * h * over_top_;
     const bool smallest = level + 1 == StepTables::kLevels;
     if (!(error <= options_.tolerance / kEndNodeGain) && !smallest) {
       level += halvings(error * kEndNodeGain / options_.tolerance);
@@ -134,6 +138,8 @@ bool CollocationFlow::step(double t_limit) {
     break;
   }
   const bool at_guard = guard.contact >= 0 && guard.theta * h <= remaining;
+  if (at_guard && point_.modes[static_cast<std::size_t>(guard.contact)] != ContactMode::kStick)
+    stop_level_ = error < tolerance * kGrowth ? level - 1 : level;
 
   if (tau < h) {
     within_.begin(x_begin_.data(), forces_.data(), level);

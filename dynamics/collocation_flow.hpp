@@ -117,7 +117,10 @@ class CollocationFlow {
   int nc_;
   bool single_ = false;              ///< one rigid contact, without bristles
   const double* ahead_ = nullptr;    ///< takes the last step's velocities to this one's nodes, where that is the guess
+  double over_top_;                  ///< 1 / the largest step [1/s]
   std::vector<double> steep_speed_;  ///< sliding speed at which a law is just resolved by the largest step [m/s]
+  std::vector<double> steep_fall_;   ///< what that speed falls by from level to level [m/s]
+  std::vector<double> over_limit_;   ///< 1 / static limit [1/N]
 
   double begin_;
   HybridPoint point_;
@@ -133,6 +136,7 @@ class CollocationFlow {
   double newton_change_;  ///< see kNewtonShare
   int first_level_ = 0;   ///< of the last first step of a slip (one contact), with its
   RadauTables::Vector8 first_shape_ = RadauTables::Vector8::Ones();  ///< forces by the force at its start
+  int stop_level_ = 0;  ///< at which the last slip was followed to its end: a step that ends inside gets no credit
   std::vector<int> start_level_;  ///< remembered first step size after an event, by number of sticking contacts
 
   // One step's scalars, contact after contact, eight nodes each.

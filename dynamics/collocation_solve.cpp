@@ -9,6 +9,9 @@ namespace slipmode::dynamics {
 namespace {
 
 constexpr int kNewtonLimit = 12;
+/// Of a single contact's forces Newton may leave this share of the tolerance wrong, and no more than the other of the
+/// static limit: errors of all steps add up, and where a law's steepness limits the steps they would be all there is.
+constexpr double kForceShare = 5e-3, kLargestForceError = 1e-8;
 
 }  // namespace
 
@@ -54,7 +57,8 @@ int CollocationFlow::foreseen_level(int level) const {
   // so that no exponential is needed here.
   if (!solved_) return level;
   const auto& node = nodes_.node;
-  const double last_step = tables_.step(step_level_);
+  static const double over12 = 1.0 / (node(5) - node(2)), over23 = 1.0 / (node(7) - node(5)),
+                      over13 = 1.0 / (node(7) - node(2));
   for (int c = 0; c < nc_; ++c) {
     const auto i = static_cast<std::size_t>(c);
     const ContactForces& law = laws()[i];
@@ -62,13 +66,12 @@ int CollocationFlow::foreseen_level(int level) const {
     const double sign = sign_of(point_.modes[i]);
     const auto speed = [&](int j) { return sign * (drive_nodes_(kNodes * c + j) - velocity_(kNodes * c + j)); };
     const double s1 = speed(2), s2 = speed(5), s3 = speed(7);
-    const double d12 = (s2 - s1) / (node(5) - node(2)), d23 = (s3 - s2) / (node(7) - node(5));
-    const double bend = (d23 - d12) / (node(7) - node(2)), slope = d23 + bend * (node(7) - node(5));
-    for (; level + 1 < StepTables::kLevels; ++level) {
-      const double ahead = tables_.step(level) / last_step;
-      const double foreseen = std::max(0.0, s3 + ahead * (slope + bend * ahead));
-      if (foreseen >= steep_speed_[i] - level * (std::numbers::ln2 / law.alpha)) break;
-    }
+    const double d12 = (s2 - s1) * over12, d23 = (s3 - s2) * over23;
+    const double bend = (d23 - d12) * over13, slope = d23 + bend * (node(7) - node(5));
+    double ahead = std::ldexp(1.0, step_level_ - level), enough = steep_speed_[i] - level * steep_fall_[i];
+    for (; level + 1 < StepTables::kLevels; ++level, ahead *= 0.5, enough -= steep_fall_[i])
+      if (std::max(0.0, s3 + ahead * (slope + bend * ahead)) >= enough) break;
+    if (s3 + ahead * (slope + bend * ahead) <= 0.0) level = std::max(level, stop_level_);
   }
   return level;
 }
@@ -98,7 +101,7 @@ bool CollocationFlow::solve_single(const Collocation& table) {
                              law.drop,
                              law.alpha,
                              ahead_,
-                             newton_change_,
+                             std::min(kLargestForceError, kForceShare * options_.tolerance),
                              forces_.data(),
                              velocity_.data()};
   if (point_.modes[0] == ContactMode::kStick) {
@@ -239,8 +242,8 @@ double CollocationFlow::force_error() const {
     sixth = std::abs(sixth);
     seventh = std::abs(seventh);
     // The first coefficient left out, if the sequence keeps falling as it does.
-    const double next = seventh * std::min(1.0, seventh / std::max(sixth, 1e-300));
-    worst = std::max(worst, next / laws()[i].static_limit);
+    const double next = seventh < sixth ? seventh * seventh / sixth : seventh;
+    worst = std::max(worst, next * over_limit_[i]);
     if (bristled(c)) worst = std::max(worst, bristle_error(c) * tables_.step(0) / tables_.step(step_level_));
   }
   return worst;

@@ -209,7 +209,7 @@ void advance(const RegimeTables& tables, double t, Eigen::VectorXd& x, Eigen::Ve
   const double speed = inputs(V), acceleration = inputs(V + 1);
   const double phase = r.rate * std::abs(t);
   int terms = 3;
-  for (double size = phase * phase * phase / 6.0; size > 1e-17;) size *= phase / ++terms;
+  for (double size = phase * phase * phase / 6.0; size > 1e-17 && terms < kernels::kMostTerms;) size *= phase / ++terms;
   alignas(64) double few[kNodes * kFewInputs];
   Eigen::VectorXd many;
   double* coefficient = few;

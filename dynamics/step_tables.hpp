@@ -45,8 +45,9 @@ struct WorkForms {
   Eigen::VectorXd linear;                    ///< [2np]
   double constant = 0.0;
 
-  [[nodiscard]] kernels::WorkArrays arrays(bool loaded) const {
-    return {s11.size(),
+  [[nodiscard]] kernels::WorkArrays arrays(Eigen::Index n, bool loaded) const {
+    return {n,
+            s11.size(),
             static_cast<int>(work_load.cols()),
             work.data(),
             loss.data(),

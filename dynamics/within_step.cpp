@@ -10,21 +10,20 @@ namespace {
 
 /// Up to this phase (fastest rate times time) what is left of a step is left to a Taylor series.
 constexpr double kTaylorPhase = 0.25;
-constexpr int kMostTerms = 20;
 constexpr double kNegligible = 1e-17;
 
 /// Terms after which those of a series in this phase are negligible. The forces' highest power enters the last of the
 /// first eight. @param steepness  its coefficient, by the size of the forces
 int terms_for(double phase, double steepness) {
-  static const std::array<double, kMostTerms + 1> reciprocal = [] {
-    std::array<double, kMostTerms + 1> out{};
-    for (int k = 1; k <= kMostTerms; ++k) out[static_cast<std::size_t>(k)] = 1.0 / k;
+  static const std::array<double, kernels::kMostTerms + 1> reciprocal = [] {
+    std::array<double, kernels::kMostTerms + 1> out{};
+    for (int k = 1; k <= kernels::kMostTerms; ++k) out[static_cast<std::size_t>(k)] = 1.0 / k;
     return out;
   }();
   const double square = phase * phase, fourth = square * square;
   double by_state = fourth * fourth / 40320.0, by_force = steepness;
   int terms = kNodes;
-  for (; terms < kMostTerms && by_state + by_force > kNegligible; ++terms) {
+  for (; terms < kernels::kMostTerms && by_state + by_force > kNegligible; ++terms) {
     const double factor = phase * reciprocal[static_cast<std::size_t>(terms + 1)];
     by_state *= factor;
     by_force *= factor;
@@ -55,7 +54,7 @@ WithinStep::WithinStep(const StepTables& tables, bool audit, Load load)
              model_.input.data()},
       base_(2 * model_.np),
       next_(2 * model_.np),
-      points_(audit ? 2 * model_.np * kernels::kMostPoints : 0) {
+      points_(audit && !model_.proportional ? 2 * model_.np * kernels::kMostPoints : 0) {
   for (auto* v : {&current_, &other_, &monomials_, &scaled_}) v->resize(kNodes * model_.contacts);
 }
 
@@ -129,23 +128,20 @@ void WithinStep::state(double tau, double* out_x) {
 
 kernels::Work WithinStep::work(double tau) {
   seek(tau);
-  kernels::Work sum = before_;
   const double rest = tau - base_time_;
-  if (!(rest > 0.0)) return sum;
+  if (!(rest > 0.0)) return before_;
   const GaussRule& rule = short_rule();
   const auto size = 2 * model_.np;
-  const double* coefficient = coefficients(rest);
-  kernels_.taylor_points(pairs_, base_.data(), coefficient, rest, terms_for(model_.fastest * rest, steepness_),
-                         rule.node.data(), kernels::kMostPoints, points_.data());
-  for (Eigen::Index k = 0; k < rule.node.size(); ++k) {
-    const double* x = points_.data() + size * k;
-    for (int c = 0; c < model_.contacts; ++c) {
-      double force = 0.0;  // times rest
-      for (int j = kNodes - 1; j >= 0; --j) force = force * rule.node(k) + coefficient[kNodes * c + j];
-      sum.contact += rule.weight(k) * force * kernels_.dot(model_.velocity_row.col(c).data(), x, size);
-    }
-    sum.loss += rule.weight(k) * rest * model_.viscous_power(Eigen::Map<const Eigen::VectorXd>(x, size));
-  }
+  const int points = static_cast<int>(rule.node.size());
+  kernels::Work sum =
+      kernels_.taylor_work(pairs_, model_.velocity_row.data(), model_.proportional ? model_.damping.data() : nullptr,
+                           base_.data(), coefficients(rest), rest, terms_for(model_.fastest * rest, steepness_),
+                           rule.node.data(), rule.weight.data(), points, points_.data());
+  if (!model_.proportional)
+    for (int k = 0; k < points; ++k)
+      sum.loss += rule.weight(k) * rest * model_.viscous_power(points_.segment(size * k, size));
+  sum.contact += before_.contact;
+  sum.loss += before_.loss;
   return sum;
 }
 

@@ -117,7 +117,7 @@ void StepTables::make(WorkForms& out, int level) const {
 kernels::Work StepTables::work(int level, const double* x, const double* forces) const {
   const WorkForms& forms = work_forms_.get(level, [&](WorkForms& out) { make(out, level); });
   const kernels::Kernels& k = kernels::kernels();
-  kernels::Work sum = k.work(forms.arrays(loaded_), x, forces);
+  kernels::Work sum = k.work(forms.arrays(model_.n, loaded_), x, forces);
   if (model_.proportional) return sum;
   const NodeStates& nodes = node_states_.get(level, [&](NodeStates& out) { make(out, level); });
   Eigen::VectorXd state(2 * model_.np);

@@ -23,7 +23,7 @@ const Kernels kSet{
     .propagate = propagate,
     .work = work,
     .taylor = taylor,
-    .taylor_points = taylor_points,
+    .taylor_work = taylor_work,
     .amplitudes = amplitudes,
 };
 

@@ -25,8 +25,9 @@ double force_guard(const double* bernstein, const double* forces, double* out);
 void propagate(const StepArrays& step, const double* x, const double* forces, double* out_x);
 Work work(const WorkArrays& forms, const double* x, const double* forces);
 void taylor(const PairArrays& pairs, const double* x, const double* coefficient, double tau, int terms, double* out_x);
-void taylor_points(const PairArrays& pairs, const double* x, const double* coefficient, double tau, int terms,
-                   const double* shares, int points, double* out_x);
+Work taylor_work(const PairArrays& pairs, const double* velocity_row, const double* damping, const double* x,
+                 const double* coefficient, double tau, int terms, const double* node, const double* weight, int points,
+                 double* out_x);
 
 void amplitudes(Index np, const double* x, const double* particular, const double* inputs, Index count,
                 const double* scale1, const double* scale2, double* out);

@@ -37,7 +37,7 @@ struct StepArrays {
 /// Σ_i (s₁₁ x₁² + s₁₂ x₁x₂ + s₂₂ x₂²)_i + linear·x + constant + Σ_c λ_cᵀ(loss_c x + loss_load_c + Σ_d loss_kernel_cd
 /// λ_d).
 struct WorkArrays {
-  Index np = 0;
+  Index n = 0, np = 0;
   int contacts = 0;
   const double *work, *loss;                ///< [8 x 2np contacts]
   const double *work_load, *loss_load;      ///< [8 contacts]
@@ -63,12 +63,12 @@ struct Trial {
   double sign = 1.0, kinetic = 0.0, drop = 0.0, alpha = 0.0;
   /// Takes the last step's velocities to these nodes; null: `forces` hold the guess [8 x 8].
   const double* ahead;
-  double newton_change = 0.0;  ///< relative: Newton's next change is about the square of one this large
-  double* forces;              ///< [8]
-  double* velocity;            ///< of the last step, then of this one [8]
+  double force_error = 0.0;  ///< that Newton may leave, as a share of kinetic + drop
+  double* forces;            ///< [8]
+  double* velocity;          ///< of the last step, then of this one [8]
 };
 
-inline constexpr int kMostPoints = 9;
+inline constexpr int kMostPoints = 9, kMostTerms = 32;  ///< of a Taylor series
 
 /// What one width offers.
 struct Kernels {
@@ -106,9 +106,12 @@ struct Kernels {
   /// forces, times τ [8 x contacts]
   void (*taylor)(const PairArrays& pairs, const double* x, const double* coefficient, double tau, int terms,
                  double* out_x);
-  /// The same at shares of τ, at most kMostPoints. @param out_x  a state for each [2np x points]
-  void (*taylor_points)(const PairArrays& pairs, const double* x, const double* coefficient, double tau, int terms,
-                        const double* shares, int points, double* out_x);
+  /// ∫ Σ λ_c velocity_rowᵀx dt and ∫ Σ damping x₂² dt over [0, τ] of the same motion, by a rule on [0, 1].
+  /// @param velocity_row  [2np x contacts] @param damping  [np]; null: no loss, but the states at the rule's points
+  /// @param out_x         for those [2np x points]
+  Work (*taylor_work)(const PairArrays& pairs, const double* velocity_row, const double* damping, const double* x,
+                      const double* coefficient, double tau, int terms, const double* node, const double* weight,
+                      int points, double* out_x);
   /// scale₁ |x₁ − particular ι| + scale₂ |x₂ − particular ι| of each pair [np]. @param particular  [2np x count]
   void (*amplitudes)(Index np, const double* x, const double* particular, const double* inputs, Index count,
                      const double* scale1, const double* scale2, double* out);

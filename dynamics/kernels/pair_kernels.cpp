@@ -33,6 +33,11 @@ SLIPMODE_LANES_INLINE V8 sum_columns(const double* columns, const double* x, Ind
   return (a + b) + (c + d);
 }
 
+/// The same over the n pairs of a state, without its padding.
+SLIPMODE_LANES_INLINE V8 sum_pairs(const double* columns, const double* x, Index n, Index np, V8 start) {
+  return sum_columns(columns + kLanes * np, x + np, n, sum_columns(columns, x, n, start));
+}
+
 SLIPMODE_LANES_INLINE V8 matrix_times(const double* A, const double* x) {
   V8 a = load8(A) * broadcast8(x[0]), b = load8(A + 8) * broadcast8(x[1]);
   V8 c = load8(A + 16) * broadcast8(x[2]), d = load8(A + 24) * broadcast8(x[3]);
@@ -109,10 +114,7 @@ SLIPMODE_LANES_INLINE bool invert(const double* A, V8 d, Inverse& out) {
   return least(smallest) > kSingular;
 }
 
-SLIPMODE_LANES_INLINE V8 free_velocity(const Trial& t) {
-  const V8 by_first = sum_columns(t.free, t.x, t.n, load8(t.load));
-  return sum_columns(t.free + kNodes * t.np, t.x + t.np, t.n, by_first);
-}
+SLIPMODE_LANES_INLINE V8 free_velocity(const Trial& t) { return sum_pairs(t.free, t.x, t.n, t.np, load8(t.load)); }
 
 }  // namespace
 
@@ -157,10 +159,10 @@ bool solve_stribeck(const Trial& t) {
     guess = load8(t.forces);
   }
   V8 v = free + matrix_times(t.kernel, guess);
-  const double scale = 1.0 / t.alpha, enough = t.newton_change * scale, settled = enough * t.newton_change;
+  const double allowed = t.force_error * (t.kinetic + t.drop), accuracy = __builtin_sqrt(t.force_error);
   Inverse inverse;
   bool inverted = false, series = false;
-  double ratio = 0.0, last = 0.0;
+  double steepest = 0.0, ratio = 0.0, last = 0.0;
   for (int iteration = 0; iteration < kNewtonLimit; ++iteration) {
     const V8 scaled = steepness * (drive - v);
     const V8 e = drop * exp8(broadcast8(0.0) - max8(scaled, clip));
@@ -168,14 +170,15 @@ bool solve_stribeck(const Trial& t) {
     const V8 slope = where_positive(scaled - clip, alpha * e);
     const V8 residual = (free + matrix_times(t.kernel, lambda)) - v;
     if (!inverted) {
-      ratio = largest(slope) * t.kernel_norm;
+      steepest = largest(slope);
+      ratio = steepest * t.kernel_norm;
       series = ratio < kSmallRatio;
       if (!series && !invert(t.kernel, slope, inverse)) return false;
     }
     V8 delta = residual;
     if (series) {
       // δ = r + B(r + B(r + …)), B = A diag(slope).
-      for (double left = ratio; left > t.newton_change; left *= ratio)
+      for (double left = ratio; left > accuracy; left *= ratio)
         delta = residual + matrix_times(t.kernel, slope * delta);
     } else {
       delta = Inverse::times(inverse, residual);
@@ -183,10 +186,10 @@ bool solve_stribeck(const Trial& t) {
     v = v + delta;
     const double change = largest(abs8(delta));
     if (!(change < 1e12)) return false;
-    // The first change after an inversion is Newton's, whose next would be about its square; further ones shrink by a
-    // constant factor.
-    const double remaining = inverted ? change * change / last : 0.0;
-    if (change < 1e-14 || (inverted ? remaining < settled : change < enough)) {
+    // The law's second derivative is α slope: what its linearisation leaves out. The changes after one inversion shrink
+    // by a constant factor.
+    const double left = inverted ? change * change / last : 0.0;
+    if (change < 1e-14 || steepest * (0.5 * t.alpha * change * change + left) < allowed) {
       store8(t.forces, fma8(slope, delta, lambda));
       store8(t.velocity, v);
       return true;
@@ -265,8 +268,8 @@ Work work(const WorkArrays& f, const double* x, const double* forces) {
   if (f.linear != nullptr)
     for (Index i = 0; i < 2 * np; i += kLanes) by_state = fma8(load8(f.linear + i), load8(x + i), by_state);
   for (int c = 0; c < f.contacts; ++c) {
-    V8 velocity = sum_columns(f.work + kNodes * 2 * np * c, x, 2 * np, load8(f.work_load + kNodes * c));
-    V8 power = sum_columns(f.loss + kNodes * 2 * np * c, x, 2 * np, load8(f.loss_load + kNodes * c));
+    V8 velocity = sum_pairs(f.work + kNodes * 2 * np * c, x, f.n, np, load8(f.work_load + kNodes * c));
+    V8 power = sum_pairs(f.loss + kNodes * 2 * np * c, x, f.n, np, load8(f.loss_load + kNodes * c));
     for (int d = 0; d < f.contacts; ++d) {
       const Index block = kNodes * kNodes * (f.contacts * c + d);
       velocity = velocity + matrix_times(f.work_kernel + block, forces + kNodes * d);
@@ -281,7 +284,17 @@ Work work(const WorkArrays& f, const double* x, const double* forces) {
 
 namespace {
 
-/// Terms of Taylor's series of eight pairs, one after another: each(k, x₁⁽ᵏ⁾τᵏ/k!, x₂⁽ᵏ⁾τᵏ/k!) for k = 1 … terms.
+/// 1/(k + 1)!.
+struct OverFactorials {
+  double of[kMostTerms] = {};
+  constexpr OverFactorials() {
+    double factorial = 1.0;
+    for (int k = 0; k < kMostTerms; ++k) of[k] = 1.0 / (factorial *= k + 1);
+  }
+};
+constexpr OverFactorials kOverFactorial;
+
+/// Terms of Taylor's series of eight pairs, one after another: each(k, x₁⁽ᵏ⁺¹⁾τᵏ⁺¹, x₂⁽ᵏ⁺¹⁾τᵏ⁺¹) for k = 0 … terms − 1.
 template <class Each>
 SLIPMODE_LANES_INLINE void taylor_terms(const PairArrays& m, Index i, V8 y1, V8 y2, const double* coefficient,
                                         double tau, int terms, const Each& each) {
@@ -289,6 +302,7 @@ SLIPMODE_LANES_INLINE void taylor_terms(const PairArrays& m, Index i, V8 y1, V8 
   const V8 by = broadcast8(tau);
   const V8 g11 = load8(m.g11 + i) * by, g12 = load8(m.g12 + i) * by;
   const V8 g21 = load8(m.g21 + i) * by, g22 = load8(m.g22 + i) * by;
+  double factorial = 1.0;
   for (int k = 0; k < terms; ++k) {
     V8 next1 = fma8(g11, y1, g12 * y2), next2 = fma8(g21, y1, g22 * y2);
     if (m.load != nullptr && k == 0) {
@@ -298,14 +312,14 @@ SLIPMODE_LANES_INLINE void taylor_terms(const PairArrays& m, Index i, V8 y1, V8 
     if (k < m.powers)
       for (int c = 0; c < m.contacts; ++c) {
         const double* b = m.input + 2 * np * c;
-        const V8 force = broadcast8(coefficient[kNodes * c + k]);
+        const V8 force = broadcast8(coefficient[kNodes * c + k] * factorial);
         next1 = fma8(load8(b + i), force, next1);
         next2 = fma8(load8(b + np + i), force, next2);
       }
-    const V8 share = broadcast8(1.0 / (k + 1));
-    y1 = next1 * share;
-    y2 = next2 * share;
-    each(k + 1, y1, y2);
+    y1 = next1;
+    y2 = next2;
+    factorial *= k + 1;
+    each(k, y1, y2);
   }
 }
 
@@ -316,40 +330,61 @@ void taylor(const PairArrays& m, const double* x, const double* coefficient, dou
     const V8 y1 = load8(x + i), y2 = load8(x + m.np + i);
     V8 sum1 = y1, sum2 = y2;
     taylor_terms(
-        m, i, y1, y2, coefficient, tau, terms, [&](int, V8 term1, V8 term2) __attribute__((always_inline)) {
-          sum1 = sum1 + term1;
-          sum2 = sum2 + term2;
+        m, i, y1, y2, coefficient, tau, terms, [&](int k, V8 term1, V8 term2) __attribute__((always_inline)) {
+          const V8 share = broadcast8(kOverFactorial.of[k]);
+          sum1 = fma8(share, term1, sum1);
+          sum2 = fma8(share, term2, sum2);
         });
     store8(out_x + i, sum1);
     store8(out_x + m.np + i, sum2);
   }
 }
 
-void taylor_points(const PairArrays& m, const double* x, const double* coefficient, double tau, int terms,
-                   const double* shares, int points, double* out_x) {
+Work taylor_work(const PairArrays& m, const double* velocity_row, const double* damping, const double* x,
+                 const double* coefficient, double tau, int terms, const double* node, const double* weight, int points,
+                 double* out_x) {
   const Index np = m.np;
+  double share[kMostTerms][kMostPoints];  // node^{k+1}/(k + 1)!
+  for (int p = 0; p < points; ++p) {
+    double power = node[p];
+    for (int k = 0; k < terms; ++k, power *= node[p]) share[k][p] = power * kOverFactorial.of[k];
+  }
+  V8 contact = broadcast8(0.0), loss = contact;
   for (Index i = 0; i < np; i += kLanes) {
     const V8 y1 = load8(x + i), y2 = load8(x + np + i);
     V8 sum1[kMostPoints], sum2[kMostPoints];
-    double power[kMostPoints];
     for (int p = 0; p < points; ++p) {
       sum1[p] = y1;
       sum2[p] = y2;
-      power[p] = 1.0;
     }
     taylor_terms(
-        m, i, y1, y2, coefficient, tau, terms, [&](int, V8 term1, V8 term2) __attribute__((always_inline)) {
+        m, i, y1, y2, coefficient, tau, terms, [&](int k, V8 term1, V8 term2) __attribute__((always_inline)) {
           for (int p = 0; p < points; ++p) {
-            power[p] *= shares[p];
-            sum1[p] = fma8(broadcast8(power[p]), term1, sum1[p]);
-            sum2[p] = fma8(broadcast8(power[p]), term2, sum2[p]);
+            const V8 by = broadcast8(share[k][p]);
+            sum1[p] = fma8(by, term1, sum1[p]);
+            sum2[p] = fma8(by, term2, sum2[p]);
           }
         });
-    for (int p = 0; p < points; ++p) {
-      store8(out_x + 2 * np * p + i, sum1[p]);
-      store8(out_x + 2 * np * p + np + i, sum2[p]);
+    for (int c = 0; c < m.contacts; ++c) {
+      const V8 row1 = load8(velocity_row + 2 * np * c + i), row2 = load8(velocity_row + 2 * np * c + np + i);
+      for (int p = 0; p < points; ++p) {
+        double force = 0.0;  // times τ
+        for (int k = m.powers - 1; k >= 0; --k) force = force * node[p] + coefficient[kNodes * c + k];
+        contact = fma8(broadcast8(weight[p] * force), fma8(row1, sum1[p], row2 * sum2[p]), contact);
+      }
+    }
+    if (damping != nullptr) {
+      V8 squares = broadcast8(0.0);
+      for (int p = 0; p < points; ++p) squares = fma8(broadcast8(weight[p]) * sum2[p], sum2[p], squares);
+      loss = fma8(load8(damping + i), squares, loss);
+    } else {
+      for (int p = 0; p < points; ++p) {
+        store8(out_x + 2 * np * p + i, sum1[p]);
+        store8(out_x + 2 * np * p + np + i, sum2[p]);
+      }
     }
   }
+  return {sum8(contact), tau * sum8(loss)};
 }
 
 void amplitudes(Index np, const double* x, const double* particular, const double* inputs, Index count,

@@ -73,7 +73,7 @@ TEST_P(EachKernelSet, SlidesAsStribecksLawSays) {
                       .drop = 0.6,
                       .alpha = alpha,
                       .ahead = nullptr,
-                      .newton_change = 1e-7,
+                      .force_error = 1e-14,
                       .forces = forces.data(),
                       .velocity = velocity.data()};
     ASSERT_TRUE(set().solve_stribeck(trial));
@@ -111,7 +111,7 @@ TEST(KernelSets, OfTwoVectorWidthsGiveTheSameBytes) {
                         .drop = 0.6,
                         .alpha = 3.0,
                         .ahead = nullptr,
-                        .newton_change = 1e-7,
+                        .force_error = 1e-14,
                         .forces = forces.data(),
                         .velocity = velocity.data()};
       static_cast<void>(set->solve_stribeck(trial));
