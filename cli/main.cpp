@@ -1,6 +1,7 @@
 #include "cli/interrupt.hpp"
 #include "cli/verbs.hpp"
 #include "core/errors.hpp"
+#include "dynamics/kernels/kernels.hpp"
 #include "scene/provenance.hpp"
 
 #include <fmt/format.h>
@@ -114,8 +115,10 @@ int run_main(int argc, char** argv) {
       "slipmode: structures with friction contacts, their proper orthogonal modes, and reduced models that are checked "
       "against the full one",
       "slipmode"};
-  app.set_version_flag("--version",
-                       fmt::format("slipmode {} ({}, {})", scene::version(), scene::git_commit(), scene::compiler()));
+  app.set_version_flag("--version", [] {
+    return fmt::format("slipmode {} ({}, {}; kernels {})", scene::version(), scene::git_commit(), scene::compiler(),
+                       dynamics::kernels::kernels().name);
+  });
   app.require_subcommand(1);
   app.footer(
       "Exit codes: 0 done, 2 bad input, 3 numerical failure, 130 interrupted (the same command goes on).\n"
@@ -151,6 +154,9 @@ int run_main(int argc, char** argv) {
 int main(int argc, char** argv) {
   try {
     return slipmode::cli::run_main(argc, argv);
+  } catch (const slipmode::InvalidInput& error) {  // in the environment: --version reads it
+    std::fprintf(stderr, "slipmode: %s\n", error.what());
+    return slipmode::cli::kBadInput;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "slipmode: %s\n", error.what());
     return slipmode::cli::kInternalError;

@@ -12,6 +12,9 @@ namespace slipmode::diagnostics {
 
 namespace {
 
+/// Without vector instructions: FFTW would choose by the processor's, and the last bits with them.
+constexpr unsigned kPlan = FFTW_ESTIMATE | FFTW_NO_SIMD;
+
 /// FFTW's planner keeps state of its own and serves one thread at a time.
 std::mutex& planner() {
   static std::mutex mutex;
@@ -26,8 +29,8 @@ struct RealTransform::Plans {
         real(fftw_alloc_real(static_cast<std::size_t>(n))),
         complex(fftw_alloc_complex(static_cast<std::size_t>(n / 2 + 1))) {
     const std::lock_guard lock(planner());
-    forward = fftw_plan_dft_r2c_1d(static_cast<int>(n), real, complex, FFTW_ESTIMATE);
-    inverse = fftw_plan_dft_c2r_1d(static_cast<int>(n), complex, real, FFTW_ESTIMATE);
+    forward = fftw_plan_dft_r2c_1d(static_cast<int>(n), real, complex, kPlan);
+    inverse = fftw_plan_dft_c2r_1d(static_cast<int>(n), complex, real, kPlan);
   }
   ~Plans() {
     const std::lock_guard lock(planner());

@@ -1,6 +1,7 @@
 #include "dynamics/kernels/kernels.hpp"
 
 #include "core/errors.hpp"
+#include "dynamics/kernels/processor.hpp"
 
 #include <cstdlib>
 #include <string>
@@ -25,12 +26,12 @@ namespace {
 std::vector<const Kernels*> sets_of_this_processor() {
   std::vector<const Kernels*> sets;
 #ifdef SLIPMODE_KERNELS_X86
-  __builtin_cpu_init();
-  const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-  if (avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-      __builtin_cpu_supports("avx512vl"))
-    sets.push_back(&avx512::kSet);
-  if (avx2) sets.push_back(&avx2::kSet);
+  // Each is built for a whole level of x86-64: compilers use what else belongs to it.
+  constexpr std::uint32_t kLevel3 = kSse42 | kPopcnt | kAvx2 | kFma | kBmi2;
+  constexpr std::uint32_t kLevel4 = kLevel3 | kAvx512f | kAvx512dq | kAvx512bw | kAvx512vl;
+  const std::uint32_t present = features_of_processor();
+  if (missing(kLevel4, present) == nullptr) sets.push_back(&avx512::kSet);
+  if (missing(kLevel3, present) == nullptr) sets.push_back(&avx2::kSet);
 #endif
   sets.push_back(&generic::kSet);
   return sets;

@@ -2,6 +2,7 @@
 
 #include "dynamics/kernels/kernels.hpp"
 #include "core/random.hpp"
+#include "dynamics/kernels/processor.hpp"
 #include "dynamics/nodes.hpp"
 
 #include <gtest/gtest.h>
@@ -121,6 +122,13 @@ TEST(KernelSets, OfTwoVectorWidthsGiveTheSameBytes) {
     EXPECT_EQ(std::memcmp(out[0].data(), out[2].data(), sizeof(Vector8)), 0) << "seed " << seed;
     EXPECT_EQ(std::memcmp(out[1].data(), out[3].data(), sizeof(Vector8)), 0) << "seed " << seed;
   }
+}
+
+TEST(Processor, HasWhatThisBuildNeedsAndAnOlderOneIsToldWhatItLacks) {
+  EXPECT_EQ(missing(kBuiltFor, features_of_processor()), nullptr);
+  EXPECT_STREQ(missing(kSse42 | kAvx2 | kFma, kSse42 | kPopcnt), "AVX2");
+  EXPECT_STREQ(missing(kSse42 | kAvx2 | kAvx512vl, kSse42 | kAvx2), "AVX-512VL");
+  EXPECT_EQ(missing(0, 0), nullptr);
 }
 
 }  // namespace
