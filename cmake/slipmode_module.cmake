@@ -30,6 +30,11 @@ if(SLIPMODE_SANITIZE)
   target_link_options(slipmode_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
+# What only reads, writes and reports is compiled faster: -O1 in release builds.
+add_library(slipmode_light INTERFACE)
+target_compile_options(slipmode_light INTERFACE $<$<CONFIG:Release>:-O1>)
+set(SLIPMODE_LIGHT_MODULES scene extremes trade)
+
 # Eigen's alignment, of what is on the heap and of arrays of fixed size, must be the same in the library and in whoever
 # links it, whatever -march each uses.
 set(SLIPMODE_PUBLIC_DEFINITIONS EIGEN_MAX_ALIGN_BYTES=64 EIGEN_MAX_STATIC_ALIGN_BYTES=16)
@@ -45,6 +50,9 @@ function(slipmode_module name)
   target_link_libraries(slipmode_${name} PUBLIC Eigen3::Eigen PRIVATE slipmode_flags Spectra::Spectra fmt::fmt
     tomlplusplus::tomlplusplus nlohmann_json::nlohmann_json slipmode::arpack slipmode::fftw3 slipmode::hdf5
     Threads::Threads)
+  if(name IN_LIST SLIPMODE_LIGHT_MODULES)
+    target_link_libraries(slipmode_${name} PRIVATE slipmode_light)
+  endif()
   target_sources(slipmode PRIVATE $<TARGET_OBJECTS:slipmode_${name}>)
 endfunction()
 
@@ -56,4 +64,12 @@ function(slipmode_configure_library)
     slipmode::arpack slipmode::fftw3 slipmode::hdf5 Threads::Threads)
   target_compile_features(slipmode PUBLIC cxx_std_20)
   set_target_properties(slipmode PROPERTIES LINKER_LANGUAGE CXX)
+endfunction()
+
+# An executable of this project whose own sources are light. Of a template or inline function compiled in several places
+# the linker keeps the first it meets: the library comes first, whole and its numerical folders ahead, so that its hot loops
+# never call a copy made at -O1.
+function(slipmode_light_executable name)
+  target_link_libraries(${name} PRIVATE slipmode slipmode_flags slipmode_light)
+  target_link_options(${name} PRIVATE -Wl,--whole-archive $<TARGET_FILE:slipmode> -Wl,--no-whole-archive)
 endfunction()
