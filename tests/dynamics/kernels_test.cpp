@@ -23,7 +23,7 @@ class EachKernelSet : public testing::TestWithParam<std::size_t> {
 };
 
 Eigen::VectorXd numbers(Eigen::Index count, std::uint64_t seed, double size = 1.0) {
-  Random random(seed);
+  slipmode::Random random(seed);
   return Eigen::VectorXd::NullaryExpr(count, [&] { return random.uniform(-size, size); });
 }
 
