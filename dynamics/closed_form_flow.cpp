@@ -58,11 +58,13 @@ void ClosedFormFlow::enter_regime() {
   const auto known = std::find_if(visited_.begin(), visited_.end(), [&](const auto& v) { return v.roles == roles; });
   if (known == visited_.end()) {
     const RegimeTables& tables = system_.cache().regime(system_, roles);
-    visited_.push_back({roles, &tables, nullptr, nullptr, nullptr});
+    visited_.push_back({roles, &tables, nullptr, nullptr, nullptr, nullptr});
     Visited& now = visited_.back();
     if (resolver_.drive().belt() == nullptr) {
       now.overlay = std::make_unique<DriveOverlay>(tables.regime(), slipping_, resolver_.drive());
       if (options_.audit) now.forms = AuditForms::make(tables.regime(), slipping_, *now.overlay);
+    } else if (options_.audit && resolver_.drive().is_constant()) {
+      now.belt = BeltWork::make(tables.regime());
     }
     regime_ = &now;
     ++statistics_.regimes_built;
@@ -89,6 +91,7 @@ void ClosedFormFlow::enter_regime() {
     overlay->state.add(phase, -1.0, x_);
   }
   if (regime_->forms) regime_->forms->begin(point_.time, x_, inputs_);
+  if (regime_->belt) regime_->belt->begin(point_.time, x_, inputs_);
   amplitude_.resize(r.pairs.np);
   measure_amplitudes();
   set_guards();

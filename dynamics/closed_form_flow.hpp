@@ -1,6 +1,7 @@
 #pragma once
 
 #include "dynamics/audit_forms.hpp"
+#include "dynamics/belt_work.hpp"
 #include "dynamics/bernstein.hpp"
 #include "dynamics/cache.hpp"
 #include "dynamics/drive_overlay.hpp"
@@ -73,7 +74,8 @@ class ClosedFormFlow {
     const RegimeTables* tables;
     std::unique_ptr<DriveOverlay> overlay;  ///< null for a belt
     std::unique_ptr<TangentMaps> maps;      ///< null until tangents are carried
-    std::unique_ptr<AuditForms> forms;      ///< null where the audit integrates by quadrature
+    std::unique_ptr<AuditForms> forms;      ///< for a shaker or a force; null where the audit integrates by quadrature
+    std::unique_ptr<BeltWork> belt;         ///< for a belt of constant speed; the same
   };
   /// What a search of one window found.
   struct Search {
