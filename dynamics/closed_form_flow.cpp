@@ -105,17 +105,20 @@ double ClosedFormFlow::drive_velocity(double t, const Eigen::VectorXd& inputs) c
 void ClosedFormFlow::measure_amplitudes() {
   const Regime& r = tables_->regime();
   const auto np = r.pairs.np;
-  for (Eigen::Index i = 0; i < np; i += kLanes) {
-    V8 a = load8(x_.data() + i), b = load8(x_.data() + np + i);
-    const double* particular = r.particular.data() + i;
-    for (Eigen::Index k = 0; k < inputs_.size(); ++k, particular += 2 * np) {
-      a -= load8(particular) * inputs_(k);
-      b -= load8(particular + np) * inputs_(k);
-    }
-    a *= load8(r.scale1.data() + i);
-    b *= load8(r.scale2.data() + i);
-    store8(amplitude_.data() + i, (a < 0.0 ? -a : a) + (b < 0.0 ? -b : b));
-  }
+  free_ = x_;
+  free_.noalias() -= r.particular * inputs_;
+  amplitude_.array() =
+      r.scale1.array() * free_.head(np).array().abs() + r.scale2.array() * free_.tail(np).array().abs();
+}
+
+void ClosedFormFlow::move(double tau) {
+  const Regime& r = tables_->regime();
+  if (!r.motion.available()) return advance(*tables_, tau, x_, inputs_);
+  r.motion.add(tau, free_.data(), x_.data());
+  if (regime_->overlay) return;  // then all inputs are constant
+  r.advance_inputs(inputs_, tau);
+  for (Eigen::Index k = 0; k <= r.speed_input(); ++k)
+    if (const double change = inputs_(k) - inputs_begin_(k); change != 0.0) x_ += change * r.particular.col(k);
 }
 
 bool ClosedFormFlow::step(double t_limit) {
@@ -159,7 +162,7 @@ bool ClosedFormFlow::step(double t_limit) {
   if (found.guard >= 0 && !found.touching) {
     // Up to the part that is proved clear; from there Newton, which may prove itself.
     if (!found.resolved) tau *= kUsed;
-    advance(*tables_, tau, x_, inputs_);
+    move(tau);
     double root = tau;
     const bool proved = approach(guards_[static_cast<std::size_t>(found.guard)], root);
     if (proved ? root <= std::min(h, remaining) && (found.alone || found.resolved) : found.resolved) {
@@ -167,12 +170,12 @@ bool ClosedFormFlow::step(double t_limit) {
     } else {
       x_ = x_begin_;
       inputs_ = inputs_begin_;
-      advance(*tables_, tau, x_, inputs_);
+      move(tau);
       found.guard = -1;
       level_ = std::min(level_ + found.refinement, RegimeTables::kLevels - 1);
     }
   } else {
-    advance(*tables_, tau, x_, inputs_);
+    move(tau);
   }
   point_.time = tau == remaining ? end : begin_ + tau;
   ++statistics_.steps;

@@ -95,7 +95,10 @@ class ClosedFormFlow {
   void enter_regime();
   void set_guards();
   void add_clearance_guards(const Guard& guard, RegimeOutput::Kind kind);
+  /// What moves freely, and bounds on it.
   void measure_amplitudes();
+  /// Takes the state, which is that of the step's begin, on by tau.
+  void move(double tau);
   void foresee_starts();
   /// The size of an output's values, which its rounding error is measured by.
   [[nodiscard]] double scale(const Guard& guard) const;
@@ -147,7 +150,8 @@ class ClosedFormFlow {
   std::vector<Guard> guards_;
   std::vector<Eigen::Index> oscillator_states_;  ///< in HybridPoint::internal
   std::vector<int> compliant_;                   ///< contacts behind a contact spring
-  Eigen::VectorXd x_, inputs_, x_begin_, inputs_begin_, amplitude_;
+  Eigen::VectorXd x_, inputs_, x_begin_, inputs_begin_;
+  Eigen::VectorXd free_, amplitude_;  ///< at the step's begin: x less what follows the inputs, and its pairs' sizes
   double begin_ = 0.0;
   DrivePhase phase_;  ///< at begin_, of a periodic drive
   mutable double phase_time_ = std::numeric_limits<double>::quiet_NaN();

@@ -244,7 +244,13 @@ bool ClosedFormFlow::approach(const Guard& guard, double& tau) {
     const double shift = -now.value / slope;
     if (!(slope < 0.0) || !(std::abs(shift) * rate < 2.0) || tau + shift < 0.0) return false;
     tau += shift;
-    advance(*tables_, shift, x_, inputs_);
+    if (tables_->regime().motion.available()) {
+      x_ = x_begin_;
+      inputs_ = inputs_begin_;
+      move(tau);
+    } else {
+      advance(*tables_, shift, x_, inputs_);
+    }
     // Newton squares its error, with a factor of about the guard's curvature by its slope.
     if (std::abs(shift) * rate < 1e-15 || shift * shift * bend < 1e-15 / rate * std::abs(slope)) break;
   }
