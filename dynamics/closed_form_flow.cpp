@@ -95,6 +95,7 @@ void ClosedFormFlow::enter_regime() {
   amplitude_.resize(r.pairs.np);
   measure_amplitudes();
   set_guards();
+  drop_idle_guards();
   foresee_starts();
 }
 

@@ -97,6 +97,8 @@ class ClosedFormFlow {
   void add_clearance_guards(const Guard& guard, RegimeOutput::Kind kind);
   /// What moves freely, and bounds on it.
   void measure_amplitudes();
+  /// Drops guards that cannot vanish in this stay.
+  void drop_idle_guards();
   /// Takes the state, which is that of the step's begin, on by tau.
   void move(double tau);
   void foresee_starts();
