@@ -137,6 +137,8 @@ bool AuditForms::solve_quadratic(const Eigen::MatrixXd& Q, Eigen::MatrixXd& out_
 }
 
 bool AuditForms::integrate(const Power& power, Form& out) const {
+  out.none = power.Q.isZero(0.0) && power.R.isZero(0.0) && power.P.isZero(0.0);
+  if (out.none) return true;
   const ModalModel& pairs = regime_.pairs;
   const auto np = pairs.np, ni = regime_.inputs();
   if (!solve_quadratic(power.Q, out.Y)) return false;
@@ -167,21 +169,23 @@ bool AuditForms::integrate(const Power& power, Form& out) const {
 
 void AuditForms::Form::set_inputs(const Eigen::VectorXd& inputs) {
   const auto ni = inputs.size();
-  resting = constant * inputs;
-  along_cosine = inputs.dot(steady.col(ni).head(ni) + steady.row(ni).head(ni).transpose());
-  along_sine = inputs.dot(steady.col(ni + 1).head(ni) + steady.row(ni + 1).head(ni).transpose());
+  resting.noalias() = constant * inputs;
+  along_cosine = inputs.dot(steady.col(ni).head(ni)) + inputs.dot(steady.row(ni).head(ni));
+  along_sine = inputs.dot(steady.col(ni + 1).head(ni)) + inputs.dot(steady.row(ni + 1).head(ni));
 }
 
-double AuditForms::value(const Form& form, double t, const Eigen::VectorXd& free) const {
+double AuditForms::value(const Form& form, double stay, DrivePhase p) const {
+  if (form.none) return 0.0;
   const auto ni = regime_.inputs();
-  const DrivePhase p = overlay_.phase(t);
-  double sum = free.dot(form.cosine) * p.cosine + free.dot(form.sine) * p.sine + free.dot(form.resting);
-  for (Eigen::Index j = 0; j < form.Y.cols(); ++j) {
-    const Eigen::Index from = j / kLanes * kLanes;
-    sum += free(j) * kernels::kernels().dot(form.Y.col(j).data() + from, free.data() + from, free.size() - from);
+  double sum = free_.dot(form.cosine) * p.cosine + free_.dot(form.sine) * p.sine + free_.dot(form.resting);
+  for (Eigen::Index j = 0; j < form.Y.cols(); j += kLanes) {
+    const Eigen::Index below = free_.size() - j;
+    const Eigen::Matrix<double, kLanes, 1> columns =
+        form.Y.block<Eigen::Dynamic, kLanes>(j, j, below, kLanes).transpose() * free_.tail(below);
+    sum += columns.dot(free_.segment<kLanes>(j));
   }
-  // ∫ uᵀPu over the stay, with the integrals of 1, cos θ, sin θ, cos² θ, cos θ sin θ and sin² θ.
-  const double w = overlay_.omega(), stay = t - begin_;
+  // ∫ uᵀPu over the stay, with the integrals of cos θ, sin θ, cos² θ, cos θ sin θ and sin² θ.
+  const double w = overlay_.omega();
   const Eigen::MatrixXd& P = form.steady;
   sum += (form.along_cosine * p.sine - form.along_sine * p.cosine) / w;
   const double both = p.sine * p.cosine / (2.0 * w);
@@ -190,9 +194,8 @@ double AuditForms::value(const Form& form, double t, const Eigen::VectorXd& free
   return sum;
 }
 
-double AuditForms::contact_potential(double t, const Eigen::VectorXd& x) const {
+double AuditForms::contact_potential(DrivePhase p, const Eigen::VectorXd& x) const {
   const Regime& r = regime_;
-  const DrivePhase p = overlay_.phase(t);
   double sum = 0.0;
   for (Eigen::Index c = 0; c < r.speed_input(); ++c) {
     if (r.spring(c) > 0.0) {
@@ -208,17 +211,20 @@ double AuditForms::contact_potential(double t, const Eigen::VectorXd& x) const {
   return sum;
 }
 
-StayWork AuditForms::values(double t, const Eigen::VectorXd& x) const {
-  const Eigen::VectorXd free = x - resting_;
-  return {value(contact_, t, free) + contact_potential(t, x), value(drive_, t, free), value(viscous_, t, free),
-          value(force_, t, free)};
+StayWork AuditForms::values(double t, const Eigen::VectorXd& x) {
+  const DrivePhase p = overlay_.phase(t);
+  const double stay = t - begin_;
+  free_.noalias() = x - resting_;
+  return {value(contact_, stay, p) + contact_potential(p, x), value(drive_, stay, p), value(viscous_, stay, p),
+          value(force_, stay, p)};
 }
 
 void AuditForms::begin(double t, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs) {
   begin_ = t;
   inputs_ = inputs;
-  for (Form* form : {&contact_, &drive_, &viscous_, &force_}) form->set_inputs(inputs);
-  resting_ = regime_.particular * inputs;
+  for (Form* form : {&contact_, &drive_, &viscous_, &force_})
+    if (!form->none) form->set_inputs(inputs);
+  resting_.noalias() = regime_.particular * inputs;
   at_begin_ = values(t, x);
 }
 

@@ -38,6 +38,7 @@ class AuditForms {
  private:
   /// One power, as the antiderivative of a quadratic form.
   struct Form {
+    bool none = true;  ///< nothing acts: the integral is zero
     /// Lower triangle of Y, off-diagonal entries doubled, zeros above [2np x 2np]; empty: no quadratic part.
     Eigen::MatrixXd Y;
     Eigen::MatrixXd constant;      ///< ι → y of the constant part [2np x ni]
@@ -59,16 +60,17 @@ class AuditForms {
   AuditForms(const Regime& regime, const DriveOverlay& overlay) : regime_(regime), overlay_(overlay) {}
   [[nodiscard]] bool integrate(const Power& power, Form& out) const;
   [[nodiscard]] bool solve_quadratic(const Eigen::MatrixXd& Q, Eigen::MatrixXd& out_Y) const;
-  [[nodiscard]] double value(const Form& form, double t, const Eigen::VectorXd& free) const;
+  [[nodiscard]] double value(const Form& form, double stay, DrivePhase p) const;
   /// Contact work that is a function of the state: −½λ²/K_c of contact springs, ∫λ d(wᵀq) under a load of wᵀq.
-  [[nodiscard]] double contact_potential(double t, const Eigen::VectorXd& x) const;
-  [[nodiscard]] StayWork values(double t, const Eigen::VectorXd& x) const;
+  [[nodiscard]] double contact_potential(DrivePhase p, const Eigen::VectorXd& x) const;
+  [[nodiscard]] StayWork values(double t, const Eigen::VectorXd& x);
 
   const Regime& regime_;
   const DriveOverlay& overlay_;
   Form contact_, drive_, viscous_, force_;
   double begin_ = 0.0;
   Eigen::VectorXd inputs_, resting_;  ///< of this stay; x of constant inputs
+  Eigen::VectorXd free_;              ///< x_f
   StayWork at_begin_;
 };
 

@@ -14,9 +14,10 @@ constexpr double kDriveRest = 1.0;
 }  // namespace
 
 void ClosedFormFlow::account(double tau, bool ends) {
-  if (!regime_->forms) return integrate(tau);
+  if (!regime_->forms && !regime_->belt) return integrate(tau);
   if (!ends) return;
-  const StayWork work = regime_->forms->until(point_.time, x_);
+  const StayWork work =
+      regime_->forms ? regime_->forms->until(point_.time, x_) : regime_->belt->until(point_.time, x_, inputs_);
   work_.add(work.contact, work.drive, work.viscous, work.force);
 }
 

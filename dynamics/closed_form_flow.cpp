@@ -58,11 +58,13 @@ void ClosedFormFlow::enter_regime() {
   const auto known = std::find_if(visited_.begin(), visited_.end(), [&](const auto& v) { return v.roles == roles; });
   if (known == visited_.end()) {
     const RegimeTables& tables = system_.cache().regime(system_, roles);
-    visited_.push_back({roles, &tables, nullptr, nullptr, nullptr});
+    visited_.push_back({roles, &tables, nullptr, nullptr, nullptr, nullptr});
     Visited& now = visited_.back();
     if (resolver_.drive().belt() == nullptr) {
       now.overlay = std::make_unique<DriveOverlay>(tables.regime(), slipping_, resolver_.drive());
       if (options_.audit) now.forms = AuditForms::make(tables.regime(), slipping_, *now.overlay);
+    } else if (options_.audit && resolver_.drive().is_constant()) {
+      now.belt = BeltWork::make(tables.regime());
     }
     regime_ = &now;
     ++statistics_.regimes_built;
@@ -89,9 +91,11 @@ void ClosedFormFlow::enter_regime() {
     overlay->state.add(phase, -1.0, x_);
   }
   if (regime_->forms) regime_->forms->begin(point_.time, x_, inputs_);
+  if (regime_->belt) regime_->belt->begin(point_.time, x_, inputs_);
   amplitude_.resize(r.pairs.np);
   measure_amplitudes();
   set_guards();
+  drop_idle_guards();
   foresee_starts();
 }
 
@@ -101,8 +105,21 @@ double ClosedFormFlow::drive_velocity(double t, const Eigen::VectorXd& inputs) c
 
 void ClosedFormFlow::measure_amplitudes() {
   const Regime& r = tables_->regime();
-  kernels::kernels().amplitudes(r.pairs.np, x_.data(), r.particular.data(), inputs_.data(), inputs_.size(),
-                                r.scale1.data(), r.scale2.data(), amplitude_.data());
+  const auto np = r.pairs.np;
+  free_ = x_;
+  free_.noalias() -= r.particular * inputs_;
+  amplitude_.array() =
+      r.scale1.array() * free_.head(np).array().abs() + r.scale2.array() * free_.tail(np).array().abs();
+}
+
+void ClosedFormFlow::move(double tau) {
+  const Regime& r = tables_->regime();
+  if (!r.motion.available()) return advance(*tables_, tau, x_, inputs_);
+  r.motion.add(tau, free_.data(), x_.data());
+  if (regime_->overlay) return;  // then all inputs are constant
+  r.advance_inputs(inputs_, tau);
+  for (Eigen::Index k = 0; k <= r.speed_input(); ++k)
+    if (const double change = inputs_(k) - inputs_begin_(k); change != 0.0) x_ += change * r.particular.col(k);
 }
 
 bool ClosedFormFlow::step(double t_limit) {
@@ -146,7 +163,7 @@ bool ClosedFormFlow::step(double t_limit) {
   if (found.guard >= 0 && !found.touching) {
     // Up to the part that is proved clear; from there Newton, which may prove itself.
     if (!found.resolved) tau *= kUsed;
-    advance(*tables_, tau, x_, inputs_);
+    move(tau);
     double root = tau;
     const bool proved = approach(guards_[static_cast<std::size_t>(found.guard)], root);
     if (proved ? root <= std::min(h, remaining) && (found.alone || found.resolved) : found.resolved) {
@@ -154,12 +171,12 @@ bool ClosedFormFlow::step(double t_limit) {
     } else {
       x_ = x_begin_;
       inputs_ = inputs_begin_;
-      advance(*tables_, tau, x_, inputs_);
+      move(tau);
       found.guard = -1;
       level_ = std::min(level_ + found.refinement, RegimeTables::kLevels - 1);
     }
   } else {
-    advance(*tables_, tau, x_, inputs_);
+    move(tau);
   }
   point_.time = tau == remaining ? end : begin_ + tau;
   ++statistics_.steps;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "dynamics/audit_forms.hpp"
+#include "dynamics/belt_work.hpp"
 #include "dynamics/bernstein.hpp"
 #include "dynamics/cache.hpp"
 #include "dynamics/drive_overlay.hpp"
@@ -73,7 +74,8 @@ class ClosedFormFlow {
     const RegimeTables* tables;
     std::unique_ptr<DriveOverlay> overlay;  ///< null for a belt
     std::unique_ptr<TangentMaps> maps;      ///< null until tangents are carried
-    std::unique_ptr<AuditForms> forms;      ///< null where the audit integrates by quadrature
+    std::unique_ptr<AuditForms> forms;      ///< for a shaker or a force; null where the audit integrates by quadrature
+    std::unique_ptr<BeltWork> belt;         ///< for a belt of constant speed; the same
   };
   /// What a search of one window found.
   struct Search {
@@ -93,7 +95,12 @@ class ClosedFormFlow {
   void enter_regime();
   void set_guards();
   void add_clearance_guards(const Guard& guard, RegimeOutput::Kind kind);
+  /// What moves freely, and bounds on it.
   void measure_amplitudes();
+  /// Drops guards that cannot vanish in this stay.
+  void drop_idle_guards();
+  /// Takes the state, which is that of the step's begin, on by tau.
+  void move(double tau);
   void foresee_starts();
   /// The size of an output's values, which its rounding error is measured by.
   [[nodiscard]] double scale(const Guard& guard) const;
@@ -145,7 +152,8 @@ class ClosedFormFlow {
   std::vector<Guard> guards_;
   std::vector<Eigen::Index> oscillator_states_;  ///< in HybridPoint::internal
   std::vector<int> compliant_;                   ///< contacts behind a contact spring
-  Eigen::VectorXd x_, inputs_, x_begin_, inputs_begin_, amplitude_;
+  Eigen::VectorXd x_, inputs_, x_begin_, inputs_begin_;
+  Eigen::VectorXd free_, amplitude_;  ///< at the step's begin: x less what follows the inputs, and its pairs' sizes
   double begin_ = 0.0;
   DrivePhase phase_;  ///< at begin_, of a periodic drive
   mutable double phase_time_ = std::numeric_limits<double>::quiet_NaN();

@@ -126,6 +126,21 @@ double ClosedFormFlow::second_derivative(const Guard& guard, double t) const {
   return guard.sign * second;
 }
 
+void ClosedFormFlow::drop_idle_guards() {
+  // A load that varies by a hundredth of its mean need not be looked at: under constant inputs, with free motion that
+  // does not grow, an output stays within its amplitudes of where the inputs hold it for as long as the stay lasts.
+  const Regime& r = tables_->regime();
+  const DriveOverlay* overlay = regime_->overlay.get();
+  if (overlay == nullptr || !r.motion.available() || r.growth > 0.0) return;
+  std::erase_if(guards_, [&](const Guard& guard) {
+    const auto k = guard.output;
+    const double held = r.output(k, x_, inputs_) - dot_padded(r.row.col(k).data(), free_.data(), free_.size());
+    const double reach =
+        dot_padded(r.weight.col(k).data(), amplitude_.data(), amplitude_.size()) + overlay->outputs.size(k);
+    return guard.constant + guard.sign * held - reach > kStarting * (std::abs(guard.constant) + std::abs(held) + reach);
+  });
+}
+
 void ClosedFormFlow::foresee_starts() {
   // A guard that starts at zero. Taylor's theorem says for how long it is sure to stay positive: g ≥ g′t − M₂t²/2 (or
   // g″t²/2 − M₃t³/6 when g′ vanishes); half of that time is used.
@@ -245,7 +260,13 @@ bool ClosedFormFlow::approach(const Guard& guard, double& tau) {
     const double shift = -now.value / slope;
     if (!(slope < 0.0) || !(std::abs(shift) * rate < 2.0) || tau + shift < 0.0) return false;
     tau += shift;
-    advance(*tables_, shift, x_, inputs_);
+    if (tables_->regime().motion.available()) {
+      x_ = x_begin_;
+      inputs_ = inputs_begin_;
+      move(tau);
+    } else {
+      advance(*tables_, shift, x_, inputs_);
+    }
     // Newton squares its error, with a factor of about the guard's curvature by its slope.
     if (std::abs(shift) * rate < 1e-15 || shift * shift * bend < 1e-15 / rate * std::abs(slope)) break;
   }

@@ -41,6 +41,7 @@ EventResolver::EventResolver(const HybridSystem& system, const ModalModel& model
     oscillator_.push_back(internal_.back() + friction::internal_states(contact) - 2);
   }
   for (const ContactForces& law : laws_) clearances_only_ &= law.kind == ContactForces::Kind::kClearance;
+  lone_spring_ = laws_.size() == 1 && laws_[0].kind == ContactForces::Kind::kCompliant;
   plain_ = laws_.size() == 1 && !laws_[0].needs_closed_form();
 }
 

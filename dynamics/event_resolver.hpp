@@ -106,6 +106,8 @@ class EventResolver {
   [[nodiscard]] Eigen::VectorXd deflections(const HybridPoint& point) const;
   void settle_single(HybridPoint& point);
   void settle_stop(HybridPoint& point, const Reached& reached);
+  /// One contact behind a contact spring: its force is a function of the state, there is nothing to resolve.
+  void settle_spring(HybridPoint& point, const Reached& reached);
   void settle_coupled(HybridPoint& point, const Reached& reached);
   /// A contact spring whose contact point starts or ceases to slide.
   void turn_compliant(HybridPoint& point, int c) const;
@@ -131,6 +133,7 @@ class EventResolver {
   std::vector<Eigen::Index> oscillator_;  ///< of its normal oscillator's, if it has one
   bool plain_ = true;                     ///< one rigid contact, untilted, under constant load
   bool clearances_only_ = true;
+  bool lone_spring_ = false;  ///< one contact, compliant
   int max_events_per_window_;
   double zeno_window_;
   std::vector<Event> events_;

@@ -49,6 +49,8 @@ void EventResolver::settle(HybridPoint& point, const Reached& reached) {
     settle_single(point);
   } else if (clearances_only_ && reached.kind == GuardKind::kStop) {
     settle_stop(point, reached);
+  } else if (lone_spring_ && reached.contact == 0) {
+    settle_spring(point, reached);
   } else {
     settle_coupled(point, reached);
   }
@@ -76,9 +78,20 @@ void EventResolver::settle_stop(HybridPoint& point, const Reached& reached) {
   record_change(point, reached.contact, before);
 }
 
+void EventResolver::settle_spring(HybridPoint& point, const Reached& reached) {
+  const ContactMode before = point.modes[0];
+  if (reached.kind == GuardKind::kLoad)
+    turn_load(point, 0);
+  else
+    turn_compliant(point, 0);
+  point.multiplicity[0] = 0;
+  point.force(0) = applied_force(point, 0);
+  record_change(point, 0, before);
+}
+
 void EventResolver::turn_compliant(HybridPoint& point, int c) const {
   const auto i = static_cast<std::size_t>(c);
-  const ContactForces law = laws_at(point)[i];
+  const ContactForces law = laws_[i].varies ? laws_[i].under(std::max(normal_load(point, c), 0.0)) : laws_[i];
   double& stretch = point.internal(internal_[i]);
   if (point.modes[i] != ContactMode::kStick) {
     stretch = law.sliding(point.modes[i], 0.0) / law.stiffness;

@@ -11,6 +11,7 @@ namespace slipmode::dynamics {
 
 Regime::Regime(const HybridSystem& system, const ModalModel& slipping, const std::vector<ContactRole>& contact_roles) {
   RegimeBuilder(system, slipping, contact_roles).fill(*this);
+  motion = PairMotion(pairs);
   rate = pairs.fastest > 0 ? pairs.fastest : slipping.fastest > 0 ? slipping.fastest : 1.0;
 
   row1 = row;

@@ -4,6 +4,7 @@
 #include "dynamics/load_form.hpp"
 #include "dynamics/modal_model.hpp"
 #include "dynamics/nodes.hpp"
+#include "dynamics/pair_motion.hpp"
 
 #include <Eigen/Core>
 #include <array>
@@ -84,6 +85,7 @@ struct Regime {
   std::vector<bool> follows;  ///< held or sprung
   std::vector<RegimeOutput> outputs;
   ModalModel pairs;     ///< only its pairs are used: no contacts
+  PairMotion motion;    ///< their free motion
   double rate = 0.0;    ///< fastest rate of the pairs, or of the slipping structure if nothing is left to move [1/s]
   double growth = 0.0;  ///< largest rate at which free motion grows, 0 if none does [1/s]
   Eigen::MatrixXd B;    ///< [2np x ni]; the drive's columns act through ι as described above

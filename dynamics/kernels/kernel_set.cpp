@@ -24,7 +24,6 @@ const Kernels kSet{
     .work = work,
     .taylor = taylor,
     .taylor_work = taylor_work,
-    .amplitudes = amplitudes,
 };
 
 }  // namespace slipmode::dynamics::kernels::SLIPMODE_KERNEL_SET

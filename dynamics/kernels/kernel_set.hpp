@@ -29,9 +29,6 @@ Work taylor_work(const PairArrays& pairs, const double* velocity_row, const doub
                  const double* coefficient, double tau, int terms, const double* node, const double* weight, int points,
                  double* out_x);
 
-void amplitudes(Index np, const double* x, const double* particular, const double* inputs, Index count,
-                const double* scale1, const double* scale2, double* out);
-
 extern const Kernels kSet;
 
 }  // namespace SLIPMODE_KERNEL_SET

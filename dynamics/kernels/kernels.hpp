@@ -112,9 +112,6 @@ struct Kernels {
   Work (*taylor_work)(const PairArrays& pairs, const double* velocity_row, const double* damping, const double* x,
                       const double* coefficient, double tau, int terms, const double* node, const double* weight,
                       int points, double* out_x);
-  /// scale₁ |x₁ − particular ι| + scale₂ |x₂ − particular ι| of each pair [np]. @param particular  [2np x count]
-  void (*amplitudes)(Index np, const double* x, const double* particular, const double* inputs, Index count,
-                     const double* scale1, const double* scale2, double* out);
 };
 
 /// The sets that this processor runs, widest first.

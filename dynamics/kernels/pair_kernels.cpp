@@ -387,18 +387,4 @@ Work taylor_work(const PairArrays& m, const double* velocity_row, const double* 
   return {sum8(contact), tau * sum8(loss)};
 }
 
-void amplitudes(Index np, const double* x, const double* particular, const double* inputs, Index count,
-                const double* scale1, const double* scale2, double* out) {
-  for (Index i = 0; i < np; i += kLanes) {
-    V8 a = load8(x + i), b = load8(x + np + i);
-    const double* column = particular + i;
-    for (Index k = 0; k < count; ++k, column += 2 * np) {
-      const V8 input = broadcast8(inputs[k]);
-      a = fnma8(load8(column), input, a);
-      b = fnma8(load8(column + np), input, b);
-    }
-    store8(out + i, fma8(load8(scale1 + i), abs8(a), load8(scale2 + i) * abs8(b)));
-  }
-}
-
 }  // namespace slipmode::dynamics::kernels::SLIPMODE_KERNEL_SET
