@@ -134,9 +134,10 @@ void ClosedFormFlow::drop_idle_guards() {
   if (overlay == nullptr || !r.motion.available() || r.growth > 0.0) return;
   std::erase_if(guards_, [&](const Guard& guard) {
     const auto k = guard.output;
-    const double held = r.output(k, x_, inputs_) - dot_padded(r.row.col(k).data(), free_.data(), free_.size());
+    const double held =
+        r.output(k, x_, inputs_) - kernels::kernels().dot(r.row.col(k).data(), free_.data(), free_.size());
     const double reach =
-        dot_padded(r.weight.col(k).data(), amplitude_.data(), amplitude_.size()) + overlay->outputs.size(k);
+        kernels::kernels().dot(r.weight.col(k).data(), amplitude_.data(), amplitude_.size()) + overlay->outputs.size(k);
     return guard.constant + guard.sign * held - reach > kStarting * (std::abs(guard.constant) + std::abs(held) + reach);
   });
 }
