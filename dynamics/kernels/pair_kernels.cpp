@@ -268,8 +268,18 @@ Work work(const WorkArrays& f, const double* x, const double* forces) {
   if (f.linear != nullptr)
     for (Index i = 0; i < 2 * np; i += kLanes) by_state = fma8(load8(f.linear + i), load8(x + i), by_state);
   for (int c = 0; c < f.contacts; ++c) {
-    V8 velocity = sum_pairs(f.work + kNodes * 2 * np * c, x, f.n, np, load8(f.work_load + kNodes * c));
-    V8 power = sum_pairs(f.loss + kNodes * 2 * np * c, x, f.n, np, load8(f.loss_load + kNodes * c));
+    const double *work = f.work + kNodes * 2 * np * c, *loss = f.loss + kNodes * 2 * np * c;
+    V8 velocity = load8(f.work_load + kNodes * c), power = load8(f.loss_load + kNodes * c);
+    V8 velocity2 = broadcast8(0.0), power2 = velocity2;
+    for (Index i = 0; i < f.n; ++i) {
+      const V8 x1 = broadcast8(x[i]), x2 = broadcast8(x[np + i]);
+      velocity = fma8(load8(work + kNodes * i), x1, velocity);
+      velocity2 = fma8(load8(work + kNodes * (np + i)), x2, velocity2);
+      power = fma8(load8(loss + kNodes * i), x1, power);
+      power2 = fma8(load8(loss + kNodes * (np + i)), x2, power2);
+    }
+    velocity = velocity + velocity2;
+    power = power + power2;
     for (int d = 0; d < f.contacts; ++d) {
       const Index block = kNodes * kNodes * (f.contacts * c + d);
       velocity = velocity + matrix_times(f.work_kernel + block, forces + kNodes * d);

@@ -1,9 +1,9 @@
 // The kernel sets beside one another and beside plain arithmetic; whole runs under each set, byte by byte.
 
 #include "dynamics/kernels/kernels.hpp"
-#include "core/random.hpp"
 #include "dynamics/kernels/processor.hpp"
 #include "dynamics/nodes.hpp"
+#include "fixtures/scenes.hpp"
 
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
@@ -23,7 +23,7 @@ class EachKernelSet : public testing::TestWithParam<std::size_t> {
 };
 
 Eigen::VectorXd numbers(Eigen::Index count, std::uint64_t seed, double size = 1.0) {
-  slipmode::Random random(seed);
+  fixtures::Random random(seed);
   return Eigen::VectorXd::NullaryExpr(count, [&] { return random.uniform(-size, size); });
 }
 

@@ -1,6 +1,5 @@
 // Work of a step as forms of its state and forces, beside the same work summed over the pieces of the step.
 
-#include "core/random.hpp"
 #include "dynamics/cache.hpp"
 #include "dynamics/within_step.hpp"
 #include "fixtures/bristle_scenes.hpp"
@@ -19,7 +18,7 @@ struct StepOfForces {
 };
 
 StepOfForces random_step(const ModalModel& model, std::uint64_t seed) {
-  slipmode::Random random(seed);
+  fixtures::Random random(seed);
   StepOfForces out{Eigen::VectorXd::Zero(2 * model.np), Eigen::VectorXd::Zero(kNodes * model.contacts)};
   for (Eigen::Index i = 0; i < model.n; ++i) {
     out.x(i) = random.uniform(-1.0, 1.0);
