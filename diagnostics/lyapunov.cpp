@@ -22,7 +22,9 @@ namespace {
 
 /// Exponent and its scatter from the log growth of every interval.
 LyapunovExponent summarise(const std::vector<double>& logs, double interval) {
-  const Eigen::Map<const Eigen::RowVectorXd> rates(logs.data(), static_cast<Eigen::Index>(logs.size()));
+  // A copy: sums over memory that is not aligned take another order from run to run.
+  const Eigen::RowVectorXd rates =
+      Eigen::Map<const Eigen::RowVectorXd>(logs.data(), static_cast<Eigen::Index>(logs.size()));
   LyapunovExponent result{.nats = rates.sum() / (static_cast<double>(rates.size()) * interval),
                           .renormalisations = static_cast<int>(logs.size())};
   result.bits = result.nats / std::numbers::ln2;

@@ -16,6 +16,9 @@ constexpr double kEndNodeGain = 3e-2;
 constexpr double kGrowth = 1.0 / (256.0 * 8.0);
 /// Largest product of the law's slope, the mobility and the step that is tried.
 constexpr double kGrowthPerStep = 1.2;
+/// The same product at the start of a slip, where Newton has to tell the slow start, which grows by e to this power,
+/// from sliding that has left it behind.
+constexpr double kGrowthAtStart = 10.0;
 /// A step spans at most this phase of a shaker, so that all quadratures resolve it.
 constexpr double kLargestDrivePhase = 2.0;
 
@@ -62,6 +65,8 @@ CollocationFlow::CollocationFlow(const HybridSystem& system, const StepTables& t
         std::log(laws()[c].alpha * laws()[c].drop * model_.mobility(i, i) * tables_.step(0) / kGrowthPerStep) /
         laws()[c].alpha);
     steep_fall_.push_back(std::numbers::ln2 / laws()[c].alpha);
+    const double growth = laws()[c].alpha * laws()[c].drop * model_.mobility(i, i) * tables_.step(0);
+    slow_start_level_.push_back(growth > kGrowthAtStart ? std::ilogb(growth / kGrowthAtStart) + 1 : 0);
     over_limit_.push_back(1.0 / laws()[c].static_limit);
   }
   for (int c = 0; c < nc_; ++c) {
@@ -95,6 +100,8 @@ bool CollocationFlow::step(double t_limit) {
   const double remaining = limit - begin_;
 
   int level = foreseen_level(std::max(level_, coarsest_));
+  for (std::size_t c = 0; c < slow_start_level_.size(); ++c)
+    if (point_.multiplicity[c] > 0) level = std::max(level, slow_start_level_[c]);
   while (level + 1 < StepTables::kLevels && tables_.step(level + 1) >= remaining) ++level;
   Guarded guard;
   double h = 0.0, tau = 0.0, error = 0.0, tolerance = 0.0;

@@ -120,7 +120,8 @@ class CollocationFlow {
   double over_top_;                  ///< 1 / the largest step [1/s]
   std::vector<double> steep_speed_;  ///< sliding speed at which a law is just resolved by the largest step [m/s]
   std::vector<double> steep_fall_;   ///< what that speed falls by from level to level [m/s]
-  std::vector<double> over_limit_;   ///< 1 / static limit [1/N]
+  std::vector<int> slow_start_level_;  ///< of the longest step that follows the start of a slip
+  std::vector<double> over_limit_;     ///< 1 / static limit [1/N]
 
   double begin_;
   HybridPoint point_;

@@ -84,7 +84,8 @@ class Gathered {
 };
 
 double rms(const std::vector<double>& values) {
-  const Eigen::Map<const Eigen::ArrayXd> all(values.data(), static_cast<Eigen::Index>(values.size()));
+  // A copy: sums over memory that is not aligned take another order from run to run.
+  const Eigen::ArrayXd all = Eigen::Map<const Eigen::ArrayXd>(values.data(), static_cast<Eigen::Index>(values.size()));
   return std::sqrt((all - all.mean()).square().mean());
 }
 

@@ -14,6 +14,8 @@ constexpr double kSmallRatio = 0.15;
 constexpr double kChordRatio = 0.05;
 /// A trial may follow the law past zero sliding speed this far, in units of 1/α; beyond, e^{−αs} runs away.
 constexpr double kClip = -1.4;
+/// Speeds that change by less than this, in units of 1/α, leave the law's slopes what they were.
+constexpr double kSameSlope = 0.1;
 constexpr double kSingular = 1e-14;
 
 alignas(64) constexpr double kUnit[kNodes][kNodes] = {
@@ -189,7 +191,8 @@ bool solve_stribeck(const Trial& t) {
     // The law's second derivative is α slope: what its linearisation leaves out. The changes after one inversion shrink
     // by a constant factor.
     const double left = inverted ? change * change / last : 0.0;
-    if (change < 1e-14 || steepest * (0.5 * t.alpha * change * change + left) < allowed) {
+    const bool slopes_hold = t.alpha * change < kSameSlope;
+    if (change < 1e-14 || (slopes_hold && steepest * (0.5 * t.alpha * change * change + left) < allowed)) {
       store8(t.forces, fma8(slope, delta, lambda));
       store8(t.velocity, v);
       return true;
