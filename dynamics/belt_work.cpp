@@ -5,6 +5,7 @@
 namespace slipmode::dynamics {
 
 std::unique_ptr<BeltWork> BeltWork::make(const Regime& r) {
+  if (!r.told_from_rounding) return nullptr;
   if (r.pairs.n > 0 && (!r.pairs.proportional || r.pairs.dissipation_root.size() > 0)) return nullptr;
   for (Eigen::Index i = 0; i < r.pairs.n; ++i)
     if (!(r.pairs.omega(i) > 0.0)) return nullptr;

@@ -8,10 +8,20 @@
 #include <cmath>
 
 namespace slipmode::dynamics {
+namespace {
+
+/// Frequencies below this share of the structure's fastest may be rounding of zero: a rigid-body motion.
+constexpr double kPerhapsZero = 1e-12;
+
+}  // namespace
 
 Regime::Regime(const HybridSystem& system, const ModalModel& slipping, const std::vector<ContactRole>& contact_roles) {
   RegimeBuilder(system, slipping, contact_roles).fill(*this);
-  motion = PairMotion(pairs);
+  for (Eigen::Index i = 0; i < pairs.n; ++i) {
+    const double determinant = std::abs(pairs.g11(i) * pairs.g22(i) - pairs.g12(i) * pairs.g21(i));
+    told_from_rounding &= std::sqrt(determinant) > kPerhapsZero * slipping.fastest;
+  }
+  if (told_from_rounding) motion = PairMotion(pairs);
   rate = pairs.fastest > 0 ? pairs.fastest : slipping.fastest > 0 ? slipping.fastest : 1.0;
 
   row1 = row;

@@ -84,8 +84,9 @@ struct Regime {
   Eigen::Index forces = 0;    ///< directions of a force drive
   std::vector<bool> follows;  ///< held or sprung
   std::vector<RegimeOutput> outputs;
-  ModalModel pairs;     ///< only its pairs are used: no contacts
-  PairMotion motion;    ///< their free motion
+  ModalModel pairs;                ///< only its pairs are used: no contacts
+  bool told_from_rounding = true;  ///< no pair is so slow that its frequency may be rounding of zero
+  PairMotion motion;               ///< their free motion, if so
   double rate = 0.0;    ///< fastest rate of the pairs, or of the slipping structure if nothing is left to move [1/s]
   double growth = 0.0;  ///< largest rate at which free motion grows, 0 if none does [1/s]
   Eigen::MatrixXd B;    ///< [2np x ni]; the drive's columns act through ι as described above

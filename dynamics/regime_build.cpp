@@ -12,8 +12,6 @@ namespace {
 
 /// Natural frequencies below this share of the fastest are rigid-body motion.
 constexpr double kRigid = 1e-8;
-/// Singular values below this share of the largest of the matrix that was decomposed are rounding.
-constexpr double kFrequencyRounding = 1e-14;
 /// Rounding: damping counts as diagonal in the regime's modes when the rest is below this share of it, and a direction
 /// as projected out when no more than this share of it is left.
 constexpr double kRounding = 1e-12;
@@ -149,8 +147,7 @@ fem::Modes RegimeBuilder::base_modes() const {
         std::sqrt(spring_(sprung[k])) * (modal_.directions.col(sprung[k]).transpose() * Z_);
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(root, Eigen::ComputeThinV);
   fem::Modes modes{svd.singularValues().reverse(), svd.matrixV().rowwise().reverse()};
-  // However few modes are left, rounding is that of the whole structure's frequencies.
-  const double slowest = std::max(kRigid * modes.omega.maxCoeff(), kFrequencyRounding * modal_.omega.maxCoeff());
+  const double slowest = kRigid * modes.omega.maxCoeff();
   for (double& w : modes.omega)
     if (w <= slowest) w = 0.0;
   return modes;
