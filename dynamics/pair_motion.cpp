@@ -19,6 +19,11 @@ constexpr double kGrown = 300.0;
 constexpr double kHalfPi1 = 0x1.921fb544p+0, kHalfPi2 = 0x1.0b4611a6p-34, kHalfPi3 = 0x1.3198a2ep-69;
 constexpr double kLn2High = 0x1.62e42feep-1, kLn2Low = 0x1.a39ef35793c76p-33;
 
+#if defined(__GNUC__) && !defined(__clang__)
+// Without AVX vectors of four are passed otherwise than with it. Here they stay within inlined functions of this file.
+#pragma GCC diagnostic ignored "-Wpsabi"
+#endif
+
 /// Four pairs at a time: two registers of SSE2, one of AVX2.
 using V4 = double __attribute__((vector_size(32), aligned(32)));
 using Bits = std::int64_t __attribute__((vector_size(32)));
