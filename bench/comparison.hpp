@@ -78,9 +78,7 @@ struct EventAgreement {
 
   /// Ours within 1e-9 of the reference, and of CVODE as far as CVODE itself keeps to it: its own error is what chaos
   /// makes of rtol 1e-12, 6e-10 on one stretch and 1.8e-9 on another.
-  [[nodiscard]] bool holds() const {
-    return same_number && error_slipmode <= 1e-9 && difference <= 1e-9 + error_cvode;
-  }
+  [[nodiscard]] bool holds() const { return same_number && error_slipmode <= 1e-9 && difference <= 1e-9 + error_cvode; }
 };
 [[nodiscard]] EventAgreement check_events(const ChainProblem& problem);
 

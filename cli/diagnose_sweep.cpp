@@ -170,9 +170,8 @@ std::string exponent_summary(const SweptModel& model, const std::vector<Exponent
     hyper += positive > 1 ? 1 : 0;
     largest = std::max(largest, point.nats[0]);
   }
-  json = {{"model", model.title}, {"values", points.size()},
-          {"chaotic", chaotic},   {"two_positive", hyper},
-          {"failed", failed},     {"largest_nats", json_number(largest)}};
+  json = {{"model", model.title},  {"values", points.size()}, {"chaotic", chaotic},
+          {"two_positive", hyper}, {"failed", failed},        {"largest_nats", json_number(largest)}};
   return fmt::format(
       "{}: {} values, {} with a positive exponent, {} with two or more, {} failed; largest {:.4f} bit per unit of "
       "time\n",

@@ -7,7 +7,7 @@
 /// in, plain arrays out, eight lanes at a time (collocation nodes, or pairs). Sums have one order whatever the width:
 /// AVX2 and AVX-512 give the same bytes.
 ///
-/// Arrays are aligned to 64 bytes. `np` is the number of pairs padded to a multiple of eight; a state is [x₁; x₂], 2np.
+/// Arrays are faster aligned to 64 bytes, and need not be. `np` is the number of pairs padded to a multiple of eight; a state is [x₁; x₂], 2np.
 /// A table of eight nodes by columns is stored column by column.
 namespace slipmode::dynamics::kernels {
 

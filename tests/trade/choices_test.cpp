@@ -1,7 +1,7 @@
 // Fronts, choices and sentences: pure arithmetic, on made-up offers.
 
-#include "core/none.hpp"
 #include "core/errors.hpp"
+#include "core/none.hpp"
 #include "core/random.hpp"
 #include "trade/advice.hpp"
 #include "trade/effects.hpp"
