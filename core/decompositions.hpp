@@ -4,8 +4,8 @@
 
 /// Eigen's decompositions of MatrixXd, compiled once in decompositions.cpp. Including this instead of <Eigen/Dense>
 /// where they are used takes half a minute off a source file. What takes an argument of any type is a template of its
-/// own within the class, and is named for the types in use: matrices are passed as MatrixXd, right-hand sides as MatrixXd
-/// or VectorXd, not as expressions.
+/// own within the class, and is named for the types in use: matrices are passed as MatrixXd, right-hand sides as
+/// MatrixXd or VectorXd, not as expressions.
 namespace Eigen {
 extern template class JacobiSVD<MatrixXd>;
 extern template class BDCSVD<MatrixXd>;

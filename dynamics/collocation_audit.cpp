@@ -6,17 +6,17 @@ namespace slipmode::dynamics {
 
 void CollocationFlow::account(int level, double tau) {
   const double h = tables_.step(level);
-  const kernels::Work done = tau < h ? within_.work(tau) : tables_.work(level, x_begin_.data(), forces_.data());
+  const kernels::Work done =
+      tau < h ? within_.work(tau) : tables_.work(level, x_begin_.data(), forces_.data(), velocity_.data());
   work_.add(done.contact, driven_work(h, tau), done.loss);
 }
 
 double CollocationFlow::driven_work(double h, double tau) const {
   double driven = 0.0;
-  if (tau >= h) {  // Radau's rule is exact to degree 14
+  if (tau >= h) {
     for (int c = 0; c < nc_; ++c)
-      driven +=
-          h *
-          nodes_.weight.cwiseProduct(forces_.segment<kNodes>(kNodes * c)).dot(drive_nodes_.segment<kNodes>(kNodes * c));
+      driven += h * kernels_.product_integral(nodes_.product, forces_.data() + kNodes * c,
+                                              drive_nodes_.data() + kNodes * c, drive().velocity(begin_));
     return driven;
   }
   if (drive().shaker() == nullptr) {  // ∫ λ (V + a t) dt by the powers of t/h in λ

@@ -56,7 +56,6 @@ class CollocationFlow {
     bool touching = false;
   };
 
-  void free_velocities(const Collocation& table);
   void guess_forces(int level, bool retry);
   [[nodiscard]] int foreseen_level(int level) const;
   bool solve_forces(const Collocation& table, double h);

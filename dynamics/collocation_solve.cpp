@@ -15,13 +15,6 @@ constexpr double kForceShare = 5e-3, kLargestForceError = 1e-8;
 
 }  // namespace
 
-void CollocationFlow::free_velocities(const Collocation& table) {
-  const Eigen::Index np = model_.np;
-  for (int c = 0; c < nc_; ++c)
-    kernels_.node_sums(table.free.data() + kNodes * 2 * np * c, x_begin_.data(), 2 * np, table.load.data() + kNodes * c,
-                       free_.data() + kNodes * c);
-}
-
 void CollocationFlow::guess_forces(int level, bool retry) {
   // A rejected step's own solution; the last solution continued; the way the last slip began; or the force at the
   // start.
@@ -80,7 +73,7 @@ bool CollocationFlow::solve_forces(const Collocation& table, double h) {
   const RadauTables::Vector8 drive_speed = drive_velocities(begin_, h);
   for (int c = 0; c < nc_; ++c) drive_nodes_.segment<kNodes>(kNodes * c) = drive_speed;
   if (single_) return solve_single(table);
-  free_velocities(table);
+  table.free_velocities(x_begin_.data(), free_.data());
   return solve_coupled(table, h);
 }
 
@@ -116,7 +109,7 @@ bool CollocationFlow::solve_single(const Collocation& table) {
 
 bool CollocationFlow::solve_single_smooth(const Collocation& table) {
   const ContactForces& law = laws()[0];
-  free_velocities(table);
+  table.free_velocities(x_begin_.data(), free_.data());
   RadauTables::Vector8 force, slope, delta, residual, v = free_ + table.kernel * forces_;
   for (int iteration = 0; iteration < kNewtonLimit; ++iteration) {
     for (int j = 0; j < kNodes; ++j) {

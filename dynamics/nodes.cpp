@@ -100,6 +100,13 @@ RadauTables build() {
   t.bernstein8_start = to_bernstein8.col(0).tail(kNodes).cast<double>();
   t.legendre6 = to_legendre.row(kNodes - 2).transpose().cast<double>();
   t.legendre7 = to_legendre.row(kNodes - 1).transpose().cast<double>();
+  // b = p₇ + γ (P₈ − P₇)(2t − 1) by its value at 0, where that difference is 2; and ∫₀¹ P₇² dt = 1/15.
+  const MatrixL at_start = interpolation(c, VectorL::Zero(1));
+  for (int j = 0; j < kNodes; ++j) {
+    t.product.weight[j] = t.weight(j);
+    t.product.last_of_a[j] = -t.legendre7(j) / 30.0;
+    t.product.start_of_b[j] = static_cast<double>(at_start(0, j));
+  }
   t.left_half = interpolation(c, c / 2).cast<double>();
   t.right_half = interpolation(c, c / 2 + VectorL::Constant(kNodes, Real(0.5))).cast<double>();
   for (std::size_t r = 0; r < t.following.size(); ++r) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "dynamics/kernels/kernels.hpp"
+
 #include <Eigen/Core>
 #include <array>
 
@@ -32,7 +34,8 @@ struct RadauTables {
   /// Node values on [0,1] → values at the nodes of the following interval of length 2, 1, ½, ¼: a first guess only, by
   /// the part of degree 5 (for length 2: 4), since extrapolation magnifies what is at the end of the expansion.
   std::array<Matrix8, 4> following;
-  Vector8 barycentric;  ///< 1 / Π_{k≠j} (c_j − c_k)
+  kernels::ProductRule product;  ///< ∫₀¹ of a contact's force times its velocity
+  Vector8 barycentric;           ///< 1 / Π_{k≠j} (c_j − c_k)
 
   /// Lagrange basis of the eight nodes at t.
   [[nodiscard]] Vector8 lagrange(double t) const;

@@ -2,6 +2,7 @@
 
 #include "core/decompositions.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -145,6 +146,18 @@ void StepTables::make(Collocation& out, int level) const {
   }
   if (nc > 0) out.kernel_norm = out.kernel.cwiseAbs().rowwise().sum().maxCoeff();
   out.kernel_inverse = out.kernel.inverse();
+}
+
+void Collocation::free_velocities(const double* x, double* out) const {
+  const Eigen::Index nc = load.cols(), columns = free.cols() / std::max<Eigen::Index>(nc, 1);
+  for (Eigen::Index c = 0; c < nc; ++c)
+    kernels::kernels().node_sums(free.data() + kNodes * columns * c, x, columns, load.col(c).data(), out + kNodes * c);
+}
+
+void Collocation::velocities(const double* x, const double* forces, double* out) const {
+  free_velocities(x, out);
+  Eigen::Map<Eigen::VectorXd>(out, kernel.rows()).noalias() +=
+      kernel * Eigen::Map<const Eigen::VectorXd>(forces, kernel.rows());
 }
 
 }  // namespace slipmode::dynamics

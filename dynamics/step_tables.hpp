@@ -32,29 +32,30 @@ struct Collocation {
   Eigen::MatrixXd kernel;  ///< [8nc x 8nc]
   double kernel_norm = 0.0;        ///< largest row sum of |kernel|
   Eigen::MatrixXd kernel_inverse;  ///< used when every contact sticks [8nc x 8nc]
+
+  /// w without the forces' share [8nc].
+  void free_velocities(const double* x, double* out) const;
+  /// w [8nc].
+  void velocities(const double* x, const double* forces, double* out) const;
 };
 
-/// Work of a step as forms of the state and of the forces at the nodes, exact for forces of degree 7: see
-/// kernels::WorkArrays. Without proportional damping the forms hold the contacts' work only, and the loss is integrated
-/// over NodeStates.
-struct WorkForms {
-  Eigen::MatrixXd work, loss;                ///< contact c in columns [2np c, 2np (c+1)) [8 x 2np nc]
-  Eigen::MatrixXd work_load, loss_load;      ///< [8 x nc]
-  Eigen::MatrixXd work_kernel, loss_kernel;  ///< column nc c + d: the 8 x 8 block of contacts c and d [64 x nc²]
-  Eigen::VectorXd s11, s12, s22;             ///< [np]
-  Eigen::VectorXd linear;                    ///< [2np]
+/// Viscous loss of a step as a form of the state and of the forces at the nodes, exact for forces of degree 7: see
+/// kernels::LossArrays. For proportional damping.
+struct LossForm {
+  Eigen::MatrixXd by_force;       ///< contact c in columns [2np c, 2np (c+1)) [8 x 2np nc]
+  Eigen::MatrixXd load;           ///< [8 x nc]
+  Eigen::MatrixXd kernel;         ///< column nc c + d: the 8 x 8 block of contacts c and d [64 x nc²]
+  Eigen::VectorXd s11, s12, s22;  ///< [np]
+  Eigen::VectorXd linear;         ///< [2np]
   double constant = 0.0;
 
-  [[nodiscard]] kernels::WorkArrays arrays(Eigen::Index n, bool loaded) const {
+  [[nodiscard]] kernels::LossArrays arrays(Eigen::Index n, bool loaded) const {
     return {n,
             s11.size(),
-            static_cast<int>(work_load.cols()),
-            work.data(),
-            loss.data(),
-            work_load.data(),
-            loss_load.data(),
-            work_kernel.data(),
-            loss_kernel.data(),
+            static_cast<int>(load.cols()),
+            by_force.data(),
+            load.data(),
+            kernel.data(),
             s11.data(),
             s12.data(),
             s22.data(),
@@ -86,14 +87,16 @@ class StepTables {
   [[nodiscard]] const ModalModel& model() const { return model_; }
   /// A constant load acts.
   [[nodiscard]] bool loaded() const { return loaded_; }
-  /// Work of the contacts and viscous loss over a whole step. @param forces  at its nodes [8nc]
-  [[nodiscard]] kernels::Work work(int level, const double* x, const double* forces) const;
+  /// Work of the contacts and viscous loss over a whole step. @param forces  at its nodes [8nc] @param velocities there
+  /// [8nc]. The contacts' work is exact for velocities of degree 8; what is beyond meets only the last, small terms of
+  /// λ.
+  [[nodiscard]] kernels::Work work(int level, const double* x, const double* forces, const double* velocities) const;
 
  private:
   void make(Propagator& out, int level) const;
   void make(Collocation& out, int level) const;
   void make(NodeStates& out, int level) const;
-  void make(WorkForms& out, int level) const;
+  void make(LossForm& out, int level) const;
   /// Propagator to the time end·h of a step of size h whose forces are given at the nodes of [0, h].
   void propagate_to(double end, double h, Propagator& out) const;
 
@@ -102,7 +105,7 @@ class StepTables {
   bool loaded_;
   LazyLevels<Propagator, kLevels> propagators_;
   LazyLevels<Collocation, kLevels> collocations_;
-  LazyLevels<WorkForms, kLevels> work_forms_;
+  LazyLevels<LossForm, kLevels> losses_;
   LazyLevels<NodeStates, kLevels> node_states_;
 };
 

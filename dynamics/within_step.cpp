@@ -9,7 +9,7 @@ namespace slipmode::dynamics {
 namespace {
 
 /// Up to this phase (fastest rate times time) what is left of a step is left to a Taylor series.
-constexpr double kTaylorPhase = 0.25;
+constexpr double kTaylorPhase = 1.0;
 constexpr double kNegligible = 1e-17;
 
 /// Terms after which those of a series in this phase are negligible. The forces' highest power enters the last of the
@@ -31,10 +31,20 @@ int terms_for(double phase, double steepness) {
   return terms;
 }
 
-/// Squares of velocities under forces of degree 7 are of degree 16; what the state adds to that is small.
-const GaussRule& short_rule() {
-  static const GaussRule rule = gauss_rule(kernels::kMostPoints);
-  return rule;
+/// For squares of velocities over the rest of a step. Exact to degree 11: beyond, there is the square of what the
+/// forces still hold in degree 5, times a damping ratio.
+const kernels::SeriesRule& rest_rule() {
+  static const kernels::SeriesRule out = [] {
+    const GaussRule gauss = gauss_rule(kernels::kWorkPoints);
+    kernels::SeriesRule rule{};
+    for (int p = 0; p < kernels::kWorkPoints; ++p) {
+      rule.weight[p] = gauss.weight(p);
+      double power = 1.0;
+      for (int k = 0; k < kernels::kMostTerms; ++k) rule.at_node[k][p] = power *= gauss.node(p) / (k + 1);
+    }
+    return rule;
+  }();
+  return out;
 }
 
 }  // namespace
@@ -54,8 +64,9 @@ WithinStep::WithinStep(const StepTables& tables, bool audit, Load load)
              model_.input.data()},
       base_(2 * model_.np),
       next_(2 * model_.np),
-      points_(audit && !model_.proportional ? 2 * model_.np * kernels::kMostPoints : 0) {
-  for (auto* v : {&current_, &other_, &monomials_, &scaled_}) v->resize(kNodes * model_.contacts);
+      moments_(kernels::kMoments * model_.contacts),
+      points_(audit && !model_.proportional ? 2 * model_.np * kernels::kWorkPoints : 0) {
+  for (auto* v : {&current_, &other_, &monomials_, &scaled_, &velocities_}) v->resize(kNodes * model_.contacts);
 }
 
 void WithinStep::begin(const double* x, const double* forces, int level) {
@@ -77,7 +88,8 @@ void WithinStep::seek(double tau) {
   const double* from = x_;
   const auto take = [&](int level, const Eigen::VectorXd& forces) {
     if (audit_) {
-      const kernels::Work piece = tables_.work(level, from, forces.data());
+      tables_.collocation(level).velocities(from, forces.data(), velocities_.data());
+      const kernels::Work piece = tables_.work(level, from, forces.data(), velocities_.data());
       before_.contact += piece.contact;
       before_.loss += piece.loss;
     }
@@ -130,16 +142,14 @@ kernels::Work WithinStep::work(double tau) {
   seek(tau);
   const double rest = tau - base_time_;
   if (!(rest > 0.0)) return before_;
-  const GaussRule& rule = short_rule();
   const auto size = 2 * model_.np;
-  const int points = static_cast<int>(rule.node.size());
-  kernels::Work sum =
-      kernels_.taylor_work(pairs_, model_.velocity_row.data(), model_.proportional ? model_.damping.data() : nullptr,
-                           base_.data(), coefficients(rest), rest, terms_for(model_.fastest * rest, steepness_),
-                           rule.node.data(), rule.weight.data(), points, points_.data());
+  const kernels::SeriesRule& rule = rest_rule();
+  kernels::Work sum = kernels_.taylor_work(
+      pairs_, model_.velocity_row.data(), model_.proportional ? model_.damping.data() : nullptr, base_.data(),
+      coefficients(rest), rest, terms_for(model_.fastest * rest, steepness_), rule, moments_.data(), points_.data());
   if (!model_.proportional)
-    for (int k = 0; k < points; ++k)
-      sum.loss += rule.weight(k) * rest * model_.viscous_power(points_.segment(size * k, size));
+    for (int k = 0; k < kernels::kWorkPoints; ++k)
+      sum.loss += rule.weight[k] * rest * model_.viscous_power(points_.segment(size * k, size));
   sum.contact += before_.contact;
   sum.loss += before_.loss;
   return sum;

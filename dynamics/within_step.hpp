@@ -46,7 +46,7 @@ class WithinStep {
   int base_level_ = 0;      ///< of the piece that begins there
   kernels::Work before_;    ///< work until there
   double steepness_ = 0.0;  ///< of the forces there: the coefficient of (t/h)⁷ by their size
-  Eigen::VectorXd base_, next_, current_, other_, monomials_, scaled_, points_;
+  Eigen::VectorXd base_, next_, current_, other_, monomials_, scaled_, velocities_, moments_, points_;
 };
 
 }  // namespace slipmode::dynamics

@@ -10,6 +10,7 @@ namespace slipmode::dynamics::kernels::SLIPMODE_KERNEL_SET {
 const Kernels kSet{
     .name = SLIPMODE_TEXT(SLIPMODE_KERNEL_SET),
     .dot = dot,
+    .product_integral = product_integral,
     .add_scaled = add_scaled,
     .node_sums = node_sums,
     .matrix8 = matrix8,
@@ -21,7 +22,7 @@ const Kernels kSet{
     .speed_guard = speed_guard,
     .force_guard = force_guard,
     .propagate = propagate,
-    .work = work,
+    .loss = loss,
     .taylor = taylor,
     .taylor_work = taylor_work,
 };

@@ -10,6 +10,7 @@ namespace slipmode::dynamics::kernels {
 namespace SLIPMODE_KERNEL_SET {
 
 double dot(const double* a, const double* b, Index size);
+double product_integral(const ProductRule& rule, const double* a, const double* b, double b_start);
 void add_scaled(double a, const double* x, double* y, Index size);
 void node_sums(const double* columns, const double* x, Index count, const double* start, double* out);
 void matrix8(const double* A, const double* x, double* out);
@@ -23,10 +24,10 @@ double speed_guard(const double* bernstein, const double* by_start, double start
                    const double* velocity, double* out);
 double force_guard(const double* bernstein, const double* forces, double* out);
 void propagate(const StepArrays& step, const double* x, const double* forces, double* out_x);
-Work work(const WorkArrays& forms, const double* x, const double* forces);
+double loss(const LossArrays& form, const double* x, const double* forces);
 void taylor(const PairArrays& pairs, const double* x, const double* coefficient, double tau, int terms, double* out_x);
 Work taylor_work(const PairArrays& pairs, const double* velocity_row, const double* damping, const double* x,
-                 const double* coefficient, double tau, int terms, const double* node, const double* weight, int points,
+                 const double* coefficient, double tau, int terms, const SeriesRule& rule, double* out_moments,
                  double* out_x);
 
 extern const Kernels kSet;

@@ -7,8 +7,8 @@
 /// in, plain arrays out, eight lanes at a time (collocation nodes, or pairs). Sums have one order whatever the width:
 /// AVX2 and AVX-512 give the same bytes.
 ///
-/// Arrays are faster aligned to 64 bytes, and need not be. `np` is the number of pairs padded to a multiple of eight; a state is [x₁; x₂], 2np.
-/// A table of eight nodes by columns is stored column by column.
+/// Arrays are faster aligned to 64 bytes, and need not be. `np` is the number of pairs padded to a multiple of eight; a
+/// state is [x₁; x₂], 2np. A table of eight nodes by columns is stored column by column.
 namespace slipmode::dynamics::kernels {
 
 using Index = std::ptrdiff_t;
@@ -32,19 +32,31 @@ struct StepArrays {
   const double* response;  ///< [2np x columns]
 };
 
-/// Work over a step as forms of the state and of the forces at the nodes, λ [8 contacts]:
-/// contact work Σ_c λ_cᵀ(work_c x + work_load_c + Σ_d work_kernel_cd λ_d), and the viscous loss
-/// Σ_i (s₁₁ x₁² + s₁₂ x₁x₂ + s₂₂ x₂²)_i + linear·x + constant + Σ_c λ_cᵀ(loss_c x + loss_load_c + Σ_d loss_kernel_cd
-/// λ_d).
-struct WorkArrays {
+/// Viscous loss over a step as a form of the state and of the forces at the nodes, λ [8 contacts]:
+/// Σ_i (s₁₁ x₁² + s₁₂ x₁x₂ + s₂₂ x₂²)_i + linear·x + constant + Σ_c λ_cᵀ(by_force_c x + load_c + Σ_d kernel_cd λ_d).
+struct LossArrays {
   Index n = 0, np = 0;
   int contacts = 0;
-  const double *work, *loss;                ///< [8 x 2np contacts]
-  const double *work_load, *loss_load;      ///< [8 contacts]
-  const double *work_kernel, *loss_kernel;  ///< [8 x 8] blocks, those of d = 0 … for c = 0 first
-  const double *s11, *s12, *s22;            ///< [np]
-  const double* linear;                     ///< [2np]; null: no constant load
+  const double* by_force;         ///< [8 x 2np contacts]
+  const double* load;             ///< [8 contacts]
+  const double* kernel;           ///< [8 x 8] blocks, those of d = 0 … for c = 0 first
+  const double *s11, *s12, *s22;  ///< [np]
+  const double* linear;           ///< [2np]; null: no constant load
   double constant = 0.0;
+};
+inline constexpr int kMostTerms = 32;  ///< of a Taylor series
+inline constexpr int kWorkPoints = 6;  ///< of the Gauss rule for squares of its velocities
+inline constexpr int kMoments = 40;    ///< of forces with its powers, padded to a multiple of eight
+
+/// A quadrature rule on [0, 1] for motion given by its Taylor series.
+struct SeriesRule {
+  double at_node[kMostTerms][kWorkPoints];  ///< node_p^{k+1} / (k + 1)!
+  double weight[kWorkPoints];
+};
+/// For ∫₀¹ a b dt of a polynomial a of degree 7 and a b of degree 8: Radau's rule, which is exact to degree 14, and
+/// what the two leading terms add: a's last Legendre coefficient by what b is short of at 0.
+struct ProductRule {
+  alignas(64) double weight[8], last_of_a[8], start_of_b[8];
 };
 struct Work {
   double contact = 0.0, loss = 0.0;
@@ -68,13 +80,13 @@ struct Trial {
   double* velocity;          ///< of the last step, then of this one [8]
 };
 
-inline constexpr int kMostPoints = 9, kMostTerms = 32;  ///< of a Taylor series
-
 /// What one width offers.
 struct Kernels {
   const char* name;
 
   double (*dot)(const double* a, const double* b, Index size);  ///< size a multiple of eight
+  /// ∫₀¹ a b dt of a, by its values at the nodes, and b, by those and the one at 0.
+  double (*product_integral)(const ProductRule& rule, const double* a, const double* b, double b_start);
   /// y += a x.
   void (*add_scaled)(double a, const double* x, double* y, Index size);
   /// out = Σ_i column_i x_i + start [8]; start may be null.
@@ -101,17 +113,18 @@ struct Kernels {
 
   /// In place if asked.
   void (*propagate)(const StepArrays& step, const double* x, const double* forces, double* out_x);
-  Work (*work)(const WorkArrays& forms, const double* x, const double* forces);
+  double (*loss)(const LossArrays& form, const double* x, const double* forces);
   /// x(τ) by Taylor's series of so many terms; in place if asked. @param coefficient  of (t/τ)^k in the contacts'
   /// forces, times τ [8 x contacts]
   void (*taylor)(const PairArrays& pairs, const double* x, const double* coefficient, double tau, int terms,
                  double* out_x);
-  /// ∫ Σ λ_c velocity_rowᵀx dt and ∫ Σ damping x₂² dt over [0, τ] of the same motion, by a rule on [0, 1].
-  /// @param velocity_row  [2np x contacts] @param damping  [np]; null: no loss, but the states at the rule's points
-  /// @param out_x         for those [2np x points]
+  /// Over [0, τ] of the same motion: ∫ Σ λ_c velocity_rowᵀx dt, term by term, and ∫ Σ damping x₂² dt by the
+  /// rule. @param velocity_row  [2np x contacts] @param damping  [np]; null: no loss, but the states at the
+  /// rule's points @param out_moments  worked in [kMoments x contacts] @param out_x  for those states [2np x
+  /// kWorkPoints]
   Work (*taylor_work)(const PairArrays& pairs, const double* velocity_row, const double* damping, const double* x,
-                      const double* coefficient, double tau, int terms, const double* node, const double* weight,
-                      int points, double* out_x);
+                      const double* coefficient, double tau, int terms, const SeriesRule& rule, double* out_moments,
+                      double* out_x);
 };
 
 /// The sets that this processor runs, widest first.

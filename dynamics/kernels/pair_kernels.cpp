@@ -131,6 +131,12 @@ double dot(const double* a, const double* b, Index size) {
   return sum8(first + second);
 }
 
+double product_integral(const ProductRule& rule, const double* a, const double* b, double b_start) {
+  const V8 of_a = load8(a), of_b = load8(b);
+  const double by_nodes = sum8((load8(rule.weight) * of_a) * of_b);
+  return by_nodes + sum8(load8(rule.last_of_a) * of_a) * (b_start - sum8(load8(rule.start_of_b) * of_b));
+}
+
 void add_scaled(double a, const double* x, double* y, Index size) {
   const V8 factor = broadcast8(a);
   for (Index i = 0; i < size; i += kLanes) store8(y + i, fma8(factor, load8(x + i), load8(y + i)));
@@ -260,9 +266,9 @@ void propagate(const StepArrays& s, const double* x, const double* forces, doubl
   }
 }
 
-Work work(const WorkArrays& f, const double* x, const double* forces) {
+double loss(const LossArrays& f, const double* x, const double* forces) {
   const Index np = f.np;
-  V8 by_state = broadcast8(0.0), by_contact = by_state, by_force = by_state;
+  V8 by_state = broadcast8(0.0), by_force = by_state;
   for (Index i = 0; i < np; i += kLanes) {
     const V8 x1 = load8(x + i), x2 = load8(x + np + i);
     by_state = fma8(x1, fma8(load8(f.s11 + i), x1, load8(f.s12 + i) * x2), by_state);
@@ -271,28 +277,12 @@ Work work(const WorkArrays& f, const double* x, const double* forces) {
   if (f.linear != nullptr)
     for (Index i = 0; i < 2 * np; i += kLanes) by_state = fma8(load8(f.linear + i), load8(x + i), by_state);
   for (int c = 0; c < f.contacts; ++c) {
-    const double *work = f.work + kNodes * 2 * np * c, *loss = f.loss + kNodes * 2 * np * c;
-    V8 velocity = load8(f.work_load + kNodes * c), power = load8(f.loss_load + kNodes * c);
-    V8 velocity2 = broadcast8(0.0), power2 = velocity2;
-    for (Index i = 0; i < f.n; ++i) {
-      const V8 x1 = broadcast8(x[i]), x2 = broadcast8(x[np + i]);
-      velocity = fma8(load8(work + kNodes * i), x1, velocity);
-      velocity2 = fma8(load8(work + kNodes * (np + i)), x2, velocity2);
-      power = fma8(load8(loss + kNodes * i), x1, power);
-      power2 = fma8(load8(loss + kNodes * (np + i)), x2, power2);
-    }
-    velocity = velocity + velocity2;
-    power = power + power2;
-    for (int d = 0; d < f.contacts; ++d) {
-      const Index block = kNodes * kNodes * (f.contacts * c + d);
-      velocity = velocity + matrix_times(f.work_kernel + block, forces + kNodes * d);
-      power = power + matrix_times(f.loss_kernel + block, forces + kNodes * d);
-    }
-    const V8 force = load8(forces + kNodes * c);
-    by_contact = fma8(force, velocity, by_contact);
-    by_force = fma8(force, power, by_force);
+    V8 power = sum_pairs(f.by_force + kNodes * 2 * np * c, x, f.n, np, load8(f.load + kNodes * c));
+    for (int d = 0; d < f.contacts; ++d)
+      power = power + matrix_times(f.kernel + kNodes * kNodes * (f.contacts * c + d), forces + kNodes * d);
+    by_force = fma8(load8(forces + kNodes * c), power, by_force);
   }
-  return {sum8(by_contact), (sum8(by_state) + sum8(by_force)) + f.constant};
+  return sum8(by_state) + sum8(by_force) + f.constant;
 }
 
 namespace {
@@ -306,6 +296,18 @@ struct OverFactorials {
   }
 };
 constexpr OverFactorials kOverFactorial;
+
+/// ∫₀¹ sᵏ sˡ ds / l!, for k < 8.
+struct PowerProducts {
+  double of[kNodes][kMoments] = {};
+  constexpr PowerProducts() {
+    for (int k = 0; k < kNodes; ++k) {
+      double factorial = 1.0;
+      for (int l = 0; l < kMoments; factorial *= ++l) of[k][l] = 1.0 / (factorial * (k + l + 1));
+    }
+  }
+};
+constexpr PowerProducts kProducts;
 
 /// Terms of Taylor's series of eight pairs, one after another: each(k, x₁⁽ᵏ⁺¹⁾τᵏ⁺¹, x₂⁽ᵏ⁺¹⁾τᵏ⁺¹) for k = 0 … terms − 1.
 template <class Each>
@@ -354,46 +356,53 @@ void taylor(const PairArrays& m, const double* x, const double* coefficient, dou
 }
 
 Work taylor_work(const PairArrays& m, const double* velocity_row, const double* damping, const double* x,
-                 const double* coefficient, double tau, int terms, const double* node, const double* weight, int points,
+                 const double* coefficient, double tau, int terms, const SeriesRule& rule, double* out_moments,
                  double* out_x) {
   const Index np = m.np;
-  double share[kMostTerms][kMostPoints];  // node^{k+1}/(k + 1)!
-  for (int p = 0; p < points; ++p) {
-    double power = node[p];
-    for (int k = 0; k < terms; ++k, power *= node[p]) share[k][p] = power * kOverFactorial.of[k];
-  }
+  for (int c = 0; c < m.contacts; ++c)  // ∫ λ sˡ ds/l!, times τ
+    for (int l = 0; l <= terms; l += kLanes) {
+      V8 sum = broadcast8(0.0);
+      for (int k = 0; k < m.powers; ++k)
+        sum = fma8(load8(kProducts.of[k] + l), broadcast8(coefficient[kNodes * c + k]), sum);
+      store8(out_moments + kMoments * c + l, sum);
+    }
   V8 contact = broadcast8(0.0), loss = contact;
   for (Index i = 0; i < np; i += kLanes) {
     const V8 y1 = load8(x + i), y2 = load8(x + np + i);
-    V8 sum1[kMostPoints], sum2[kMostPoints];
-    for (int p = 0; p < points; ++p) {
-      sum1[p] = y1;
-      sum2[p] = y2;
-    }
-    taylor_terms(
-        m, i, y1, y2, coefficient, tau, terms, [&](int k, V8 term1, V8 term2) __attribute__((always_inline)) {
-          for (int p = 0; p < points; ++p) {
-            const V8 by = broadcast8(share[k][p]);
-            sum1[p] = fma8(by, term1, sum1[p]);
-            sum2[p] = fma8(by, term2, sum2[p]);
-          }
-        });
-    for (int c = 0; c < m.contacts; ++c) {
-      const V8 row1 = load8(velocity_row + 2 * np * c + i), row2 = load8(velocity_row + 2 * np * c + np + i);
-      for (int p = 0; p < points; ++p) {
-        double force = 0.0;  // times τ
-        for (int k = m.powers - 1; k >= 0; --k) force = force * node[p] + coefficient[kNodes * c + k];
-        contact = fma8(broadcast8(weight[p] * force), fma8(row1, sum1[p], row2 * sum2[p]), contact);
+    V8 speed[kWorkPoints];
+    for (int p = 0; p < kWorkPoints; ++p) speed[p] = y2;
+    const auto add_contacts = [&](int l, V8 term1, V8 term2) __attribute__((always_inline)) {
+      for (int c = 0; c < m.contacts; ++c) {
+        const double* row = velocity_row + 2 * np * c + i;
+        contact =
+            fma8(broadcast8(out_moments[kMoments * c + l]), fma8(load8(row), term1, load8(row + np) * term2), contact);
       }
-    }
+    };
+    add_contacts(0, y1, y2);
     if (damping != nullptr) {
+      taylor_terms(
+          m, i, y1, y2, coefficient, tau, terms, [&](int k, V8 term1, V8 term2) __attribute__((always_inline)) {
+            for (int p = 0; p < kWorkPoints; ++p) speed[p] = fma8(broadcast8(rule.at_node[k][p]), term2, speed[p]);
+            add_contacts(k + 1, term1, term2);
+          });
       V8 squares = broadcast8(0.0);
-      for (int p = 0; p < points; ++p) squares = fma8(broadcast8(weight[p]) * sum2[p], sum2[p], squares);
+      for (int p = 0; p < kWorkPoints; ++p) squares = fma8(broadcast8(rule.weight[p]) * speed[p], speed[p], squares);
       loss = fma8(load8(damping + i), squares, loss);
     } else {
-      for (int p = 0; p < points; ++p) {
-        store8(out_x + 2 * np * p + i, sum1[p]);
-        store8(out_x + 2 * np * p + np + i, sum2[p]);
+      V8 place[kWorkPoints];
+      for (int p = 0; p < kWorkPoints; ++p) place[p] = y1;
+      taylor_terms(
+          m, i, y1, y2, coefficient, tau, terms, [&](int k, V8 term1, V8 term2) __attribute__((always_inline)) {
+            for (int p = 0; p < kWorkPoints; ++p) {
+              const V8 by = broadcast8(rule.at_node[k][p]);
+              place[p] = fma8(by, term1, place[p]);
+              speed[p] = fma8(by, term2, speed[p]);
+            }
+            add_contacts(k + 1, term1, term2);
+          });
+      for (int p = 0; p < kWorkPoints; ++p) {
+        store8(out_x + 2 * np * p + i, place[p]);
+        store8(out_x + 2 * np * p + np + i, speed[p]);
       }
     }
   }

@@ -29,7 +29,7 @@ Eigen::MatrixXd running_integrals(const GaussRule& rule) {
 
 }  // namespace
 
-void StepTables::make(WorkForms& out, int level) const {
+void StepTables::make(LossForm& out, int level) const {
   // Everything at the points of one rule: e^{Gt}, and the motion that each force polynomial (and the load) causes,
   // e^{Gt} ∫₀ᵗ e^{−Gs} b ℓ_j(s/h) ds.
   const ModalModel& m = model_;
@@ -43,17 +43,15 @@ void StepTables::make(WorkForms& out, int level) const {
   const Eigen::Index columns = kNodes * nc, all = columns + (loaded_ ? 1 : 0);  // the last: the load's
   Eigen::MatrixXd basis(points, kNodes);
   for (Eigen::Index k = 0; k < points; ++k) basis.row(k) = radau().lagrange(rule.node(k)).transpose();
-  const Eigen::MatrixXd weighted = weight.asDiagonal() * basis;
 
-  out.work = out.loss = Eigen::MatrixXd::Zero(kNodes, 2 * np * nc);
-  out.work_load = out.loss_load = Eigen::MatrixXd::Zero(kNodes, nc);
-  out.work_kernel = out.loss_kernel = Eigen::MatrixXd::Zero(kNodes * kNodes, nc * nc);
+  out.by_force = Eigen::MatrixXd::Zero(kNodes, 2 * np * nc);
+  out.load = Eigen::MatrixXd::Zero(kNodes, nc);
+  out.kernel = Eigen::MatrixXd::Zero(kNodes * kNodes, nc * nc);
   out.s11 = out.s12 = out.s22 = Eigen::VectorXd::Zero(np);
   out.linear = Eigen::VectorXd::Zero(2 * np);
 
   Eigen::MatrixXd losses = Eigen::MatrixXd::Zero(all, all);
-  Eigen::MatrixXd speeds = Eigen::MatrixXd::Zero(points, nc * all);  // of contact c by each: columns [all c, all (c+1))
-  Eigen::MatrixXd forward(points, 4), back(points, 4), first(points, all), second(points, all), y1, y2;
+  Eigen::MatrixXd forward(points, 4), back(points, 4), first(points, all), second(points, all), rate;
   for (Eigen::Index i = 0; i < m.n; ++i) {
     for (Eigen::Index k = 0; k < points; ++k) {
       const double t = h * rule.node(k);
@@ -61,7 +59,7 @@ void StepTables::make(WorkForms& out, int level) const {
       forward.row(k) << E(0, 0), E(0, 1), E(1, 0), E(1, 1);
       back.row(k) << F(0, 0), F(0, 1), F(1, 0), F(1, 1);
     }
-    const auto e11 = forward.col(0), e12 = forward.col(1), e21 = forward.col(2), e22 = forward.col(3);
+    const auto e21 = forward.col(2), e22 = forward.col(3);
     for (int c = 0; c <= nc; ++c) {
       if (c == nc && !loaded_) break;
       const double b1 = c < nc ? m.input(i, c) : m.load(i), b2 = c < nc ? m.input(np + i, c) : m.load(np + i);
@@ -74,56 +72,50 @@ void StepTables::make(WorkForms& out, int level) const {
         second.middleCols(kNodes * c, kNodes) = u2.asDiagonal() * basis;
       }
     }
-    const Eigen::MatrixXd i1 = integrate * first, i2 = integrate * second;
-    y1 = e11.asDiagonal() * i1 + e12.asDiagonal() * i2;
-    y2 = e21.asDiagonal() * i1 + e22.asDiagonal() * i2;
-    for (int c = 0; c < nc; ++c) {
-      const double g1 = m.velocity_row(i, c), g2 = m.velocity_row(np + i, c);
-      speeds.middleCols(all * c, all) += g1 * y1 + g2 * y2;
-      out.work.col(2 * np * c + i) = weighted.transpose() * (g1 * e11 + g2 * e21);
-      out.work.col(2 * np * c + np + i) = weighted.transpose() * (g1 * e12 + g2 * e22);
-    }
-    if (!m.proportional) continue;
+    rate = e21.asDiagonal() * (integrate * first) + e22.asDiagonal() * (integrate * second);
     const Eigen::VectorXd damped = m.damping(i) * weight, on1 = damped.cwiseProduct(e21),
                           on2 = damped.cwiseProduct(e22);
     out.s11(i) = on1.dot(e21);
     out.s12(i) = 2.0 * on1.dot(e22);
     out.s22(i) = on2.dot(e22);
     for (int c = 0; c < nc; ++c) {
-      const auto by_force = y2.middleCols(kNodes * c, kNodes);
-      out.loss.col(2 * np * c + i) = 2.0 * by_force.transpose() * on1;
-      out.loss.col(2 * np * c + np + i) = 2.0 * by_force.transpose() * on2;
+      const auto caused = rate.middleCols(kNodes * c, kNodes);
+      out.by_force.col(2 * np * c + i) = 2.0 * caused.transpose() * on1;
+      out.by_force.col(2 * np * c + np + i) = 2.0 * caused.transpose() * on2;
     }
     if (loaded_) {
-      out.linear(i) = 2.0 * on1.dot(y2.col(columns));
-      out.linear(np + i) = 2.0 * on2.dot(y2.col(columns));
+      out.linear(i) = 2.0 * on1.dot(rate.col(columns));
+      out.linear(np + i) = 2.0 * on2.dot(rate.col(columns));
     }
-    losses.noalias() += y2.transpose() * damped.asDiagonal() * y2;
+    losses.noalias() += rate.transpose() * damped.asDiagonal() * rate;
   }
   for (int c = 0; c < nc; ++c) {
-    for (int d = 0; d < nc; ++d) {
-      using Block = Eigen::Map<RadauTables::Matrix8>;
-      Block(out.work_kernel.col(nc * c + d).data()) =
-          weighted.transpose() * speeds.middleCols(all * c + kNodes * d, kNodes);
-      Block(out.loss_kernel.col(nc * c + d).data()) = losses.block(kNodes * c, kNodes * d, kNodes, kNodes);
-    }
-    if (!loaded_) continue;
-    out.work_load.col(c) = weighted.transpose() * speeds.col(all * c + columns);
-    out.loss_load.col(c) = 2.0 * losses.block(kNodes * c, columns, kNodes, 1);
+    for (int d = 0; d < nc; ++d)
+      Eigen::Map<RadauTables::Matrix8>(out.kernel.col(nc * c + d).data()) =
+          losses.block(kNodes * c, kNodes * d, kNodes, kNodes);
+    if (loaded_) out.load.col(c) = 2.0 * losses.block(kNodes * c, columns, kNodes, 1);
   }
   if (loaded_) out.constant = losses(columns, columns);
 }
 
-kernels::Work StepTables::work(int level, const double* x, const double* forces) const {
-  const WorkForms& forms = work_forms_.get(level, [&](WorkForms& out) { make(out, level); });
+kernels::Work StepTables::work(int level, const double* x, const double* forces, const double* velocities) const {
   const kernels::Kernels& k = kernels::kernels();
-  kernels::Work sum = k.work(forms.arrays(model_.n, loaded_), x, forces);
-  if (model_.proportional) return sum;
+  const double h = step(level);
+  kernels::Work sum;
+  for (int c = 0; c < model_.contacts; ++c) {
+    const double start = k.dot(model_.velocity_row.col(c).data(), x, 2 * model_.np);
+    sum.contact += h * k.product_integral(radau().product, forces + kNodes * c, velocities + kNodes * c, start);
+  }
+  if (model_.proportional) {
+    const LossForm& form = losses_.get(level, [&](LossForm& out) { make(out, level); });
+    sum.loss = k.loss(form.arrays(model_.n, loaded_), x, forces);
+    return sum;
+  }
   const NodeStates& nodes = node_states_.get(level, [&](NodeStates& out) { make(out, level); });
   Eigen::VectorXd state(2 * model_.np);
   for (std::size_t j = 0; j < nodes.node.size(); ++j) {
     k.propagate(nodes.node[j].arrays(loaded_), x, forces, state.data());
-    sum.loss += step(level) * nodes.rule.weight(static_cast<Eigen::Index>(j)) * model_.viscous_power(state);
+    sum.loss += h * nodes.rule.weight(static_cast<Eigen::Index>(j)) * model_.viscous_power(state);
   }
   return sum;
 }
