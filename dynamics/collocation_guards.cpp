@@ -128,9 +128,12 @@ void CollocationFlow::refine_event(const Guarded& guard, double& tau, Eigen::Vec
     }
     const double shift = -value / rate;
     if (!(std::abs(shift) < 1e-2 * h) || tau + shift <= 0.0) return;
+    if (std::abs(shift) <= kNegligibleShift * h) {
+      tau += shift;
+      return;
+    }
+    within_.shift(tau, shift, x.data());
     tau += shift;
-    if (std::abs(shift) <= kNegligibleShift * h) return;
-    within_.state(tau, x.data());
     // Newton squares its error; the factor shows in two shifts, and before that is bounded by a usual curvature.
     const double factor = previous > 0.0 ? std::abs(shift) / (previous * previous) : std::abs(usual_rate / rate) / h;
     if (factor * shift * shift <= kNegligibleShift * h) return;

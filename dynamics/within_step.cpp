@@ -11,6 +11,9 @@ namespace {
 /// Up to this phase (fastest rate times time) what is left of a step is left to a Taylor series.
 constexpr double kTaylorPhase = 1.0;
 constexpr double kNegligible = 1e-17;
+/// A state moved by less than this phase, and share of a step, takes so many terms: the next is below 1e-20.
+constexpr double kShortShift = 1e-3;
+constexpr int kShiftTerms = 6;
 
 /// Terms after which those of a series in this phase are negligible. The forces' highest power enters the last of the
 /// first eight. @param steepness  its coefficient, by the size of the forces
@@ -136,6 +139,26 @@ void WithinStep::state(double tau, double* out_x) {
   seek(tau);
   const double rest = tau - base_time_;
   kernels_.taylor(pairs_, base_.data(), coefficients(rest), rest, terms_for(model_.fastest * rest, steepness_), out_x);
+}
+
+void WithinStep::shift(double tau, double shift, double* x) {
+  seek(tau);
+  const double h = tables_.step(base_level_);
+  if (!(std::max(model_.fastest, 1.0 / h) * std::abs(shift) < kShortShift)) return state(tau + shift, x);
+  // The forces by powers of t/shift from tau on, times shift.
+  const double at = (tau - base_time_) / h, share = shift / h;
+  for (int c = 0; c < model_.contacts; ++c) {
+    std::array<double, kNodes> power;
+    std::copy_n(monomials_.data() + kNodes * c, kNodes, power.begin());
+    double size = shift;
+    for (std::size_t k = 0; k < kShiftTerms; ++k, size *= share) {
+      for (std::size_t l = kNodes - 1; l-- > k;) power[l] += at * power[l + 1];
+      scaled_(kNodes * c + static_cast<Eigen::Index>(k)) = power[k] * size;
+    }
+  }
+  kernels::PairArrays pairs = pairs_;
+  pairs.powers = kShiftTerms;
+  kernels_.taylor(pairs, x, scaled_.data(), shift, kShiftTerms, x);
 }
 
 kernels::Work WithinStep::work(double tau) {

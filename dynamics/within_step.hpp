@@ -22,6 +22,8 @@ class WithinStep {
   void begin(const double* x, const double* forces, int level);
   /// State at tau, within the step [2np].
   void state(double tau, double* out_x);
+  /// The state at tau becomes the one at tau + shift, which is cheap where the shift is small [2np].
+  void shift(double tau, double shift, double* x);
   /// Work of the contacts and viscous loss over [0, tau].
   [[nodiscard]] kernels::Work work(double tau);
 
