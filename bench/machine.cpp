@@ -2,7 +2,7 @@
 
 #include "bench/clock.hpp"
 #include "dynamics/kernels/kernels.hpp"
-#include "scene/provenance.hpp"
+#include "results/provenance.hpp"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -62,10 +62,10 @@ Machine this_machine() {
           .threads = static_cast<int>(std::thread::hardware_concurrency()),
           .vectors = vector_widths(),
           .kernels = dynamics::kernels::kernels().name,
-          .compiler = scene::compiler(),
+          .compiler = results::compiler(),
           .flags = SLIPMODE_BENCH_FLAGS,
           .arch = arch.empty() ? "compiler's default" : arch,
-          .commit = scene::git_commit(),
+          .commit = results::git_commit(),
           .date = fmt::format("{:%Y-%m-%d %H:%M}", fmt::gmtime(std::time(nullptr)))};
 }
 

@@ -2,7 +2,7 @@
 #include "cli/trade_report.hpp"
 #include "cli/trade_request.hpp"
 #include "cli/verbs.hpp"
-#include "scene/provenance.hpp"
+#include "results/provenance.hpp"
 #include "trade/effects.hpp"
 #include "trade/variants.hpp"
 
@@ -78,14 +78,14 @@ Report run(const Session& session, const AdviseArguments& arguments) {
     report.text += summary(effects, advice);
     report.data = {{"verb", "advise"}, {"limit_percent", limit}, {"effects", list}, {"study", to_json(done, scene)}};
     if (arguments.output.empty()) return;
-    scene::StoreWriter writer(arguments.output);
-    scene::save(writer, scene::provenance_of(scene, "slipmode advise"));
+    results::StoreWriter writer(arguments.output);
+    results::save(writer, results::provenance_of(scene, "slipmode advise"));
     store_study(writer, done, scene);
     writer.commit();
     report.data["file"] = arguments.output;
     report.text += fmt::format("Result: {}\n", arguments.output);
   };
-  run_study(session, arguments.output, fmt::format("{} advise\n{}", scene::version(), scene::scene_to_toml(scene)),
+  run_study(session, arguments.output, fmt::format("{} advise\n{}", results::version(), scene::scene_to_toml(scene)),
             study, finish);
   return report;
 }

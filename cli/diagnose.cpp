@@ -4,9 +4,9 @@
 #include "cli/figures/gnuplot.hpp"
 #include "cli/series_figures.hpp"
 #include "cli/series_findings.hpp"
-#include "cli/series_input.hpp"
 #include "cli/series_store.hpp"
 #include "cli/verbs.hpp"
+#include "results/series_input.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 struct DiagnoseArguments {
   DiagnoseRequest request;
-  SeriesRequest series;
+  results::SeriesRequest series;
   diagnostics::StudyOptions study;
   std::vector<std::string> tools;
   std::optional<double> strobe;
@@ -43,7 +43,7 @@ std::vector<diagnostics::SeriesTool> tools_of(const std::vector<std::string>& wo
 }
 
 /// What makes the numbers doubtful, and what to use instead.
-std::vector<std::string> warnings_of(const diagnostics::SeriesStudy& study, const SeriesInput& input) {
+std::vector<std::string> warnings_of(const diagnostics::SeriesStudy& study, const results::SeriesInput& input) {
   if (!study.smoothness || !study.smoothness->doubtful) return {};
   std::string text = fmt::format(
       "the record is not smooth: {:.3g} % of it in flat stretches, {:.2g} kinks per mean period, as stick and slip "
@@ -61,7 +61,7 @@ std::string diagnosis_file(const DiagnoseRequest& request) {
   return (fs::path(request.figures) / "diagnosis.h5").string();
 }
 
-Report diagnosis_report(const diagnostics::SeriesStudy& study, const SeriesInput& input,
+Report diagnosis_report(const diagnostics::SeriesStudy& study, const results::SeriesInput& input,
                         const DiagnoseArguments& arguments) {
   const std::vector<Finding> findings = findings_of(study, arguments.request.bits);
   const std::vector<std::string> warnings = warnings_of(study, input);
@@ -86,13 +86,13 @@ Report diagnosis_report(const diagnostics::SeriesStudy& study, const SeriesInput
   report.data["not_run"] = not_run;
   const std::string file = diagnosis_file(arguments.request);
   if (file.empty()) return report;
-  scene::StoreWriter writer(file);
+  results::StoreWriter writer(file);
   save(writer, study, input, findings);
   writer.commit();
   report.data["file"] = file;
   report.text += fmt::format("Numbers and curves: {}\n", file);
   if (arguments.request.figures.empty()) return report;
-  report.data["figures"] = draw_series_figures(scene::StoreReader(file), arguments.request.figures);
+  report.data["figures"] = draw_series_figures(results::StoreReader(file), arguments.request.figures);
   report.text += fmt::format("Figures: {}\n", arguments.request.figures);
   return report;
 }
@@ -106,7 +106,7 @@ Report diagnose_series(const Session& session, DiagnoseArguments arguments) {
     fs::create_directories(arguments.request.figures);
     require_writable(fs::path(arguments.request.figures) / "diagnosis.h5");
   }
-  const SeriesInput input = read_series(arguments.series);
+  const results::SeriesInput input = results::read_series(arguments.series);
   arguments.study.strobe = arguments.strobe.value_or(input.drive_period);
   if (session.seed) arguments.study.seed = *session.seed;
   ProgressLine line("diagnose", session.progress_mode());

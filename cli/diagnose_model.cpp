@@ -6,8 +6,8 @@
 #include "cli/exponents_store.hpp"
 #include "cli/validation_setup.hpp"
 #include "diagnostics/shared_starts.hpp"
+#include "results/provenance.hpp"
 #include "rom/reduce.hpp"
-#include "scene/provenance.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -102,7 +102,7 @@ void check_diagnosis_outputs(const DiagnoseRequest& request) {
 
 void draw_diagnosis(const DiagnoseRequest& request, const std::string& file, Report& report) {
   if (request.figures.empty()) return;
-  report.data["figures"] = draw_exponents_figures(scene::StoreReader(file), request.figures);
+  report.data["figures"] = draw_exponents_figures(results::StoreReader(file), request.figures);
   report.text += fmt::format("Figures: {}\n", request.figures);
 }
 
@@ -138,10 +138,10 @@ Report diagnose_scene(const Session& session, const DiagnoseRequest& request, co
   }
   const std::string file = model_file(request);
   if (file.empty()) return report;
-  const Units units = Units::of(scene.units);
-  scene::StoreWriter writer(file);
-  scene::save(writer,
-              scene::provenance_of(scene, models.verdict ? "slipmode diagnose --verdict" : "slipmode diagnose"));
+  const results::Units units = results::Units::of(scene.units);
+  results::StoreWriter writer(file);
+  results::save(writer,
+                results::provenance_of(scene, models.verdict ? "slipmode diagnose --verdict" : "slipmode diagnose"));
   store_exponents(writer, spectra, units);
   if (verdict) store_verdict(writer, *verdict, units);
   writer.commit();

@@ -4,7 +4,7 @@
 #include "cli/shaken_model.hpp"
 #include "cli/steps.hpp"
 #include "cli/validation_setup.hpp"
-#include "scene/records.hpp"
+#include "results/records.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -58,7 +58,7 @@ DiagnoseSubjects diagnose_subjects(const scene::Scene& scene, const ModelRequest
   DiagnoseSubjects subjects{.full = scene::build_system(scene), .start = {}, .candidates = {}};
   subjects.start = scene::initial_state(scene, subjects.full);
   for (const std::string& file : request.files) {
-    const bool is_reduced = scene::StoreReader(file).has(scene::kReducedGroup);
+    const bool is_reduced = results::StoreReader(file).has(results::kReducedGroup);
     for (const BasisOption& choice : basis_options(scene, subjects.full, file)) {
       const Eigen::Index modes = modes_taken(scene, choice, file, is_reduced, request.modes);
       subjects.candidates.push_back(

@@ -3,13 +3,13 @@
 #include "cli/json_values.hpp"
 #include "cli/sweep_report.hpp"
 #include "cli/sweep_request.hpp"
-#include "cli/sweep_store.hpp"
 #include "cli/validation_setup.hpp"
 #include "core/none.hpp"
 #include "diagnostics/shared_starts.hpp"
+#include "results/journal.hpp"
+#include "results/provenance.hpp"
+#include "results/sweep_store.hpp"
 #include "rom/reduce.hpp"
-#include "scene/journal.hpp"
-#include "scene/provenance.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -72,8 +72,8 @@ std::vector<SweptModel> swept_models(const scene::Scene& scene, const Over& over
 
 /// The diagram of one model, its points kept under the model's number.
 bool draw_diagram(const Session& session, const scene::Scene& scene, const Over& over, const ModelRequest& request,
-                  scene::Journal& journal, int number, SweptModel& model) {
-  const diagnostics::SweepSink kept = journal_sink(journal);
+                  results::Journal& journal, int number, SweptModel& model) {
+  const diagnostics::SweepSink kept = results::journal_sink(journal);
   ProgressLine line(fmt::format("diagram {}", model.role), session.progress_mode());
   diagnostics::SweepOptions options{
       .mode = request.follow ? diagnostics::SweepMode::kFollow : diagnostics::SweepMode::kIndependent,
@@ -91,13 +91,13 @@ bool draw_diagram(const Session& session, const scene::Scene& scene, const Over&
   return !result.interrupted;
 }
 
-scene::JournalRecord exponent_record(const std::string& role, std::size_t index, const ExponentPoint& point) {
+results::JournalRecord exponent_record(const std::string& role, std::size_t index, const ExponentPoint& point) {
   std::vector<double> values(point.nats.begin(), point.nats.end());
   values.insert(values.end(), point.error.begin(), point.error.end());
   return {role, static_cast<std::int64_t>(index), values, point.failure};
 }
 
-ExponentPoint exponent_point(const scene::JournalRecord& record) {
+ExponentPoint exponent_point(const results::JournalRecord& record) {
   const auto count = static_cast<Eigen::Index>(record.values.size() / 2);
   const Eigen::Map<const Eigen::VectorXd> values(record.values.data(), 2 * count);
   return {.nats = values.head(count), .error = values.tail(count), .failure = record.note};
@@ -137,8 +137,9 @@ Eigen::MatrixXd exponent_columns(const std::vector<ExponentPoint>& points, Eigen
   return out;
 }
 
-void store_exponents_over(scene::StoreWriter& writer, const SweptModel& model, const Over& over,
-                          const std::vector<ExponentPoint>& points, const SweepAxis& axis, const Units& units) {
+void store_exponents_over(results::StoreWriter& writer, const SweptModel& model, const Over& over,
+                          const std::vector<ExponentPoint>& points, const results::SweepAxis& axis,
+                          const results::Units& units) {
   const std::string group = fmt::format("exponents/{}", model.role);
   std::vector<std::string> failure;
   for (const ExponentPoint& point : points) failure.push_back(point.failure);
@@ -146,10 +147,10 @@ void store_exponents_over(scene::StoreWriter& writer, const SweptModel& model, c
   writer.write(group + "/title", model.title, {"", "which model"});
   writer.write(group + "/key", axis.key, {"", "the scene's key that was swept"});
   writer.write(group + "/label", axis.label, {"", "name of the key for an axis"});
-  scene::save(writer, group + "/values",
-              scene::Table{"one row per value of the key",
-                           {{"parameter", {axis.units, axis.key}, over.values},
-                            {"failure", {"", "why the value failed or ended early; empty: it did not"}, failure}}});
+  results::save(writer, group + "/values",
+                results::Table{"one row per value of the key",
+                               {{"parameter", {axis.units, axis.key}, over.values},
+                                {"failure", {"", "why the value failed or ended early; empty: it did not"}, failure}}});
   writer.write_columns(group + "/nats", exponent_columns(points, &ExponentPoint::nats),
                        {units.rate, "exponents, value x exponent"});
   writer.write_columns(group + "/error", exponent_columns(points, &ExponentPoint::error),
@@ -193,9 +194,9 @@ Report diagnose_over(const Session& session, const scene::Scene& scene, const Di
   const std::string task = fmt::format("slipmode diagnose --over {}{} --exponents {} --duration {} --renormalise {} {}",
                                        models.over, models.follow ? " --follow" : "", options.exponents,
                                        options.duration, options.interval, swept.back().title);
-  std::string identity = fmt::format("{}\n{}\n{}", scene::version(), task, scene::scene_to_toml(scene));
+  std::string identity = fmt::format("{}\n{}\n{}", results::version(), task, scene::scene_to_toml(scene));
   for (const std::string& file : models.files) identity += fmt::format("\n{}", file_fingerprint(file));
-  scene::Journal journal(scene::Journal::path_for(request.output), scene::fingerprint(identity));
+  results::Journal journal(results::Journal::path_for(request.output), results::fingerprint(identity));
   const bool belt = scene::build_system(scene).drive().belt() != nullptr;
   for (std::size_t m = 0; belt && m < swept.size(); ++m)
     if (!draw_diagram(session, scene, over, models, journal, static_cast<int>(m), swept[m])) throw Interrupted();
@@ -203,7 +204,7 @@ Report diagnose_over(const Session& session, const scene::Scene& scene, const Di
   const std::size_t count = over.values.size();
   std::vector<std::vector<ExponentPoint>> points(swept.size(), std::vector<ExponentPoint>(count));
   std::vector<char> known(swept.size() * count, 0);
-  for (const scene::JournalRecord& record : journal.records()) {
+  for (const results::JournalRecord& record : journal.records()) {
     const auto model = std::ranges::find(swept, record.table.substr(record.table.find('-') + 1), &SweptModel::role);
     if (!record.table.starts_with("exponents-") || model == swept.end()) continue;
     const auto m = static_cast<std::size_t>(model - swept.begin()), i = static_cast<std::size_t>(record.index);
@@ -222,14 +223,16 @@ Report diagnose_over(const Session& session, const scene::Scene& scene, const Di
     }));
   }
 
-  const Units units = Units::of(scene.units);
-  const SweepAxis axis = sweep_axis(over.key, units);
+  const results::Units units = results::Units::of(scene.units);
+  const results::SweepAxis axis = results::sweep_axis(over.key, units);
   Report report;
   report.data = {{"verb", "diagnose"}, {"file", request.output}, {"key", over.key}};
-  scene::StoreWriter writer(request.output);
-  scene::save(writer, scene::provenance_of(scene, task));
+  results::StoreWriter writer(request.output);
+  results::save(writer, results::provenance_of(scene, task));
   for (std::size_t m = 0; m < swept.size(); ++m) {
-    if (belt) store_sweep(writer, fmt::format("sweep/{}", swept[m].role), swept[m].title, axis, units, swept[m].points);
+    if (belt)
+      results::store_sweep(writer, fmt::format("sweep/{}", swept[m].role), swept[m].title, axis, units,
+                           swept[m].points);
     store_exponents_over(writer, swept[m], over, points[m], axis, units);
     Json summary;
     report.text += exponent_summary(swept[m], points[m], summary);

@@ -4,7 +4,7 @@
 #include "cli/figures/exponent_figures.hpp"
 #include "cli/figures/panels.hpp"
 #include "cli/figures/style.hpp"
-#include "scene/table.hpp"
+#include "results/table.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 using figures::Figure;
 using figures::to_vector;
-using scene::StoreReader;
+using results::StoreReader;
 
 constexpr const char* kExponentUnit = "bit per unit of time";
 constexpr std::array<std::string_view, 4> kExponentModelColours = {figures::kFullColour, figures::kPomColour,
@@ -55,7 +55,7 @@ Eigen::Index finite_of(const Eigen::VectorXd& values) { return values.array().is
 Figure exponents_drawn(const StoreReader& store) {
   std::vector<figures::ExponentSeries> models;
   for (const std::string& group : exponent_groups(store)) {
-    const scene::Table values = scene::load_table(store, group + "/values");
+    const results::Table values = results::load_table(store, group + "/values");
     const Eigen::VectorXd bits = bits_of(values.numbers("nats"));
     const Eigen::Index finite = finite_of(bits);
     const Eigen::Index lost = store.integer(group + "/lost");
@@ -114,7 +114,7 @@ Figure exponents_over_key(const StoreReader& store) {
   std::string label, unit, value_unit;
   for (const std::string group : {"exponents/full", "exponents/reduced"}) {
     if (!store.has(group)) continue;
-    const scene::Table values = scene::load_table(store, group + "/values");
+    const results::Table values = results::load_table(store, group + "/values");
     figures::ExponentSweep model{.title = store.text(group + "/title"),
                                  .slip_parameter = {},
                                  .slip_value = {},
@@ -123,7 +123,7 @@ Figure exponents_over_key(const StoreReader& store) {
                                  .colour = model_colour(models.size())};
     const std::string slips = std::string("sweep/") + (group == "exponents/full" ? "full" : "reduced") + "/slips";
     if (store.has(slips)) {
-      const scene::Table table = scene::load_table(store, slips);
+      const results::Table table = results::load_table(store, slips);
       model.slip_parameter = to_vector(table.numbers("parameter"));
       model.slip_value = to_vector(table.numbers("displacement"));
       value_unit = store.entry(slips + "/displacement").meaning.units;

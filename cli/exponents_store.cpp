@@ -1,7 +1,7 @@
 #include "cli/exponents_store.hpp"
 
 #include "cli/json_values.hpp"
-#include "scene/table.hpp"
+#include "results/table.hpp"
 
 #include <fmt/format.h>
 #include <cmath>
@@ -12,8 +12,8 @@ namespace {
 using diagnostics::LyapunovSpectrum;
 using diagnostics::VolumeBalance;
 
-void store_balance(scene::StoreWriter& writer, const std::string& group, const VolumeBalance& balance,
-                   const Units& units) {
+void store_balance(results::StoreWriter& writer, const std::string& group, const VolumeBalance& balance,
+                   const results::Units& units) {
   const std::string rate = units.rate;
   writer.write(group + "/viscous", balance.viscous, {rate, "mean of the trace of the field, dashpots"});
   writer.write(group + "/friction", balance.friction, {rate, "the same, friction that depends on sliding speed"});
@@ -25,8 +25,8 @@ void store_balance(scene::StoreWriter& writer, const std::string& group, const V
                {"", "events that are not accounted for"});
 }
 
-void store_model_exponents(scene::StoreWriter& writer, const std::string& group, const ModelExponents& model,
-                           const Units& units) {
+void store_model_exponents(results::StoreWriter& writer, const std::string& group, const ModelExponents& model,
+                           const results::Units& units) {
   const LyapunovSpectrum& spectrum = model.spectrum;
   writer.describe_group(group, "Lyapunov exponents of one model, from its tangent flow");
   writer.write(group + "/title", model.name, {"", "which model"});
@@ -35,14 +35,14 @@ void store_model_exponents(scene::StoreWriter& writer, const std::string& group,
   if (spectrum.nats.size() == 0) return;
   const Eigen::VectorXd bits = spectrum.bits();
   const Eigen::VectorXd first = spectrum.halves.col(0), second = spectrum.halves.col(1);
-  scene::save(
+  results::save(
       writer, group + "/values",
-      scene::Table{"one row per exponent, descending",
-                   {{"nats", {units.rate, "exponent; -inf: a direction that is lost"}, json_list(spectrum.nats)},
-                    {"bits", {"bit per unit of time", "the same over ln 2"}, json_list(bits)},
-                    {"error", {units.rate, "standard error, eight stretches"}, json_list(spectrum.error)},
-                    {"first_half", {units.rate, "from the first half"}, json_list(first)},
-                    {"second_half", {units.rate, "from the second half"}, json_list(second)}}});
+      results::Table{"one row per exponent, descending",
+                     {{"nats", {units.rate, "exponent; -inf: a direction that is lost"}, json_list(spectrum.nats)},
+                      {"bits", {"bit per unit of time", "the same over ln 2"}, json_list(bits)},
+                      {"error", {units.rate, "standard error, eight stretches"}, json_list(spectrum.error)},
+                      {"first_half", {units.rate, "from the first half"}, json_list(first)},
+                      {"second_half", {units.rate, "from the second half"}, json_list(second)}}});
   Eigen::VectorXd times(spectrum.rates.cols());
   for (Eigen::Index j = 0; j < times.size(); ++j) times[j] = spectrum.interval * static_cast<double>(j + 1);
   writer.write(group + "/time", times, {units.time, "ends of the intervals, from the start of measuring"});
@@ -68,7 +68,8 @@ Json exponent_json(double value) {
   return json_number(value);
 }
 
-void store_exponents(scene::StoreWriter& writer, const std::vector<ModelExponents>& models, const Units& units) {
+void store_exponents(results::StoreWriter& writer, const std::vector<ModelExponents>& models,
+                     const results::Units& units) {
   for (std::size_t i = 0; i < models.size(); ++i)
     store_model_exponents(writer, fmt::format("{}/{}", kExponentsGroup, i), models[i], units);
 }

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "cli/session.hpp"
-#include "cli/units.hpp"
 #include "diagnostics/verdict.hpp"
-#include "scene/store.hpp"
+#include "results/store.hpp"
+#include "results/units.hpp"
 
 #include <string>
 #include <vector>
@@ -21,7 +21,8 @@ struct ModelExponents {
 };
 
 /// Writes `exponents/<i>` for every model: values with errors, their history, rates per interval, balance of volumes.
-void store_exponents(scene::StoreWriter& writer, const std::vector<ModelExponents>& models, const Units& units);
+void store_exponents(results::StoreWriter& writer, const std::vector<ModelExponents>& models,
+                     const results::Units& units);
 /// Side by side as a table for a terminal, with what they add up to. @param bits  rather than nats
 [[nodiscard]] std::string exponents_text(const std::vector<ModelExponents>& models, bool bits);
 /// A number; infinities as words, NaN as null: JSON has none of them.
@@ -29,7 +30,7 @@ void store_exponents(scene::StoreWriter& writer, const std::vector<ModelExponent
 [[nodiscard]] Json exponents_json(const std::vector<ModelExponents>& models);
 
 /// Writes the table `verdict`, a row for every figure of every model.
-void store_verdict(scene::StoreWriter& writer, const diagnostics::VerdictTable& verdict, const Units& units);
+void store_verdict(results::StoreWriter& writer, const diagnostics::VerdictTable& verdict, const results::Units& units);
 /// One row for every figure, models side by side, each ± half the difference between the halves of its data.
 [[nodiscard]] std::string verdict_text(const diagnostics::VerdictTable& verdict, bool bits);
 [[nodiscard]] Json verdict_json(const diagnostics::VerdictTable& verdict);

@@ -1,6 +1,6 @@
 #include "cli/exponents_store.hpp"
 #include "cli/text_table.hpp"
-#include "scene/table.hpp"
+#include "results/table.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -176,7 +176,7 @@ Json verdict_json(const VerdictTable& verdict) {
   return out;
 }
 
-void store_verdict(scene::StoreWriter& writer, const VerdictTable& verdict, const Units& units) {
+void store_verdict(results::StoreWriter& writer, const VerdictTable& verdict, const results::Units& units) {
   std::vector<std::string> model, name, unit;
   std::vector<double> value, first, second;
   for (const VerdictRow& row : verdict_rows(verdict, 1.0, "nat")) {
@@ -189,14 +189,14 @@ void store_verdict(scene::StoreWriter& writer, const VerdictTable& verdict, cons
       second.push_back(row.values[i].halves[1]);
     }
   }
-  scene::save(writer, kVerdictGroup,
-              scene::Table{"one row per figure and model",
-                           {{"model", {"", "which model"}, model},
-                            {"figure", {"", "what it is"}, name},
-                            {"unit", {"", "its unit"}, unit},
-                            {"value", {"1", "from all data, in that unit"}, value},
-                            {"first_half", {"1", "from the first half of the data"}, first},
-                            {"second_half", {"1", "from the second half of the data"}, second}}});
+  results::save(writer, kVerdictGroup,
+                results::Table{"one row per figure and model",
+                               {{"model", {"", "which model"}, model},
+                                {"figure", {"", "what it is"}, name},
+                                {"unit", {"", "its unit"}, unit},
+                                {"value", {"1", "from all data, in that unit"}, value},
+                                {"first_half", {"1", "from the first half of the data"}, first},
+                                {"second_half", {"1", "from the second half of the data"}, second}}});
   writer.write(std::string(kVerdictGroup) + "/sample", verdict.sample, {units.time, "interval of the records"});
   writer.write(std::string(kVerdictGroup) + "/channel", static_cast<std::int64_t>(verdict.channel + 1),
                {"", "degree of freedom whose velocity was recorded, from 1"});

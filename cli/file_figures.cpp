@@ -18,10 +18,10 @@
 #include "cli/skeleton_figures.hpp"
 #include "cli/trade_figures.hpp"
 #include "cli/validation_setup.hpp"
+#include "results/provenance.hpp"
+#include "results/records.hpp"
+#include "results/table.hpp"
 #include "rom/reduce.hpp"
-#include "scene/provenance.hpp"
-#include "scene/records.hpp"
-#include "scene/table.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -32,7 +32,7 @@ namespace {
 
 using figures::Figure;
 using figures::to_vector;
-using scene::StoreReader;
+using results::StoreReader;
 
 std::string_view colour_of(const std::string& role) {
   if (role == "full") return figures::kFullColour;
@@ -45,12 +45,12 @@ std::string contact_symbol(const scene::Scene& scene, const std::string& letter)
 }
 
 Figure bifurcation(const StoreReader& store) {
-  const scene::Scene scene = scene::load_scene_of(store);
+  const scene::Scene scene = results::load_scene_of(store);
   std::vector<figures::BifurcationPanel> panels;
   std::string label, unit;
   for (const std::string group : {"sweep/full", "sweep/reduced"}) {
     if (!store.has(group)) continue;
-    const scene::Table slips = scene::load_table(store, group + "/slips");
+    const results::Table slips = results::load_table(store, group + "/slips");
     const auto& contact = slips.numbers("contact");
     const auto& parameter = slips.numbers("parameter");
     const auto& displacement = slips.numbers("displacement");
@@ -68,12 +68,12 @@ Figure bifurcation(const StoreReader& store) {
   return figures::bifurcation_diagram(panels, {.parameter = label,
                                                .parameter_unit = unit,
                                                .value = "slip-state displacement " + contact_symbol(scene, "x"),
-                                               .value_unit = Units::of(scene.units).length});
+                                               .value_unit = results::Units::of(scene.units).length});
 }
 
 Figure portraits(const StoreReader& store, const std::string& group, figures::PortraitLayout::Axes axes) {
-  const scene::Scene scene = scene::load_scene_of(store);
-  const Units units = Units::of(scene.units);
+  const scene::Scene scene = results::load_scene_of(store);
+  const results::Units units = results::Units::of(scene.units);
   const PortraitSet set = load_portraits(store, group);
   std::vector<figures::PhasePortrait> panels;
   for (const Portrait& portrait : set.portraits) {
@@ -88,7 +88,7 @@ Figure portraits(const StoreReader& store, const std::string& group, figures::Po
 }
 
 /// Curves of one motion: rows of a table that belong to it, by basis.
-figures::DeviationCase deviation_case(const scene::Table& table, const std::string& title,
+figures::DeviationCase deviation_case(const results::Table& table, const std::string& title,
                                       const std::vector<std::size_t>& rows) {
   std::map<std::string, std::vector<std::size_t>> by_basis;
   for (const std::size_t row : rows) by_basis[table.texts("basis")[row]].push_back(row);
@@ -113,9 +113,9 @@ bool has_values(const figures::DeviationCase& motion) {
 }
 
 Figure deviation(const StoreReader& store) {
-  const scene::Scene scene = scene::load_scene_of(store);
-  const scene::Table shares = scene::load_table(store, "validation/shares");
-  const scene::Table orbits = scene::load_table(store, "validation/orbits");
+  const scene::Scene scene = results::load_scene_of(store);
+  const results::Table shares = results::load_table(store, "validation/shares");
+  const results::Table orbits = results::load_table(store, "validation/orbits");
   std::vector<figures::DeviationCase> cases;
   std::vector<std::size_t> all(shares.rows());
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
@@ -139,23 +139,23 @@ Eigen::MatrixXd lnms(const scene::Scene& scene, Eigen::Index count) {
 }
 
 Figure shapes(const StoreReader& store) {
-  const pod::PodResult result = scene::load_pod(store);
+  const pod::PodResult result = results::load_pod(store);
   return figures::mode_shapes({.poms = result.basis.vectors,
-                               .lnms = lnms(scene::load_scene_of(store), result.basis.modes()),
+                               .lnms = lnms(results::load_scene_of(store), result.basis.modes()),
                                .shares = result.shares});
 }
 
 Figure reduced_shapes(const StoreReader& store) {
-  const pod::Basis basis = scene::load_basis(store, std::string(scene::kReducedGroup) + "/basis");
+  const pod::Basis basis = results::load_basis(store, std::string(results::kReducedGroup) + "/basis");
   const bool compare = basis.kind != pod::BasisKind::kLnm;
   return figures::mode_shapes({.poms = basis.vectors,
-                               .lnms = compare ? lnms(scene::load_scene_of(store), basis.modes()) : Eigen::MatrixXd(),
+                               .lnms = compare ? lnms(results::load_scene_of(store), basis.modes()) : Eigen::MatrixXd(),
                                .shares = basis.energy});
 }
 
 Figure energy(const StoreReader& store) {
-  const scene::Scene scene = scene::load_scene_of(store);
-  const pod::PodResult result = scene::load_pod(store);
+  const scene::Scene scene = results::load_scene_of(store);
+  const pod::PodResult result = results::load_pod(store);
   const auto candidates = pom_and_lnm(scene, scene::build_system(scene).structure(), result);
   const auto& lnm = candidates[candidates[0].name == "LNM" ? 0 : 1];
   return figures::energy_shares(
@@ -182,9 +182,9 @@ std::vector<std::pair<double, double>> stick_intervals(const dynamics::Trajector
 /// The last stretch of a trajectory: long ones would be black.
 Figure history(const StoreReader& store) {
   constexpr Eigen::Index kShown = 1000;
-  const scene::Scene scene = scene::load_scene_of(store);
-  const Units units = Units::of(scene.units);
-  const dynamics::Trajectory trajectory = scene::load_trajectory(store);
+  const scene::Scene scene = results::load_scene_of(store);
+  const results::Units units = results::Units::of(scene.units);
+  const dynamics::Trajectory trajectory = results::load_trajectory(store);
   const Eigen::Index shown = std::min(kShown, trajectory.times.size());
   std::vector<std::pair<double, double>> stick;
   const double begin = trajectory.times[trajectory.times.size() - shown];
@@ -205,9 +205,9 @@ Figure history(const StoreReader& store) {
 
 Figure trajectory_portrait(const StoreReader& store) {
   constexpr Eigen::Index kShown = 5000;
-  const scene::Scene scene = scene::load_scene_of(store);
-  const Units units = Units::of(scene.units);
-  const dynamics::Trajectory trajectory = scene::load_trajectory(store);
+  const scene::Scene scene = results::load_scene_of(store);
+  const results::Units units = results::Units::of(scene.units);
+  const dynamics::Trajectory trajectory = results::load_trajectory(store);
   const Eigen::Index shown = std::min(kShown, trajectory.times.size());
   return figures::phase_portraits({{scene.title, trajectory.contact_q.row(0).tail(shown),
                                     trajectory.contact_v.row(0).tail(shown), figures::kFullColour}},
@@ -231,11 +231,11 @@ std::vector<FileFigure> belt_figures_of(const StoreReader& store) {
       [](const StoreReader& file) { return portraits(file, "portraits/levels", Axes::kShared); });
   add("portraits/orbits", "orbits", "periodic orbits, full above reduced",
       [](const StoreReader& file) { return portraits(file, "portraits/orbits", Axes::kPerColumn); });
-  add(scene::kPodGroup, "shapes", "proper orthogonal modes beside linear natural modes", shapes);
-  add(scene::kPodGroup, "energy", "energy shares", energy);
-  add(scene::kReducedGroup, "shapes", "basis of the reduced model", reduced_shapes);
-  add(scene::kTrajectoryGroup, "history", "displacement, velocity and force of the first contact", history);
-  add(scene::kTrajectoryGroup, "portrait", "phase portrait of the first contact", trajectory_portrait);
+  add(results::kPodGroup, "shapes", "proper orthogonal modes beside linear natural modes", shapes);
+  add(results::kPodGroup, "energy", "energy shares", energy);
+  add(results::kReducedGroup, "shapes", "basis of the reduced model", reduced_shapes);
+  add(results::kTrajectoryGroup, "history", "displacement, velocity and force of the first contact", history);
+  add(results::kTrajectoryGroup, "portrait", "phase portrait of the first contact", trajectory_portrait);
   return out;
 }
 
@@ -249,16 +249,16 @@ std::vector<FileFigure> figures_of(const StoreReader& store) {
   if (std::vector<FileFigure> fronts = trade_figures_of(store); !fronts.empty()) return fronts;
   std::vector<FileFigure> orbits = orbit_figures_of(store);
   if (!orbits.empty()) {
-    if (store.has(scene::kTrajectoryGroup)) {
+    if (store.has(results::kTrajectoryGroup)) {
       orbits.push_back(
           {"history", "displacement, velocity and force of the first contact", [&store] { return history(store); }});
     }
     return orbits;
   }
   if (!store.has("provenance")) return belt_figures_of(store);
-  if (!is_shaken(scene::load_scene_of(store))) return belt_figures_of(store);
+  if (!is_shaken(results::load_scene_of(store))) return belt_figures_of(store);
   std::vector<FileFigure> out = shaken_figures_of(store);
-  if (!store.has(scene::kTrajectoryGroup)) return out;
+  if (!store.has(results::kTrajectoryGroup)) return out;
   for (FileFigure& figure : belt_figures_of(store)) {
     if (figure.name == "history" || figure.name == "portrait") out.push_back(std::move(figure));
   }

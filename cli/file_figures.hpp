@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cli/figures/gnuplot.hpp"
-#include "scene/store.hpp"
+#include "results/store.hpp"
 
 #include <functional>
 #include <string>
@@ -17,6 +17,6 @@ struct FileFigure {
 };
 
 /// All figures a file can give, the most telling first; empty when it holds nothing to draw.
-[[nodiscard]] std::vector<FileFigure> figures_of(const scene::StoreReader& store);
+[[nodiscard]] std::vector<FileFigure> figures_of(const results::StoreReader& store);
 
 }  // namespace slipmode::cli

@@ -1,4 +1,4 @@
-#include "scene/info.hpp"
+#include "results/info.hpp"
 #include "cli/verbs.hpp"
 
 namespace slipmode::cli {
@@ -11,9 +11,9 @@ Verb add_info(CLI::App& app) {
   return {command, [file](const Session& session) {
             Report report;
             if (session.json) {
-              report.data = Json::parse(scene::info(*file, scene::InfoFormat::kJson));
+              report.data = Json::parse(results::info(*file, results::InfoFormat::kJson));
             } else {
-              report.text = scene::info(*file);
+              report.text = results::info(*file);
             }
             return report;
           }};

@@ -2,7 +2,7 @@
 #include "cli/verbs.hpp"
 #include "core/errors.hpp"
 #include "dynamics/kernels/kernels.hpp"
-#include "scene/provenance.hpp"
+#include "results/provenance.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -116,8 +116,8 @@ int run_main(int argc, char** argv) {
       "against the full one",
       "slipmode"};
   app.set_version_flag("--version", [] {
-    return fmt::format("slipmode {} ({}, {}; kernels {})", scene::version(), scene::git_commit(), scene::compiler(),
-                       dynamics::kernels::kernels().name);
+    return fmt::format("slipmode {} ({}, {}; kernels {})", results::version(), results::git_commit(),
+                       results::compiler(), dynamics::kernels::kernels().name);
   });
   app.require_subcommand(1);
   app.footer(

@@ -4,9 +4,9 @@
 #include "cli/figures/heat_map.hpp"
 #include "cli/figures/panels.hpp"
 #include "cli/figures/style.hpp"
-#include "cli/map_store.hpp"
 #include "core/none.hpp"
-#include "scene/table.hpp"
+#include "results/map_store.hpp"
+#include "results/table.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace slipmode::cli {
 namespace {
 
 using figures::Figure;
-using scene::StoreReader;
+using results::StoreReader;
 
 /// "scene", "centre": the starts a result holds, in that order of names.
 std::vector<std::string> starts_of(const StoreReader& store, const std::string& group) {
@@ -42,17 +42,17 @@ std::string axis_text(const StoreReader& store, const std::string& group) {
 std::vector<figures::HeatMapPanel> map_panels(const StoreReader& store,
                                               const std::function<Eigen::MatrixXd(const std::string& group)>& values) {
   std::vector<figures::HeatMapPanel> panels;
-  for (const std::string& start : starts_of(store, kMapGroup)) {
-    panels.push_back({title_of(start), store.vector(std::string(kMapGroup) + "/x/values"),
-                      store.vector(std::string(kMapGroup) + "/y/values"),
-                      values(fmt::format("{}/from_{}", kMapGroup, start))});
+  for (const std::string& start : starts_of(store, results::kMapGroup)) {
+    panels.push_back({title_of(start), store.vector(std::string(results::kMapGroup) + "/x/values"),
+                      store.vector(std::string(results::kMapGroup) + "/y/values"),
+                      values(fmt::format("{}/from_{}", results::kMapGroup, start))});
   }
   return panels;
 }
 
 figures::HeatMapLayout map_layout(const StoreReader& store) {
-  return {.x_label = axis_text(store, std::string(kMapGroup) + "/x"),
-          .y_label = axis_text(store, std::string(kMapGroup) + "/y"),
+  return {.x_label = axis_text(store, std::string(results::kMapGroup) + "/x"),
+          .y_label = axis_text(store, std::string(results::kMapGroup) + "/y"),
           .value_label = {}};
 }
 
@@ -105,7 +105,8 @@ Figure amplitudes(const StoreReader& store) {
       if (std::isfinite(value)) layout.high = std::max(layout.high, value);
     }
   }
-  const std::string dataset = fmt::format("{}/from_{}/alternating", kMapGroup, starts_of(store, kMapGroup).front());
+  const std::string dataset =
+      fmt::format("{}/from_{}/alternating", results::kMapGroup, starts_of(store, results::kMapGroup).front());
   layout.value_label = figures::axis_label("alternating amplitude", store.entry(dataset).meaning.units);
   layout.missing = "not periodic";
   return figures::heat_maps(panels, layout);
@@ -113,10 +114,10 @@ Figure amplitudes(const StoreReader& store) {
 
 /// Rows of a table that belong to one contact.
 struct Rows {
-  const scene::Table& table;
+  const results::Table& table;
   std::vector<std::size_t> rows;
 
-  Rows(const scene::Table& from, double contact) : table(from) {
+  Rows(const results::Table& from, double contact) : table(from) {
     const auto& contacts = table.numbers("contact");
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       if (contacts[i] == contact) rows.push_back(i);
@@ -131,12 +132,12 @@ struct Rows {
 };
 
 Figure strobe_diagram(const StoreReader& store) {
-  const std::string root = kStrobeGroup;
+  const std::string root = results::kStrobeGroup;
   std::vector<figures::BifurcationPanel> panels;
   std::string unit, value_unit;
   for (const std::string& start : starts_of(store, root)) {
     const std::string group = fmt::format("{}/from_{}/sections", root, start);
-    const scene::Table sections = scene::load_table(store, group);
+    const results::Table sections = results::load_table(store, group);
     const Rows first(sections, 0.0);
     panels.push_back({title_of(start), first.column("parameter"), first.column("displacement"), figures::kFullColour});
     unit = store.entry(group + "/parameter").meaning.units;
@@ -161,9 +162,9 @@ figures::Series verdict_dots(const Rows& rows, const std::string& value, bool pe
 
 /// Both amplitudes of S1 above, and below how far its test is from its verdict.
 Figure strobe_amplitudes(const StoreReader& store) {
-  const std::string root = kStrobeGroup, start = starts_of(store, root).front();
+  const std::string root = results::kStrobeGroup, start = starts_of(store, root).front();
   const std::string group = fmt::format("{}/from_{}/values", root, start);
-  const scene::Table values = scene::load_table(store, group);
+  const results::Table values = results::load_table(store, group);
   const double contacts = *std::ranges::max_element(values.numbers("contact"));
   std::vector<figures::Panel> panels;
   for (double contact = 0.0; contact <= contacts; contact += 1.0) {
@@ -197,12 +198,12 @@ std::vector<FileFigure> map_figures_of(const StoreReader& store) {
   const auto add = [&](const char* group, std::string name, std::string what, auto draw) {
     if (store.has(group)) out.push_back({std::move(name), std::move(what), [&store, draw] { return draw(store); }});
   };
-  add(kMapGroup, "crossings", "regime changes of period-1 orbits", crossings);
-  add(kMapGroup, "multipliers", "largest |multiplier|", multipliers);
-  add(kMapGroup, "orders", "periods of the orbits", orders);
-  add(kMapGroup, "amplitudes", "alternating amplitudes", amplitudes);
-  add(kStrobeGroup, "strobe", "motion seen once per period against the key", strobe_diagram);
-  add(kStrobeGroup, "amplitudes", "alternating and effective amplitudes against the key", strobe_amplitudes);
+  add(results::kMapGroup, "crossings", "regime changes of period-1 orbits", crossings);
+  add(results::kMapGroup, "multipliers", "largest |multiplier|", multipliers);
+  add(results::kMapGroup, "orders", "periods of the orbits", orders);
+  add(results::kMapGroup, "amplitudes", "alternating amplitudes", amplitudes);
+  add(results::kStrobeGroup, "strobe", "motion seen once per period against the key", strobe_diagram);
+  add(results::kStrobeGroup, "amplitudes", "alternating and effective amplitudes against the key", strobe_amplitudes);
   return out;
 }
 

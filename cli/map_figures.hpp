@@ -7,6 +7,6 @@
 namespace slipmode::cli {
 
 /// Figures of a result of `slipmode orbit map`; none when the file holds no map.
-[[nodiscard]] std::vector<FileFigure> map_figures_of(const scene::StoreReader& store);
+[[nodiscard]] std::vector<FileFigure> map_figures_of(const results::StoreReader& store);
 
 }  // namespace slipmode::cli

@@ -2,11 +2,11 @@
 
 #include "cli/steps.hpp"
 #include "cli/text_table.hpp"
-#include "cli/units.hpp"
 #include "cli/verbs.hpp"
 #include "core/errors.hpp"
 #include "fem/beam_modes.hpp"
-#include "scene/provenance.hpp"
+#include "results/provenance.hpp"
+#include "results/units.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -85,9 +85,9 @@ Eigen::VectorXd damping_ratios(const fem::Structure& structure, const fem::Modes
 double hertz(double omega) { return omega / (2.0 * std::numbers::pi); }
 
 void store(const std::filesystem::path& path, const scene::Scene& scene, const ModeSets& sets) {
-  const Units units = Units::of(scene.units);
-  scene::StoreWriter writer(path);
-  scene::save(writer, scene::provenance_of(scene, "slipmode modes"));
+  const results::Units units = results::Units::of(scene.units);
+  results::StoreWriter writer(path);
+  results::save(writer, results::provenance_of(scene, "slipmode modes"));
   const auto write = [&](const std::string& group, const fem::Modes& modes, const std::string& what) {
     writer.describe_group(group, what);
     writer.write(group + "/omega", modes.omega, {units.angular, "circular frequencies, ascending"});

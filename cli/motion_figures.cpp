@@ -3,10 +3,10 @@
 #include "cli/figures/panels.hpp"
 #include "cli/figures/style.hpp"
 #include "cli/shaken_model.hpp"
-#include "cli/units.hpp"
 #include "diagnostics/spectrum.hpp"
-#include "scene/provenance.hpp"
-#include "scene/records.hpp"
+#include "results/provenance.hpp"
+#include "results/records.hpp"
+#include "results/units.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 using figures::Figure;
 using figures::Panel;
 using figures::Series;
-using scene::StoreReader;
+using results::StoreReader;
 
 /// The reading of a stored trajectory, with the time between samples.
 struct ReadingSeries {
@@ -28,8 +28,8 @@ struct ReadingSeries {
 };
 
 ReadingSeries reading_of(const StoreReader& store) {
-  const scene::Scene scene = scene::load_scene_of(store);
-  const dynamics::Trajectory run = scene::load_trajectory(store);
+  const scene::Scene scene = results::load_scene_of(store);
+  const dynamics::Trajectory run = results::load_trajectory(store);
   if (run.times.size() < 2) store.fail("trajectory/times", "too few samples to draw; simulate for longer");
   return {.values = shaken_case(scene).readings.of(run.q).row(0),
           .interval = run.times[1] - run.times[0],
@@ -41,10 +41,10 @@ ReadingSeries reading_of(const StoreReader& store) {
 
 Figure friction_loops(const StoreReader& store) {
   constexpr double kCycles = 8.0;
-  const scene::Scene scene = scene::load_scene_of(store);
-  const Units units = Units::of(scene.units);
+  const scene::Scene scene = results::load_scene_of(store);
+  const results::Units units = results::Units::of(scene.units);
   const friction::Shaker& shaker = *scene.drive.shaker();
-  const dynamics::Trajectory run = scene::load_trajectory(store);
+  const dynamics::Trajectory run = results::load_trajectory(store);
   const double from = run.times[run.times.size() - 1] - kCycles * shaker.period();
   Eigen::Index first = 0;
   while (first + 1 < run.times.size() && run.times[first] < from) ++first;

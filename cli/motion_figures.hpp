@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cli/figures/gnuplot.hpp"
-#include "scene/store.hpp"
+#include "results/store.hpp"
 
 namespace slipmode::cli {
 
@@ -9,10 +9,10 @@ namespace slipmode::cli {
 
 /// Force of the first contact against relative displacement and velocity (drive less contact), over the last cycles:
 /// the form of S4 Figs 6.2 to 6.4.
-[[nodiscard]] figures::Figure friction_loops(const scene::StoreReader& store);
+[[nodiscard]] figures::Figure friction_loops(const results::StoreReader& store);
 /// The scene's reading against itself a quarter of a drive period later.
-[[nodiscard]] figures::Figure delay_map(const scene::StoreReader& store);
+[[nodiscard]] figures::Figure delay_map(const results::StoreReader& store);
 /// Averaged amplitude spectrum of the scene's reading.
-[[nodiscard]] figures::Figure spectrum(const scene::StoreReader& store);
+[[nodiscard]] figures::Figure spectrum(const results::StoreReader& store);
 
 }  // namespace slipmode::cli

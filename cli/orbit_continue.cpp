@@ -4,7 +4,7 @@
 #include "cli/orbit_search.hpp"
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
-#include "scene/provenance.hpp"
+#include "results/provenance.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -137,8 +137,9 @@ Report run(const Session& session, const OrbitContinueArguments& arguments) {
 
   const orbits::ContinuationOptions options = continuation_options(arguments, range, start, search.options);
   const std::vector<NamedBranch> branches = follow(family, found.orbit, start, options, arguments.switches);
-  scene::StoreWriter writer(arguments.output);
-  scene::save(writer, scene::provenance_of(scene, fmt::format("slipmode orbit continue --over {}", arguments.over)));
+  results::StoreWriter writer(arguments.output);
+  results::save(writer,
+                results::provenance_of(scene, fmt::format("slipmode orbit continue --over {}", arguments.over)));
   store_branches(writer, range.key, branches, family);
   writer.commit();
 

@@ -4,10 +4,10 @@
 #include "cli/figures/panels.hpp"
 #include "cli/figures/response_diagram.hpp"
 #include "cli/figures/style.hpp"
-#include "cli/units.hpp"
-#include "scene/orbit_records.hpp"
-#include "scene/provenance.hpp"
-#include "scene/records.hpp"
+#include "results/orbit_records.hpp"
+#include "results/provenance.hpp"
+#include "results/records.hpp"
+#include "results/units.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -20,7 +20,7 @@ using figures::Figure;
 using figures::Panel;
 using figures::Series;
 using figures::to_vector;
-using scene::StoreReader;
+using results::StoreReader;
 
 constexpr std::string_view kStopColour = "#999999";
 
@@ -44,9 +44,9 @@ void add_stop(Panel& panel, const friction::Stop& stop, friction::ContactLoss lo
 }
 
 Figure orbit_portrait(const StoreReader& store) {
-  const scene::Scene scene = scene::load_scene_of(store);
-  const Units units = Units::of(scene.units);
-  const dynamics::Trajectory run = scene::load_trajectory(store);
+  const scene::Scene scene = results::load_scene_of(store);
+  const results::Units units = results::Units::of(scene.units);
+  const dynamics::Trajectory run = results::load_trajectory(store);
   std::vector<Panel> panels;
   for (Eigen::Index c = 0; c < run.contact_q.rows(); ++c) {
     const scene::ContactSpec& contact = scene.contacts[static_cast<std::size_t>(c)];
@@ -70,16 +70,16 @@ Figure orbit_portrait(const StoreReader& store) {
 }
 
 Figure orbit_multipliers(const StoreReader& store) {
-  const orbits::PeriodicOrbit orbit = scene::load_orbit(store);
+  const orbits::PeriodicOrbit orbit = results::load_orbit(store);
   Eigen::MatrixXd parts(orbit.multipliers.size(), 2);
   parts << orbit.multipliers.real(), orbit.multipliers.imag();
-  return figures::multiplier_plane(parts, scene::load_scene_of(store).title);
+  return figures::multiplier_plane(parts, results::load_scene_of(store).title);
 }
 
 /// A branch of a stored table; colours tell the main branch from those that leave it.
 std::string_view colour_of(std::size_t branch) { return branch == 0 ? figures::kFullColour : figures::kPomColour; }
 
-std::vector<bool> stable_points(const scene::Table& points) {
+std::vector<bool> stable_points(const results::Table& points) {
   std::vector<bool> stable;
   for (const std::string& word : points.texts("stability")) {
     stable.push_back(word != orbits::to_string(orbits::Stability::kUnstable));
@@ -88,9 +88,10 @@ std::vector<bool> stable_points(const scene::Table& points) {
 }
 
 std::string key_label(const scene::Scene& scene, const std::string& key) {
-  if (key == "drive.omega") return figures::axis_label("drive frequency {/Symbol w}", Units::of(scene.units).angular);
-  if (key == "drive.amplitude") return figures::axis_label("drive amplitude", Units::of(scene.units).force);
-  if (key == "drive.speed") return figures::axis_label("belt speed", Units::of(scene.units).velocity);
+  if (key == "drive.omega")
+    return figures::axis_label("drive frequency {/Symbol w}", results::Units::of(scene.units).angular);
+  if (key == "drive.amplitude") return figures::axis_label("drive amplitude", results::Units::of(scene.units).force);
+  if (key == "drive.speed") return figures::axis_label("belt speed", results::Units::of(scene.units).velocity);
   return figures::literal(key);
 }
 
@@ -118,7 +119,7 @@ figures::ResponseBranch response_branch(const StoredBranch& branch, std::string_
 
 /// Amplitude of the first contact over the key.
 Figure response(const StoreReader& store) {
-  const scene::Scene scene = scene::load_scene_of(store);
+  const scene::Scene scene = results::load_scene_of(store);
   std::vector<figures::ResponseBranch> curves;
   std::vector<figures::ResponseMark> marks;
   const std::vector<StoredBranch> branches = load_branches(store);
@@ -133,17 +134,17 @@ Figure response(const StoreReader& store) {
     }
   }
   const std::string place = scene::to_string(scene.contacts.front().at);
-  return figures::response_diagram(
-      curves, marks,
-      {.parameter = key_label(scene, store.text("branches/key")),
-       .value = figures::axis_label("half the range of displacement at " + place, Units::of(scene.units).length)});
+  return figures::response_diagram(curves, marks,
+                                   {.parameter = key_label(scene, store.text("branches/key")),
+                                    .value = figures::axis_label("half the range of displacement at " + place,
+                                                                 results::Units::of(scene.units).length)});
 }
 
 /// |multipliers| over the key, the unit circle's modulus as a line.
 Figure branch_multipliers(const StoreReader& store) {
   constexpr double kLeast = 1e-4;  // smaller ones are of no account for stability, and would stretch the axis
   constexpr std::size_t kMost = 6;
-  const scene::Scene scene = scene::load_scene_of(store);
+  const scene::Scene scene = results::load_scene_of(store);
   std::vector<Panel> panels;
   const std::vector<StoredBranch> branches = load_branches(store);
   for (const StoredBranch& branch : branches) {
@@ -173,8 +174,8 @@ std::vector<FileFigure> orbit_figures_of(const StoreReader& store) {
   const auto add = [&](const std::string& group, std::string name, std::string what, auto draw) {
     if (store.has(group)) out.push_back({std::move(name), std::move(what), [&store, draw] { return draw(store); }});
   };
-  add(scene::kOrbitGroup, "orbit", "phase portrait of the orbit, stops drawn", orbit_portrait);
-  add(scene::kOrbitGroup, "multipliers", "Floquet multipliers and the unit circle", orbit_multipliers);
+  add(results::kOrbitGroup, "orbit", "phase portrait of the orbit, stops drawn", orbit_portrait);
+  add(results::kOrbitGroup, "multipliers", "Floquet multipliers and the unit circle", orbit_multipliers);
   add("branches", "response", "amplitude over the key, unstable orbits dashed, special points marked", response);
   add("branches", "multipliers", "moduli of the Floquet multipliers over the key", branch_multipliers);
   return out;

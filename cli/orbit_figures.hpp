@@ -8,6 +8,6 @@ namespace slipmode::cli {
 
 /// Figures of a stored orbit ("orbit", "multipliers") or of stored branches ("response", "multipliers"); none for other
 /// files.
-[[nodiscard]] std::vector<FileFigure> orbit_figures_of(const scene::StoreReader& store);
+[[nodiscard]] std::vector<FileFigure> orbit_figures_of(const results::StoreReader& store);
 
 }  // namespace slipmode::cli

@@ -1,9 +1,9 @@
 #include "cli/orbit_report.hpp"
 #include "cli/orbit_search.hpp"
 #include "cli/verbs.hpp"
-#include "scene/orbit_records.hpp"
-#include "scene/provenance.hpp"
-#include "scene/records.hpp"
+#include "results/orbit_records.hpp"
+#include "results/provenance.hpp"
+#include "results/records.hpp"
 
 #include <fmt/format.h>
 
@@ -21,12 +21,12 @@ void store(const std::string& path, const scene::Scene& scene, const dynamics::H
   constexpr double kSamples = 1000.0;
   const dynamics::Trajectory period = dynamics::simulate(
       system, orbit.start, {.duration = orbit.period, .sample = orbit.period / kSamples, .flow = {.tolerance = 1e-12}});
-  scene::StoreWriter writer(path);
-  scene::Provenance provenance = scene::provenance_of(scene, "slipmode orbit find");
+  results::StoreWriter writer(path);
+  results::Provenance provenance = results::provenance_of(scene, "slipmode orbit find");
   provenance.audit = period.audit;
-  scene::save(writer, provenance);
-  scene::save(writer, scene::kOrbitGroup, orbit);
-  scene::save(writer, scene::kTrajectoryGroup, period);
+  results::save(writer, provenance);
+  results::save(writer, results::kOrbitGroup, orbit);
+  results::save(writer, results::kTrajectoryGroup, period);
   writer.commit();
 }
 

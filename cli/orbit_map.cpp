@@ -1,10 +1,10 @@
 #include "orbits/orbit_map.hpp"
 
-#include "cli/map_store.hpp"
 #include "cli/sweep_request.hpp"
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
-#include "scene/provenance.hpp"
+#include "results/map_store.hpp"
+#include "results/provenance.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -33,7 +33,7 @@ struct Task {
   scene::Scene scene;
   std::vector<Over> over;
   std::vector<std::string> starts;
-  scene::Journal& journal;
+  results::Journal& journal;
   std::string command;
 };
 
@@ -84,24 +84,24 @@ std::function<dynamics::State(const dynamics::HybridSystem&)> start_of(const sce
 }
 
 /// Axis of a key; a force's own have names of their own.
-SweepAxis axis_of(const scene::Scene& scene, const std::string& key, const Units& units) {
+results::SweepAxis axis_of(const scene::Scene& scene, const std::string& key, const results::Units& units) {
   if (scene.drive.force() != nullptr && key == "drive.omega") return {key, "frequency ω", units.angular};
   if (scene.drive.force() != nullptr && key == "drive.amplitude") return {key, "amplitude of the force A", units.force};
-  return sweep_axis(key, units);
+  return results::sweep_axis(key, units);
 }
 
 Report interrupted(const Task& task) {
   Report report;
   report.exit_code = kInterrupted;
   report.text = fmt::format("interrupted; what is done is kept in {}\nThe same command goes on from there.",
-                            scene::Journal::path_for(task.arguments.output).string());
+                            results::Journal::path_for(task.arguments.output).string());
   report.data = {{"verb", "orbit map"}, {"message", report.text}};
   return report;
 }
 
-scene::StoreWriter writer_of(const Task& task) {
-  scene::StoreWriter writer(task.arguments.output);
-  scene::save(writer, scene::provenance_of(task.scene, task.command));
+results::StoreWriter writer_of(const Task& task) {
+  results::StoreWriter writer(task.arguments.output);
+  results::save(writer, results::provenance_of(task.scene, task.command));
   return writer;
 }
 
@@ -130,21 +130,22 @@ Report run_map(const Task& task) {
   if (!systems.base().contacts().empty()) options.row = systems.base().contacts().front().direction;
 
   Report report;
-  std::vector<StartedMap> maps;
+  std::vector<results::StartedMap> maps;
   for (const std::string& start : task.starts) {
     ProgressLine line("map from " + start, task.session.progress_mode());
     orbits::OrbitMap map = orbits::orbit_map(
         [&](double x, double y) {
           return systems.at({x, y});
         },
-        start_of(task.scene, start), grid, options, task.session.parallel(line), map_sink(task.journal, start));
+        start_of(task.scene, start), grid, options, task.session.parallel(line),
+        results::map_sink(task.journal, start));
     if (map.interrupted) return interrupted(task);
     maps.push_back({start, std::move(map)});
   }
-  const Units units = Units::of(task.scene.units);
-  scene::StoreWriter writer = writer_of(task);
-  store_map(writer, axis_of(task.scene, task.over[0].key, units), axis_of(task.scene, task.over[1].key, units), grid,
-            maps, units.length);
+  const results::Units units = results::Units::of(task.scene.units);
+  results::StoreWriter writer = writer_of(task);
+  results::store_map(writer, axis_of(task.scene, task.over[0].key, units), axis_of(task.scene, task.over[1].key, units),
+                     grid, maps, units.length);
   writer.commit();
 
   report.text = fmt::format("{}: {} x {} points of {} and {}\n", task.scene.title, grid.x.size(), grid.y.size(),
@@ -179,20 +180,20 @@ Report run_strobe(const Task& task) {
     options.rows.row(static_cast<Eigen::Index>(c)) = contacts[c].direction.transpose();
   }
   Report report;
-  std::vector<StartedStrobe> runs;
+  std::vector<results::StartedStrobe> runs;
   for (const std::string& start : task.starts) {
     ProgressLine line("map from " + start, task.session.progress_mode());
     orbits::StrobeMap map =
         orbits::strobe_map([&](double value) { return systems.at({value}); }, start_of(task.scene, start), over.values,
-                           options, task.session.parallel(line), strobe_sink(task.journal, start));
+                           options, task.session.parallel(line), results::strobe_sink(task.journal, start));
     if (map.interrupted) return interrupted(task);
-    StartedStrobe run{start, {}};
+    results::StartedStrobe run{start, {}};
     for (auto& point : map.points) run.points.push_back(std::move(*point));
     runs.push_back(std::move(run));
   }
-  const Units units = Units::of(task.scene.units);
-  scene::StoreWriter writer = writer_of(task);
-  store_strobe(writer, axis_of(task.scene, over.key, units), runs, units.length);
+  const results::Units units = results::Units::of(task.scene.units);
+  results::StoreWriter writer = writer_of(task);
+  results::store_strobe(writer, axis_of(task.scene, over.key, units), runs, units.length);
   writer.commit();
 
   report.text = fmt::format("{}: {} values of {}\n", task.scene.title, over.values.size(), over.key);
@@ -236,9 +237,9 @@ Report run(const Session& session, const OrbitMapArguments& arguments) {
                   fmt::join(arguments.over, " --over "), arguments.start, arguments.max_order, arguments.periods,
                   arguments.kept, arguments.tolerance, arguments.follow ? " --follow" : "");
   const std::vector<std::string> starts = starts_of(arguments);
-  scene::Journal journal(
-      scene::Journal::path_for(arguments.output),
-      scene::fingerprint(fmt::format("{}\n{}\n{}", scene::version(), command, scene::scene_to_toml(scene))));
+  results::Journal journal(
+      results::Journal::path_for(arguments.output),
+      results::fingerprint(fmt::format("{}\n{}\n{}", results::version(), command, scene::scene_to_toml(scene))));
   const std::size_t resumed = journal.records().size();
   const Task task{session, arguments, scene, over, starts, journal, command};
   Report report = over.size() == 2 ? run_map(task) : run_strobe(task);

@@ -1,8 +1,8 @@
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
 #include "orbits/close_returns.hpp"
-#include "scene/store.hpp"
-#include "scene/table.hpp"
+#include "results/store.hpp"
+#include "results/table.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -32,7 +32,7 @@ Eigen::VectorXd read_series(const OrbitReturnsArguments& arguments) {
     throw InvalidInput(fmt::format("{}: expected FILE:DATASET, e.g. run.h5:trajectory/v ('slipmode info' lists them)",
                                    arguments.series));
   }
-  const scene::StoreReader store(arguments.series.substr(0, colon));
+  const results::StoreReader store(arguments.series.substr(0, colon));
   const std::string name = arguments.series.substr(colon + 1);
   const auto shape = store.entry(name).shape;
   if (shape.size() == 1) return store.vector(name);
@@ -75,24 +75,24 @@ std::vector<double> column_of(const std::vector<Recurrence>& groups, double (*nu
 
 void store_groups(const OrbitReturnsArguments& arguments, const Eigen::MatrixXd& points,
                   const std::vector<Recurrence>& groups) {
-  scene::StoreWriter writer(arguments.output);
+  results::StoreWriter writer(arguments.output);
   writer.describe_group("returns", fmt::format("close returns of {}, delay {}, dimension {}", arguments.series,
                                                arguments.delay, arguments.dimension));
-  scene::save(
+  results::save(
       writer, "returns/orbits",
-      scene::Table{"approximate orbits, by length; lengths and instants in samples",
-                   {{"length",
-                     {"", "of the nearest return"},
-                     column_of(groups, [](const Recurrence& g) { return static_cast<double>(g.nearest.length); })},
-                    {"begin",
-                     {"", "instant the nearest return begins at, from 0"},
-                     column_of(groups, [](const Recurrence& g) { return static_cast<double>(g.nearest.begin); })},
-                    {"distance",
-                     {"1", "of the nearest return, in the unit of the series"},
-                     column_of(groups, [](const Recurrence& g) { return g.nearest.distance; })},
-                    {"returns", {"", "how many were seen"}, column_of(groups, [](const Recurrence& g) {
-                       return static_cast<double>(g.count);
-                     })}}});
+      results::Table{"approximate orbits, by length; lengths and instants in samples",
+                     {{"length",
+                       {"", "of the nearest return"},
+                       column_of(groups, [](const Recurrence& g) { return static_cast<double>(g.nearest.length); })},
+                      {"begin",
+                       {"", "instant the nearest return begins at, from 0"},
+                       column_of(groups, [](const Recurrence& g) { return static_cast<double>(g.nearest.begin); })},
+                      {"distance",
+                       {"1", "of the nearest return, in the unit of the series"},
+                       column_of(groups, [](const Recurrence& g) { return g.nearest.distance; })},
+                      {"returns", {"", "how many were seen"}, column_of(groups, [](const Recurrence& g) {
+                         return static_cast<double>(g.count);
+                       })}}});
   for (std::size_t k = 0; k < groups.size(); ++k) {
     const orbits::CloseReturn& nearest = groups[k].nearest;
     writer.write_columns(fmt::format("returns/orbit_{:03}", k + 1),

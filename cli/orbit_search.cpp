@@ -1,8 +1,8 @@
 #include "cli/orbit_search.hpp"
 
-#include "cli/reduced_file.hpp"
+#include "results/records.hpp"
+#include "results/reduced_file.hpp"
 #include "rom/reduce.hpp"
-#include "scene/records.hpp"
 
 #include <fmt/format.h>
 #include <charconv>
@@ -117,12 +117,12 @@ std::string SearchModel::title() const {
 SearchModel search_model(const OrbitSearch& search, const scene::Scene& scene) {
   SearchModel model{.full = scene::build_system(scene)};
   if (search.model == "full") return model;
-  const std::optional<std::string> file = reduced_file(search.model);
+  const std::optional<std::string> file = results::reduced_file(search.model);
   if (!file) {
     throw InvalidInput(
         fmt::format("--model {}: expected full, or rom:FILE with a result of 'slipmode reduce'", search.model));
   }
-  model.basis = reduced_basis(*file, model.full.size());
+  model.basis = results::reduced_basis(*file, model.full.size());
   return model;
 }
 

@@ -1,9 +1,9 @@
-#include "cli/reduced_file.hpp"
 #include "cli/skeleton_store.hpp"
 #include "cli/verbs.hpp"
+#include "results/provenance.hpp"
+#include "results/records.hpp"
+#include "results/reduced_file.hpp"
 #include "rom/reduce.hpp"
-#include "scene/provenance.hpp"
-#include "scene/records.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -29,12 +29,12 @@ struct Recorded {
 
 /// The basis of a reduced model's file. @param option  for messages
 pod::Basis basis_of(const std::string& model, const std::string& option, Eigen::Index size) {
-  const std::optional<std::string> file = reduced_file(model);
+  const std::optional<std::string> file = results::reduced_file(model);
   if (!file) {
     throw InvalidInput(fmt::format("{} {}: expected {}rom:FILE with a result of 'slipmode reduce'", option, model,
                                    option == "--model" ? "full, or " : ""));
   }
-  return reduced_basis(*file, size);
+  return results::reduced_basis(*file, size);
 }
 
 /// How long is recorded: two hundred times what a run of the scene keeps, unless the user says.
@@ -132,12 +132,13 @@ ModelSkeleton shown(const Recorded& model, orbits::Skeleton skeleton) {
   return {model.title, std::move(skeleton), model.portrait};
 }
 
-scene::StoreWriter begin_store(const OrbitSkeletonArguments& arguments, const scene::Scene& scene) {
-  scene::StoreWriter writer(arguments.output);
-  scene::save(writer, scene::provenance_of(scene, fmt::format("slipmode orbit skeleton --model {}{}", arguments.model,
-                                                              arguments.compare_with.empty()
-                                                                  ? ""
-                                                                  : " --compare-with " + arguments.compare_with)));
+results::StoreWriter begin_store(const OrbitSkeletonArguments& arguments, const scene::Scene& scene) {
+  results::StoreWriter writer(arguments.output);
+  results::save(
+      writer,
+      results::provenance_of(
+          scene, fmt::format("slipmode orbit skeleton --model {}{}", arguments.model,
+                             arguments.compare_with.empty() ? "" : " --compare-with " + arguments.compare_with)));
   return writer;
 }
 
@@ -145,8 +146,8 @@ Report run_one(const Session& session, const OrbitSkeletonArguments& arguments, 
                const std::optional<pod::Basis>& basis) {
   const Recorded model = record(session, arguments, scene, basis, {});
   const ModelSkeleton found = shown(model, found_in(session, arguments, model, "skeleton"));
-  scene::StoreWriter writer = begin_store(arguments, scene);
-  store_skeleton(writer, basis ? "reduced" : "full", found, Units::of(scene.units));
+  results::StoreWriter writer = begin_store(arguments, scene);
+  store_skeleton(writer, basis ? "reduced" : "full", found, results::Units::of(scene.units));
   writer.commit();
   Report report;
   report.data = {
@@ -164,8 +165,8 @@ Report run_pair(const Session& session, const OrbitSkeletonArguments& arguments,
       orbits::compare_skeletons(pair.full, pair.reduced, full.attractor.metric);
   const ModelSkeleton of_full = shown(full, std::move(pair.full));
   const ModelSkeleton of_reduced = shown(reduced, std::move(pair.reduced));
-  const Units units = Units::of(scene.units);
-  scene::StoreWriter writer = begin_store(arguments, scene);
+  const results::Units units = results::Units::of(scene.units);
+  results::StoreWriter writer = begin_store(arguments, scene);
   store_skeleton(writer, "full", of_full, units);
   store_skeleton(writer, "reduced", of_reduced, units);
   store_comparison(writer, comparison);

@@ -4,8 +4,8 @@
 #include "cli/validate_run.hpp"
 #include "cli/validation_setup.hpp"
 #include "fem/modes.hpp"
+#include "results/records.hpp"
 #include "rom/reduce.hpp"
-#include "scene/records.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -71,11 +71,11 @@ class Pipeline {
     options.on_event = [this](const auto&, const auto&) { return !session_.stop->load(); };
     const auto run = dynamics::simulate(full_, scene::initial_state(scene_, full_), options);
     session_.check_interrupt();
-    scene::Provenance provenance = scene::provenance_of(scene_, "slipmode run");
+    results::Provenance provenance = results::provenance_of(scene_, "slipmode run");
     provenance.audit = run.audit;
-    scene::StoreWriter writer(file("trajectory.h5"));
-    scene::save(writer, provenance);
-    scene::save(writer, scene::kTrajectoryGroup, run);
+    results::StoreWriter writer(file("trajectory.h5"));
+    results::save(writer, provenance);
+    results::save(writer, results::kTrajectoryGroup, run);
     writer.commit();
   }
 
@@ -88,9 +88,9 @@ class Pipeline {
   void pod() {
     result_.pod = pod::pod(result_.ensemble->ensemble);
     result_.ensemble->ensemble = {};
-    scene::StoreWriter writer(file("pod.h5"));
-    scene::save(writer, scene::provenance_of(scene_, "slipmode run"));
-    scene::save(writer, scene::kPodGroup, *result_.pod);
+    results::StoreWriter writer(file("pod.h5"));
+    results::save(writer, results::provenance_of(scene_, "slipmode run"));
+    results::save(writer, results::kPodGroup, *result_.pod);
     writer.commit();
   }
 
@@ -100,10 +100,10 @@ class Pipeline {
     for (const auto& candidate : candidates_) {
       const pod::Basis basis = candidate.basis.truncated(result_.chosen);
       const std::string name = fmt::format("reduced_{}.h5", candidate.name == "POM" ? "pom" : "lnm");
-      scene::StoreWriter writer(file(name));
-      scene::save(writer, scene::provenance_of(scene_, "slipmode run"));
-      scene::save(writer, scene::kReducedGroup,
-                  scene::ReducedModel{.system = rom::reduce(full_, basis), .basis = basis});
+      results::StoreWriter writer(file(name));
+      results::save(writer, results::provenance_of(scene_, "slipmode run"));
+      results::save(writer, results::kReducedGroup,
+                    results::ReducedModel{.system = rom::reduce(full_, basis), .basis = basis});
       writer.commit();
     }
   }

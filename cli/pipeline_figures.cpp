@@ -14,7 +14,7 @@ std::vector<std::string> save_figures_of(const Session& session, const std::file
   std::vector<std::pair<std::string, figures::Figure>> drawn;
   for (const std::string& name : files) {
     if (std::find(skipped.begin(), skipped.end(), name) != skipped.end()) continue;
-    const scene::StoreReader store(folder / name);
+    const results::StoreReader store(folder / name);
     for (const FileFigure& figure : figures_of(store)) drawn.emplace_back(figure.name, figure.draw());
   }
   std::vector<std::string> names;

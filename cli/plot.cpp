@@ -32,7 +32,7 @@ const FileFigure& select(const std::vector<FileFigure>& figures, const PlotArgum
 Report run(const PlotArguments& arguments) {
   figures::require_figure_extension(arguments.output);
   require_writable(arguments.output);
-  const scene::StoreReader store(arguments.input);
+  const results::StoreReader store(arguments.input);
   const std::vector<FileFigure> figures = figures_of(store);
   const FileFigure& figure = select(figures, arguments);
   figures::save(figure.draw(), {arguments.output});

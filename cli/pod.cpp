@@ -5,7 +5,7 @@
 #include "cli/steps.hpp"
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
-#include "scene/records.hpp"
+#include "results/records.hpp"
 
 #include <fmt/format.h>
 
@@ -28,14 +28,14 @@ pod::PodResult decompose(const pod::Ensemble& ensemble, const PodArguments& argu
 
 /// Under a shaker modes have the mass metric, and sensors give modal functions.
 Report run_shaken(const PodArguments& arguments, const scene::Scene& scene, const pod::Ensemble& ensemble,
-                  scene::Provenance provenance) {
+                  results::Provenance provenance) {
   if (arguments.modes > 0) {
     throw InvalidInput("--modes: under a shaker all modes are kept, 'slipmode reduce --modes' takes as many as wanted");
   }
   const ShakenModes modes = shaken_modes(scene, scene::build_system(scene).structure(), ensemble);
   provenance.command = "slipmode pod";
-  scene::StoreWriter writer(arguments.output);
-  scene::save(writer, provenance);
+  results::StoreWriter writer(arguments.output);
+  results::save(writer, provenance);
   save(writer, modes);
   writer.commit();
   Report report;
@@ -51,19 +51,19 @@ Report run_shaken(const PodArguments& arguments, const scene::Scene& scene, cons
 
 Report run(const Session& session, const PodArguments& arguments) {
   require_writable(arguments.output);
-  const scene::StoreReader store(arguments.input);
-  scene::Provenance provenance = scene::load_provenance(store);
+  const results::StoreReader store(arguments.input);
+  results::Provenance provenance = results::load_provenance(store);
   const pod::Ensemble ensemble = load_snapshots(store);
   session.check_interrupt();
-  if (const scene::Scene scene = scene::load_scene_of(store); is_shaken(scene)) {
+  if (const scene::Scene scene = results::load_scene_of(store); is_shaken(scene)) {
     return run_shaken(arguments, scene, ensemble, std::move(provenance));
   }
   const pod::PodResult result = decompose(ensemble, arguments);
 
   provenance.command = "slipmode pod";
-  scene::StoreWriter writer(arguments.output);
-  scene::save(writer, provenance);
-  scene::save(writer, scene::kPodGroup, result);
+  results::StoreWriter writer(arguments.output);
+  results::save(writer, provenance);
+  results::save(writer, results::kPodGroup, result);
   writer.commit();
 
   const Eigen::VectorXd sum = cumulative(result.shares);

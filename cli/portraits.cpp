@@ -1,7 +1,7 @@
 #include "cli/portraits.hpp"
 
-#include "cli/sweep_store.hpp"
 #include "core/errors.hpp"
+#include "results/sweep_store.hpp"
 #include "rom/reduce.hpp"
 
 #include <fmt/format.h>
@@ -56,8 +56,8 @@ PortraitSet level_portraits(const dynamics::HybridSystem& full, const diagnostic
   constexpr Eigen::Index kFewest = 3;  // one and two modes leave the frame (S4 section 3.4.2)
   const dynamics::HybridSystem at_speed = full.with_drive(friction::Belt::constant(report.speed));
   PortraitSet set{.columns = 4, .portraits = {}};
-  set.portraits.push_back(
-      run_portrait(at_speed, report.full.end, fmt::format("full, {}", motion_text(report.full.period)), "full"));
+  set.portraits.push_back(run_portrait(at_speed, report.full.end,
+                                       fmt::format("full, {}", results::motion_text(report.full.period)), "full"));
   std::vector<const diagnostics::ShareRow*> levels;
   for (const auto& row : report.candidates.front().shares) {
     const bool shown = row.modes >= std::min(kFewest, report.chosen) && row.modes < full.size();
@@ -68,7 +68,8 @@ PortraitSet level_portraits(const dynamics::HybridSystem& full, const diagnostic
   for (const diagnostics::ShareRow* row : levels) {
     set.portraits.push_back(run_portrait(
         rom::reduce(at_speed, candidate.basis.truncated(row->modes)), row->attractor->end,
-        fmt::format("{} {}s, {}", row->modes, candidate.name, motion_text(row->attractor->period)), candidate.name));
+        fmt::format("{} {}s, {}", row->modes, candidate.name, results::motion_text(row->attractor->period)),
+        candidate.name));
   }
   return set;
 }
@@ -92,7 +93,8 @@ PortraitSet orbit_portraits(const dynamics::HybridSystem& full, const diagnostic
   return set;
 }
 
-void store_portraits(scene::StoreWriter& writer, const std::string& group, const PortraitSet& set, const Units& units) {
+void store_portraits(results::StoreWriter& writer, const std::string& group, const PortraitSet& set,
+                     const results::Units& units) {
   if (set.portraits.empty()) return;
   writer.write(group + "/columns", static_cast<std::int64_t>(set.columns), {"", "panels in a row"});
   writer.write(group + "/count", static_cast<std::int64_t>(set.portraits.size()), {"", "number of portraits"});
@@ -106,7 +108,7 @@ void store_portraits(scene::StoreWriter& writer, const std::string& group, const
   }
 }
 
-PortraitSet load_portraits(const scene::StoreReader& store, const std::string& group) {
+PortraitSet load_portraits(const results::StoreReader& store, const std::string& group) {
   PortraitSet set{.columns = static_cast<int>(store.integer(group + "/columns")), .portraits = {}};
   const std::int64_t count = store.integer(group + "/count");
   for (std::int64_t i = 0; i < count; ++i) {

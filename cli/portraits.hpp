@@ -1,9 +1,9 @@
 #pragma once
 
-#include "cli/units.hpp"
 #include "diagnostics/validate.hpp"
+#include "results/store.hpp"
+#include "results/units.hpp"
 #include "scene/scene.hpp"
-#include "scene/store.hpp"
 
 #include <string>
 #include <vector>
@@ -32,7 +32,8 @@ struct PortraitSet {
                                           const diagnostics::ValidationReport& report);
 
 /// Writes a group with one sub-group per portrait. An empty set writes nothing.
-void store_portraits(scene::StoreWriter& writer, const std::string& group, const PortraitSet& set, const Units& units);
-[[nodiscard]] PortraitSet load_portraits(const scene::StoreReader& store, const std::string& group);
+void store_portraits(results::StoreWriter& writer, const std::string& group, const PortraitSet& set,
+                     const results::Units& units);
+[[nodiscard]] PortraitSet load_portraits(const results::StoreReader& store, const std::string& group);
 
 }  // namespace slipmode::cli

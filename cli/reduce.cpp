@@ -6,7 +6,7 @@
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
 #include "fem/modes.hpp"
-#include "scene/records.hpp"
+#include "results/records.hpp"
 
 #include <fmt/format.h>
 
@@ -25,8 +25,8 @@ BasisSource load_shaken_basis(const scene::Scene& scene, const dynamics::HybridS
   for (const auto word : {scene::BasisChoice::kLnm, scene::BasisChoice::kLnmStatic}) {
     if (source == scene::to_string(word)) return {.basis = shaken_basis(word, scene, full, no_ensemble), .shares = {}};
   }
-  const scene::StoreReader store(source);
-  if (!store.has(scene::kPodGroup)) return load_basis_source(source, full.structure());
+  const results::StoreReader store(source);
+  if (!store.has(results::kPodGroup)) return load_basis_source(source, full.structure());
   scene::Scene one = scene;
   one.shaken.bases = {scene.reduction.basis};
   const pod::Basis basis = load_shaken_candidates(one, full, source).front().basis;
@@ -54,9 +54,9 @@ Report run(const Session& session, const ReduceArguments& arguments) {
   const pod::Basis basis = source.basis.truncated(modes);
   const dynamics::HybridSystem reduced = rom::reduce(full, basis);
 
-  scene::StoreWriter writer(arguments.output);
-  scene::save(writer, scene::provenance_of(scene, fmt::format("slipmode reduce --modes {}", modes)));
-  scene::save(writer, scene::kReducedGroup, scene::ReducedModel{.system = reduced, .basis = basis});
+  results::StoreWriter writer(arguments.output);
+  results::save(writer, results::provenance_of(scene, fmt::format("slipmode reduce --modes {}", modes)));
+  results::save(writer, results::kReducedGroup, results::ReducedModel{.system = reduced, .basis = basis});
   writer.commit();
 
   const Eigen::VectorXd omega_full = fem::natural_modes(full.structure(), modes).omega;

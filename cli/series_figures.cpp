@@ -5,7 +5,7 @@
 #include "cli/figures/recurrence_plot.hpp"
 #include "cli/figures/style.hpp"
 #include "cli/series_store.hpp"
-#include "scene/table.hpp"
+#include "results/table.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -24,7 +24,7 @@ figures::Series guide_line(double x0, double y0, double x1, double y1, std::stri
   return {std::move(title), Eigen::VectorXd{{x0, x1}}, Eigen::VectorXd{{y0, y1}}, look, colour};
 }
 
-figures::Figure draw_delay_map(const scene::StoreReader& store) {
+figures::Figure draw_delay_map(const results::StoreReader& store) {
   constexpr Eigen::Index kShown = 6000;
   const Eigen::VectorXd values = store.vector(diagnosis_path("series/values"));
   const Eigen::Index delay = store.integer(diagnosis_path("embedding/delay"));
@@ -51,16 +51,16 @@ std::string estimator_title(const std::string& column) {
   return fmt::format("{} {}", column.substr(number), width ? "cells" : "bins of equal numbers");
 }
 
-figures::Figure draw_information(const scene::StoreReader& store) {
+figures::Figure draw_information(const results::StoreReader& store) {
   constexpr std::array<std::string_view, 6> kColours = {"#CCCCCC", "#AAAAAA", "#888888",
                                                         "#666666", "#444444", "#222222"};
-  const scene::Table table = scene::load_table(store, diagnosis_path("information"));
+  const results::Table table = results::load_table(store, diagnosis_path("information"));
   const Eigen::VectorXd lag = figures::to_vector(table.numbers("lag"));
   const auto delay = static_cast<double>(store.integer(diagnosis_path("embedding/delay")));
   figures::Panel panel{.title = "average mutual information", .series = {}};
   std::size_t widths = 0;
   double top = 0.0;
-  for (const scene::Column& column : table.columns) {
+  for (const results::Column& column : table.columns) {
     if (column.name == "lag") continue;
     const Eigen::VectorXd bits = figures::to_vector(table.numbers(column.name));
     const bool width = column.name.starts_with("equal_width");
@@ -77,8 +77,8 @@ figures::Figure draw_information(const scene::StoreReader& store) {
                                        .legend = kLegendInside});
 }
 
-figures::Figure draw_autocorrelation(const scene::StoreReader& store) {
-  const scene::Table table = scene::load_table(store, diagnosis_path("autocorrelation"));
+figures::Figure draw_autocorrelation(const results::StoreReader& store) {
+  const results::Table table = results::load_table(store, diagnosis_path("autocorrelation"));
   const Eigen::VectorXd lag = figures::to_vector(table.numbers("lag")),
                         value = figures::to_vector(table.numbers("value"));
   const double last = lag(lag.size() - 1), level = std::exp(-1.0);
@@ -92,8 +92,8 @@ figures::Figure draw_autocorrelation(const scene::StoreReader& store) {
                                        .legend = kLegendInside});
 }
 
-figures::Figure draw_neighbours(const scene::StoreReader& store) {
-  const scene::Table table = scene::load_table(store, diagnosis_path("neighbours"));
+figures::Figure draw_neighbours(const results::StoreReader& store) {
+  const results::Table table = results::load_table(store, diagnosis_path("neighbours"));
   const Eigen::VectorXd d = figures::to_vector(table.numbers("dimension"));
   const auto curve = [&](const std::string& column, double scale, std::string title, std::string_view colour) {
     return figures::Series{std::move(title), d, scale * figures::to_vector(table.numbers(column)),
@@ -114,7 +114,7 @@ figures::Figure draw_neighbours(const scene::StoreReader& store) {
 }
 
 /// The fitted stretch of a curve, drawn over it.
-figures::Series fitted_line(const scene::StoreReader& store, const std::string& group, const Eigen::VectorXd& x) {
+figures::Series fitted_line(const results::StoreReader& store, const std::string& group, const Eigen::VectorXd& x) {
   const auto begin = store.integer(group + "/fit/begin"), end = store.integer(group + "/fit/end");
   const double slope = store.number(group + "/fit/slope"), intercept = store.number(group + "/fit/intercept");
   const double x0 = x(begin), x1 = x(end - 1);
@@ -122,13 +122,13 @@ figures::Series fitted_line(const scene::StoreReader& store, const std::string& 
                     kFittedColour, figures::Series::Look::kMarkedLine);
 }
 
-figures::Figure draw_divergence(const scene::StoreReader& store) {
+figures::Figure draw_divergence(const results::StoreReader& store) {
   std::vector<figures::Panel> panels;
   std::string unit;
   for (const auto& [group, title] :
        {std::pair{"across_the_flow", "across the flow"}, {"rosenstein", "Rosenstein"}, {"kantz", "Kantz"}}) {
     if (!store.has(diagnosis_path(group))) continue;
-    const scene::Table table = scene::load_table(store, diagnosis_path(group));
+    const results::Table table = results::load_table(store, diagnosis_path(group));
     const Eigen::VectorXd time = figures::to_vector(table.numbers("time")),
                           log = figures::to_vector(table.numbers("mean_log"));
     const double slope = store.number(diagnosis_path(group) + "/fit/slope");
@@ -146,8 +146,8 @@ figures::Figure draw_divergence(const scene::StoreReader& store) {
                                       .shared_y = false});
 }
 
-figures::Figure draw_dimension(const scene::StoreReader& store) {
-  const scene::Table table = scene::load_table(store, diagnosis_path("correlation"));
+figures::Figure draw_dimension(const results::StoreReader& store) {
+  const results::Table table = results::load_table(store, diagnosis_path("correlation"));
   const Eigen::VectorXd r = figures::to_vector(table.numbers("radius")), C = figures::to_vector(table.numbers("C"));
   const Eigen::VectorXd log_r = r.array().log10(), log_C = C.array().log10();
   const std::string group = diagnosis_path("correlation");
@@ -166,8 +166,8 @@ figures::Figure draw_dimension(const scene::StoreReader& store) {
       {sums, slopes}, {.panel_height = 340, .x_label = "log_{10} of the radius", .y_label = "", .shared_y = false});
 }
 
-figures::Figure draw_spectrum(const scene::StoreReader& store) {
-  const scene::Table table = scene::load_table(store, diagnosis_path("spectrum"));
+figures::Figure draw_spectrum(const results::StoreReader& store) {
+  const results::Table table = results::load_table(store, diagnosis_path("spectrum"));
   const Eigen::VectorXd f = figures::to_vector(table.numbers("frequency")),
                         a = figures::to_vector(table.numbers("amplitude"));
   const std::string unit = store.entry(diagnosis_path("spectrum/frequency")).meaning.units;
@@ -181,7 +181,7 @@ figures::Figure draw_spectrum(const scene::StoreReader& store) {
                 .log_y = true});
 }
 
-figures::Figure draw_section(const scene::StoreReader& store) {
+figures::Figure draw_section(const results::StoreReader& store) {
   const Eigen::MatrixXd points = store.columns(diagnosis_path("section/points"));
   const std::string unit = store.entry(diagnosis_path("series/values")).meaning.units;
   const bool strobe = store.text(diagnosis_path("section/cut")) == "strobe";
@@ -196,7 +196,7 @@ figures::Figure draw_section(const scene::StoreReader& store) {
                               .y_label = figures::axis_label(strobe ? "s(t + delay)" : "s(t + 2 delay)", unit)});
 }
 
-figures::Figure draw_recurrence(const scene::StoreReader& store) {
+figures::Figure draw_recurrence(const results::StoreReader& store) {
   const std::string unit = store.entry(diagnosis_path("recurrence/interval")).meaning.units;
   return figures::recurrence_plot(
       {.i = store.integers(diagnosis_path("recurrence/i")),
@@ -210,7 +210,7 @@ figures::Figure draw_recurrence(const scene::StoreReader& store) {
 
 }  // namespace
 
-std::vector<FileFigure> series_figures_of(const scene::StoreReader& store) {
+std::vector<FileFigure> series_figures_of(const results::StoreReader& store) {
   std::vector<FileFigure> out;
   const auto add = [&](const std::string& group, std::string name, std::string what, auto draw) {
     if (store.has(diagnosis_path(group)))
@@ -229,7 +229,7 @@ std::vector<FileFigure> series_figures_of(const scene::StoreReader& store) {
   return out;
 }
 
-std::vector<std::string> draw_series_figures(const scene::StoreReader& store, const std::filesystem::path& folder) {
+std::vector<std::string> draw_series_figures(const results::StoreReader& store, const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
   std::vector<std::string> names;
   for (const FileFigure& figure : series_figures_of(store)) {

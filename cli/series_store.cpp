@@ -1,8 +1,8 @@
 #include "cli/series_store.hpp"
 
 #include "cli/json_values.hpp"
-#include "scene/provenance.hpp"
-#include "scene/table.hpp"
+#include "results/provenance.hpp"
+#include "results/table.hpp"
 
 #include <fmt/format.h>
 #include <cmath>
@@ -29,8 +29,8 @@ std::vector<double> numbers_of(const std::vector<Finding>& findings, const Pick&
   return out;
 }
 
-void save_findings(scene::StoreWriter& store, const std::vector<Finding>& findings) {
-  scene::save(
+void save_findings(results::StoreWriter& store, const std::vector<Finding>& findings) {
+  results::save(
       store, diagnosis_path("findings"),
       {"every number; error NaN: exact or not known; unit per row",
        {{"key", {"", "short name"}, texts_of(findings, [](const Finding& f) { return f.key; })},
@@ -41,7 +41,8 @@ void save_findings(scene::StoreWriter& store, const std::vector<Finding>& findin
         {"settings", {"", "how it was come by"}, texts_of(findings, [](const Finding& f) { return f.settings; })}}});
 }
 
-void save_record(scene::StoreWriter& store, const diagnostics::SeriesStudy& study, const SeriesInput& input) {
+void save_record(results::StoreWriter& store, const diagnostics::SeriesStudy& study,
+                 const results::SeriesInput& input) {
   const diagnostics::Series& series = study.series;
   store.describe_group(diagnosis_path("series"), "the record as examined");
   store.write(diagnosis_path("series/values"), series.values, {series.unit, "samples"});
@@ -67,40 +68,40 @@ std::string information_column(const diagnostics::InformationOptions& options) {
   return "no_bins";
 }
 
-void save_information(scene::StoreWriter& store, const diagnostics::SeriesStudy& study) {
+void save_information(results::StoreWriter& store, const diagnostics::SeriesStudy& study) {
   if (study.information.empty()) return;
-  scene::Table table{"average mutual information of s(n) and s(n + lag), one column per estimator",
-                     {{"lag", {"", "samples"}, whole_numbers(0, study.information.front().bits.size())}}};
+  results::Table table{"average mutual information of s(n) and s(n + lag), one column per estimator",
+                       {{"lag", {"", "samples"}, whole_numbers(0, study.information.front().bits.size())}}};
   for (const diagnostics::MutualInformation& curve : study.information) {
     table.columns.push_back({information_column(curve.settings),
                              {"bit", fmt::format("±{:.2g} between the halves; first minimum at {} (-1: none)",
                                                  curve.error, curve.first_minimum)},
                              json_list(curve.bits)});
   }
-  scene::save(store, diagnosis_path("information"), table);
+  results::save(store, diagnosis_path("information"), table);
 }
 
-void save_neighbours(scene::StoreWriter& store, const diagnostics::SeriesStudy& study) {
+void save_neighbours(results::StoreWriter& store, const diagnostics::SeriesStudy& study) {
   if (!study.false_neighbours || !study.cao) return;
   const diagnostics::FalseNeighbours& found = *study.false_neighbours;
-  scene::save(store, diagnosis_path("neighbours"),
-              {"false nearest neighbours (Kennel) and Cao's averages against the dimension",
-               {{"dimension", {"", "of the embedding"}, whole_numbers(1, found.share.size())},
-                {"share", {"1", "share of false neighbours by either criterion"}, json_list(found.share)},
-                {"error", {"1", "half the difference between the halves"}, json_list(found.error)},
-                {"by_ratio",
-                 {"1", fmt::format("next coordinate above {:g} distances", found.settings.ratio)},
-                 json_list(found.by_ratio)},
-                {"by_size",
-                 {"1", fmt::format("then farther than {:g} deviations", found.settings.size)},
-                 json_list(found.by_size)},
-                {"E1", {"1", "Cao's E1"}, json_list(study.cao->E1)},
-                {"E1_error", {"1", "from halves"}, json_list(study.cao->E1_error)},
-                {"E2", {"1", "Cao's E2"}, json_list(study.cao->E2)},
-                {"E2_error", {"1", "from halves"}, json_list(study.cao->E2_error)}}});
+  results::save(store, diagnosis_path("neighbours"),
+                {"false nearest neighbours (Kennel) and Cao's averages against the dimension",
+                 {{"dimension", {"", "of the embedding"}, whole_numbers(1, found.share.size())},
+                  {"share", {"1", "share of false neighbours by either criterion"}, json_list(found.share)},
+                  {"error", {"1", "half the difference between the halves"}, json_list(found.error)},
+                  {"by_ratio",
+                   {"1", fmt::format("next coordinate above {:g} distances", found.settings.ratio)},
+                   json_list(found.by_ratio)},
+                  {"by_size",
+                   {"1", fmt::format("then farther than {:g} deviations", found.settings.size)},
+                   json_list(found.by_size)},
+                  {"E1", {"1", "Cao's E1"}, json_list(study.cao->E1)},
+                  {"E1_error", {"1", "from halves"}, json_list(study.cao->E1_error)},
+                  {"E2", {"1", "Cao's E2"}, json_list(study.cao->E2)},
+                  {"E2_error", {"1", "from halves"}, json_list(study.cao->E2_error)}}});
 }
 
-void save_fit(scene::StoreWriter& store, const std::string& group, const diagnostics::LinearFit& fit,
+void save_fit(results::StoreWriter& store, const std::string& group, const diagnostics::LinearFit& fit,
               const std::string& unit) {
   store.write(group + "/fit/begin", std::int64_t{fit.begin}, {"", "first point of the line, from 0"});
   store.write(group + "/fit/end", std::int64_t{fit.end}, {"", "one past its last"});
@@ -108,26 +109,26 @@ void save_fit(scene::StoreWriter& store, const std::string& group, const diagnos
   store.write(group + "/fit/intercept", fit.intercept, {"1", "of the line"});
 }
 
-void save_divergence(scene::StoreWriter& store, const std::string& name, const diagnostics::Divergence& found,
+void save_divergence(results::StoreWriter& store, const std::string& name, const diagnostics::Divergence& found,
                      const diagnostics::Series& series) {
-  scene::save(store, diagnosis_path(name),
-              {fmt::format("mean logarithm of the distance of neighbours, {}", name),
-               {{"time", {series.time_unit, "since they were near"}, json_list(found.time)},
-                {"mean_log", {"1", "natural logarithm"}, json_list(found.mean_log)}}});
+  results::save(store, diagnosis_path(name),
+                {fmt::format("mean logarithm of the distance of neighbours, {}", name),
+                 {{"time", {series.time_unit, "since they were near"}, json_list(found.time)},
+                  {"mean_log", {"1", "natural logarithm"}, json_list(found.mean_log)}}});
   save_fit(store, diagnosis_path(name), found.region, "nat/" + series.time_unit);
 }
 
-void save_correlation(scene::StoreWriter& store, const diagnostics::SeriesStudy& study) {
+void save_correlation(results::StoreWriter& store, const diagnostics::SeriesStudy& study) {
   const diagnostics::CorrelationDimension& found = *study.correlation;
-  scene::save(store, diagnosis_path("correlation"),
-              {"correlation sum",
-               {{"radius", {study.series.unit, "maximum norm"}, json_list(found.radius)},
-                {"C", {"1", "share of pairs within it"}, json_list(found.C)},
-                {"local_slope", {"1", "d ln C / d ln r"}, json_list(found.local_slope)}}});
+  results::save(store, diagnosis_path("correlation"),
+                {"correlation sum",
+                 {{"radius", {study.series.unit, "maximum norm"}, json_list(found.radius)},
+                  {"C", {"1", "share of pairs within it"}, json_list(found.C)},
+                  {"local_slope", {"1", "d ln C / d ln r"}, json_list(found.local_slope)}}});
   save_fit(store, diagnosis_path("correlation"), found.plateau, "1");
 }
 
-void save_recurrence(scene::StoreWriter& store, const diagnostics::SeriesStudy& study) {
+void save_recurrence(results::StoreWriter& store, const diagnostics::SeriesStudy& study) {
   const diagnostics::Recurrence& plot = *study.recurrence;
   store.describe_group(diagnosis_path("recurrence"), "pairs of points i < j of the plot that are near each other");
   const auto row = [&](Eigen::Index k) {
@@ -141,13 +142,13 @@ void save_recurrence(scene::StoreWriter& store, const diagnostics::SeriesStudy& 
   store.write(diagnosis_path("recurrence/radius"), plot.settings.radius, {study.series.unit, "largest distance"});
 }
 
-void save_curves(scene::StoreWriter& store, const diagnostics::SeriesStudy& study) {
+void save_curves(results::StoreWriter& store, const diagnostics::SeriesStudy& study) {
   const diagnostics::Series& series = study.series;
   if (study.autocorrelation) {
-    scene::save(store, diagnosis_path("autocorrelation"),
-                {"autocorrelation",
-                 {{"lag", {"", "samples"}, whole_numbers(0, study.autocorrelation->size())},
-                  {"value", {"1", "autocorrelation"}, json_list(*study.autocorrelation)}}});
+    results::save(store, diagnosis_path("autocorrelation"),
+                  {"autocorrelation",
+                   {{"lag", {"", "samples"}, whole_numbers(0, study.autocorrelation->size())},
+                    {"value", {"1", "autocorrelation"}, json_list(*study.autocorrelation)}}});
   }
   save_information(store, study);
   save_neighbours(store, study);
@@ -157,17 +158,17 @@ void save_curves(scene::StoreWriter& store, const diagnostics::SeriesStudy& stud
   }
   if (study.kantz) save_divergence(store, "kantz", *study.kantz, series);
   if (study.jacobians) {
-    scene::save(store, diagnosis_path("exponents"),
-                {"exponents by fitted Jacobians, descending",
-                 {{"exponent", {"nat/" + series.time_unit, "exponent"}, json_list(study.jacobians->exponents)},
-                  {"error", {"nat/" + series.time_unit, "standard error"}, json_list(study.jacobians->error)}}});
+    results::save(store, diagnosis_path("exponents"),
+                  {"exponents by fitted Jacobians, descending",
+                   {{"exponent", {"nat/" + series.time_unit, "exponent"}, json_list(study.jacobians->exponents)},
+                    {"error", {"nat/" + series.time_unit, "standard error"}, json_list(study.jacobians->error)}}});
   }
   if (study.correlation) save_correlation(store, study);
   if (study.spectrum) {
-    scene::save(store, diagnosis_path("spectrum"),
-                {"averaged amplitude spectrum (Welch)",
-                 {{"frequency", {"1/" + series.time_unit, "frequency"}, json_list(study.spectrum->frequency_hz)},
-                  {"amplitude", {series.unit, "of the sine"}, json_list(study.spectrum->amplitude)}}});
+    results::save(store, diagnosis_path("spectrum"),
+                  {"averaged amplitude spectrum (Welch)",
+                   {{"frequency", {"1/" + series.time_unit, "frequency"}, json_list(study.spectrum->frequency_hz)},
+                    {"amplitude", {series.unit, "of the sine"}, json_list(study.spectrum->amplitude)}}});
   }
   if (study.section) {
     store.write(diagnosis_path("section/time"), study.section->time,
@@ -189,11 +190,11 @@ void save_curves(scene::StoreWriter& store, const diagnostics::SeriesStudy& stud
 
 }  // namespace
 
-void save(scene::StoreWriter& store, const diagnostics::SeriesStudy& study, const SeriesInput& input,
+void save(results::StoreWriter& store, const diagnostics::SeriesStudy& study, const results::SeriesInput& input,
           const std::vector<Finding>& findings) {
   store.describe_group(kDiagnosisGroup, fmt::format("what {} is", study.series.name));
   store.write(diagnosis_path("made_by"),
-              fmt::format("slipmode diagnose {} ({})", scene::version(), scene::git_commit()),
+              fmt::format("slipmode diagnose {} ({})", results::version(), results::git_commit()),
               {"", "program and commit"});
   if (study.verdict) {
     store.write(diagnosis_path("verdict"), std::string(diagnostics::to_string(study.verdict->motion)),
@@ -208,8 +209,8 @@ void save(scene::StoreWriter& store, const diagnostics::SeriesStudy& study, cons
     tools.emplace_back(diagnostics::to_string(failure.tool));
     reasons.push_back(failure.reason);
   }
-  scene::save(store, diagnosis_path("not_run"),
-              {"tools that gave nothing", {{"tool", {"", "tool"}, tools}, {"reason", {"", "why"}, reasons}}});
+  results::save(store, diagnosis_path("not_run"),
+                {"tools that gave nothing", {{"tool", {"", "tool"}, tools}, {"reason", {"", "why"}, reasons}}});
 }
 
 }  // namespace slipmode::cli

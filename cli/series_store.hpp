@@ -1,8 +1,8 @@
 #pragma once
 
 #include "cli/series_findings.hpp"
-#include "cli/series_input.hpp"
-#include "scene/store.hpp"
+#include "results/series_input.hpp"
+#include "results/store.hpp"
 
 #include <string>
 #include <vector>
@@ -18,7 +18,7 @@ inline constexpr const char* kDiagnosisGroup = "diagnosis";
 
 /// Writes group `diagnosis`: the record, every number, every curve. Exponents of curves are in nats, information in
 /// bits; the table `diagnosis/findings` is in the units of `findings`.
-void save(scene::StoreWriter& store, const diagnostics::SeriesStudy& study, const SeriesInput& input,
+void save(results::StoreWriter& store, const diagnostics::SeriesStudy& study, const results::SeriesInput& input,
           const std::vector<Finding>& findings);
 
 }  // namespace slipmode::cli

@@ -5,8 +5,8 @@
 #include "cli/text_table.hpp"
 #include "fem/modes.hpp"
 #include "pod/mode_shares.hpp"
+#include "results/records.hpp"
 #include "rom/reduce.hpp"
-#include "scene/records.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -68,7 +68,7 @@ Eigen::MatrixXd sensor_readings(const scene::Scene& scene, const fem::Beam& beam
   return scene.sensors->noise > 0.0 ? pod::with_noise(exact, scene::sensor_noise(scene)) : exact;
 }
 
-void store_sensors(scene::StoreWriter& writer, const scene::Scene& scene, const Eigen::MatrixXd& q) {
+void store_sensors(results::StoreWriter& writer, const scene::Scene& scene, const Eigen::MatrixXd& q) {
   const bool strain = scene.sensors->kind == pod::SensorKind::kStrain;
   writer.describe_group("sensors", "what the scene's sensors read, noise included");
   writer.write("sensors/x", scene.sensors->x, {"m", "places, from the clamp"});
@@ -93,13 +93,13 @@ ShakenModes shaken_modes(const scene::Scene& scene, const fem::Structure& struct
   return modes;
 }
 
-void save(scene::StoreWriter& writer, const ShakenModes& modes) {
-  scene::save(writer, scene::kPodGroup, modes.mass_pom);
+void save(results::StoreWriter& writer, const ShakenModes& modes) {
+  results::save(writer, results::kPodGroup, modes.mass_pom);
   writer.write("pod/lnm_shares", modes.mass_shares, {"1", "mode x LNM: share of each LNM, mass metric"});
   if (!modes.pomf) return;
   const std::string group = kPomfGroup;
   writer.describe_group(group, "proper orthogonal modal functions from the sensors");
-  scene::save(writer, group + "/basis", modes.pomf->basis);
+  results::save(writer, group + "/basis", modes.pomf->basis);
   writer.write(group + "/sensor_shares", modes.pomf->discrete.shares, {"1", "energy share of each POM at the sensors"});
   writer.write(group + "/mass_shares", modes.pomf->mass_shares, {"1", "share of each POMF in the fitted motion"});
   writer.write(group + "/lnm_shares", modes.pomf_shares, {"1", "POMF x LNM: share of each LNM, mass metric"});
@@ -169,23 +169,23 @@ std::vector<diagnostics::DrivenCandidate> shaken_candidates(const scene::Scene& 
 std::vector<diagnostics::DrivenCandidate> load_shaken_candidates(const scene::Scene& scene,
                                                                  const dynamics::HybridSystem& system,
                                                                  const std::string& file) {
-  const scene::StoreReader store(file);
-  if (store.has(scene::kReducedGroup)) {
-    const pod::Basis basis = scene::load_basis(store, std::string(scene::kReducedGroup) + "/basis", system.size());
+  const results::StoreReader store(file);
+  if (store.has(results::kReducedGroup)) {
+    const pod::Basis basis = results::load_basis(store, std::string(results::kReducedGroup) + "/basis", system.size());
     return {{.name = std::string(pod::to_string(basis.kind)), .basis = basis}};
   }
   ShakenModes modes;
-  if (store.has(scene::kPodGroup)) {
-    modes.mass_pom = scene::load_pod(store, scene::kPodGroup, system.size());
+  if (store.has(results::kPodGroup)) {
+    modes.mass_pom = results::load_pod(store, results::kPodGroup, system.size());
     if (store.has(kPomfGroup)) {
       modes.pomf.emplace();
-      modes.pomf->basis = scene::load_basis(store, std::string(kPomfGroup) + "/basis", system.size());
+      modes.pomf->basis = results::load_basis(store, std::string(kPomfGroup) + "/basis", system.size());
     }
   } else {
     const pod::Ensemble ensemble = load_snapshots(store);
     if (ensemble.snapshots.rows() != system.size()) {
-      store.fail(scene::kEnsembleGroup, fmt::format("expected {} degrees of freedom as in the scene, found {}",
-                                                    system.size(), ensemble.snapshots.rows()));
+      store.fail(results::kEnsembleGroup, fmt::format("expected {} degrees of freedom as in the scene, found {}",
+                                                      system.size(), ensemble.snapshots.rows()));
     }
     modes = shaken_modes(scene, system.structure(), ensemble);
   }

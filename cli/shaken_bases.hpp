@@ -3,7 +3,7 @@
 #include "cli/session.hpp"
 #include "diagnostics/driven_validation.hpp"
 #include "pod/pomf.hpp"
-#include "scene/store.hpp"
+#include "results/store.hpp"
 
 #include <functional>
 #include <optional>
@@ -27,7 +27,7 @@ struct ShakenModes {
 [[nodiscard]] Eigen::MatrixXd sensor_readings(const scene::Scene& scene, const fem::Beam& beam,
                                               const Eigen::MatrixXd& q);
 /// Writes the group `sensors`: their places and readings of these displacements.
-void store_sensors(scene::StoreWriter& writer, const scene::Scene& scene, const Eigen::MatrixXd& q);
+void store_sensors(results::StoreWriter& writer, const scene::Scene& scene, const Eigen::MatrixXd& q);
 
 /// Sensors → displacements → POMs → modal functions → POMFs, as [sensors] and [reduction] say, and mass POMs.
 /// @param snapshots  all degrees of freedom
@@ -35,7 +35,7 @@ void store_sensors(scene::StoreWriter& writer, const scene::Scene& scene, const 
                                        const pod::Ensemble& snapshots);
 
 /// Writes the groups `pod` (mass POMs) and `pomf`.
-void save(scene::StoreWriter& writer, const ShakenModes& modes);
+void save(results::StoreWriter& writer, const ShakenModes& modes);
 
 /// Tables of energies and of LNMs' shares (the form of S4 Tables 5.1 and 5.2), and the same as JSON.
 [[nodiscard]] std::string text_of(const ShakenModes& modes);

@@ -8,9 +8,9 @@
 #include "cli/shaken_validation.hpp"
 #include "fem/beam_modes.hpp"
 #include "fem/modes.hpp"
-#include "scene/provenance.hpp"
-#include "scene/records.hpp"
-#include "scene/table.hpp"
+#include "results/provenance.hpp"
+#include "results/records.hpp"
+#include "results/table.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -25,7 +25,7 @@ using figures::Figure;
 using figures::Panel;
 using figures::Series;
 using figures::to_vector;
-using scene::StoreReader;
+using results::StoreReader;
 
 std::string_view colour_of_basis(const std::string& basis) {
   if (basis == "pomf") return figures::kPomColour;
@@ -34,7 +34,7 @@ std::string_view colour_of_basis(const std::string& basis) {
 }
 
 Series sections(const StoreReader& store, const std::string& group, const std::string& title, std::string_view colour) {
-  const scene::Table table = scene::load_table(store, group + "/sections");
+  const results::Table table = results::load_table(store, group + "/sections");
   return {title, to_vector(table.numbers("parameter")), to_vector(table.numbers("reading")), Series::Look::kDots,
           colour};
 }
@@ -70,7 +70,7 @@ Figure sweep_sections(const StoreReader& store) {
 
 /// √2 rms over the swept key, a colour for each label.
 Panel labelled_amplitudes(const StoreReader& store, const std::string& group) {
-  const scene::Table values = scene::load_table(store, group + "/values");
+  const results::Table values = results::load_table(store, group + "/values");
   const std::array<std::pair<const char*, std::string_view>, 3> labels = {
       {{"stick", figures::kFullColour}, {"stick-slip", figures::kPomColour}, {"slip", figures::kLnmColour}}};
   Panel panel{store.text(group + "/title"), {}};
@@ -128,7 +128,7 @@ Figure multiples(const StoreReader& store, const std::vector<std::string>& model
 
 Figure agreement(const StoreReader& store) {
   const std::string root = kShakenValidationGroup;
-  const scene::Table table = scene::load_table(store, root + "/agreement");
+  const results::Table table = results::load_table(store, root + "/agreement");
   std::map<std::string, std::vector<Eigen::Index>> rows;
   for (std::size_t i = 0; i < table.rows(); ++i) rows[table.texts("basis")[i]].push_back(static_cast<Eigen::Index>(i));
   const Eigen::VectorXd modes = to_vector(table.numbers("modes"));
@@ -161,9 +161,9 @@ Eigen::VectorXd along(const fem::Beam& beam, const Eigen::VectorXd& x, const Eig
 /// Vectors of a basis beside the natural modes of the same number.
 Figure functions_along(const StoreReader& store, const std::string& group, const std::string& name) {
   constexpr Eigen::Index kShown = 6, kPoints = 200;
-  const scene::Scene scene = scene::load_scene_of(store);
+  const scene::Scene scene = results::load_scene_of(store);
   const fem::Beam beam = scene::build_beam(scene);
-  const pod::Basis basis = scene::load_basis(store, group, beam.structure().size());
+  const pod::Basis basis = results::load_basis(store, group, beam.structure().size());
   const Eigen::Index count = std::min(kShown, basis.modes());
   const Eigen::MatrixXd lnms = fem::natural_modes(beam.structure(), count).shapes;
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(kPoints, 0.0, beam.reach());
@@ -190,11 +190,11 @@ std::vector<FileFigure> shaken_figures_of(const StoreReader& store) {
   const auto add = [&](std::string name, std::string what, auto draw) {
     out.push_back({std::move(name), std::move(what), [&store, draw] { return draw(store); }});
   };
-  const bool beam = scene::load_scene_of(store).beam() != nullptr;
+  const bool beam = results::load_scene_of(store).beam() != nullptr;
   const std::string root = kShakenValidationGroup;
   if (store.has(root)) {
     add("agreement", "distance of reduced models to the full one against the number of modes", agreement);
-    const bool swept = scene::load_table(store, root + "/full/values").rows() > 1;
+    const bool swept = results::load_table(store, root + "/full/values").rows() > 1;
     for (const auto& [basis, models] : models_by_basis(store)) {
       if (!swept) break;
       add("sweep_" + basis, "sections of reduced models over the full model's",
@@ -214,17 +214,17 @@ std::vector<FileFigure> shaken_figures_of(const StoreReader& store) {
     add("pomfs", "modal functions from the sensors beside natural modes",
         [](const StoreReader& file) { return functions_along(file, std::string(kPomfGroup) + "/basis", "POMF"); });
   }
-  if (beam && store.has(scene::kPodGroup)) {
+  if (beam && store.has(results::kPodGroup)) {
     add("poms", "proper orthogonal modes in the mass metric beside natural modes", [](const StoreReader& file) {
-      return functions_along(file, std::string(scene::kPodGroup) + "/basis", "mass POM");
+      return functions_along(file, std::string(results::kPodGroup) + "/basis", "mass POM");
     });
   }
-  if (beam && store.has(scene::kReducedGroup)) {
+  if (beam && store.has(results::kReducedGroup)) {
     add("shapes", "basis of the reduced model along the beam", [](const StoreReader& file) {
-      return functions_along(file, std::string(scene::kReducedGroup) + "/basis", "vector");
+      return functions_along(file, std::string(results::kReducedGroup) + "/basis", "vector");
     });
   }
-  if (store.has(scene::kTrajectoryGroup)) {
+  if (store.has(results::kTrajectoryGroup)) {
     add("loops", "friction force against relative displacement and velocity", friction_loops);
     add("delay", "delay map of the reading", delay_map);
     add("spectrum", "amplitude spectrum of the reading", spectrum);

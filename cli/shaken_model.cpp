@@ -1,6 +1,6 @@
 #include "cli/shaken_model.hpp"
 
-#include "cli/units.hpp"
+#include "results/units.hpp"
 
 #include <fmt/format.h>
 
@@ -24,7 +24,7 @@ std::string reading_name(const scene::Scene& scene) {
 }
 
 std::string reading_unit(const scene::Scene& scene) {
-  return scene.beam() != nullptr ? "1" : Units::of(scene.units).length;
+  return scene.beam() != nullptr ? "1" : results::Units::of(scene.units).length;
 }
 
 diagnostics::DriveAt drive_over_frequency(const scene::Scene& scene) {

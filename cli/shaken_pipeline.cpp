@@ -7,8 +7,8 @@
 #include "cli/shaken_validation.hpp"
 #include "cli/steps.hpp"
 #include "fem/modes.hpp"
+#include "results/records.hpp"
 #include "rom/reduce.hpp"
-#include "scene/records.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -76,11 +76,11 @@ class ShakenPipeline {
     options.on_event = [this](const auto&, const auto&) { return !session_.stop->load(); };
     const auto run = dynamics::simulate(full_, scene::initial_state(scene_, full_), options);
     session_.check_interrupt();
-    scene::Provenance provenance = scene::provenance_of(scene_, "slipmode run");
+    results::Provenance provenance = results::provenance_of(scene_, "slipmode run");
     provenance.audit = run.audit;
-    scene::StoreWriter writer(file("trajectory.h5"));
-    scene::save(writer, provenance);
-    scene::save(writer, scene::kTrajectoryGroup, run);
+    results::StoreWriter writer(file("trajectory.h5"));
+    results::save(writer, provenance);
+    results::save(writer, results::kTrajectoryGroup, run);
     if (scene_.sensors) store_sensors(writer, scene_, run.q);
     writer.commit();
   }
@@ -104,8 +104,8 @@ class ShakenPipeline {
   void pod() {
     modes_ = shaken_modes(scene_, full_.structure(), snapshots_);
     snapshots_ = {};
-    scene::StoreWriter writer(file("pod.h5"));
-    scene::save(writer, scene::provenance_of(scene_, "slipmode run"));
+    results::StoreWriter writer(file("pod.h5"));
+    results::save(writer, results::provenance_of(scene_, "slipmode run"));
     save(writer, modes_);
     writer.commit();
     report_.data["pod"] = json_of(modes_);
@@ -120,9 +120,10 @@ class ShakenPipeline {
     const Eigen::Index modes = chosen_modes(scene_.reduction.choice, basis.energy, basis.modes(),
                                             fmt::format("basis '{}'", scene::to_string(scene_.reduction.basis)));
     const pod::Basis kept = basis.truncated(modes);
-    scene::StoreWriter writer(file("reduced.h5"));
-    scene::save(writer, scene::provenance_of(scene_, "slipmode run"));
-    scene::save(writer, scene::kReducedGroup, scene::ReducedModel{.system = rom::reduce(full_, kept), .basis = kept});
+    results::StoreWriter writer(file("reduced.h5"));
+    results::save(writer, results::provenance_of(scene_, "slipmode run"));
+    results::save(writer, results::kReducedGroup,
+                  results::ReducedModel{.system = rom::reduce(full_, kept), .basis = kept});
     writer.commit();
     report_.data["reduction"] = {{"basis", scene::to_string(scene_.reduction.basis)}, {"modes", modes}};
   }

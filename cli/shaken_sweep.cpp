@@ -1,14 +1,14 @@
-#include "cli/driven_store.hpp"
-#include "cli/reduced_file.hpp"
 #include "cli/shaken_bases.hpp"
 #include "cli/shaken_model.hpp"
 #include "cli/steps.hpp"
 #include "cli/sweep_report.hpp"
 #include "cli/sweep_request.hpp"
+#include "results/driven_store.hpp"
+#include "results/journal.hpp"
+#include "results/provenance.hpp"
+#include "results/records.hpp"
+#include "results/reduced_file.hpp"
 #include "rom/reduce.hpp"
-#include "scene/journal.hpp"
-#include "scene/provenance.hpp"
-#include "scene/records.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -26,7 +26,7 @@ struct ShakenSubject {
 std::string basis_identity(const pod::Basis& basis) {
   const std::string bytes(reinterpret_cast<const char*>(basis.vectors.data()),
                           static_cast<std::size_t>(basis.vectors.size()) * sizeof(double));
-  return scene::fingerprint(bytes);
+  return results::fingerprint(bytes);
 }
 
 /// "pomf:3": a basis of the scene's own words, made as its ensemble says.
@@ -67,9 +67,9 @@ ShakenSubject subject(const Session& session, const scene::Scene& scene, const d
   if (model == "full") {
     return {.basis = {}, .title = fmt::format("full model, {} degrees of freedom", system.size())};
   }
-  const std::optional<std::string> file = reduced_file(model);
+  const std::optional<std::string> file = results::reduced_file(model);
   if (!file) return basis_subject(session, scene, system, model);
-  const pod::Basis basis = reduced_basis(*file, system.size());
+  const pod::Basis basis = results::reduced_basis(*file, system.size());
   return {.basis = basis,
           .title = fmt::format("reduced model, {} modes", basis.modes()),
           .identity = "rom " + file_fingerprint(*file)};
@@ -93,7 +93,7 @@ struct Pass {
 Report summary(const SweepRequest& request, const ShakenSubject& swept, const Over& over, const Pass& found) {
   const auto& points = found.up.empty() ? found.down : found.up;
   Report report;
-  const MotionTable motions = motion_table(count_motions(points), points.size());
+  const MotionTable motions = motion_table(results::count_motions(points), points.size());
   double audit = 0.0;
   for (const auto& point : points)
     if (point.ok()) audit = std::max(audit, std::abs(point.settled.audit_residual));
@@ -110,8 +110,9 @@ Report summary(const SweepRequest& request, const ShakenSubject& swept, const Ov
                  {"largest_audit_residual", audit},
                  {"peaks", peaks},
                  {"failures", failures}};
-  report.text = fmt::format("{}: {} values of {}, largest energy residual {:.1e}\n{}peaks of the amplitude at {}\n",
-                            swept.title, points.size(), over.key, audit, motions.text.str(), peaks_text(highest));
+  report.text =
+      fmt::format("{}: {} values of {}, largest energy residual {:.1e}\n{}peaks of the amplitude at {}\n", swept.title,
+                  points.size(), over.key, audit, motions.text.str(), results::peaks_text(highest));
   if (request.both) {
     const double share = diagnostics::hysteresis(found.up, found.down);
     report.data["hysteresis"] = share;
@@ -137,9 +138,9 @@ Report run_shaken_sweep(const Session& session, const SweepRequest& request, con
                   request.reverse ? " --reverse" : "", request.both ? " --both" : "",
                   request.exponent_cycles > 0.0 ? fmt::format(" --lyapunov {}", request.exponent_cycles) : "");
   const std::string task = fmt::format("slipmode sweep --over {} --model {}{}", request.over, request.model, manner);
-  const std::string identity = scene::fingerprint(
-      fmt::format("{}\n{}\n{}\n{}", scene::version(), task, swept.identity, scene::scene_to_toml(scene)));
-  scene::Journal journal(scene::Journal::path_for(request.output), identity);
+  const std::string identity = results::fingerprint(
+      fmt::format("{}\n{}\n{}\n{}", results::version(), task, swept.identity, scene::scene_to_toml(scene)));
+  results::Journal journal(results::Journal::path_for(request.output), identity);
   const std::size_t resumed = journal.records().size();
 
   const dynamics::State start = scene::initial_state(scene, full.system);
@@ -150,7 +151,7 @@ Report run_shaken_sweep(const Session& session, const SweepRequest& request, con
       .segments = request.segments,
       .driven = driven_options(scene),
       .parallel = session.parallel(line),
-      .sink = driven_journal_sink(journal)};
+      .sink = results::driven_journal_sink(journal)};
   options.driven.exponent_cycles = request.exponent_cycles;
   const diagnostics::DrivenModel model = model_over(scene, over.key, swept.basis);
   Pass found;
@@ -166,15 +167,15 @@ Report run_shaken_sweep(const Session& session, const SweepRequest& request, con
   if (request.reverse || request.both) found.down = pass(reversed, 1);
   if (found.interrupted) return interrupted_sweep(request, over, journal.records().size());
 
-  const Units units = Units::of(scene.units);
-  const DrivenAxes axes{sweep_axis(over.key, units), reading_name(scene), reading_unit(scene)};
+  const results::Units units = results::Units::of(scene.units);
+  const results::DrivenAxes axes{results::sweep_axis(over.key, units), reading_name(scene), reading_unit(scene)};
   const std::string group = swept.basis ? "sweep/reduced" : "sweep/full";
-  scene::StoreWriter writer(request.output);
-  scene::save(writer, scene::provenance_of(scene, task));
+  results::StoreWriter writer(request.output);
+  results::save(writer, results::provenance_of(scene, task));
   const std::string up_title = request.both ? swept.title + ", upward" : swept.title;
-  if (!found.up.empty()) store_driven(writer, group, up_title, axes, units, found.up);
+  if (!found.up.empty()) results::store_driven(writer, group, up_title, axes, units, found.up);
   if (!found.down.empty())
-    store_driven(writer, group + "_reverse", swept.title + ", downward", axes, units, found.down);
+    results::store_driven(writer, group + "_reverse", swept.title + ", downward", axes, units, found.down);
   writer.commit();
   journal.remove();
   Report report = summary(request, swept, over, found);

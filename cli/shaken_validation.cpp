@@ -1,11 +1,11 @@
 #include "cli/shaken_validation.hpp"
 
-#include "cli/driven_store.hpp"
 #include "cli/shaken_model.hpp"
 #include "cli/text_table.hpp"
-#include "scene/journal.hpp"
-#include "scene/provenance.hpp"
-#include "scene/table.hpp"
+#include "results/driven_store.hpp"
+#include "results/journal.hpp"
+#include "results/provenance.hpp"
+#include "results/table.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -20,14 +20,14 @@ using diagnostics::DrivenValidationReport;
 
 /// Names the models compared to the last bit, so that a journal of other models is never taken over.
 std::string identity(const scene::Scene& scene, const std::vector<diagnostics::DrivenCandidate>& candidates) {
-  std::string text = fmt::format("{} validate\n{}", scene::version(), scene::scene_to_toml(scene));
+  std::string text = fmt::format("{} validate\n{}", results::version(), scene::scene_to_toml(scene));
   for (const auto& candidate : candidates) {
     const Eigen::MatrixXd& vectors = candidate.basis.vectors;
     text += candidate.name;
     text.append(reinterpret_cast<const char*>(vectors.data()),
                 static_cast<std::size_t>(vectors.size()) * sizeof(double));
   }
-  return scene::fingerprint(text);
+  return results::fingerprint(text);
 }
 
 diagnostics::DrivenValidationOptions options_of(const scene::Scene& scene) {
@@ -51,7 +51,7 @@ std::string group_name(const DrivenCandidateReport& candidate, const DrivenRow& 
   return fmt::format("{}/models/{}_{:02}", kShakenValidationGroup, name, row.modes);
 }
 
-scene::Table agreement_table(const DrivenValidationReport& report) {
+results::Table agreement_table(const DrivenValidationReport& report) {
   std::vector<std::string> basis, failure;
   std::vector<double> modes, mean, median, hausdorff, label, period, trusted, from, to, wall, cpu, setup;
   for (const DrivenCandidateReport& candidate : report.candidates) {
@@ -89,25 +89,27 @@ scene::Table agreement_table(const DrivenValidationReport& report) {
            {"failure", {"", "why there is no such model; empty: there is"}, failure}}};
 }
 
-void store(scene::StoreWriter& writer, const DrivenValidationReport& report, const scene::Scene& scene) {
-  const Units units = Units::of(scene.units);
-  const DrivenAxes axes{sweep_axis("drive.frequency", units), reading_name(scene), reading_unit(scene)};
+void store(results::StoreWriter& writer, const DrivenValidationReport& report, const scene::Scene& scene) {
+  const results::Units units = results::Units::of(scene.units);
+  const results::DrivenAxes axes{results::sweep_axis("drive.frequency", units), reading_name(scene),
+                                 reading_unit(scene)};
   const std::string group = kShakenValidationGroup;
-  scene::save(writer, group + "/agreement", agreement_table(report));
+  results::save(writer, group + "/agreement", agreement_table(report));
   writer.write(group + "/noise", report.noise.mean_wasserstein,
                {"1", "mean distance between two full sweeps from different starts"});
   writer.write(group + "/noise_at", report.noise.wasserstein, {"1", "the same at each value"});
   writer.write(group + "/full_wall", report.cost.wall, {"s", "median clock time of a timed run of the full model"});
   writer.write(group + "/full_cpu", report.cost.cpu, {"s", "its processor time"});
-  store_driven(writer, group + "/full", "full model", axes, units, report.full, SectionDetail::kReading);
-  store_driven(writer, group + "/again", "full model from another start", axes, units, report.again,
-               SectionDetail::kReading);
+  results::store_driven(writer, group + "/full", "full model", axes, units, report.full,
+                        results::SectionDetail::kReading);
+  results::store_driven(writer, group + "/again", "full model from another start", axes, units, report.again,
+                        results::SectionDetail::kReading);
   for (const DrivenCandidateReport& candidate : report.candidates) {
     for (const DrivenRow& row : candidate.rows) {
       if (!row.failure.empty()) continue;
       const std::string name = group_name(candidate, row);
-      store_driven(writer, name, fmt::format("{}, L = {}", candidate.name, row.modes), axes, units, row.points,
-                   SectionDetail::kReading);
+      results::store_driven(writer, name, fmt::format("{}, L = {}", candidate.name, row.modes), axes, units, row.points,
+                            results::SectionDetail::kReading);
       writer.write(name + "/distance", row.agreement.wasserstein, {"1", "distance to the full model at each value"});
     }
   }
@@ -173,20 +175,20 @@ DrivenValidationReport validate_shaken_into(const Session& session, const scene:
                                             const std::vector<diagnostics::DrivenCandidate>& candidates,
                                             const std::filesystem::path& file) {
   const diagnostics::DrivenCase full = shaken_case(scene);
-  scene::Journal journal(scene::Journal::path_for(file), identity(scene, candidates));
+  results::Journal journal(results::Journal::path_for(file), identity(scene, candidates));
   DrivenValidationReport report;
   {
     ProgressLine line("validate", session.progress_mode());
     auto options = options_of(scene);
     options.parallel = session.parallel(line);
-    options.sink = driven_journal_sink(journal);
+    options.sink = results::driven_journal_sink(journal);
     report = diagnostics::validate_driven(full, drive_over_frequency(scene), candidates,
                                           scene::initial_state(scene, full.system), second_start(scene, full.system),
                                           options);
   }
   if (report.interrupted) throw Interrupted();
-  scene::StoreWriter writer(file);
-  scene::save(writer, scene::provenance_of(scene, "slipmode validate"));
+  results::StoreWriter writer(file);
+  results::save(writer, results::provenance_of(scene, "slipmode validate"));
   store(writer, report, scene);
   writer.commit();
   journal.remove();
@@ -211,7 +213,7 @@ std::string summary_text(const DrivenValidationReport& report, const scene::Scen
   std::string out = fmt::format("Full against reduced at {} {}: {} at the sections of {:g} cycles of {:g}\n",
                                 report.full.size(), report.full.size() == 1 ? "frequency" : "frequencies",
                                 reading_name(scene), scene.shaken.kept, scene.shaken.cycles);
-  for (const MotionCount& count : count_motions(report.full))
+  for (const results::MotionCount& count : results::count_motions(report.full))
     out += fmt::format("  {:5} {}\n", count.values, count.motion);
   out += fmt::format(
       "  distances: Wasserstein-1 of section points over the full model's root mean square, mean over frequencies\n"
@@ -219,7 +221,7 @@ std::string summary_text(const DrivenValidationReport& report, const scene::Scen
       "  trusted: a distance up to 0.1, or twice that of the two full sweeps\n"
       "  peaks of the full model at {}\n",
       report.noise.mean_wasserstein, report.noise.median_wasserstein, 100.0 * report.noise.same_label,
-      100.0 * report.noise.same_period, peaks_text(report.peaks));
+      100.0 * report.noise.same_period, results::peaks_text(report.peaks));
   if (report.cost.wall > 0.0) {
     out += fmt::format("  time of {:g} cycles at {:g} Hz, full model: {:.1f} ms\n", scene.shaken.cost_cycles,
                        scene::drive_parameter(scene), 1e3 * report.cost.wall);

@@ -2,7 +2,7 @@
 
 #include "cli/session.hpp"
 #include "diagnostics/driven_validation.hpp"
-#include "scene/store.hpp"
+#include "results/store.hpp"
 
 #include <filesystem>
 #include <string>

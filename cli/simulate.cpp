@@ -2,7 +2,7 @@
 #include "cli/steps.hpp"
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
-#include "scene/records.hpp"
+#include "results/records.hpp"
 
 #include <fmt/format.h>
 #include <cmath>
@@ -55,11 +55,11 @@ Report run_trajectory(const Session& session, const SimulateArguments& arguments
       simulate_or_part(session, system, scene::initial_state(scene, system), scene::simulate_options(scene));
   const dynamics::Trajectory& trajectory = run.trajectory;
 
-  scene::StoreWriter writer(arguments.output);
-  scene::Provenance provenance = scene::provenance_of(scene, "slipmode simulate");
+  results::StoreWriter writer(arguments.output);
+  results::Provenance provenance = results::provenance_of(scene, "slipmode simulate");
   provenance.audit = trajectory.audit;
-  scene::save(writer, provenance);
-  scene::save(writer, scene::kTrajectoryGroup, trajectory);
+  results::save(writer, provenance);
+  results::save(writer, results::kTrajectoryGroup, trajectory);
   if (scene.sensors) store_sensors(writer, scene, trajectory.q);
   if (run.failure) {
     writer.write("trajectory/incomplete", describe(*run.failure), {"", "the run stopped early: why and where"});

@@ -4,9 +4,9 @@
 #include "cli/figures/phase_portraits.hpp"
 #include "cli/figures/style.hpp"
 #include "cli/skeleton_store.hpp"
-#include "scene/provenance.hpp"
+#include "results/provenance.hpp"
+#include "results/table.hpp"
 #include "scene/scene.hpp"
-#include "scene/table.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 using figures::Figure;
 using figures::Series;
 using figures::to_vector;
-using scene::StoreReader;
+using results::StoreReader;
 
 std::string group_of(const std::string& model) { return fmt::format("{}/{}", kSkeletonGroup, model); }
 
@@ -40,7 +40,7 @@ std::vector<std::string> models_of(const StoreReader& store) {
 class ContactView {
  public:
   explicit ContactView(const StoreReader& store)
-      : scene_(scene::load_scene_of(store)), contact_(scene::build_system(scene_).contacts().front()) {}
+      : scene_(results::load_scene_of(store)), contact_(scene::build_system(scene_).contacts().front()) {}
 
   [[nodiscard]] figures::PhasePortrait attractor(const StoreReader& store, const std::string& model) const {
     const Eigen::MatrixXd portrait = store.columns(group_of(model) + "/portrait", 2);
@@ -50,7 +50,7 @@ class ContactView {
   /// @param index  of the orbit, from 0
   [[nodiscard]] figures::PhasePortrait orbit(const StoreReader& store, const std::string& model,
                                              std::size_t index) const {
-    const scene::Table orbits = scene::load_table(store, group_of(model) + "/orbits");
+    const results::Table orbits = results::load_table(store, group_of(model) + "/orbits");
     const Eigen::MatrixXd path = store.columns(fmt::format("{}/orbit_{:03}/path", group_of(model), index + 1));
     const Eigen::Index n = path.rows() / 2, count = path.cols();
     Eigen::VectorXd y(count + 1), rate(count + 1);
@@ -64,7 +64,7 @@ class ContactView {
   }
 
   [[nodiscard]] figures::PortraitLayout layout(int columns, figures::PortraitLayout::Axes axes) const {
-    const Units units = Units::of(scene_.units);
+    const results::Units units = results::Units::of(scene_.units);
     return {.columns = columns,
             .displacement = "displacement",
             .displacement_unit = units.length,
@@ -83,7 +83,7 @@ Figure portraits(const StoreReader& store) {
   constexpr std::size_t kShown = 11;
   const std::string model = models_of(store).front();
   const ContactView view(store);
-  const std::vector<double> share = scene::load_table(store, group_of(model) + "/orbits").numbers("share");
+  const std::vector<double> share = results::load_table(store, group_of(model) + "/orbits").numbers("share");
   std::vector<std::size_t> order(share.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return share[a] > share[b]; });
@@ -97,8 +97,8 @@ Figure portraits(const StoreReader& store) {
 /// S4 Figure 3.10: both attractors, and orbits that both have, one above the other.
 Figure comparison(const StoreReader& store) {
   constexpr std::size_t kShown = 3;
-  const scene::Table matched = scene::load_table(store, group_of("comparison") + "/matched");
-  const std::vector<double> share = scene::load_table(store, group_of("full") + "/orbits").numbers("share");
+  const results::Table matched = results::load_table(store, group_of("comparison") + "/matched");
+  const std::vector<double> share = results::load_table(store, group_of("full") + "/orbits").numbers("share");
   std::vector<std::size_t> rows(matched.rows());
   std::iota(rows.begin(), rows.end(), std::size_t{0});
   const auto index = [&](const char* model, std::size_t row) {
@@ -123,7 +123,7 @@ struct OrbitPoints {
   Eigen::VectorXd period, exponent, share;
 
   OrbitPoints(const StoreReader& store, const std::string& model) {
-    const scene::Table orbits = scene::load_table(store, group_of(model) + "/orbits");
+    const results::Table orbits = results::load_table(store, group_of(model) + "/orbits");
     period = to_vector(orbits.numbers("period"));
     exponent = to_vector(orbits.numbers("leading_modulus")).array().log() / period.array();
     share = 100.0 * to_vector(orbits.numbers("share"));
@@ -138,7 +138,7 @@ Figure orbit_spectrum(const StoreReader& store) {
   const auto panel = [&](const std::string& title, Eigen::VectorXd OrbitPoints::*value) {
     figures::Panel out{.title = title, .series = {}};
     if (store.has(group_of("comparison"))) {
-      const scene::Table matched = scene::load_table(store, group_of("comparison") + "/matched");
+      const results::Table matched = results::load_table(store, group_of("comparison") + "/matched");
       for (std::size_t row = 0; row < matched.rows(); ++row) {
         const auto f = static_cast<Eigen::Index>(matched.numbers("full")[row]) - 1;
         const auto r = static_cast<Eigen::Index>(matched.numbers("reduced")[row]) - 1;

@@ -7,6 +7,6 @@
 namespace slipmode::cli {
 
 /// Figures of a result of `slipmode orbit skeleton`; none when the file holds no skeleton.
-[[nodiscard]] std::vector<FileFigure> skeleton_figures_of(const scene::StoreReader& store);
+[[nodiscard]] std::vector<FileFigure> skeleton_figures_of(const results::StoreReader& store);
 
 }  // namespace slipmode::cli

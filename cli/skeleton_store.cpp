@@ -1,8 +1,8 @@
 #include "cli/skeleton_store.hpp"
 
 #include "cli/text_table.hpp"
-#include "scene/orbit_records.hpp"
-#include "scene/table.hpp"
+#include "results/orbit_records.hpp"
+#include "results/table.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -37,7 +37,7 @@ std::vector<std::int64_t> numbers_of(const std::vector<std::size_t>& indices) {
   return numbers;
 }
 
-scene::Table orbit_table(const Skeleton& skeleton, const Units& units) {
+results::Table orbit_table(const Skeleton& skeleton, const results::Units& units) {
   std::vector<std::string> word, stability;
   for (const SkeletonOrbit& member : skeleton.orbits) {
     word.push_back(member.orbit.word);
@@ -65,7 +65,7 @@ scene::Table orbit_table(const Skeleton& skeleton, const Units& units) {
        {"word", {"", "sequence of regimes"}, word}}};
 }
 
-scene::Table refusal_table(const Skeleton& skeleton, const Units& units) {
+results::Table refusal_table(const Skeleton& skeleton, const results::Units& units) {
   std::vector<double> length, period, distance;
   std::vector<std::string> origin, reason;
   for (const orbits::Refusal& refusal : skeleton.refusals) {
@@ -86,8 +86,8 @@ scene::Table refusal_table(const Skeleton& skeleton, const Units& units) {
 
 }  // namespace
 
-void store_skeleton(scene::StoreWriter& writer, const std::string& name, const ModelSkeleton& model,
-                    const Units& units) {
+void store_skeleton(results::StoreWriter& writer, const std::string& name, const ModelSkeleton& model,
+                    const results::Units& units) {
   const std::string group = fmt::format("{}/{}", kSkeletonGroup, name);
   writer.describe_group(group, model.title);
   writer.write(group + "/title", model.title, {"", "which model"});
@@ -95,12 +95,12 @@ void store_skeleton(scene::StoreWriter& writer, const std::string& name, const M
                {"", "close returns and transferred orbits tried"});
   writer.write_columns(group + "/portrait", model.portrait,
                        {units.length, "displacement and velocity of the first contact along the attractor"});
-  scene::save(writer, group + "/orbits", orbit_table(model.skeleton, units));
-  scene::save(writer, group + "/refusals", refusal_table(model.skeleton, units));
+  results::save(writer, group + "/orbits", orbit_table(model.skeleton, units));
+  results::save(writer, group + "/refusals", refusal_table(model.skeleton, units));
   for (std::size_t k = 0; k < model.skeleton.orbits.size(); ++k) {
     const SkeletonOrbit& member = model.skeleton.orbits[k];
     const std::string own = fmt::format("{}/orbit_{:03}", group, k + 1);
-    scene::save(writer, own, member.orbit);
+    results::save(writer, own, member.orbit);
     writer.write_columns(own + "/passages", member.points, {units.length, "(q; q') at the section, full model"});
     writer.write_columns(own + "/path", member.path,
                          {units.length, "(q; q') at equal parts of each interval between passages, full model"});
@@ -108,10 +108,10 @@ void store_skeleton(scene::StoreWriter& writer, const std::string& name, const M
   }
 }
 
-void store_comparison(scene::StoreWriter& writer, const SkeletonComparison& comparison) {
+void store_comparison(results::StoreWriter& writer, const SkeletonComparison& comparison) {
   const std::string group = fmt::format("{}/comparison", kSkeletonGroup);
   writer.describe_group(group, "orbits of the full and of the reduced model; differences are reduced less full");
-  const scene::Table matched{
+  const results::Table matched{
       "orbits that both have",
       {{"full",
         {"", "number of the full model's orbit, from 1"},
@@ -127,7 +127,7 @@ void store_comparison(scene::StoreWriter& writer, const SkeletonComparison& comp
         {"1", "root mean square distance of the paths, relative to the full orbit's size"},
         column(comparison, [](const auto& m) { return m.shape; })},
        {"share", {"1", "difference of shares"}, column(comparison, [](const auto& m) { return m.share; })}}};
-  scene::save(writer, group + "/matched", matched);
+  results::save(writer, group + "/matched", matched);
   writer.write(group + "/missed", numbers_of(comparison.missed), {"", "orbits of the full model without a partner"});
   writer.write(group + "/extra", numbers_of(comparison.extra), {"", "orbits of the reduced model without a partner"});
 }

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "cli/session.hpp"
-#include "cli/units.hpp"
 #include "orbits/skeleton_compare.hpp"
-#include "scene/store.hpp"
+#include "results/store.hpp"
+#include "results/units.hpp"
 
 #include <Eigen/Core>
 #include <string>
@@ -22,11 +22,11 @@ struct ModelSkeleton {
 };
 
 /// Writes `skeleton/NAME`: a table `orbits`, per orbit a group with its record, passages and path, a table `refusals`.
-void store_skeleton(scene::StoreWriter& writer, const std::string& name, const ModelSkeleton& model,
-                    const Units& units);
+void store_skeleton(results::StoreWriter& writer, const std::string& name, const ModelSkeleton& model,
+                    const results::Units& units);
 
 /// Writes `skeleton/comparison`: a table `matched`, and the numbers of orbits `missed` and `extra`.
-void store_comparison(scene::StoreWriter& writer, const orbits::SkeletonComparison& comparison);
+void store_comparison(results::StoreWriter& writer, const orbits::SkeletonComparison& comparison);
 
 /// Everything about a skeleton but its paths, orbits numbered from 1.
 [[nodiscard]] Json skeleton_json(const ModelSkeleton& model);

@@ -1,10 +1,10 @@
 #include "cli/steps.hpp"
 
 #include "cli/shaken_bases.hpp"
-#include "cli/units.hpp"
+#include "results/records.hpp"
+#include "results/table.hpp"
+#include "results/units.hpp"
 #include "rom/reduce.hpp"
-#include "scene/records.hpp"
-#include "scene/table.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -84,10 +84,10 @@ double worst_audit(const diagnostics::EnsembleRun& run) {
 }
 
 void store_ensemble(const std::filesystem::path& path, const scene::Scene& scene, const diagnostics::EnsembleRun& run) {
-  const Units units = Units::of(scene.units);
-  scene::StoreWriter writer(path);
-  scene::Provenance provenance = scene::provenance_of(scene, "slipmode simulate");
-  scene::Table members{.description = "runs of the ensemble", .columns = {}};
+  const results::Units units = results::Units::of(scene.units);
+  results::StoreWriter writer(path);
+  results::Provenance provenance = results::provenance_of(scene, "slipmode simulate");
+  results::Table members{.description = "runs of the ensemble", .columns = {}};
   std::vector<double> parameter, start, columns, events, residual;
   std::vector<std::string> failure;
   for (const auto& member : run.members) {
@@ -101,27 +101,27 @@ void store_ensemble(const std::filesystem::path& path, const scene::Scene& scene
     failure.push_back(member.failure);
   }
   const bool shaken = scene.drive.shaker() != nullptr;
-  const scene::Column driven = shaken ? scene::Column{"frequency", {"Hz", "shaker frequency"}, parameter}
-                               : scene.force
-                                   ? scene::Column{"omega", {units.angular, "frequency of the force"}, parameter}
-                                   : scene::Column{"speed", {units.velocity, "belt speed"}, parameter};
+  const results::Column driven = shaken ? results::Column{"frequency", {"Hz", "shaker frequency"}, parameter}
+                                 : scene.force
+                                     ? results::Column{"omega", {units.angular, "frequency of the force"}, parameter}
+                                     : results::Column{"speed", {units.velocity, "belt speed"}, parameter};
   members.columns = {driven,
                      {"start", {"", "number of the initial state"}, start},
                      {"snapshots", {"", "snapshots it gave"}, columns},
                      {"events", {"", "events located"}, events},
                      {"audit_residual", {"1", "energy balance relative to the energy exchanged"}, residual},
                      {"failure", {"", "why it failed; empty: it did not"}, failure}};
-  scene::save(writer, provenance);
-  scene::save(writer, scene::kEnsembleGroup, run.ensemble);
-  scene::save(writer, "members", members);
+  results::save(writer, provenance);
+  results::save(writer, results::kEnsembleGroup, run.ensemble);
+  results::save(writer, "members", members);
   if (scene.sensors) store_sensors(writer, scene, run.ensemble.snapshots);
   writer.commit();
 }
 
-pod::Ensemble load_snapshots(const scene::StoreReader& store) {
-  if (store.has(scene::kEnsembleGroup)) return scene::load_ensemble(store);
-  if (store.has(scene::kTrajectoryGroup)) {
-    return {.snapshots = scene::load_trajectory(store).q, .run_begin = {0}};
+pod::Ensemble load_snapshots(const results::StoreReader& store) {
+  if (store.has(results::kEnsembleGroup)) return results::load_ensemble(store);
+  if (store.has(results::kTrajectoryGroup)) {
+    return {.snapshots = results::load_trajectory(store).q, .run_begin = {0}};
   }
   store.fail("ensemble", "the file holds neither an ensemble nor a trajectory; make one with 'slipmode simulate'");
 }
@@ -149,17 +149,17 @@ Eigen::Index chosen_modes(const pod::ModeChoice& choice, const Eigen::VectorXd& 
 BasisSource load_basis_source(const std::string& source, const fem::Structure& structure) {
   const Eigen::Index n = structure.size();
   if (source == "lnm") return {.basis = rom::lnm_basis(structure, n), .shares = {}};
-  const scene::StoreReader store(source);
-  if (store.has(scene::kPodGroup)) {
-    const pod::PodResult result = scene::load_pod(store, scene::kPodGroup, n);
+  const results::StoreReader store(source);
+  if (store.has(results::kPodGroup)) {
+    const pod::PodResult result = results::load_pod(store, results::kPodGroup, n);
     return {.basis = result.basis, .shares = result.shares};
   }
-  const std::string reduced_basis = std::string(scene::kReducedGroup) + "/basis";
-  const std::string group = store.has(reduced_basis) ? reduced_basis : std::string(scene::kBasisGroup);
+  const std::string reduced_basis = std::string(results::kReducedGroup) + "/basis";
+  const std::string group = store.has(reduced_basis) ? reduced_basis : std::string(results::kBasisGroup);
   if (!store.has(group)) {
     store.fail(group, "the file holds no basis; make one with 'slipmode pod', or say 'lnm' for linear natural modes");
   }
-  const pod::Basis basis = scene::load_basis(store, group, n);
+  const pod::Basis basis = results::load_basis(store, group, n);
   return {.basis = basis, .shares = basis.energy};
 }
 

@@ -3,7 +3,7 @@
 #include "cli/session.hpp"
 #include "diagnostics/ensemble_run.hpp"
 #include "pod/pod.hpp"
-#include "scene/provenance.hpp"
+#include "results/provenance.hpp"
 
 #include <filesystem>
 
@@ -35,7 +35,7 @@ void store_ensemble(const std::filesystem::path& path, const scene::Scene& scene
 
 /// Reads what a POD can be made of: an ensemble, or the samples of one trajectory.
 /// @throws InvalidInput  when the file holds neither
-[[nodiscard]] pod::Ensemble load_snapshots(const scene::StoreReader& store);
+[[nodiscard]] pod::Ensemble load_snapshots(const results::StoreReader& store);
 
 /// The number of modes a choice asks for, given the energy shares of all modes.
 /// @param source  what the modes come from, for the message

@@ -1,16 +1,16 @@
 #include "diagnostics/sweep.hpp"
 
-#include "cli/reduced_file.hpp"
 #include "cli/shaken_model.hpp"
 #include "cli/steps.hpp"
 #include "cli/sweep_report.hpp"
 #include "cli/sweep_request.hpp"
-#include "cli/sweep_store.hpp"
 #include "cli/validation_setup.hpp"
 #include "cli/verbs.hpp"
+#include "results/journal.hpp"
+#include "results/records.hpp"
+#include "results/reduced_file.hpp"
+#include "results/sweep_store.hpp"
 #include "rom/reduce.hpp"
-#include "scene/journal.hpp"
-#include "scene/records.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -48,7 +48,7 @@ Subject full_subject(const scene::Scene& scene, const std::string& key) {
 
 Subject reduced_subject(const scene::Scene& scene, const std::string& key, const std::string& file) {
   const dynamics::HybridSystem system = scene::build_system(scene);
-  const pod::Basis basis = reduced_basis(file, system.size());
+  const pod::Basis basis = results::reduced_basis(file, system.size());
   const diagnostics::Model belt = diagnostics::reduced_belt_model(system, basis);
   return {.model = {.system = system_factory(scene, key, basis),
                     .basis = basis,
@@ -60,19 +60,19 @@ Subject reduced_subject(const scene::Scene& scene, const std::string& key, const
 
 Subject subject(const scene::Scene& scene, const std::string& key, const std::string& model) {
   if (model == "full") return full_subject(scene, key);
-  if (const auto file = reduced_file(model)) return reduced_subject(scene, key, *file);
+  if (const auto file = results::reduced_file(model)) return reduced_subject(scene, key, *file);
   throw InvalidInput(fmt::format("--model {}: expected full, or rom:FILE with a result of 'slipmode reduce'", model));
 }
 
 Report summary(const SweepRequest& request, const Subject& swept, const Over& over,
                const std::vector<diagnostics::SweepPoint>& points) {
   Report report;
-  const MotionTable motions = motion_table(count_motions(points), points.size());
+  const MotionTable motions = motion_table(results::count_motions(points), points.size());
   const Json failures = failures_of(points);
   report.data = {{"verb", "sweep"},         {"file", request.output},  {"model", swept.title}, {"key", over.key},
                  {"values", points.size()}, {"motions", motions.json}, {"failures", failures}};
   report.text = fmt::format("{}: {} values of {}\n{}{}Sweep: {}\n", swept.title, points.size(), over.key,
-                            motions.text.str(), undecided_note(points), request.output);
+                            motions.text.str(), results::undecided_note(points), request.output);
   report_failures(report, failures, points.size());
   return report;
 }
@@ -89,9 +89,9 @@ Report run(const Session& session, const SweepRequest& request) {
 
   const std::string manner = request.follow ? fmt::format(" --follow --segments {}", request.segments) : "";
   const std::string task = fmt::format("slipmode sweep --over {} --model {}{}", request.over, swept.title, manner);
-  const std::string identity = scene::fingerprint(
-      fmt::format("{}\n{}\n{}\n{}", scene::version(), task, swept.identity, scene::scene_to_toml(scene)));
-  scene::Journal journal(scene::Journal::path_for(request.output), identity);
+  const std::string identity = results::fingerprint(
+      fmt::format("{}\n{}\n{}\n{}", results::version(), task, swept.identity, scene::scene_to_toml(scene)));
+  results::Journal journal(results::Journal::path_for(request.output), identity);
   const std::size_t resumed = journal.records().size();
   ProgressLine line("sweep", session.progress_mode());
   const diagnostics::SweepResult result = diagnostics::sweep(
@@ -100,14 +100,14 @@ Report run(const Session& session, const SweepRequest& request) {
        .segments = request.segments,
        .settle = sweep_settle_options(scene),
        .parallel = session.parallel(line),
-       .sink = journal_sink(journal)});
+       .sink = results::journal_sink(journal)});
   if (result.interrupted) return interrupted_sweep(request, over, result.points.size());
 
-  const Units units = Units::of(scene.units);
-  scene::StoreWriter writer(request.output);
-  scene::save(writer, scene::provenance_of(scene, task));
-  store_sweep(writer, swept.model.basis ? "sweep/reduced" : "sweep/full", swept.title, sweep_axis(over.key, units),
-              units, result.points);
+  const results::Units units = results::Units::of(scene.units);
+  results::StoreWriter writer(request.output);
+  results::save(writer, results::provenance_of(scene, task));
+  results::store_sweep(writer, swept.model.basis ? "sweep/reduced" : "sweep/full", swept.title,
+                       results::sweep_axis(over.key, units), units, result.points);
   writer.commit();
   journal.remove();
   Report report = summary(request, swept, over, result.points);

@@ -4,9 +4,9 @@
 
 namespace slipmode::cli {
 
-MotionTable motion_table(const std::vector<MotionCount>& counts, std::size_t points) {
+MotionTable motion_table(const std::vector<results::MotionCount>& counts, std::size_t points) {
   MotionTable out{TextTable({"motion", "values", "share [%]"}), Json::object()};
-  for (const MotionCount& count : counts) {
+  for (const results::MotionCount& count : counts) {
     const double share = 100.0 * static_cast<double>(count.values) / static_cast<double>(points);
     out.text.add({count.motion, fmt::format("{}", count.values), fixed(share, 1)});
     out.json[count.motion] = count.values;

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "cli/session.hpp"
-#include "cli/sweep_store.hpp"
 #include "cli/text_table.hpp"
+#include "results/sweep_store.hpp"
 
 #include <vector>
 
@@ -14,7 +14,7 @@ struct MotionTable {
   Json json;
 };
 /// @param points  number of values swept
-[[nodiscard]] MotionTable motion_table(const std::vector<MotionCount>& counts, std::size_t points);
+[[nodiscard]] MotionTable motion_table(const std::vector<results::MotionCount>& counts, std::size_t points);
 
 /// The values that failed, with why. @param points  of a belt's sweep or of a shaker's
 template <class Point>

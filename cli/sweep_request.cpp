@@ -1,7 +1,7 @@
 #include "cli/sweep_request.hpp"
 
 #include "diagnostics/sweep.hpp"
-#include "scene/journal.hpp"
+#include "results/journal.hpp"
 
 #include <fmt/format.h>
 #include <charconv>
@@ -34,7 +34,7 @@ Over parse_over(const std::string& text) {
 
 std::string file_fingerprint(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
-  return scene::fingerprint({std::istreambuf_iterator<char>(in), {}});
+  return results::fingerprint({std::istreambuf_iterator<char>(in), {}});
 }
 
 void require_belt_request(const SweepRequest& request) {
@@ -60,7 +60,7 @@ Report interrupted_sweep(const SweepRequest& request, const Over& over, std::siz
   report.text = fmt::format(
       "interrupted with {} of {} values done; they are kept in {}\nThe same command goes on from "
       "there.",
-      finished, over.values.size(), scene::Journal::path_for(request.output).string());
+      finished, over.values.size(), results::Journal::path_for(request.output).string());
   report.data = {{"verb", "sweep"}, {"finished", finished}, {"values", over.values.size()}, {"message", report.text}};
   return report;
 }

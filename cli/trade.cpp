@@ -5,7 +5,7 @@
 #include "cli/trade_report.hpp"
 #include "cli/trade_request.hpp"
 #include "cli/verbs.hpp"
-#include "scene/provenance.hpp"
+#include "results/provenance.hpp"
 #include "trade/variants.hpp"
 
 #include <fmt/format.h>
@@ -75,8 +75,8 @@ Report run(const Session& session, const TradeArguments& arguments) {
   };
   const auto finish = [&](const trade::Study& done) {
     if (!arguments.output.empty()) {
-      scene::StoreWriter writer(arguments.output);
-      scene::save(writer, scene::provenance_of(scene, "slipmode trade"));
+      results::StoreWriter writer(arguments.output);
+      results::save(writer, results::provenance_of(scene, "slipmode trade"));
       store_study(writer, done, scene);
       writer.commit();
     }
@@ -103,7 +103,7 @@ Report run(const Session& session, const TradeArguments& arguments) {
     report.text += fmt::format("Scene: {}\n{}", arguments.write, how_to_run(row, arguments.write));
   };
   std::string identity =
-      fmt::format("{} trade {}\n{}", scene::version(), arguments.product, scene::scene_to_toml(scene));
+      fmt::format("{} trade {}\n{}", results::version(), arguments.product, scene::scene_to_toml(scene));
   for (const trade::Axis axis : axes) identity += trade::to_string(axis);
   run_study(session, arguments.output, identity, study, finish);
   return report;

@@ -3,8 +3,8 @@
 #include "cli/figures/pareto.hpp"
 #include "cli/figures/style.hpp"
 #include "cli/trade_report.hpp"
-#include "scene/provenance.hpp"
-#include "scene/table.hpp"
+#include "results/provenance.hpp"
+#include "results/table.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -70,14 +70,14 @@ Fronts fronts_of(const trade::Study& study, const scene::Scene& scene) {
 }
 
 /// The first row is the reference, which is no choice.
-Fronts fronts_of(const scene::StoreReader& store) {
-  const scene::Table table = scene::load_table(store, std::string(kTradeGroup) + "/candidates");
+Fronts fronts_of(const results::StoreReader& store) {
+  const results::Table table = results::load_table(store, std::string(kTradeGroup) + "/candidates");
   Fronts fronts{.names = table.texts("name"),
                 .axes = table.texts("axis"),
                 .time = table.numbers("time"),
                 .error = std::vector<trade::Values>(table.rows()),
                 .noise = std::vector<trade::Values>(table.rows()),
-                .title = scene::load_scene_of(store).title};
+                .title = results::load_scene_of(store).title};
   for (std::size_t m = 0; m < trade::kMeasures; ++m) {
     const std::string name(trade::to_string(static_cast<Measure>(m)));
     for (std::size_t i = 0; i < table.rows(); ++i) {
@@ -112,7 +112,7 @@ std::vector<std::string> save_trade_figures(const trade::Study& study, const sce
   return files;
 }
 
-std::vector<FileFigure> trade_figures_of(const scene::StoreReader& store) {
+std::vector<FileFigure> trade_figures_of(const results::StoreReader& store) {
   if (!store.has(std::string(kTradeGroup) + "/candidates")) return {};
   std::vector<FileFigure> out;
   const Fronts fronts = fronts_of(store);

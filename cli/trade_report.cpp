@@ -2,8 +2,8 @@
 
 #include "cli/json_values.hpp"
 #include "cli/text_table.hpp"
-#include "cli/units.hpp"
-#include "scene/table.hpp"
+#include "results/table.hpp"
+#include "results/units.hpp"
 
 #include <fmt/format.h>
 #include <cmath>
@@ -36,10 +36,10 @@ std::vector<std::string> texts(const std::vector<Row>& rows, const Value& value)
   return out;
 }
 
-scene::Table candidate_table(const Study& study, const scene::Scene& scene) {
+results::Table candidate_table(const Study& study, const scene::Scene& scene) {
   const std::vector<Row> rows = all_rows(study);
-  scene::Table table{.description = "configurations: errors against the first one, the reference, and times",
-                     .columns = {}};
+  results::Table table{.description = "configurations: errors against the first one, the reference, and times",
+                       .columns = {}};
   auto& columns = table.columns;
   columns.push_back({"name", {"", "the configuration"}, texts(rows, [](const Row& r) { return r.variant.name; })});
   columns.push_back({"axis", {"", "in what it differs from the scene"}, texts(rows, [](const Row& r) {
@@ -110,11 +110,11 @@ std::string runs_text(double runs) {
 
 }  // namespace
 
-void store_study(scene::StoreWriter& writer, const Study& study, const scene::Scene& scene) {
+void store_study(results::StoreWriter& writer, const Study& study, const scene::Scene& scene) {
   const std::string group = kTradeGroup;
-  const std::string time = Units::of(scene.units).time;
+  const std::string time = results::Units::of(scene.units).time;
   writer.describe_group(group, "speed against accuracy");
-  scene::save(writer, group + "/candidates", candidate_table(study, scene));
+  results::save(writer, group + "/candidates", candidate_table(study, scene));
   writer.write(group + "/reference", study.reference.variant.name, {"", "what errors are measured against"});
   writer.write(group + "/timed", study.schedule.timed, {time, "simulated by a timed run"});
   writer.write(group + "/recorded", study.schedule.duration, {time, "recorded of a settled motion"});

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cli/session.hpp"
-#include "scene/store.hpp"
+#include "results/store.hpp"
 #include "trade/advice.hpp"
 #include "trade/effects.hpp"
 #include "trade/study.hpp"
@@ -14,7 +14,7 @@ namespace slipmode::cli {
 inline constexpr const char* kTradeGroup = "trade";
 
 /// Writes the group `trade`: a table `candidates`, the reference, its scatter and how long everything ran.
-void store_study(scene::StoreWriter& writer, const trade::Study& study, const scene::Scene& scene);
+void store_study(results::StoreWriter& writer, const trade::Study& study, const scene::Scene& scene);
 
 /// One sentence per measure, for the same limit [%].
 [[nodiscard]] std::vector<std::string> recommendations(const trade::Study& study, double limit);

@@ -1,7 +1,7 @@
 #include "cli/trade_request.hpp"
 
 #include "core/progress.hpp"
-#include "scene/journal.hpp"
+#include "results/journal.hpp"
 
 #include <unistd.h>
 
@@ -51,15 +51,15 @@ class Progress {
 
 constexpr const char* kTable = "errors";
 
-scene::JournalRecord to_record(std::size_t index, const std::string& name, const trade::Finished& finished) {
-  scene::JournalRecord record{.table = kTable, .index = static_cast<std::int64_t>(index), .values = {}, .note = name};
+results::JournalRecord to_record(std::size_t index, const std::string& name, const trade::Finished& finished) {
+  results::JournalRecord record{.table = kTable, .index = static_cast<std::int64_t>(index), .values = {}, .note = name};
   record.values.assign(finished.error.begin(), finished.error.end());
   record.values.insert(record.values.end(), finished.noise.begin(), finished.noise.end());
   return record;
 }
 
-std::optional<trade::Finished> recalled(const scene::Journal& journal, const std::string& name) {
-  for (const scene::JournalRecord& record : journal.records()) {
+std::optional<trade::Finished> recalled(const results::Journal& journal, const std::string& name) {
+  for (const results::JournalRecord& record : journal.records()) {
     if (record.note != name || record.values.size() != 2 * trade::kMeasures) continue;
     trade::Finished finished;
     const auto middle = record.values.begin() + static_cast<std::ptrdiff_t>(trade::kMeasures);
@@ -104,9 +104,9 @@ void run_study(const Session& session, const std::filesystem::path& output, cons
   options.parallel = {.threads = session.threads,
                       .stop = session.stop,
                       .progress = [&](std::size_t done, std::size_t n) { progress.update(done, n); }};
-  std::optional<scene::Journal> journal;
+  std::optional<results::Journal> journal;
   if (!output.empty()) {
-    journal.emplace(scene::Journal::path_for(output), scene::fingerprint(identity));
+    journal.emplace(results::Journal::path_for(output), results::fingerprint(identity));
     options.recall = [&](const std::string& name) { return recalled(*journal, name); };
     options.store = [&](const std::string& name, const trade::Finished& finished) {
       if (finished.failure.empty()) journal->append(to_record(journal->records().size(), name, finished));

@@ -8,7 +8,7 @@
 #include "cli/validation_setup.hpp"
 #include "cli/validation_store.hpp"
 #include "cli/verbs.hpp"
-#include "scene/records.hpp"
+#include "results/records.hpp"
 
 #include <fmt/format.h>
 
@@ -24,7 +24,7 @@ Report run_shaken(const Session& session, const ValidateArguments& arguments, sc
                   const dynamics::HybridSystem& full) {
   if (arguments.no_sweep) scene.shaken.frequencies.reset();
   const auto candidates = load_shaken_candidates(scene, full, arguments.input);
-  if (scene::StoreReader(arguments.input).has(scene::kReducedGroup)) {  // its own size is the one to judge
+  if (results::StoreReader(arguments.input).has(results::kReducedGroup)) {  // its own size is the one to judge
     scene.shaken.modes = {static_cast<int>(candidates.front().basis.modes())};
   }
   const auto result = validate_shaken_into(session, scene, candidates, arguments.output);

@@ -1,10 +1,10 @@
 #include "cli/validate_run.hpp"
 
 #include "cli/portraits.hpp"
-#include "cli/sweep_store.hpp"
 #include "cli/validation_store.hpp"
-#include "scene/journal.hpp"
-#include "scene/provenance.hpp"
+#include "results/journal.hpp"
+#include "results/provenance.hpp"
+#include "results/sweep_store.hpp"
 
 #include <fmt/format.h>
 
@@ -16,7 +16,8 @@ std::string identity(const scene::Scene& scene, const std::vector<diagnostics::C
   const Eigen::MatrixXd& vectors = candidates.front().basis.vectors;
   const std::string bytes(reinterpret_cast<const char*>(vectors.data()),
                           static_cast<std::size_t>(vectors.size()) * sizeof(double));
-  return scene::fingerprint(fmt::format("{} validate\n{}\n{}", scene::version(), scene::scene_to_toml(scene), bytes));
+  return results::fingerprint(
+      fmt::format("{} validate\n{}\n{}", results::version(), scene::scene_to_toml(scene), bytes));
 }
 
 }  // namespace
@@ -25,19 +26,19 @@ diagnostics::ValidationReport validate_into(const Session& session, const scene:
                                             const dynamics::HybridSystem& full,
                                             const std::vector<diagnostics::Candidate>& candidates,
                                             diagnostics::ValidationOptions options, const std::filesystem::path& file) {
-  scene::Journal journal(scene::Journal::path_for(file), identity(scene, candidates));
+  results::Journal journal(results::Journal::path_for(file), identity(scene, candidates));
   diagnostics::ValidationReport report;
   {
     ProgressLine line("validate", session.progress_mode());
     options.parallel = session.parallel(line);
-    options.sink = journal_sink(journal);
+    options.sink = results::journal_sink(journal);
     report = diagnostics::validate(full, candidates, scene::initial_state(scene, full), options);
   }
   if (report.interrupted) throw Interrupted();
 
-  const Units units = Units::of(scene.units);
-  scene::StoreWriter writer(file);
-  scene::save(writer, scene::provenance_of(scene, "slipmode validate"));
+  const results::Units units = results::Units::of(scene.units);
+  results::StoreWriter writer(file);
+  results::save(writer, results::provenance_of(scene, "slipmode validate"));
   store_validation(writer, report, units);
   store_portraits(writer, "portraits/levels", level_portraits(full, candidates.front(), report), units);
   store_portraits(writer, "portraits/orbits", orbit_portraits(full, candidates.front(), report), units);

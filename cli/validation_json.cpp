@@ -1,6 +1,6 @@
 #include "cli/exponents_store.hpp"
-#include "cli/sweep_store.hpp"
 #include "cli/validation_store.hpp"
+#include "results/sweep_store.hpp"
 
 namespace slipmode::cli {
 namespace {
@@ -64,7 +64,7 @@ Json orbit_json(const OrbitRow& row) {
 
 Json motions_json(const std::vector<diagnostics::SweepPoint>& points) {
   Json out = Json::object();
-  for (const MotionCount& count : count_motions(points)) out[count.motion] = count.values;
+  for (const results::MotionCount& count : results::count_motions(points)) out[count.motion] = count.values;
   return out;
 }
 

@@ -2,8 +2,8 @@
 
 #include "cli/steps.hpp"
 #include "core/none.hpp"
+#include "results/records.hpp"
 #include "rom/reduce.hpp"
-#include "scene/records.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -19,8 +19,8 @@ pod::Ensemble moments(const pod::PodResult& result) {
   return {.snapshots = snapshots, .run_begin = {0}};
 }
 
-diagnostics::Candidate reduced_candidate(const scene::StoreReader& store, const std::string& group, Eigen::Index n) {
-  const pod::Basis basis = scene::load_basis(store, group, n);
+diagnostics::Candidate reduced_candidate(const results::StoreReader& store, const std::string& group, Eigen::Index n) {
+  const pod::Basis basis = results::load_basis(store, group, n);
   const bool known = basis.energy.size() == basis.modes();
   return {.name = basis.kind == pod::BasisKind::kPom   ? "POM"
                   : basis.kind == pod::BasisKind::kLnm ? "LNM"
@@ -61,18 +61,18 @@ std::vector<diagnostics::Candidate> pom_and_lnm(const scene::Scene& scene, const
 
 std::vector<diagnostics::Candidate> load_candidates(const scene::Scene& scene, const fem::Structure& structure,
                                                     const std::string& file) {
-  const scene::StoreReader store(file);
-  if (store.has(scene::kReducedGroup)) {
-    return {reduced_candidate(store, std::string(scene::kReducedGroup) + "/basis", structure.size())};
+  const results::StoreReader store(file);
+  if (store.has(results::kReducedGroup)) {
+    return {reduced_candidate(store, std::string(results::kReducedGroup) + "/basis", structure.size())};
   }
-  if (store.has(scene::kPodGroup)) {
-    return pom_and_lnm(scene, structure, scene::load_pod(store, scene::kPodGroup, structure.size()));
+  if (store.has(results::kPodGroup)) {
+    return pom_and_lnm(scene, structure, results::load_pod(store, results::kPodGroup, structure.size()));
   }
-  if (store.has(scene::kBasisGroup)) return {reduced_candidate(store, scene::kBasisGroup, structure.size())};
+  if (store.has(results::kBasisGroup)) return {reduced_candidate(store, results::kBasisGroup, structure.size())};
   const pod::Ensemble ensemble = load_snapshots(store);
   if (ensemble.snapshots.rows() != structure.size()) {
-    store.fail(scene::kEnsembleGroup, fmt::format("expected {} degrees of freedom as in the scene, found {}",
-                                                  structure.size(), ensemble.snapshots.rows()));
+    store.fail(results::kEnsembleGroup, fmt::format("expected {} degrees of freedom as in the scene, found {}",
+                                                    structure.size(), ensemble.snapshots.rows()));
   }
   return pom_and_lnm(scene, structure, pod::pod(ensemble));
 }

@@ -3,7 +3,7 @@
 #include "cli/session.hpp"
 #include "diagnostics/validate.hpp"
 #include "pod/pod.hpp"
-#include "scene/store.hpp"
+#include "results/store.hpp"
 
 #include <vector>
 

@@ -1,9 +1,9 @@
 #include "cli/validation_store.hpp"
 
 #include "cli/exponents_store.hpp"
-#include "cli/sweep_store.hpp"
 #include "core/none.hpp"
-#include "scene/table.hpp"
+#include "results/sweep_store.hpp"
+#include "results/table.hpp"
 
 #include <fmt/format.h>
 
@@ -34,7 +34,7 @@ std::vector<std::string> texts(const ValidationReport& report, Rows rows, Value 
   return out;
 }
 
-scene::Table share_table(const ValidationReport& report, const Units& units) {
+results::Table share_table(const ValidationReport& report, const results::Units& units) {
   const auto numbers = [&report](auto value) { return column(report, &CandidateReport::shares, value); };
   const auto when_ok = [&numbers](auto value) {
     return numbers([value](const ShareRow& row) { return row.failure.empty() ? value(row) : kNone; });
@@ -86,7 +86,7 @@ scene::Table share_table(const ValidationReport& report, const Units& units) {
             })}}};
 }
 
-scene::Table orbit_table(const ValidationReport& report, const Units& units) {
+results::Table orbit_table(const ValidationReport& report, const results::Units& units) {
   const auto compared = [&report](auto value) {
     return column(report, &CandidateReport::orbits,
                   [value](const OrbitRow& row) { return row.comparison ? value(*row.comparison) : kNone; });
@@ -117,7 +117,7 @@ scene::Table orbit_table(const ValidationReport& report, const Units& units) {
             })}}};
 }
 
-void store_full(scene::StoreWriter& writer, const ValidationReport& report, const Units& units) {
+void store_full(results::StoreWriter& writer, const ValidationReport& report, const results::Units& units) {
   const std::string group = "validation/full/";
   writer.write(group + "speed", report.speed, {units.velocity, "belt speed of the table"});
   writer.write(group + "motion", std::string(diagnostics::to_string(report.full.period.motion)),
@@ -137,8 +137,8 @@ void store_full(scene::StoreWriter& writer, const ValidationReport& report, cons
                {"", "number of modes of the sweep and of the cost"});
 }
 
-void store_bifurcation(scene::StoreWriter& writer, const diagnostics::BifurcationComparison& comparison,
-                       const Units& units) {
+void store_bifurcation(results::StoreWriter& writer, const diagnostics::BifurcationComparison& comparison,
+                       const results::Units& units) {
   const std::string group = "validation/bifurcation/";
   writer.write(group + "values", static_cast<std::int64_t>(comparison.values), {"", "values with both results"});
   writer.write(group + "failed", static_cast<std::int64_t>(comparison.failed), {"", "values without"});
@@ -151,7 +151,7 @@ void store_bifurcation(scene::StoreWriter& writer, const diagnostics::Bifurcatio
   writer.write(group + "mean_hausdorff", comparison.mean_hausdorff, {units.length, "mean distance of slip states"});
 }
 
-void store_cost(scene::StoreWriter& writer, const diagnostics::Cost& cost, const Units& units) {
+void store_cost(results::StoreWriter& writer, const diagnostics::Cost& cost, const results::Units& units) {
   const std::string group = "validation/cost/";
   writer.write(group + "duration", cost.duration, {units.time, "simulated time of the timed run"});
   writer.write(group + "full_wall", cost.full_wall, {"s", "median wall time, full model"});
@@ -166,18 +166,18 @@ void store_cost(scene::StoreWriter& writer, const diagnostics::Cost& cost, const
 
 }  // namespace
 
-void store_validation(scene::StoreWriter& writer, const ValidationReport& report, const Units& units) {
+void store_validation(results::StoreWriter& writer, const ValidationReport& report, const results::Units& units) {
   store_full(writer, report, units);
-  scene::save(writer, "validation/shares", share_table(report, units));
-  scene::save(writer, "validation/orbits", orbit_table(report, units));
+  results::save(writer, "validation/shares", share_table(report, units));
+  results::save(writer, "validation/orbits", orbit_table(report, units));
   if (report.bifurcation) store_bifurcation(writer, *report.bifurcation, units);
   if (report.cost) store_cost(writer, *report.cost, units);
   if (report.verdict) store_verdict(writer, *report.verdict, units);
   if (report.sweep) {
-    const SweepAxis axis = sweep_axis("drive.speed", units);
+    const results::SweepAxis axis = results::sweep_axis("drive.speed", units);
     const std::string reduced = fmt::format("reduced model, {} {}s", report.chosen, report.candidates.front().name);
-    store_sweep(writer, "sweep/full", "full model", axis, units, report.sweep->full);
-    store_sweep(writer, "sweep/reduced", reduced, axis, units, report.sweep->reduced);
+    results::store_sweep(writer, "sweep/full", "full model", axis, units, report.sweep->full);
+    results::store_sweep(writer, "sweep/reduced", reduced, axis, units, report.sweep->reduced);
   }
 }
 

@@ -1,8 +1,8 @@
 #include "cli/exponents_store.hpp"
-#include "cli/sweep_store.hpp"
 #include "cli/text_table.hpp"
 #include "cli/validation_store.hpp"
 #include "core/none.hpp"
+#include "results/sweep_store.hpp"
 
 #include <fmt/format.h>
 #include <cmath>
@@ -23,7 +23,7 @@ std::vector<std::string> share_cells(const ShareRow& row) {
           fixed(ok ? row.horizon.dX : kNone, 2),
           fixed(ok ? row.horizon.dE : kNone, 2),
           fixed(row.attractor ? row.distance.wasserstein : kNone, 3),
-          row.attractor ? motion_text(row.attractor->period) : "failed",
+          row.attractor ? results::motion_text(row.attractor->period) : "failed",
           fixed(row.lyapunov ? row.lyapunov->bits : kNone, 4)};
 }
 
@@ -137,22 +137,23 @@ std::string orbits_text(const ValidationReport& report) {
 std::string sweep_text(const ValidationReport& report) {
   std::map<std::string, std::size_t> reduced;
   TextTable table({"motion", "full", "reduced"});
-  for (const MotionCount& count : count_motions(report.sweep->reduced)) reduced[count.motion] = count.values;
-  for (const MotionCount& count : count_motions(report.sweep->full)) {
+  for (const results::MotionCount& count : results::count_motions(report.sweep->reduced))
+    reduced[count.motion] = count.values;
+  for (const results::MotionCount& count : results::count_motions(report.sweep->full)) {
     table.add({count.motion, fmt::format("{}", count.values), fmt::format("{}", reduced[count.motion])});
     reduced.erase(count.motion);
   }
-  for (const MotionCount& count : count_motions(report.sweep->reduced)) {
+  for (const results::MotionCount& count : results::count_motions(report.sweep->reduced)) {
     if (reduced.contains(count.motion)) table.add({count.motion, "0", fmt::format("{}", count.values)});
   }
-  const std::string note = undecided_note(report.sweep->full);
-  return table.str() + (note.empty() ? undecided_note(report.sweep->reduced) : note);
+  const std::string note = results::undecided_note(report.sweep->full);
+  return table.str() + (note.empty() ? results::undecided_note(report.sweep->reduced) : note);
 }
 
 }  // namespace
 
 std::string summary_text(const ValidationReport& report) {
-  std::string out = fmt::format("Full model at V = {:g}: {}", report.speed, motion_text(report.full.period));
+  std::string out = fmt::format("Full model at V = {:g}: {}", report.speed, results::motion_text(report.full.period));
   if (report.lyapunov) {
     const double error_bits = report.lyapunov->error / std::numbers::ln2;
     out += fmt::format(", largest exponent {:.4f} ± {:.4f} bit per unit of time", report.lyapunov->bits, error_bits);

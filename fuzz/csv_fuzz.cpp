@@ -1,12 +1,12 @@
 // Any file is either a table of columns or refused with InvalidInput.
-#include "cli/csv_series.hpp"
 #include "core/errors.hpp"
+#include "results/csv_series.hpp"
 #include "scratch_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace slipmode;
   try {
-    const cli::CsvFile file(scratch_file(".csv", data, size));
+    const results::CsvFile file(scratch_file(".csv", data, size));
     static_cast<void>(file.time_column());
     for (std::size_t c = 0; c < file.names().size() && c < 8; ++c) {
       const Eigen::VectorXd values = file.values(c);

@@ -2,10 +2,10 @@
 // of a real result are left out, or replaced by others of other types, shapes and values. (Bytes that are not HDF5's
 // are libhdf5's own affair.)
 #include "core/errors.hpp"
-#include "scene/hdf5_handle.hpp"
-#include "scene/info.hpp"
-#include "scene/provenance.hpp"
-#include "scene/records.hpp"
+#include "results/hdf5_handle.hpp"
+#include "results/info.hpp"
+#include "results/provenance.hpp"
+#include "results/records.hpp"
 #include "scratch_file.hpp"
 
 #include <array>

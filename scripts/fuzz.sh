@@ -24,8 +24,8 @@ libraries=("$release/libslipmode.a" -lfmt -ltomlplusplus -llapack -lblas -larpac
 sources_of() {
   case $1 in
     scene) ls scene/toml_*.cpp scene/scene_parse.cpp scene/parse_*.cpp scene/scene_write.cpp scene/write_*.cpp ;;
-    csv) ls cli/csv_series.cpp ;;
-    store) ls scene/store_reader.cpp scene/info.cpp scene/checked_read.cpp scene/records.cpp scene/*_record*.cpp ;;
+    csv) ls results/csv_series.cpp ;;
+    store) ls results/{store_reader,info,checked_read,records}.cpp results/*_record*.cpp ;;
     *) echo "no such target: $1 (scene, csv, store)" >&2; exit 2 ;;
   esac | sort -u
 }

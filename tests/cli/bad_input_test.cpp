@@ -1,6 +1,6 @@
 #include "cli/slipmode_process.hpp"
 #include "cli/small_scenes.hpp"
-#include "scene/store.hpp"
+#include "results/store.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ class BadInput : public testing::TestWithParam<BadCall> {
     write_file(at / "truncated.h5", bytes_of(at / "pod.h5").substr(0, 2000));
     Eigen::MatrixXd vectors = Eigen::MatrixXd::Identity(4, 2);
     vectors(1, 1) = std::numeric_limits<double>::quiet_NaN();
-    scene::StoreWriter writer(at / "nan.h5");
+    results::StoreWriter writer(at / "nan.h5");
     writer.write("basis/vectors", vectors, {"1", "made by hand"});
     writer.commit();
   }

@@ -2,8 +2,8 @@
 
 #include "cli/slipmode_process.hpp"
 #include "cli/small_scenes.hpp"
-#include "scene/store.hpp"
-#include "scene/table.hpp"
+#include "results/store.hpp"
+#include "results/table.hpp"
 
 #include <gtest/gtest.h>
 #include <csignal>
@@ -40,8 +40,8 @@ TEST_F(DiagnoseModel, FileFiguresAndJsonSayTheSameExponents) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const auto model = outcome.json()["exponents"][0];
   EXPECT_EQ(model["directions"], 8);
-  const scene::StoreReader store(folder.path() / "two.h5");
-  const scene::Table values = scene::load_table(store, "exponents/0/values");
+  const results::StoreReader store(folder.path() / "two.h5");
+  const results::Table values = results::load_table(store, "exponents/0/values");
   ASSERT_EQ(values.rows(), 8U);
   EXPECT_EQ(values.numbers("nats")[0], model["nats"][0].get<double>());
   EXPECT_EQ(store.integer("exponents/0/lost"), model["lost"].get<std::int64_t>());
@@ -69,14 +69,14 @@ TEST_F(DiagnoseModel, VerdictPutsFullAndReducedSideBySide) {
   const auto sticks = models[0]["figures"]["sticks"];
   EXPECT_NEAR(sticks["value"].get<double>(),
               0.5 * (sticks["halves"][0].get<double>() + sticks["halves"][1].get<double>()), 1e-9);
-  const scene::Table table = scene::load_table(scene::StoreReader(folder.path() / "v.h5"), "verdict");
+  const results::Table table = results::load_table(results::StoreReader(folder.path() / "v.h5"), "verdict");
   EXPECT_EQ(table.rows() % 3, 0U);
 
   const Outcome validated = slipmode_in(
       folder, {"validate", "free.toml", "pod.h5", "--no-sweep", "--verdict", "-o", "w.h5", "--json", "--quiet"});
   ASSERT_EQ(validated.exit_code, 0) << validated.err;
   EXPECT_EQ(validated.json()["validation"]["verdict"]["models"].size(), 3U);
-  EXPECT_TRUE(scene::StoreReader(folder.path() / "w.h5").has("verdict"));
+  EXPECT_TRUE(results::StoreReader(folder.path() / "w.h5").has("verdict"));
 }
 
 TEST_F(DiagnoseModel, OverAKeyIsTheSpectrumAtEveryValueAndGoesOnAfterAnInterruption) {
@@ -84,11 +84,11 @@ TEST_F(DiagnoseModel, OverAKeyIsTheSpectrumAtEveryValueAndGoesOnAfterAnInterrupt
                                          "--duration", "200",       "-o",     "over.h5",
                                          "--json",     "--quiet"};
   ASSERT_EQ(slipmode_in(folder, over).exit_code, 0);
-  const scene::StoreReader whole(folder.path() / "over.h5");
+  const results::StoreReader whole(folder.path() / "over.h5");
   const Eigen::MatrixXd exponents = whole.columns("exponents/full/nats");
   EXPECT_EQ(exponents.rows(), 4);
   EXPECT_EQ(exponents.cols(), 5);
-  EXPECT_EQ(scene::load_table(whole, "sweep/full/values").rows(), 5U);
+  EXPECT_EQ(results::load_table(whole, "sweep/full/values").rows(), 5U);
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "over.h5.journal"));
 
   // Killed as soon as something has been kept; whether the end came before is no matter.
@@ -100,7 +100,7 @@ TEST_F(DiagnoseModel, OverAKeyIsTheSpectrumAtEveryValueAndGoesOnAfterAnInterrupt
     static_cast<void>(process.wait());
   }
   ASSERT_EQ(slipmode_in(folder, again).exit_code, 0);
-  EXPECT_EQ(scene::StoreReader(folder.path() / "again.h5").columns("exponents/full/nats"), exponents);
+  EXPECT_EQ(results::StoreReader(folder.path() / "again.h5").columns("exponents/full/nats"), exponents);
 }
 
 TEST_F(DiagnoseModel, RefusesWhatMakesNoSense) {

@@ -1,7 +1,7 @@
 #include "cli/slipmode_process.hpp"
 #include "fixtures/test_series.hpp"
-#include "scene/store.hpp"
-#include "scene/table.hpp"
+#include "results/store.hpp"
+#include "results/table.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -77,9 +77,9 @@ TEST_F(Diagnose, GivesTheSameNumbersInTextJsonFileAndUnits) {
   }
   // Accepted value 0.4192 per step; the tool's own band at 20,000 samples is 0.02, at 2,000 three times that.
   EXPECT_NEAR(nats.json()["findings"]["jacobians_1"]["value"].get<double>(), 0.4192, 0.06);
-  const scene::StoreReader store(folder.path() / "henon.h5");
+  const results::StoreReader store(folder.path() / "henon.h5");
   EXPECT_EQ(store.text("diagnosis/verdict"), nats.json()["verdict"]);
-  const scene::Table exponents = scene::load_table(store, "diagnosis/exponents");
+  const results::Table exponents = results::load_table(store, "diagnosis/exponents");
   EXPECT_EQ(exponents.numbers("exponent")[0], nats.json()["findings"]["jacobians_1"]["value"].get<double>());
   EXPECT_EQ(store.vector("diagnosis/series/values").size(), 2000);
   const std::vector<std::string> figures = nats.json()["figures"];

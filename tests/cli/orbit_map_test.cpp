@@ -1,5 +1,5 @@
 #include "cli/slipmode_process.hpp"
-#include "scene/table.hpp"
+#include "results/table.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ TEST_F(OrbitMap, HoldsThePrintedOrbitsOfTheSingleMass) {
                            "drive.amplitude=1:1.5:0.5", "--start", "both", "-o", "map.h5", "--json"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(outcome.json()["points"], nlohmann::json({2, 2}));
-  const scene::StoreReader store(folder.path() / "map.h5");
+  const results::StoreReader store(folder.path() / "map.h5");
   for (const std::string group : {"map/from_scene/", "map/from_centre/"}) {
     const Eigen::MatrixXd crossings = store.matrix(group + "crossings", 2, 2);
     const Eigen::MatrixXd multiplier = store.matrix(group + "multiplier", 2, 2);
@@ -87,8 +87,8 @@ TEST_F(OrbitMap, OverOneKeyGivesVerdictsAndAmplitudes) {
   const Outcome outcome = slipmode_in(
       folder, {"orbit", "map", kThreeMasses, "--over", "drive.omega=0.7:1:0.1", "-o", "strobe.h5", "--json"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  const scene::StoreReader store(folder.path() / "strobe.h5");
-  const scene::Table values = scene::load_table(store, "strobe/from_scene/values");
+  const results::StoreReader store(folder.path() / "strobe.h5");
+  const results::Table values = results::load_table(store, "strobe/from_scene/values");
   ASSERT_EQ(values.rows(), 8U);
   for (std::size_t row = 0; row < 8; ++row) {
     const double eta = values.numbers("parameter")[row];

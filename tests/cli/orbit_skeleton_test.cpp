@@ -1,6 +1,6 @@
 #include "cli/slipmode_process.hpp"
-#include "scene/orbit_records.hpp"
-#include "scene/table.hpp"
+#include "results/orbit_records.hpp"
+#include "results/table.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -45,8 +45,8 @@ TEST_F(OrbitSkeleton, OfTheChainHoldsUnstableOrbits) {
         for (const auto& orbit : full["orbits"]) hits += orbit["hits"].get<std::size_t>();
         return hits;
       }());
-  const scene::StoreReader store(folder.path() / "skeleton.h5");
-  const auto stored = scene::load_orbit(store, "skeleton/full/orbit_001");
+  const results::StoreReader store(folder.path() / "skeleton.h5");
+  const auto stored = results::load_orbit(store, "skeleton/full/orbit_001");
   EXPECT_EQ(stored.period, full["orbits"][0]["period"]);
   for (const std::string figure : {"orbits", "spectrum"}) {
     ASSERT_EQ(slipmode_in(folder, {"plot", "skeleton.h5", "--figure", figure, "-o", figure + ".png"}).exit_code, 0);
@@ -93,7 +93,7 @@ TEST_F(OrbitSkeleton, ReturnsOfASeriesFindItsPeriod) {
     return a["distance"].template get<double>() < b["distance"].template get<double>();
   });
   EXPECT_EQ((*nearest)["length"], 90);
-  EXPECT_EQ(scene::load_table(scene::StoreReader(folder.path() / "returns.h5"), "returns/orbits").rows(),
+  EXPECT_EQ(results::load_table(results::StoreReader(folder.path() / "returns.h5"), "returns/orbits").rows(),
             orbits.size());
   EXPECT_EQ(slipmode_in(folder, {"orbit", "returns", "run.h5:trajectory/v"}).exit_code, 2);
   EXPECT_EQ(slipmode_in(folder, {"orbit", "returns", "run.h5"}).exit_code, 2);

@@ -1,8 +1,8 @@
 // slipmode orbit find and continue: what they say, store and draw, and what they refuse.
 
 #include "cli/slipmode_process.hpp"
-#include "scene/orbit_records.hpp"
-#include "scene/store.hpp"
+#include "results/orbit_records.hpp"
+#include "results/store.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -80,8 +80,8 @@ TEST_F(OrbitVerbs, PeriodIsAMultipleOfTheDrives) {
 
 TEST_F(OrbitVerbs, StoresTheOrbitAndOnePeriodOfIt) {
   const auto said = json_of({"find", kSdof, "--start", "2.5,0", "-o", "orbit.h5"});
-  const scene::StoreReader store(folder.path() / "orbit.h5");
-  const orbits::PeriodicOrbit orbit = scene::load_orbit(store);
+  const results::StoreReader store(folder.path() / "orbit.h5");
+  const orbits::PeriodicOrbit orbit = results::load_orbit(store);
   EXPECT_EQ(orbit.period, said["period"]);
   EXPECT_EQ(orbit.multipliers[0].real(), said["multipliers"][0][0]);
   EXPECT_EQ(orbit.crossings, 4);
@@ -142,7 +142,7 @@ TEST_F(OrbitVerbs, SequentialContinuationEndsAtAFoldAndKeepsWhatItFound) {
       {"continue", kSdof, "--over", "drive.omega=1.2:1.8", "--start", "2.5,0", "--sequential", "-o", "branch.h5"}, 3);
   EXPECT_TRUE(said["incomplete"]);
   EXPECT_EQ(said["branches"][0]["end"], "lost");
-  const scene::StoreReader store(folder.path() / "branch.h5");
+  const results::StoreReader store(folder.path() / "branch.h5");
   const Eigen::VectorXd parameter = store.vector("branches/0/points/parameter");
   EXPECT_NEAR(parameter.maxCoeff(), 1.4208, 2e-3);  // the fold that arclength finds
 }

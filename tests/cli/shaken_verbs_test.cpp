@@ -1,6 +1,6 @@
 // Verbs on a small beam under a shaker, through the executable.
 #include "cli/slipmode_process.hpp"
-#include "scene/table.hpp"
+#include "results/table.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 using namespace slipmode::tests;
 namespace fs = std::filesystem;
-using slipmode::scene::StoreReader;
+using slipmode::results::StoreReader;
 using testing::HasSubstr;
 
 const std::string kShakenBeam = SLIPMODE_SOURCE_DIR "/datasets/beam_12hz/scene.toml";
@@ -103,7 +103,7 @@ TEST_F(Shaken, ASweepGivesTheSameBytesForAnyNumberOfThreadsAndAfterAKill) {
   EXPECT_EQ(resumed.json()["resumed"], kept);
   EXPECT_EQ(bytes_of(path("two.h5")), bytes_of(path("one.h5")));
   EXPECT_LT(resumed.json()["largest_audit_residual"], 1e-9);
-  const slipmode::scene::Table values = load_table(StoreReader(path("one.h5")), "sweep/full/values");
+  const slipmode::results::Table values = load_table(StoreReader(path("one.h5")), "sweep/full/values");
   EXPECT_EQ(values.rows(), 121U);
 }
 

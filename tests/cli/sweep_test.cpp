@@ -1,6 +1,6 @@
 #include "cli/slipmode_process.hpp"
 #include "cli/small_scenes.hpp"
-#include "scene/table.hpp"
+#include "results/table.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -90,8 +90,8 @@ TEST_F(Sweep, SimulatesNoLongerAtAValueThanItsOwnLimit) {
       slipmode_in(folder, {"sweep", "free.toml", "--over", "drive.speed=0.3:0.2:0.1", "-o", "sweep.h5", "--set",
                            "validation.sweep_limit=50.0", "--set", "validation.limit=5000.0"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  const slipmode::scene::StoreReader store(folder.path() / "sweep.h5");
-  const slipmode::scene::Table values = slipmode::scene::load_table(store, "sweep/full/values");
+  const slipmode::results::StoreReader store(folder.path() / "sweep.h5");
+  const slipmode::results::Table values = slipmode::results::load_table(store, "sweep/full/values");
   EXPECT_THAT(values.numbers("time"), testing::Each(150.0));  // transient 100, then less than a block
   EXPECT_THAT(outcome.out, HasSubstr("after 150 time units")) << "too few slips for a verdict, and what to do about it";
 }

@@ -2,9 +2,9 @@
 
 #include "cli/slipmode_process.hpp"
 #include "cli/small_scenes.hpp"
+#include "results/store.hpp"
+#include "results/table.hpp"
 #include "scene/scene.hpp"
-#include "scene/store.hpp"
-#include "scene/table.hpp"
 
 #include <gtest/gtest.h>
 #include <algorithm>
@@ -41,8 +41,8 @@ TEST_F(TradeVerbs, TableFileFiguresAndSceneSayTheSame) {
                                 "--error", "5%", "--write", "picked.toml"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const auto json = outcome.json();
-  const slipmode::scene::StoreReader store(folder.path() / "trade.h5");
-  const slipmode::scene::Table table = slipmode::scene::load_table(store, "trade/candidates");
+  const slipmode::results::StoreReader store(folder.path() / "trade.h5");
+  const slipmode::results::Table table = slipmode::results::load_table(store, "trade/candidates");
   const auto& candidates = json["trade"]["candidates"];
   ASSERT_EQ(table.rows(), candidates.size() + 1) << "the reference is the first row";
   for (std::size_t i = 0; i < candidates.size(); ++i) {

@@ -1,0 +1,247 @@
+#include "results/driven_store.hpp"
+
+#include "core/none.hpp"
+#include "results/journal_cursor.hpp"
+#include "results/table.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <memory>
+#include <utility>
+
+namespace slipmode::results {
+namespace {
+
+using detail::append;
+using detail::Cursor;
+using diagnostics::DrivenLabel;
+using diagnostics::DrivenMotion;
+using diagnostics::DrivenPoint;
+using diagnostics::DrivenRepeat;
+
+void append_exponent(std::vector<double>& values, const std::optional<diagnostics::LyapunovExponent>& exponent) {
+  values.push_back(exponent ? 1.0 : 0.0);
+  if (!exponent) return;
+  values.insert(values.end(),
+                {exponent->nats, exponent->bits, exponent->error, static_cast<double>(exponent->renormalisations)});
+}
+
+std::optional<diagnostics::LyapunovExponent> next_exponent(Cursor& cursor) {
+  if (cursor.next() == 0.0) return std::nullopt;
+  diagnostics::LyapunovExponent exponent;
+  exponent.nats = cursor.next();
+  exponent.bits = cursor.next();
+  exponent.error = cursor.next();
+  exponent.renormalisations = cursor.next_int();
+  return exponent;
+}
+
+/// The columns of `values`, filled point by point.
+class ValueTable {
+ public:
+  ValueTable(const DrivenAxes& axes, const Units& units) {
+    number("parameter", axes.swept.units, axes.swept.key, [](const DrivenPoint& p) { return p.parameter; });
+    text("label", "stick, stick-slip, slip, or failed",
+         [](const DrivenMotion& m) { return std::string(diagnostics::to_string(m.label)); });
+    text("repeat", "periodic, settling, aperiodic, undecided, or failed",
+         [](const DrivenMotion& m) { return std::string(diagnostics::to_string(m.period.repeat)); });
+    motion("period", "", "drive periods after which sections repeat, or approach repeating; 0: never",
+           [](const DrivenMotion& m) { return static_cast<double>(m.period.period); });
+    motion("mean", axes.reading_unit, "mean of the " + axes.reading, [](const DrivenMotion& m) { return m.mean(0); });
+    motion("rms", axes.reading_unit, "root mean square about the mean of the " + axes.reading,
+           [](const DrivenMotion& m) { return m.rms(0); });
+    motion("stick_fraction", "1", "share of time in stick, mean over contacts, micro-stick included",
+           [](const DrivenMotion& m) { return m.stick_fraction; });
+    motion("longest_stick", "1", "longest stick, in drive periods",
+           [](const DrivenMotion& m) { return m.longest_stick; });
+    motion("separations", "", "losses of contact", [](const DrivenMotion& m) { return double(m.separations); });
+    motion("jumps", "", "jumps of contact points", [](const DrivenMotion& m) { return double(m.jumps); });
+    motion("mean_energy", units.energy, "mean energy", [](const DrivenMotion& m) { return m.mean_energy; });
+    motion("exponent", units.rate, "largest Lyapunov exponent; NaN: not asked for",
+           [](const DrivenMotion& m) { return m.exponent ? m.exponent->nats : kNone; });
+    motion("exponent_error", units.rate, "its standard error",
+           [](const DrivenMotion& m) { return m.exponent ? m.exponent->error : kNone; });
+    motion("events", "", "events located in all cycles", [](const DrivenMotion& m) { return double(m.events); });
+    motion("audit_residual", "1", "energy balance relative to the energy exchanged",
+           [](const DrivenMotion& m) { return m.audit_residual; });
+  }
+
+  Table filled(const std::vector<DrivenPoint>& points) const {
+    Table table{"one row per value of the key; times and counts are those of the cycles kept", {}};
+    for (const Number& column : numbers_) {
+      std::vector<double> values;
+      for (const DrivenPoint& point : points) values.push_back(column.get(point));
+      table.columns.push_back({column.name, column.meaning, values});
+    }
+    for (const Text& column : texts_) {
+      std::vector<std::string> values;
+      for (const DrivenPoint& point : points) values.push_back(point.ok() ? column.get(point.settled) : "failed");
+      table.columns.push_back({column.name, column.meaning, values});
+    }
+    std::vector<std::string> failure;
+    for (const DrivenPoint& point : points) failure.push_back(point.failure);
+    table.columns.push_back({"failure", {"", "why the value failed; empty: it did not"}, failure});
+    return table;
+  }
+
+ private:
+  struct Number {
+    std::string name;
+    Meaning meaning;
+    std::function<double(const DrivenPoint&)> get;
+  };
+  struct Text {
+    std::string name;
+    Meaning meaning;
+    std::function<std::string(const DrivenMotion&)> get;
+  };
+
+  void number(std::string name, std::string unit, std::string what, std::function<double(const DrivenPoint&)> get) {
+    numbers_.push_back({std::move(name), {std::move(unit), std::move(what)}, std::move(get)});
+  }
+  void motion(std::string name, std::string unit, std::string what, std::function<double(const DrivenMotion&)> get) {
+    number(std::move(name), std::move(unit), std::move(what),
+           [get = std::move(get)](const DrivenPoint& point) { return point.ok() ? get(point.settled) : kNone; });
+  }
+  void text(std::string name, std::string what, std::function<std::string(const DrivenMotion&)> get) {
+    texts_.push_back({std::move(name), {"", std::move(what)}, std::move(get)});
+  }
+
+  std::vector<Number> numbers_;
+  std::vector<Text> texts_;
+};
+
+}  // namespace
+
+JournalRecord to_record(const DrivenPoint& point) {
+  const DrivenMotion& m = point.settled;
+  std::vector<double> values = {point.parameter,
+                                m.frequency_hz,
+                                static_cast<double>(m.label),
+                                static_cast<double>(m.period.repeat),
+                                static_cast<double>(m.period.period),
+                                m.period.mismatch,
+                                m.stick_fraction,
+                                m.longest_stick,
+                                static_cast<double>(m.separations),
+                                static_cast<double>(m.jumps),
+                                static_cast<double>(m.events),
+                                m.mean_energy,
+                                m.audit_residual};
+  append(values, m.readings);
+  append(values, m.contact_q);
+  append(values, m.contact_v);
+  append(values, m.mean);
+  append(values, m.rms);
+  append_exponent(values, m.exponent);
+  append(values, m.end);
+  return {fmt::format("model{}", point.model), static_cast<std::int64_t>(point.index), values, point.failure};
+}
+
+DrivenPoint driven_from_record(const JournalRecord& record) {
+  constexpr std::string_view kTable = "model";
+  if (!record.table.starts_with(kTable)) {
+    throw InvalidInput(fmt::format("journal record {} {}: it belongs to another kind of sweep; remove the journal",
+                                   record.table, record.index));
+  }
+  Cursor cursor(record);
+  DrivenPoint point;
+  point.index = static_cast<std::size_t>(record.index);
+  point.model = std::stoi(record.table.substr(kTable.size()));
+  point.failure = record.note;
+  point.parameter = cursor.next();
+  DrivenMotion& m = point.settled;
+  m.frequency_hz = cursor.next();
+  m.label = static_cast<DrivenLabel>(cursor.next_int());
+  m.period.repeat = static_cast<DrivenRepeat>(cursor.next_int());
+  m.period.period = cursor.next_int();
+  m.period.mismatch = cursor.next();
+  m.stick_fraction = cursor.next();
+  m.longest_stick = cursor.next();
+  m.separations = static_cast<std::int64_t>(cursor.next());
+  m.jumps = static_cast<std::int64_t>(cursor.next());
+  m.events = static_cast<std::int64_t>(cursor.next());
+  m.mean_energy = cursor.next();
+  m.audit_residual = cursor.next();
+  m.readings = cursor.next_matrix();
+  m.contact_q = cursor.next_matrix();
+  m.contact_v = cursor.next_matrix();
+  m.mean = cursor.next_vector();
+  m.rms = cursor.next_vector();
+  m.exponent = next_exponent(cursor);
+  m.end = cursor.next_state();
+  return point;
+}
+
+diagnostics::DrivenSink driven_journal_sink(Journal& journal) {
+  const auto kept = std::make_shared<std::map<std::pair<std::size_t, int>, DrivenPoint>>();
+  for (const JournalRecord& record : journal.records()) {
+    DrivenPoint point = driven_from_record(record);
+    const std::pair key(point.index, point.model);
+    kept->insert_or_assign(key, std::move(point));
+  }
+  return {.recall = [kept](std::size_t index, int model) -> std::optional<DrivenPoint> {
+            const auto found = kept->find({index, model});
+            if (found == kept->end()) return std::nullopt;
+            return found->second;
+          },
+          .store = [&journal](const DrivenPoint& point) { journal.append(to_record(point)); }};
+}
+
+void store_driven(StoreWriter& writer, const std::string& group, const std::string& title, const DrivenAxes& axes,
+                  const Units& units, const std::vector<DrivenPoint>& points, SectionDetail detail) {
+  writer.describe_group(group, title);
+  writer.write(group + "/title", title, {"", "which model"});
+  writer.write(group + "/key", axes.swept.key, {"", "the scene's key that was swept"});
+  writer.write(group + "/label", axes.swept.label, {"", "name of the key for an axis"});
+  writer.write(group + "/reading", axes.reading, {"", "what is read at the sections"});
+  save(writer, group + "/values", ValueTable(axes, units).filled(points));
+  std::vector<double> parameter, reading, displacement, velocity;
+  for (const DrivenPoint& point : points) {
+    for (Eigen::Index k = 0; k < point.settled.readings.cols(); ++k) {
+      parameter.push_back(point.parameter);
+      reading.push_back(point.settled.readings(0, k));
+      displacement.push_back(point.settled.contact_q(0, k));
+      velocity.push_back(point.settled.contact_v(0, k));
+    }
+  }
+  Table sections{"one row per section kept: the slider's velocity passes zero upward",
+                 {{"parameter", {axes.swept.units, axes.swept.key}, parameter},
+                  {"reading", {axes.reading_unit, axes.reading}, reading}}};
+  if (detail == SectionDetail::kAll) {
+    sections.columns.push_back({"displacement", {units.length, "displacement of the first contact"}, displacement});
+    sections.columns.push_back({"velocity", {units.velocity, "velocity of the first contact"}, velocity});
+  }
+  save(writer, group + "/sections", sections);
+}
+
+std::string motion_text(const DrivenMotion& motion) {
+  const auto& period = motion.period;
+  const std::string repeat = period.repeat == DrivenRepeat::kPeriodic ? fmt::format("period {}", period.period)
+                             : period.repeat == DrivenRepeat::kSettling
+                                 ? fmt::format("settling to period {}", period.period)
+                                 : diagnostics::to_string(period.repeat);
+  return fmt::format("{}, {}{}", diagnostics::to_string(motion.label), repeat,
+                     motion.separations > 0 ? ", contact lost" : "");
+}
+
+std::vector<MotionCount> count_motions(const std::vector<DrivenPoint>& points) {
+  std::map<std::string, std::size_t> counts;
+  for (const DrivenPoint& point : points) ++counts[point.ok() ? motion_text(point.settled) : "failed"];
+  std::vector<MotionCount> out;
+  for (const auto& [motion, values] : counts) out.push_back({motion, values});
+  std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.values > b.values; });
+  return out;
+}
+
+std::string peaks_text(const std::vector<diagnostics::AmplitudePeak>& peaks) {
+  std::string out;
+  for (const auto& peak : peaks) {
+    out += fmt::format("{}{:g} ({:.3g})", out.empty() ? "" : ", ", peak.parameter, peak.amplitude);
+  }
+  return out.empty() ? "none" : out;
+}
+
+}  // namespace slipmode::results

@@ -1,0 +1,111 @@
+#include "results/info.hpp"
+
+#include "results/store.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace slipmode::results {
+
+namespace {
+
+using Kind = StoreEntry::Kind;
+
+constexpr std::int64_t kShownValues = 6;
+constexpr std::size_t kShownText = 60;
+
+const char* kind_name(Kind kind) {
+  switch (kind) {
+    case Kind::kGroup:
+      return "group";
+    case Kind::kDouble:
+      return "float64";
+    case Kind::kInteger:
+      return "int64";
+    case Kind::kText:
+      return "text";
+    case Kind::kOther:
+      break;
+  }
+  return "other";
+}
+
+bool is_short_list(const StoreEntry& entry) {
+  return entry.shape.empty() || (entry.shape.size() == 1 && entry.shape[0] > 0 && entry.shape[0] <= kShownValues);
+}
+
+nlohmann::json number_json(double value) {
+  if (std::isfinite(value)) return value;
+  return fmt::format("{}", value);  // JSON has no NaN
+}
+
+/// The value of a scalar or short list; null for anything longer.
+nlohmann::json value_json(const StoreReader& store, const StoreEntry& entry) {
+  if (!is_short_list(entry)) return nullptr;
+  const bool scalar = entry.shape.empty();
+  if (entry.kind == Kind::kDouble && scalar) return number_json(store.number(entry.name));
+  if (entry.kind == Kind::kInteger && scalar) return store.integer(entry.name);
+  if (entry.kind == Kind::kText && scalar) return store.text(entry.name);
+  if (entry.kind == Kind::kInteger) return store.integers(entry.name);
+  if (entry.kind == Kind::kText) return store.texts(entry.name);
+  if (entry.kind != Kind::kDouble) return nullptr;
+  nlohmann::json list = nlohmann::json::array();
+  for (const double value : store.vector(entry.name)) list.push_back(number_json(value));
+  return list;
+}
+
+std::string value_line(const nlohmann::json& value) {
+  std::string text = value.is_string() ? value.get<std::string>()
+                                       : value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  const std::size_t lines = static_cast<std::size_t>(std::ranges::count(text, '\n'));
+  if (lines > 1) return fmt::format("({} lines)", lines);
+  if (text.size() > kShownText) text = text.substr(0, kShownText - 3) + "...";
+  return text;
+}
+
+std::string entry_line(const StoreReader& store, const StoreEntry& entry) {
+  const auto depth = static_cast<std::size_t>(std::ranges::count(entry.name, '/'));
+  const std::string leaf = entry.name.substr(entry.name.rfind('/') + 1);
+  std::string line = std::string(2 * depth, ' ') + leaf;
+  if (entry.kind == Kind::kGroup) {
+    line += "/";
+  } else {
+    line = fmt::format("{:<28} {:<8}", line, kind_name(entry.kind));
+    line += fmt::format(" {:<12}", fmt::format("{}", fmt::join(entry.shape, " x ")));
+    line += fmt::format(" {:<7}", entry.meaning.units.empty() ? "" : "[" + entry.meaning.units + "]");
+    const nlohmann::json value = value_json(store, entry);
+    if (!value.is_null()) line += " = " + value_line(value);
+  }
+  if (!entry.meaning.description.empty()) line += "  # " + entry.meaning.description;
+  return line + "\n";
+}
+
+nlohmann::json entry_json(const StoreReader& store, const StoreEntry& entry) {
+  nlohmann::json out = {{"name", entry.name}, {"kind", kind_name(entry.kind)}};
+  if (!entry.meaning.description.empty()) out["description"] = entry.meaning.description;
+  if (entry.kind == Kind::kGroup) return out;
+  out["shape"] = entry.shape;
+  out["units"] = entry.meaning.units;
+  const nlohmann::json value = value_json(store, entry);
+  if (!value.is_null()) out["value"] = value;
+  return out;
+}
+
+}  // namespace
+
+std::string info(const std::filesystem::path& path, InfoFormat format) {
+  const StoreReader store(path);
+  if (format == InfoFormat::kText) {
+    std::string text = path.string() + "\n";
+    for (const StoreEntry& entry : store.entries()) text += entry_line(store, entry);
+    return text;
+  }
+  nlohmann::json out = {{"file", path.string()}, {"contents", nlohmann::json::array()}};
+  for (const StoreEntry& entry : store.entries()) out["contents"].push_back(entry_json(store, entry));
+  return out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);  // foreign files hold any bytes
+}
+
+}  // namespace slipmode::results

@@ -1,0 +1,230 @@
+#include "results/journal.hpp"
+
+#include "core/errors.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <chrono>
+#include <cstring>
+#include <optional>
+#include <string_view>
+
+namespace slipmode::results {
+
+namespace {
+
+constexpr std::string_view kMagic = "slipmode-journal 1 ";
+constexpr double kSyncInterval = 1.0;  // s: a sync costs milliseconds, a row often less
+
+/// CRC-32 (IEEE 802.3, reflected, polynomial 0xEDB88320).
+std::uint32_t crc32(std::string_view text) {
+  static constexpr auto kTable = [] {
+    std::array<std::uint32_t, 256> table{};
+    for (std::uint32_t i = 0; i < table.size(); ++i) {
+      std::uint32_t value = i;
+      for (int bit = 0; bit < 8; ++bit) value = (value >> 1) ^ ((value & 1U) != 0 ? 0xEDB88320U : 0U);
+      table[i] = value;
+    }
+    return table;
+  }();
+  std::uint32_t crc = 0xFFFFFFFFU;
+  for (const char c : text) crc = (crc >> 8) ^ kTable[(crc ^ static_cast<unsigned char>(c)) & 0xFFU];
+  return ~crc;
+}
+
+std::string escape(const std::string& note) {
+  std::string out;
+  for (const char c : note) {
+    if (c == '\\') {
+      out += "\\\\";
+    } else if (c == '\n') {
+      out += "\\n";
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+std::string unescape(std::string_view text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '\\' && i + 1 < text.size()) {
+      out += text[++i] == 'n' ? '\n' : text[i];
+    } else {
+      out += text[i];
+    }
+  }
+  return out;
+}
+
+/// "crc table index count v1 .. vcount note\n"; numbers are the shortest text that reads back to the same bits.
+std::string to_line(const JournalRecord& record) {
+  std::string body = fmt::format("{} {} {}", record.table, record.index, record.values.size());
+  std::array<char, 32> digits{};
+  for (const double value : record.values) {
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+    body += ' ';
+    body.append(digits.data(), end);
+  }
+  body += ' ' + escape(record.note);
+  return fmt::format("{:08x} {}\n", crc32(body), body);
+}
+
+std::string_view take_word(std::string_view& rest) {
+  const std::size_t space = rest.find(' ');
+  const std::string_view word = rest.substr(0, space);
+  rest.remove_prefix(space == std::string_view::npos ? rest.size() : space + 1);
+  return word;
+}
+
+template <class Number>
+bool parse(std::string_view word, Number& out_value) {
+  const auto result = std::from_chars(word.data(), word.data() + word.size(), out_value);
+  return result.ec == std::errc() && result.ptr == word.data() + word.size();
+}
+
+/// Nothing if the line is torn or altered.
+std::optional<JournalRecord> from_line(std::string_view line) {
+  std::uint32_t expected = 0;
+  const std::string_view word = take_word(line);
+  const auto crc_read = std::from_chars(word.data(), word.data() + word.size(), expected, 16);
+  if (crc_read.ec != std::errc() || crc32(line) != expected) return std::nullopt;
+  JournalRecord record;
+  record.table = std::string(take_word(line));
+  std::size_t count = 0;
+  if (!parse(take_word(line), record.index) || !parse(take_word(line), count)) return std::nullopt;
+  record.values.resize(count);
+  for (double& value : record.values) {
+    if (!parse(take_word(line), value)) return std::nullopt;
+  }
+  record.note = unescape(line);
+  return record;
+}
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+std::string read_all(int descriptor) {
+  std::string text;
+  std::array<char, 65536> block{};
+  for (;;) {
+    const ssize_t got = ::pread(descriptor, block.data(), block.size(), static_cast<off_t>(text.size()));
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) return text;
+    text.append(block.data(), static_cast<std::size_t>(got));
+  }
+}
+
+/// Closes the descriptor unless released: the constructor may throw after opening.
+class Descriptor {
+ public:
+  explicit Descriptor(int id) : id_(id) {}
+  ~Descriptor() {
+    if (id_ >= 0) ::close(id_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  [[nodiscard]] int get() const { return id_; }
+  int release() { return std::exchange(id_, -1); }
+
+ private:
+  int id_;
+};
+
+void write_whole(int descriptor, const std::string& line, const std::filesystem::path& path) {
+  std::size_t done = 0;
+  while (done < line.size()) {
+    const ssize_t wrote = ::write(descriptor, line.data() + done, line.size() - done);
+    if (wrote < 0 && errno == EINTR) continue;
+    if (wrote <= 0) {
+      throw InvalidInput(
+          fmt::format("{}: cannot be written ({}); free some space and run the same command again to resume",
+                      path.string(), std::strerror(errno)));
+    }
+    done += static_cast<std::size_t>(wrote);
+  }
+}
+
+}  // namespace
+
+Journal::Journal(std::filesystem::path path, const std::string& fingerprint) : path_(std::move(path)) {
+  Descriptor file(::open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666));
+  if (file.get() < 0) {
+    throw InvalidInput(fmt::format("{}: cannot be written ({}); check that the folder exists and its permissions",
+                                   path_.string(), std::strerror(errno)));
+  }
+  if (::flock(file.get(), LOCK_EX | LOCK_NB) != 0) {
+    throw InvalidInput(
+        fmt::format("{}: another process is writing it; wait for it or choose another output", path_.string()));
+  }
+
+  const std::string text = read_all(file.get());
+  const std::string header = std::string(kMagic) + fingerprint + "\n";
+  // A kill between creation and the end of the first write leaves a part of the header: nothing is lost by starting
+  // anew.
+  const bool fresh = text.size() < header.size() && header.starts_with(text);
+  if (!fresh && !text.starts_with(kMagic)) {
+    throw InvalidInput(fmt::format("{}: is not a journal; remove it or choose another output", path_.string()));
+  }
+  if (!fresh && !text.starts_with(header)) {
+    throw InvalidInput(fmt::format(
+        "{}: holds unfinished results of another task (other scene, overrides or range); remove it to start anew, or "
+        "choose another output",
+        path_.string()));
+  }
+
+  std::size_t whole = fresh ? 0 : header.size();
+  while (!fresh && whole < text.size()) {
+    const std::size_t end = text.find('\n', whole);
+    if (end == std::string::npos) break;
+    auto record = from_line(std::string_view(text).substr(whole, end - whole));
+    if (!record) break;
+    records_.push_back(std::move(*record));
+    whole = end + 1;
+  }
+  if (whole < text.size() && ::ftruncate(file.get(), static_cast<off_t>(whole)) != 0) {
+    throw InvalidInput(fmt::format("{}: cannot be repaired ({}); remove it", path_.string(), std::strerror(errno)));
+  }
+  if (fresh) write_whole(file.get(), header, path_);
+  resumed_ = !records_.empty();
+  last_sync_ = now();
+  descriptor_ = file.release();
+}
+
+Journal::~Journal() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void Journal::append(JournalRecord record) {
+  if (descriptor_ < 0) throw InvalidInput(fmt::format("{}: the journal was removed already", path_.string()));
+  if (record.table.empty() || record.table.find_first_of(" \n") != std::string::npos) {
+    throw InvalidInput(fmt::format("{}: table name '{}' must be one word", path_.string(), record.table));
+  }
+  write_whole(descriptor_, to_line(record), path_);
+  records_.push_back(std::move(record));
+  if (now() - last_sync_ < kSyncInterval) return;
+  ::fdatasync(descriptor_);
+  last_sync_ = now();
+}
+
+void Journal::remove() {
+  if (descriptor_ < 0) return;
+  std::error_code ignored;
+  std::filesystem::remove(path_, ignored);
+  ::close(std::exchange(descriptor_, -1));
+}
+
+std::filesystem::path Journal::path_for(const std::filesystem::path& result) { return result.string() + ".journal"; }
+
+std::string fingerprint(const std::string& text) {
+  std::uint64_t hash = 0xcbf29ce484222325U;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
+  return fmt::format("{:016x}", hash);
+}
+
+}  // namespace slipmode::results

@@ -1,0 +1,23 @@
+#include "results/reduced_file.hpp"
+
+#include "results/records.hpp"
+
+#include <string_view>
+
+namespace slipmode::results {
+
+std::optional<std::string> reduced_file(const std::string& model) {
+  constexpr std::string_view kPrefix = "rom:";
+  if (!model.starts_with(kPrefix)) return std::nullopt;
+  return model.substr(kPrefix.size());
+}
+
+pod::Basis reduced_basis(const std::string& file, Eigen::Index size) {
+  const StoreReader store(file);
+  if (!store.has(kReducedGroup)) {
+    store.fail(kReducedGroup, "the file holds no reduced model; make one with 'slipmode reduce'");
+  }
+  return load_basis(store, std::string(kReducedGroup) + "/basis", size);
+}
+
+}  // namespace slipmode::results

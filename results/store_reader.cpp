@@ -1,0 +1,322 @@
+#include "core/errors.hpp"
+#include "results/hdf5_handle.hpp"
+#include "results/store.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <algorithm>
+#include <cstring>
+#include <fstream>
+
+namespace slipmode::results {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool has_hdf5_signature(const fs::path& path) {
+  constexpr char kSignature[] = "\x89HDF\r\n\x1a\n";
+  char head[8] = {};
+  std::ifstream(path, std::ios::binary).read(head, sizeof head);
+  return std::memcmp(head, kSignature, sizeof head) == 0;
+}
+
+std::string why_not_opened(const fs::path& path) {
+  if (!fs::exists(path)) return "no such file; check the path";
+  if (fs::is_directory(path)) return "is a folder; expected a result file";
+  if (!std::ifstream(path).good()) return "cannot be read; check its permissions";
+  if (fs::file_size(path) == 0) return "is empty; make it again";
+  if (!has_hdf5_signature(path)) return "is not an HDF5 file; expected a result written by slipmode (or h5py, MATLAB)";
+  return "is truncated or damaged HDF5; make it again";
+}
+
+std::string shape_text(const std::vector<std::int64_t>& shape) {
+  if (shape.empty()) return "a scalar";
+  return fmt::format("{}", fmt::join(shape, " x "));
+}
+
+std::string extent_text(Eigen::Index extent) {
+  return extent == StoreReader::kAny ? std::string("any") : std::to_string(extent);
+}
+
+std::string child_name(const std::string& group, const std::string& name) {
+  return group.empty() ? name : group + "/" + name;
+}
+
+std::string trim_padding(const char* data, std::size_t width) {
+  std::string value(data, width);
+  value.erase(std::find(value.begin(), value.end(), '\0'), value.end());
+  return value;
+}
+
+/// Text of a dataset or attribute already opened, fixed or variable length alike.
+template <class Read>
+std::vector<std::string> read_texts(hid_t type, hid_t space, Read read, bool& out_ok) {
+  const auto count = static_cast<std::size_t>(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space)));
+  std::vector<std::string> values(count);
+  out_ok = true;
+  if (count == 0) return values;
+  if (H5Tis_variable_str(type) > 0) {
+    std::vector<char*> pointers(count, nullptr);
+    out_ok = read(pointers.data()) >= 0;
+    for (std::size_t i = 0; out_ok && i < count; ++i) values[i] = pointers[i] != nullptr ? pointers[i] : "";
+    if (out_ok) H5Dvlen_reclaim(type, space, H5P_DEFAULT, pointers.data());
+    return values;
+  }
+  const std::size_t width = H5Tget_size(type);
+  std::vector<char> padded(count * width);
+  out_ok = read(padded.data()) >= 0;
+  for (std::size_t i = 0; out_ok && i < count; ++i) values[i] = trim_padding(padded.data() + i * width, width);
+  return values;
+}
+
+std::string attribute_text(hid_t object, const char* key) {
+  if (H5Aexists(object, key) <= 0) return {};
+  const Hdf5Handle attr(H5Aopen(object, key, H5P_DEFAULT), H5Aclose);
+  const Hdf5Handle type(H5Aget_type(attr.id()), H5Tclose);
+  const Hdf5Handle space(H5Aget_space(attr.id()), H5Sclose);
+  if (H5Tget_class(type.id()) != H5T_STRING) return {};
+  bool ok = false;
+  const auto values = read_texts(
+      type.id(), space.id(), [&](void* out) { return H5Aread(attr.id(), type.id(), out); }, ok);
+  return ok && !values.empty() ? values.front() : std::string();
+}
+
+StoreEntry::Kind kind_of(H5T_class_t type_class) {
+  switch (type_class) {
+    case H5T_FLOAT:
+      return StoreEntry::Kind::kDouble;
+    case H5T_INTEGER:
+      return StoreEntry::Kind::kInteger;
+    case H5T_STRING:
+      return StoreEntry::Kind::kText;
+    default:
+      return StoreEntry::Kind::kOther;
+  }
+}
+
+}  // namespace
+
+struct StoreReader::Impl {
+  fs::path path;
+  Hdf5Handle file;
+
+  explicit Impl(fs::path source) : path(std::move(source)) {
+    const QuietHdf5 quiet;
+    file = Hdf5Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    if (!file.valid()) throw InvalidInput(fmt::format("{}: {}", path.string(), why_not_opened(path)));
+  }
+
+  ~Impl() {
+    const QuietHdf5 quiet;
+    file.reset();
+  }
+
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  [[noreturn]] void fail(const std::string& name, const std::string& what) const {
+    throw InvalidInput(fmt::format("{}: {}: {}", path.string(), name, what));
+  }
+
+  /// H5Lexists wants every part of the path to be there, so they are asked for one by one.
+  [[nodiscard]] bool has(const std::string& name) const {
+    for (std::size_t end = name.find('/');; end = name.find('/', end + 1)) {
+      if (H5Lexists(file.id(), name.substr(0, end).c_str(), H5P_DEFAULT) <= 0) return false;
+      if (end == std::string::npos) return true;
+    }
+  }
+
+  [[nodiscard]] std::vector<std::string> names(const std::string& group) const {
+    const Hdf5Handle object(H5Gopen2(file.id(), group.empty() ? "/" : group.c_str(), H5P_DEFAULT), H5Gclose);
+    if (!object.valid()) fail(group, "no such group; see `slipmode info` for what the file holds");
+    std::vector<std::string> found;
+    const auto collect = [](hid_t, const char* name, const H5L_info_t*, void* data) -> herr_t {
+      static_cast<std::vector<std::string>*>(data)->emplace_back(name);
+      return 0;
+    };
+    if (H5Literate(object.id(), H5_INDEX_NAME, H5_ITER_INC, nullptr, collect, &found) < 0) {
+      fail(group, "cannot be listed; the file is damaged, make it again");
+    }
+    return found;
+  }
+
+  [[nodiscard]] Hdf5Handle open(const std::string& name) const {
+    if (!has(name)) {
+      const std::size_t slash = name.rfind('/');
+      const std::string group = slash == std::string::npos ? "" : name.substr(0, slash);
+      const std::string near = group.empty() || has(group) ? fmt::format("{}", fmt::join(names(group), ", ")) : "";
+      fail(name, fmt::format("missing from the file{}; was it written by another verb?",
+                             near.empty() ? "" : fmt::format(" ({} holds: {})", group.empty() ? "it" : group, near)));
+    }
+    Hdf5Handle set(H5Dopen2(file.id(), name.c_str(), H5P_DEFAULT), H5Dclose);
+    if (!set.valid()) fail(name, "is a group or damaged; expected a dataset");
+    return set;
+  }
+
+  [[nodiscard]] static std::vector<std::int64_t> shape_of(hid_t set) {
+    const Hdf5Handle space(H5Dget_space(set), H5Sclose);
+    std::vector<hsize_t> extents(static_cast<std::size_t>(std::max(0, H5Sget_simple_extent_ndims(space.id()))));
+    H5Sget_simple_extent_dims(space.id(), extents.data(), nullptr);
+    return {extents.begin(), extents.end()};
+  }
+
+  void check_class(const std::string& name, hid_t set, H5T_class_t wanted, const char* what) const {
+    const Hdf5Handle type(H5Dget_type(set), H5Tclose);
+    const H5T_class_t found = H5Tget_class(type.id());
+    if (found == wanted || (wanted == H5T_FLOAT && found == H5T_INTEGER)) return;
+    fail(name, fmt::format("expected {}, found another type", what));
+  }
+
+  void check_shape(const std::string& name, hid_t set, std::initializer_list<Eigen::Index> wanted) const {
+    const std::vector<std::int64_t> found = shape_of(set);
+    const bool fits = std::ranges::equal(
+        found, wanted, [](std::int64_t have, Eigen::Index want) { return want == StoreReader::kAny || have == want; });
+    if (fits) return;
+    std::vector<std::string> expected;
+    for (const Eigen::Index extent : wanted) expected.push_back(extent_text(extent));
+    const std::string text = expected.empty() ? "a scalar" : fmt::format("{}", fmt::join(expected, " x "));
+    fail(name, fmt::format("wrong shape: expected {}, found {}; does the file belong to another scene?", text,
+                           shape_text(found)));
+  }
+
+  void read(const std::string& name, hid_t set, hid_t memory_type, void* out) const {
+    if (H5Dread(set, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, out) < 0) {
+      fail(name, "cannot be read; the file is truncated or damaged, make it again");
+    }
+  }
+
+  [[nodiscard]] std::vector<std::string> texts(const std::string& name, hid_t set) const {
+    const Hdf5Handle type(H5Dget_type(set), H5Tclose);
+    const Hdf5Handle space(H5Dget_space(set), H5Sclose);
+    bool ok = false;
+    auto values = read_texts(
+        type.id(), space.id(), [&](void* out) { return H5Dread(set, type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, out); },
+        ok);
+    if (!ok) fail(name, "cannot be read; the file is truncated or damaged, make it again");
+    return values;
+  }
+};
+
+StoreReader::StoreReader(fs::path path) : impl_(std::make_unique<Impl>(std::move(path))) {}
+StoreReader::~StoreReader() = default;
+StoreReader::StoreReader(StoreReader&&) noexcept = default;
+StoreReader& StoreReader::operator=(StoreReader&&) noexcept = default;
+
+double StoreReader::number(const std::string& name) const {
+  const QuietHdf5 quiet;
+  const Hdf5Handle set = impl_->open(name);
+  impl_->check_class(name, set.id(), H5T_FLOAT, "a number");
+  impl_->check_shape(name, set.id(), {});
+  double value = 0.0;
+  impl_->read(name, set.id(), H5T_NATIVE_DOUBLE, &value);
+  return value;
+}
+
+std::int64_t StoreReader::integer(const std::string& name) const {
+  const QuietHdf5 quiet;
+  const Hdf5Handle set = impl_->open(name);
+  impl_->check_class(name, set.id(), H5T_INTEGER, "an integer");
+  impl_->check_shape(name, set.id(), {});
+  std::int64_t value = 0;
+  impl_->read(name, set.id(), H5T_NATIVE_INT64, &value);
+  return value;
+}
+
+std::string StoreReader::text(const std::string& name) const {
+  const QuietHdf5 quiet;
+  const Hdf5Handle set = impl_->open(name);
+  impl_->check_class(name, set.id(), H5T_STRING, "a text");
+  impl_->check_shape(name, set.id(), {});
+  return impl_->texts(name, set.id()).at(0);
+}
+
+Eigen::VectorXd StoreReader::vector(const std::string& name, Eigen::Index size) const {
+  const QuietHdf5 quiet;
+  const Hdf5Handle set = impl_->open(name);
+  impl_->check_class(name, set.id(), H5T_FLOAT, "numbers");
+  impl_->check_shape(name, set.id(), {size});
+  Eigen::VectorXd values(Impl::shape_of(set.id())[0]);
+  impl_->read(name, set.id(), H5T_NATIVE_DOUBLE, values.data());
+  return values;
+}
+
+std::vector<std::int64_t> StoreReader::integers(const std::string& name, Eigen::Index size) const {
+  const QuietHdf5 quiet;
+  const Hdf5Handle set = impl_->open(name);
+  impl_->check_class(name, set.id(), H5T_INTEGER, "integers");
+  impl_->check_shape(name, set.id(), {size});
+  std::vector<std::int64_t> values(static_cast<std::size_t>(Impl::shape_of(set.id())[0]));
+  impl_->read(name, set.id(), H5T_NATIVE_INT64, values.data());
+  return values;
+}
+
+std::vector<std::string> StoreReader::texts(const std::string& name, Eigen::Index size) const {
+  const QuietHdf5 quiet;
+  const Hdf5Handle set = impl_->open(name);
+  impl_->check_class(name, set.id(), H5T_STRING, "texts");
+  impl_->check_shape(name, set.id(), {size});
+  return impl_->texts(name, set.id());
+}
+
+Eigen::MatrixXd StoreReader::matrix(const std::string& name, Eigen::Index rows, Eigen::Index cols) const {
+  return columns(name, cols, rows).transpose();
+}
+
+Eigen::MatrixXd StoreReader::columns(const std::string& name, Eigen::Index rows, Eigen::Index cols) const {
+  const QuietHdf5 quiet;
+  const Hdf5Handle set = impl_->open(name);
+  impl_->check_class(name, set.id(), H5T_FLOAT, "a matrix of numbers");
+  impl_->check_shape(name, set.id(), {cols, rows});
+  const std::vector<std::int64_t> shape = Impl::shape_of(set.id());
+  Eigen::MatrixXd values(shape[1], shape[0]);
+  impl_->read(name, set.id(), H5T_NATIVE_DOUBLE, values.data());
+  return values;
+}
+
+bool StoreReader::has(const std::string& name) const {
+  const QuietHdf5 quiet;
+  return impl_->has(name);
+}
+
+std::vector<std::string> StoreReader::names(const std::string& group) const {
+  const QuietHdf5 quiet;
+  return impl_->names(group);
+}
+
+StoreEntry StoreReader::entry(const std::string& name) const {
+  const QuietHdf5 quiet;
+  StoreEntry found;
+  found.name = name;
+  found.kind = StoreEntry::Kind::kOther;
+  if (!impl_->has(name)) impl_->fail(name, "missing from the file");
+  const Hdf5Handle object(H5Oopen(impl_->file.id(), name.c_str(), H5P_DEFAULT), H5Oclose);
+  if (!object.valid()) return found;  // a dangling link in somebody else's file
+  found.meaning = {attribute_text(object.id(), "units"), attribute_text(object.id(), "description")};
+  const H5I_type_t object_type = H5Iget_type(object.id());
+  if (object_type == H5I_GROUP) found.kind = StoreEntry::Kind::kGroup;
+  if (object_type != H5I_DATASET) return found;
+  const Hdf5Handle type(H5Dget_type(object.id()), H5Tclose);
+  found.kind = kind_of(H5Tget_class(type.id()));
+  found.shape = Impl::shape_of(object.id());
+  return found;
+}
+
+std::vector<StoreEntry> StoreReader::entries() const {
+  std::vector<StoreEntry> found;
+  const auto visit = [&](const auto& self, const std::string& group) -> void {
+    for (const std::string& name : names(group)) {
+      found.push_back(entry(child_name(group, name)));
+      const StoreEntry latest = found.back();
+      if (latest.kind == StoreEntry::Kind::kGroup) self(self, latest.name);
+    }
+  };
+  visit(visit, "");
+  return found;
+}
+
+const fs::path& StoreReader::path() const { return impl_->path; }
+
+void StoreReader::fail(const std::string& name, const std::string& what) const { impl_->fail(name, what); }
+
+}  // namespace slipmode::results

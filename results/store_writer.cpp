@@ -1,0 +1,219 @@
+#include "core/errors.hpp"
+#include "results/hdf5_handle.hpp"
+#include "results/store.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+
+namespace slipmode::results {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kChunkedFrom = 64 * 1024;  // bytes; smaller datasets are stored in one piece
+constexpr std::size_t kChunkBytes = 512 * 1024;  // fits HDF5's default chunk cache of 1 MiB
+constexpr unsigned kDeflateLevel = 1;            // higher levels cost much and gain little on chaotic doubles
+
+fs::path temporary_beside(const fs::path& path) {
+  const auto ticks = std::chrono::steady_clock::now().time_since_epoch().count();
+  return path.parent_path() / fmt::format(".{}.{}-{:x}.tmp", path.filename().string(), ::getpid(), ticks);
+}
+
+void check_target(const fs::path& path) {
+  if (path.filename().empty() || fs::is_directory(path)) {
+    throw InvalidInput(fmt::format("{}: is a folder; expected the name of a result file", path.string()));
+  }
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  if (!fs::is_directory(folder)) {
+    throw InvalidInput(fmt::format("{}: the folder {} does not exist; create it (mkdir -p) or choose another output",
+                                   path.string(), folder.string()));
+  }
+}
+
+/// Largest chunk of at most kChunkBytes made of whole rows, or of parts of one row.
+std::vector<hsize_t> chunk_shape(const std::vector<hsize_t>& shape, std::size_t element) {
+  std::vector<hsize_t> chunk = shape;
+  hsize_t room = std::max<hsize_t>(1, kChunkBytes / element);
+  for (std::size_t d = shape.size(); d-- > 0;) {
+    chunk[d] = std::clamp<hsize_t>(room, 1, shape[d]);
+    room = std::max<hsize_t>(1, room / chunk[d]);
+  }
+  return chunk;
+}
+
+Hdf5Handle text_type(std::size_t length) {
+  Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type.id(), std::max<std::size_t>(1, length));
+  H5Tset_cset(type.id(), H5T_CSET_UTF8);
+  H5Tset_strpad(type.id(), H5T_STR_NULLPAD);
+  return type;
+}
+
+}  // namespace
+
+struct StoreWriter::Impl {
+  fs::path path;
+  fs::path temporary;
+  Hdf5Handle file;
+
+  explicit Impl(fs::path target) : path(std::move(target)) {
+    check_target(path);
+    temporary = temporary_beside(path);
+    const QuietHdf5 quiet;
+    file = Hdf5Handle(H5Fcreate(temporary.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+    if (!file.valid()) {
+      throw InvalidInput(
+          fmt::format("{}: cannot be written ({}); check the folder's permissions or choose another output",
+                      path.string(), std::strerror(errno)));
+    }
+  }
+
+  ~Impl() {
+    const QuietHdf5 quiet;
+    file.reset();
+    std::error_code ignored;
+    if (!temporary.empty()) fs::remove(temporary, ignored);
+  }
+
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  [[noreturn]] void fail(const std::string& name, const std::string& what) const {
+    throw InvalidInput(fmt::format("{}: {}: {}", path.string(), name, what));
+  }
+
+  void check_open(const std::string& name) const {
+    if (!file.valid()) fail(name, "the file is already committed; write everything before commit");
+  }
+
+  void attribute(hid_t object, const char* key, const std::string& value) const {
+    const Hdf5Handle type = text_type(value.size());
+    const Hdf5Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+    const Hdf5Handle attr(H5Acreate2(object, key, type.id(), space.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    if (!attr.valid() || H5Awrite(attr.id(), type.id(), value.empty() ? "" : value.data()) < 0) {
+      fail(key, "attribute could not be written; is the disc full?");
+    }
+  }
+
+  /// The one place where a dataset is made. An empty shape is a scalar.
+  void dataset(const std::string& name, hid_t file_type, hid_t memory_type, const std::vector<hsize_t>& shape,
+               const void* data, const Meaning& meaning) {
+    const QuietHdf5 quiet;
+    check_open(name);
+    const Hdf5Handle space(
+        shape.empty() ? H5Screate(H5S_SCALAR) : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
+        H5Sclose);
+    std::size_t count = 1;
+    for (const hsize_t extent : shape) count *= extent;
+
+    const Hdf5Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+    H5Pset_create_intermediate_group(links.id(), 1);
+    const Hdf5Handle layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    H5Pset_obj_track_times(layout.id(), false);  // the same content gives the same bytes
+    const std::size_t element = H5Tget_size(file_type);
+    if (!shape.empty() && count * element >= kChunkedFrom) {
+      const std::vector<hsize_t> chunk = chunk_shape(shape, element);
+      H5Pset_chunk(layout.id(), static_cast<int>(chunk.size()), chunk.data());
+      H5Pset_shuffle(layout.id());
+      H5Pset_deflate(layout.id(), kDeflateLevel);
+      H5Pset_fletcher32(layout.id());
+    }
+
+    const Hdf5Handle set(
+        H5Dcreate2(file.id(), name.c_str(), file_type, space.id(), links.id(), layout.id(), H5P_DEFAULT), H5Dclose);
+    if (!set.valid()) fail(name, "dataset could not be made; is there one of this name already, or is the disc full?");
+    if (count > 0 && H5Dwrite(set.id(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) {
+      fail(name, "could not be written; is the disc full?");
+    }
+    attribute(set.id(), "units", meaning.units);
+    attribute(set.id(), "description", meaning.description);
+  }
+};
+
+StoreWriter::StoreWriter(fs::path path) : impl_(std::make_unique<Impl>(std::move(path))) {}
+StoreWriter::~StoreWriter() = default;
+StoreWriter::StoreWriter(StoreWriter&&) noexcept = default;
+StoreWriter& StoreWriter::operator=(StoreWriter&&) noexcept = default;
+
+void StoreWriter::write(const std::string& name, double value, const Meaning& meaning) {
+  impl_->dataset(name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {}, &value, meaning);
+}
+
+void StoreWriter::write(const std::string& name, std::int64_t value, const Meaning& meaning) {
+  impl_->dataset(name, H5T_STD_I64LE, H5T_NATIVE_INT64, {}, &value, meaning);
+}
+
+void StoreWriter::write(const std::string& name, const std::string& value, const Meaning& meaning) {
+  const Hdf5Handle type = text_type(value.size());
+  impl_->dataset(name, type.id(), type.id(), {}, value.empty() ? "" : value.data(), meaning);
+}
+
+void StoreWriter::write(const std::string& name, const Eigen::VectorXd& values, const Meaning& meaning) {
+  const std::vector<hsize_t> shape{static_cast<hsize_t>(values.size())};
+  impl_->dataset(name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, shape, values.data(), meaning);
+}
+
+void StoreWriter::write(const std::string& name, const std::vector<double>& values, const Meaning& meaning) {
+  impl_->dataset(name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {values.size()}, values.data(), meaning);
+}
+
+void StoreWriter::write(const std::string& name, const std::vector<std::int64_t>& values, const Meaning& meaning) {
+  impl_->dataset(name, H5T_STD_I64LE, H5T_NATIVE_INT64, {values.size()}, values.data(), meaning);
+}
+
+void StoreWriter::write(const std::string& name, const std::vector<std::string>& values, const Meaning& meaning) {
+  std::size_t width = 1;
+  for (const std::string& value : values) width = std::max(width, value.size());
+  std::string padded(width * values.size(), '\0');
+  for (std::size_t i = 0; i < values.size(); ++i)
+    std::ranges::copy(values[i], padded.begin() + std::ptrdiff_t(i * width));
+  const Hdf5Handle type = text_type(width);
+  impl_->dataset(name, type.id(), type.id(), {values.size()}, padded.data(), meaning);
+}
+
+void StoreWriter::write(const std::string& name, const Eigen::MatrixXd& values, const Meaning& meaning) {
+  const Eigen::MatrixXd row_major = values.transpose();
+  write_columns(name, row_major, meaning);
+}
+
+void StoreWriter::write_columns(const std::string& name, const Eigen::MatrixXd& values, const Meaning& meaning) {
+  const std::vector<hsize_t> shape{static_cast<hsize_t>(values.cols()), static_cast<hsize_t>(values.rows())};
+  impl_->dataset(name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, shape, values.data(), meaning);
+}
+
+void StoreWriter::describe_group(const std::string& name, const std::string& description) {
+  const QuietHdf5 quiet;
+  impl_->check_open(name);
+  Hdf5Handle group(H5Gopen2(impl_->file.id(), name.c_str(), H5P_DEFAULT), H5Gclose);
+  if (!group.valid()) {
+    const Hdf5Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+    H5Pset_create_intermediate_group(links.id(), 1);
+    group = Hdf5Handle(H5Gcreate2(impl_->file.id(), name.c_str(), links.id(), H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
+  }
+  if (!group.valid()) impl_->fail(name, "group could not be made; is there a dataset of this name already?");
+  impl_->attribute(group.id(), "description", description);
+}
+
+void StoreWriter::commit() {
+  const QuietHdf5 quiet;
+  impl_->check_open("commit");
+  if (!impl_->file.reset()) impl_->fail("commit", "could not be finished; is the disc full?");
+  const int descriptor = ::open(impl_->temporary.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool synced = descriptor >= 0 && ::fsync(descriptor) == 0;
+  if (descriptor >= 0) ::close(descriptor);
+  if (!synced) impl_->fail("commit", fmt::format("could not be synced: {}", std::strerror(errno)));
+  std::error_code error;
+  fs::rename(impl_->temporary, impl_->path, error);
+  if (error) impl_->fail("commit", fmt::format("could not be renamed into place: {}", error.message()));
+  impl_->temporary.clear();
+}
+
+const fs::path& StoreWriter::path() const { return impl_->path; }
+
+}  // namespace slipmode::results

@@ -1,0 +1,183 @@
+#include "results/sweep_store.hpp"
+
+#include "core/none.hpp"
+#include "results/journal_cursor.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <utility>
+
+namespace slipmode::results {
+namespace {
+
+using diagnostics::Motion;
+using diagnostics::Settled;
+using diagnostics::SlipState;
+using diagnostics::SweepPoint;
+
+using detail::append;
+using detail::Cursor;
+
+}  // namespace
+
+JournalRecord to_record(const SweepPoint& point) {
+  const Settled& settled = point.settled;
+  std::vector<double> values = {point.parameter,
+                                static_cast<double>(settled.period.motion),
+                                static_cast<double>(settled.period.period),
+                                settled.period.T,
+                                static_cast<double>(settled.period.contact),
+                                settled.period.mismatch,
+                                settled.stick_fraction,
+                                settled.mean_energy,
+                                settled.slip_rate,
+                                settled.time,
+                                static_cast<double>(settled.events)};
+  values.push_back(static_cast<double>(settled.slips.size()));
+  for (const SlipState& slip : settled.slips) {
+    values.insert(values.end(), {slip.time, static_cast<double>(slip.contact), slip.displacement});
+  }
+  append(values, settled.end);
+  return {point.model == 0 ? "full" : "reduced", static_cast<std::int64_t>(point.index), values, point.failure};
+}
+
+SweepPoint from_record(const JournalRecord& record) {
+  Cursor cursor(record);
+  SweepPoint point;
+  point.index = static_cast<std::size_t>(record.index);
+  point.model = record.table == "full" ? 0 : 1;
+  point.failure = record.note;
+  point.parameter = cursor.next();
+  Settled& settled = point.settled;
+  settled.period.motion = static_cast<Motion>(cursor.next_int());
+  settled.period.period = cursor.next_int();
+  settled.period.T = cursor.next();
+  settled.period.contact = cursor.next_int();
+  settled.period.mismatch = cursor.next();
+  settled.stick_fraction = cursor.next();
+  settled.mean_energy = cursor.next();
+  settled.slip_rate = cursor.next();
+  settled.time = cursor.next();
+  settled.events = static_cast<std::int64_t>(cursor.next());
+  settled.slips.resize(static_cast<std::size_t>(cursor.next()));
+  for (SlipState& slip : settled.slips) {
+    slip.time = cursor.next();
+    slip.contact = cursor.next_int();
+    slip.displacement = cursor.next();
+  }
+  settled.end = cursor.next_state();
+  return point;
+}
+
+diagnostics::SweepSink journal_sink(Journal& journal) {
+  const auto kept = std::make_shared<std::map<std::pair<std::size_t, int>, SweepPoint>>();
+  for (const JournalRecord& record : journal.records()) {
+    SweepPoint point = from_record(record);
+    const std::pair key(point.index, point.model);
+    kept->insert_or_assign(key, std::move(point));
+  }
+  return {.recall = [kept](std::size_t index, int model) -> std::optional<SweepPoint> {
+            const auto found = kept->find({index, model});
+            if (found == kept->end()) return std::nullopt;
+            return found->second;
+          },
+          .store = [&journal](const SweepPoint& point) { journal.append(to_record(point)); }};
+}
+
+SweepAxis sweep_axis(const std::string& key, const Units& units) {
+  if (key == "drive.speed") return {key, "belt speed V", units.velocity};
+  if (key == "drive.frequency") return {key, "frequency f", units.time == "s" ? "Hz" : "1"};
+  if (key == "drive.amplitude") return {key, "amplitude of the shaker", units.length};
+  if (key.starts_with("contact.") && key.ends_with(".stiffness")) return {key, "contact stiffness", units.stiffness};
+  const bool load = key.ends_with("normal_load") || key.ends_with("normal_load.constant");
+  return {key, load ? "normal load" : key, load ? units.force : "1"};
+}
+
+void store_sweep(StoreWriter& writer, const std::string& group, const std::string& title, const SweepAxis& axis,
+                 const Units& units, const std::vector<SweepPoint>& points) {
+  std::vector<double> parameter, period, T, stick, energy, rate, time, events;
+  std::vector<std::string> motion, failure;
+  std::vector<double> slip_parameter, slip_contact, slip_displacement;
+  for (const SweepPoint& point : points) {
+    const Settled& settled = point.settled;
+    const bool ok = point.ok();
+    parameter.push_back(point.parameter);
+    motion.push_back(ok ? diagnostics::to_string(settled.period.motion) : "failed");
+    period.push_back(ok ? settled.period.period : kNone);
+    T.push_back(ok ? settled.period.T : kNone);
+    stick.push_back(ok ? settled.stick_fraction : kNone);
+    energy.push_back(ok ? settled.mean_energy : kNone);
+    rate.push_back(ok ? settled.slip_rate : kNone);
+    time.push_back(ok ? settled.time : kNone);
+    events.push_back(ok ? static_cast<double>(settled.events) : kNone);
+    failure.push_back(point.failure);
+    if (!ok) continue;
+    for (const SlipState& slip : settled.slips) {
+      slip_parameter.push_back(point.parameter);
+      slip_contact.push_back(slip.contact);
+      slip_displacement.push_back(slip.displacement);
+    }
+  }
+  writer.describe_group(group, title);
+  writer.write(group + "/title", title, {"", "which model"});
+  writer.write(group + "/key", axis.key, {"", "the scene's key that was swept"});
+  writer.write(group + "/label", axis.label, {"", "name of the key for an axis"});
+  save(writer, group + "/values",
+       Table{"one row per value of the key",
+             {{"parameter", {axis.units, axis.key}, parameter},
+              {"motion", {"", "periodic, aperiodic, undecided, sticking, sliding or failed"}, motion},
+              {"period", {"", "slips per period; 0: not periodic"}, period},
+              {"T", {units.time, "period; 0: not periodic"}, T},
+              {"stick_fraction", {"1", "share of time in stick, mean over contacts"}, stick},
+              {"mean_energy", {units.energy, "mean energy over the last block"}, energy},
+              {"slip_rate", {units.rate, "slips of all contacts per unit of time"}, rate},
+              {"time", {units.time, "simulated in all"}, time},
+              {"events", {"", "events located"}, events},
+              {"failure", {"", "why the value failed; empty: it did not"}, failure}}});
+  save(writer, group + "/slips",
+       Table{"one row per slip state: where a contact was when it began to slip",
+             {{"parameter", {axis.units, axis.key}, slip_parameter},
+              {"contact", {"", "number of the contact, from 0"}, slip_contact},
+              {"displacement", {units.length, "displacement of the contact"}, slip_displacement}}});
+}
+
+std::string motion_text(const diagnostics::PeriodResult& period) {
+  if (period.motion == Motion::kPeriodic) return fmt::format("period {}", period.period);
+  return diagnostics::to_string(period.motion);
+}
+
+std::vector<MotionCount> count_motions(const std::vector<SweepPoint>& points) {
+  constexpr int kFailed = 1000;
+  std::map<std::pair<int, int>, MotionCount> counts;  // periodic ones by period first, then the other kinds
+  for (const SweepPoint& point : points) {
+    const auto& period = point.settled.period;
+    const std::pair<int, int> key =
+        point.ok() ? std::pair(static_cast<int>(period.motion), period.period) : std::pair(kFailed, 0);
+    MotionCount& count = counts[key];
+    count.motion = point.ok() ? motion_text(period) : "failed";
+    ++count.values;
+  }
+  std::vector<MotionCount> out;
+  for (const auto& entry : counts) out.push_back(entry.second);
+  return out;
+}
+
+std::string undecided_note(const std::vector<SweepPoint>& points) {
+  double waited = 0.0;
+  bool any = false;
+  for (const SweepPoint& point : points) {
+    if (!point.ok() || point.settled.period.motion != Motion::kUndecided) continue;
+    waited = std::max(waited, point.settled.time);
+    any = true;
+  }
+  if (!any) return {};
+  return fmt::format(
+      "  undecided: still settling, or too few slips to tell, after {:g} time units; to wait longer:\n"
+      "  --set validation.sweep_limit=100000.0\n",
+      waited);
+}
+
+}  // namespace slipmode::results

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "diagnostics/sweep.hpp"
+#include "results/journal.hpp"
+#include "results/store.hpp"
+#include "results/table.hpp"
+#include "results/units.hpp"
+
+#include <string>
+#include <vector>
+
+namespace slipmode::results {
+
+/// A finished value as a line of the journal, and back to the last bit.
+[[nodiscard]] JournalRecord to_record(const diagnostics::SweepPoint& point);
+/// @throws InvalidInput  when the record does not hold a sweep point
+[[nodiscard]] diagnostics::SweepPoint from_record(const JournalRecord& record);
+
+/// A sink that keeps finished values in a journal and takes over those it already holds. The journal must outlive it.
+[[nodiscard]] diagnostics::SweepSink journal_sink(Journal& journal);
+
+/// What a sweep was over.
+struct SweepAxis {
+  std::string key;    ///< "drive.speed"
+  std::string label;  ///< for an axis: "belt speed V"
+  std::string units;
+};
+[[nodiscard]] SweepAxis sweep_axis(const std::string& key, const Units& units);
+
+/// Writes `group`: a table `values` (one row per value), a table `slips` (one row per slip state) and a title.
+void store_sweep(StoreWriter& writer, const std::string& group, const std::string& title, const SweepAxis& axis,
+                 const Units& units, const std::vector<diagnostics::SweepPoint>& points);
+
+/// "period 5", or the kind of motion.
+[[nodiscard]] std::string motion_text(const diagnostics::PeriodResult& period);
+
+/// How often each kind of motion was met: periodic ones by period, then the others.
+struct MotionCount {
+  std::string motion;
+  std::size_t values = 0;
+};
+[[nodiscard]] std::vector<MotionCount> count_motions(const std::vector<diagnostics::SweepPoint>& points);
+
+/// What "undecided" means and what to do about it; empty where no value is.
+[[nodiscard]] std::string undecided_note(const std::vector<diagnostics::SweepPoint>& points);
+
+}  // namespace slipmode::results

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+
+namespace slipmode::results {
+
+/// Units of stored and drawn quantities: SI, or "1" for all in a dimensionless scene.
+struct Units {
+  std::string length = "1", velocity = "1", force = "1", time = "1", rate = "1", energy = "1", angular = "1",
+              stiffness = "1";
+
+  /// @param system  a scene's `units`: "SI" or "dimensionless"
+  [[nodiscard]] static Units of(const std::string& system) {
+    if (system != "SI") return {};
+    return {.length = "m",
+            .velocity = "m/s",
+            .force = "N",
+            .time = "s",
+            .rate = "1/s",
+            .energy = "J",
+            .angular = "rad/s",
+            .stiffness = "N/m"};
+  }
+};
+
+}  // namespace slipmode::results
