@@ -1,7 +1,7 @@
 #include "cli/diagnose.hpp"
 
 #include "cli/diagnose_model.hpp"
-#include "cli/figures/gnuplot.hpp"
+#include "figures/gnuplot.hpp"
 #include "cli/series_figures.hpp"
 #include "cli/series_findings.hpp"
 #include "cli/series_store.hpp"

@@ -1,9 +1,9 @@
 #include "cli/exponents_figures.hpp"
 
 #include "cli/exponents_store.hpp"
-#include "cli/figures/exponent_figures.hpp"
-#include "cli/figures/panels.hpp"
-#include "cli/figures/style.hpp"
+#include "figures/exponent_figures.hpp"
+#include "figures/panels.hpp"
+#include "figures/style.hpp"
 #include "results/table.hpp"
 
 #include <fmt/format.h>

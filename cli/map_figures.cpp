@@ -1,9 +1,9 @@
 #include "cli/map_figures.hpp"
 
-#include "cli/figures/bifurcation.hpp"
-#include "cli/figures/heat_map.hpp"
-#include "cli/figures/panels.hpp"
-#include "cli/figures/style.hpp"
+#include "figures/bifurcation.hpp"
+#include "figures/heat_map.hpp"
+#include "figures/panels.hpp"
+#include "figures/style.hpp"
 #include "core/none.hpp"
 #include "results/map_store.hpp"
 #include "results/table.hpp"

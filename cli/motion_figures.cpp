@@ -1,7 +1,7 @@
 #include "cli/motion_figures.hpp"
 
-#include "cli/figures/panels.hpp"
-#include "cli/figures/style.hpp"
+#include "figures/panels.hpp"
+#include "figures/style.hpp"
 #include "cli/shaken_model.hpp"
 #include "diagnostics/spectrum.hpp"
 #include "results/provenance.hpp"

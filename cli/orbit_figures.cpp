@@ -1,9 +1,9 @@
 #include "cli/orbit_figures.hpp"
 
 #include "cli/branch_store.hpp"
-#include "cli/figures/panels.hpp"
-#include "cli/figures/response_diagram.hpp"
-#include "cli/figures/style.hpp"
+#include "figures/panels.hpp"
+#include "figures/response_diagram.hpp"
+#include "figures/style.hpp"
 #include "results/orbit_records.hpp"
 #include "results/provenance.hpp"
 #include "results/records.hpp"

@@ -1,4 +1,4 @@
-#include "cli/figures/gnuplot.hpp"
+#include "figures/gnuplot.hpp"
 #include "cli/pipeline.hpp"
 #include "cli/shaken_model.hpp"
 #include "cli/shaken_pipeline.hpp"

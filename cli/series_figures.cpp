@@ -1,9 +1,9 @@
 #include "cli/series_figures.hpp"
 
-#include "cli/figures/delay_map.hpp"
-#include "cli/figures/panels.hpp"
-#include "cli/figures/recurrence_plot.hpp"
-#include "cli/figures/style.hpp"
+#include "figures/delay_map.hpp"
+#include "figures/panels.hpp"
+#include "figures/recurrence_plot.hpp"
+#include "figures/style.hpp"
 #include "cli/series_store.hpp"
 #include "results/table.hpp"
 

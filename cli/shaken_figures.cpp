@@ -1,7 +1,7 @@
 #include "cli/shaken_figures.hpp"
 
-#include "cli/figures/panels.hpp"
-#include "cli/figures/style.hpp"
+#include "figures/panels.hpp"
+#include "figures/style.hpp"
 #include "cli/motion_figures.hpp"
 #include "cli/shaken_bases.hpp"
 #include "cli/shaken_model.hpp"

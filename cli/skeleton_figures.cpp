@@ -1,8 +1,8 @@
 #include "cli/skeleton_figures.hpp"
 
-#include "cli/figures/panels.hpp"
-#include "cli/figures/phase_portraits.hpp"
-#include "cli/figures/style.hpp"
+#include "figures/panels.hpp"
+#include "figures/phase_portraits.hpp"
+#include "figures/style.hpp"
 #include "cli/skeleton_store.hpp"
 #include "results/provenance.hpp"
 #include "results/table.hpp"

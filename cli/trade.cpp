@@ -1,4 +1,4 @@
-#include "cli/figures/gnuplot.hpp"
+#include "figures/gnuplot.hpp"
 #include "cli/steps.hpp"
 #include "cli/trade_bases.hpp"
 #include "cli/trade_figures.hpp"

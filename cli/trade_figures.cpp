@@ -1,7 +1,7 @@
 #include "cli/trade_figures.hpp"
 
-#include "cli/figures/pareto.hpp"
-#include "cli/figures/style.hpp"
+#include "figures/pareto.hpp"
+#include "figures/style.hpp"
 #include "cli/trade_report.hpp"
 #include "results/provenance.hpp"
 #include "results/table.hpp"

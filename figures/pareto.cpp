@@ -1,7 +1,7 @@
-#include "cli/figures/pareto.hpp"
+#include "figures/pareto.hpp"
 
-#include "cli/figures/panels.hpp"
-#include "cli/figures/style.hpp"
+#include "figures/panels.hpp"
+#include "figures/style.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,6 +1,6 @@
-#include "cli/figures/mode_shapes.hpp"
+#include "figures/mode_shapes.hpp"
 
-#include "cli/figures/style.hpp"
+#include "figures/style.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

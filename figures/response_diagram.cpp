@@ -1,6 +1,6 @@
-#include "cli/figures/response_diagram.hpp"
+#include "figures/response_diagram.hpp"
 
-#include "cli/figures/style.hpp"
+#include "figures/style.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

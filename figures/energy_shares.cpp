@@ -1,6 +1,6 @@
-#include "cli/figures/energy_shares.hpp"
+#include "figures/energy_shares.hpp"
 
-#include "cli/figures/style.hpp"
+#include "figures/style.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,6 +1,6 @@
-#include "cli/figures/heat_map.hpp"
+#include "figures/heat_map.hpp"
 
-#include "cli/figures/style.hpp"
+#include "figures/style.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

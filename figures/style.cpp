@@ -1,4 +1,4 @@
-#include "cli/figures/style.hpp"
+#include "figures/style.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

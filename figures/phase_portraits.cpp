@@ -1,6 +1,6 @@
-#include "cli/figures/phase_portraits.hpp"
+#include "figures/phase_portraits.hpp"
 
-#include "cli/figures/style.hpp"
+#include "figures/style.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

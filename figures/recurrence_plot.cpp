@@ -1,6 +1,6 @@
-#include "cli/figures/recurrence_plot.hpp"
+#include "figures/recurrence_plot.hpp"
 
-#include "cli/figures/style.hpp"
+#include "figures/style.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "cli/figures/raster.hpp"
+#include "figures/raster.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "cli/figures/delay_map.hpp"
+#include "figures/delay_map.hpp"
 
-#include "cli/figures/style.hpp"
+#include "figures/style.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
-#include "cli/figures/deviation.hpp"
+#include "figures/deviation.hpp"
 
-#include "cli/figures/style.hpp"
+#include "figures/style.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "cli/figures/gnuplot.hpp"
+#include "figures/gnuplot.hpp"
 
 #include "core/errors.hpp"
 

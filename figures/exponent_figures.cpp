@@ -1,6 +1,6 @@
-#include "cli/figures/exponent_figures.hpp"
+#include "figures/exponent_figures.hpp"
 
-#include "cli/figures/style.hpp"
+#include "figures/style.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

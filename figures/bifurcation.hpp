@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cli/figures/gnuplot.hpp"
+#include "figures/gnuplot.hpp"
 
 #include <string>
 #include <vector>

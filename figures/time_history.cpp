@@ -1,6 +1,6 @@
-#include "cli/figures/time_history.hpp"
+#include "figures/time_history.hpp"
 
-#include "cli/figures/style.hpp"
+#include "figures/style.hpp"
 
 #include <fmt/format.h>
 #include <array>

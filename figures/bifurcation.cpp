@@ -1,7 +1,7 @@
-#include "cli/figures/bifurcation.hpp"
+#include "figures/bifurcation.hpp"
 
-#include "cli/figures/raster.hpp"
-#include "cli/figures/style.hpp"
+#include "figures/raster.hpp"
+#include "figures/style.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
