@@ -24,6 +24,7 @@ const Kernels kSet{
     .work = work,
     .taylor = taylor,
     .taylor_work = taylor_work,
+    .free_motion = free_motion,
 };
 
 }  // namespace slipmode::dynamics::kernels::SLIPMODE_KERNEL_SET

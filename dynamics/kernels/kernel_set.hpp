@@ -29,6 +29,8 @@ Work taylor_work(const PairArrays& pairs, const double* velocity_row, const doub
                  const double* coefficient, double tau, int terms, const double* node, const double* weight, int points,
                  double* out_x);
 
+void free_motion(const MotionArrays& pairs, double t, const double* free, double* x);
+
 extern const Kernels kSet;
 
 }  // namespace SLIPMODE_KERNEL_SET

@@ -7,8 +7,8 @@
 /// in, plain arrays out, eight lanes at a time (collocation nodes, or pairs). Sums have one order whatever the width:
 /// AVX2 and AVX-512 give the same bytes.
 ///
-/// Arrays are faster aligned to 64 bytes, and need not be. `np` is the number of pairs padded to a multiple of eight; a state is [x₁; x₂], 2np.
-/// A table of eight nodes by columns is stored column by column.
+/// Arrays are faster aligned to 64 bytes, and need not be. `np` is the number of pairs padded to a multiple of eight; a
+/// state is [x₁; x₂], 2np. A table of eight nodes by columns is stored column by column.
 namespace slipmode::dynamics::kernels {
 
 using Index = std::ptrdiff_t;
@@ -70,6 +70,13 @@ struct Trial {
 
 inline constexpr int kMostPoints = 9, kMostTerms = 32;  ///< of a Taylor series
 
+/// Pairs that oscillate: e^{Gt} = e^{τt}(cos wt I + sin wt A), A = (G − τI)/w of trace zero.
+struct MotionArrays {
+  Index np = 0;
+  const double *decay, *frequency;  ///< τ and w [np]
+  const double *a11, *a12, *a21;    ///< A [np]
+};
+
 /// What one width offers.
 struct Kernels {
   const char* name;
@@ -112,6 +119,8 @@ struct Kernels {
   Work (*taylor_work)(const PairArrays& pairs, const double* velocity_row, const double* damping, const double* x,
                       const double* coefficient, double tau, int terms, const double* node, const double* weight,
                       int points, double* out_x);
+  /// x += (e^{Gt} − I) free, each part of the difference by itself: short times and slow pairs lose nothing.
+  void (*free_motion)(const MotionArrays& pairs, double t, const double* free, double* x);
 };
 
 /// The sets that this processor runs, widest first.
