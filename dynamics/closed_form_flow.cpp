@@ -110,16 +110,27 @@ void ClosedFormFlow::measure_amplitudes() {
   free_.noalias() -= r.particular * inputs_;
   amplitude_.array() =
       r.scale1.array() * free_.head(np).array().abs() + r.scale2.array() * free_.tail(np).array().abs();
+  measured_ = true;
 }
 
 void ClosedFormFlow::move(double tau) {
   const Regime& r = tables_->regime();
+  measured_ = false;
   if (!r.motion.available()) return advance(*tables_, tau, x_, inputs_);
   r.motion.add(tau, free_.data(), x_.data());
   if (regime_->overlay) return;  // then all inputs are constant
   r.advance_inputs(inputs_, tau);
   for (Eigen::Index k = 0; k <= r.speed_input(); ++k)
     if (const double change = inputs_(k) - inputs_begin_(k); change != 0.0) x_ += change * r.particular.col(k);
+}
+
+void ClosedFormFlow::pass_window() {
+  const Regime& r = tables_->regime();
+  if (!regime_->overlay || !r.motion.available()) return move(tables_->length(level_));
+  const RegimeChange& d = tables_->change(level_);
+  kernels::kernels().pass(
+      {r.pairs.np, d.d11.data(), d.d12.data(), d.d21.data(), d.d22.data(), r.scale1.data(), r.scale2.data()}, x_.data(),
+      free_.data(), amplitude_.data());
 }
 
 bool ClosedFormFlow::step(double t_limit) {
@@ -140,7 +151,7 @@ bool ClosedFormFlow::step(double t_limit) {
     if (guard.exempt_until > begin_) end = std::min(end, guard.exempt_until);
   const double remaining = end - begin_;
 
-  measure_amplitudes();
+  if (!measured_) measure_amplitudes();
   Search found;
   double h = 0.0, tau = 0.0;
   for (;;) {
@@ -161,12 +172,13 @@ bool ClosedFormFlow::step(double t_limit) {
   x_begin_ = x_;
   inputs_begin_ = inputs_;
   if (found.guard >= 0 && !found.touching) {
-    // Up to the part that is proved clear; from there Newton, which may prove itself.
+    // Up to the part that is proved clear; beyond it Newton, which may prove itself.
     if (!found.resolved) tau *= kUsed;
-    move(tau);
-    double root = tau;
-    const bool proved = approach(guards_[static_cast<std::size_t>(found.guard)], root);
-    if (proved ? root <= std::min(h, remaining) && (found.alone || found.resolved) : found.resolved) {
+    double root = (found.guess > 0.0 ? found.guess : found.at) * h;
+    const bool proved =
+        (found.resolved || found.guess > 0.0) && approach(guards_[static_cast<std::size_t>(found.guard)], tau, root);
+    const bool first = found.resolved || root <= found.others * h;
+    if (proved ? root <= std::min(h, remaining) && first : found.resolved) {
       tau = root;
     } else {
       x_ = x_begin_;
@@ -175,6 +187,8 @@ bool ClosedFormFlow::step(double t_limit) {
       found.guard = -1;
       level_ = std::min(level_ + found.refinement, RegimeTables::kLevels - 1);
     }
+  } else if (tau == h) {
+    pass_window();
   } else {
     move(tau);
   }

@@ -133,6 +133,11 @@ struct RegimeStep {
   Eigen::MatrixXd response;  ///< [2np x ni]
 };
 
+/// What a time h changes of the free motion, e^{Gh} − I, where the regime has that in closed form.
+struct RegimeChange {
+  Eigen::VectorXd d11, d12, d21, d22;  ///< [np]
+};
+
 /// Outputs over a window of length h as polynomials of degree 7 in Bernstein form, with what interpolation leaves out.
 struct RegimeWindow {
   Eigen::MatrixXd from_state;   ///< [8 x 2np no]
@@ -165,6 +170,9 @@ class RegimeTables {
   [[nodiscard]] const RegimeWindow& window(int level) const {
     return windows_.get(level, [&](RegimeWindow& out) { make(out, level); });
   }
+  [[nodiscard]] const RegimeChange& change(int level) const {
+    return changes_.get(level, [&](RegimeChange& out) { make(out, level); });
+  }
   [[nodiscard]] const RegimeAudit& audit(int level) const {
     return audits_.get(level, [&](RegimeAudit& out) { make(out, level); });
   }
@@ -172,6 +180,7 @@ class RegimeTables {
  private:
   void make(RegimeStep& out, int level) const;
   void make(RegimeWindow& out, int level) const;
+  void make(RegimeChange& out, int level) const;
   void make(RegimeAudit& out, int level) const;
   void step_of(double h, RegimeStep& out) const;
 
@@ -179,6 +188,7 @@ class RegimeTables {
   std::array<double, kLevels> length_{};
   LazyLevels<RegimeStep, kLevels> steps_;
   LazyLevels<RegimeWindow, kLevels> windows_;
+  LazyLevels<RegimeChange, kLevels> changes_;
   LazyLevels<RegimeAudit, kLevels> audits_;
 };
 

@@ -25,6 +25,7 @@ const Kernels kSet{
     .taylor = taylor,
     .taylor_work = taylor_work,
     .free_motion = free_motion,
+    .pass = pass,
 };
 
 }  // namespace slipmode::dynamics::kernels::SLIPMODE_KERNEL_SET

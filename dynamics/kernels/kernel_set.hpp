@@ -30,6 +30,7 @@ Work taylor_work(const PairArrays& pairs, const double* velocity_row, const doub
                  double* out_x);
 
 void free_motion(const MotionArrays& pairs, double t, const double* free, double* x);
+void pass(const ChangeArrays& change, double* x, double* free, double* out_size);
 
 extern const Kernels kSet;
 

@@ -77,6 +77,14 @@ struct MotionArrays {
   const double *a11, *a12, *a21;    ///< A [np]
 };
 
+/// What a certain time changes of pairs that move freely, D = e^{Gt} − I, and the scales that their sizes are measured
+/// in.
+struct ChangeArrays {
+  Index np = 0;
+  const double *d11, *d12, *d21, *d22;  ///< [np]
+  const double *scale1, *scale2;        ///< [np]
+};
+
 /// What one width offers.
 struct Kernels {
   const char* name;
@@ -121,6 +129,8 @@ struct Kernels {
                       int points, double* out_x);
   /// x += (e^{Gt} − I) free, each part of the difference by itself: short times and slow pairs lose nothing.
   void (*free_motion)(const MotionArrays& pairs, double t, const double* free, double* x);
+  /// x += D free, free += D free, and the new sizes scale₁ |free₁| + scale₂ |free₂| [np].
+  void (*pass)(const ChangeArrays& change, double* x, double* free, double* out_size);
 };
 
 /// The sets that this processor runs, widest first.

@@ -85,4 +85,19 @@ void free_motion(const MotionArrays& m, double t, const double* free, double* x)
   }
 }
 
+void pass(const ChangeArrays& m, double* x, double* free, double* out_size) {
+  const Index np = m.np;
+  for (Index i = 0; i < np; i += kLanes) {
+    const V8 f1 = load8(free + i), f2 = load8(free + np + i);
+    const V8 by1 = fma8(load8(m.d11 + i), f1, load8(m.d12 + i) * f2);
+    const V8 by2 = fma8(load8(m.d21 + i), f1, load8(m.d22 + i) * f2);
+    store8(x + i, load8(x + i) + by1);
+    store8(x + np + i, load8(x + np + i) + by2);
+    const V8 now1 = f1 + by1, now2 = f2 + by2;
+    store8(free + i, now1);
+    store8(free + np + i, now2);
+    store8(out_size + i, fma8(load8(m.scale1 + i), abs8(now1), load8(m.scale2 + i) * abs8(now2)));
+  }
+}
+
 }  // namespace slipmode::dynamics::kernels::SLIPMODE_KERNEL_SET
