@@ -62,7 +62,7 @@ void ClosedFormFlow::enter_regime() {
     Visited& now = visited_.back();
     if (resolver_.drive().belt() == nullptr) {
       now.overlay = std::make_unique<DriveOverlay>(tables.regime(), slipping_, resolver_.drive());
-      if (options_.audit) now.forms = AuditForms::make(tables.regime(), slipping_, *now.overlay);
+      if (options_.audit) now.forms = AuditForms::make(tables, slipping_, *now.overlay);
     } else if (options_.audit && resolver_.drive().is_constant()) {
       now.belt = BeltWork::make(tables.regime());
     }
@@ -90,10 +90,11 @@ void ClosedFormFlow::enter_regime() {
     for (Eigen::Index c = 0; c < nc_; ++c) inputs_(c) -= overlay->inputs.at(c, phase);
     overlay->state.add(phase, -1.0, x_);
   }
-  if (regime_->forms) regime_->forms->begin(point_.time, x_, inputs_);
-  if (regime_->belt) regime_->belt->begin(point_.time, x_, inputs_);
   amplitude_.resize(r.pairs.np);
+  if (overlay) resting_.noalias() = r.particular * inputs_;
   measure_amplitudes();
+  if (regime_->forms) regime_->forms->begin({point_.time, x_, free_, point_.x}, inputs_);
+  if (regime_->belt) regime_->belt->begin(point_.time, x_, inputs_);
   set_guards();
   drop_idle_guards();
   foresee_starts();
@@ -106,8 +107,12 @@ double ClosedFormFlow::drive_velocity(double t, const Eigen::VectorXd& inputs) c
 void ClosedFormFlow::measure_amplitudes() {
   const Regime& r = tables_->regime();
   const auto np = r.pairs.np;
-  free_ = x_;
-  free_.noalias() -= r.particular * inputs_;
+  if (regime_->overlay) {
+    free_ = x_ - resting_;
+  } else {
+    free_ = x_;
+    free_.noalias() -= r.particular * inputs_;
+  }
   amplitude_.array() =
       r.scale1.array() * free_.head(np).array().abs() + r.scale2.array() * free_.tail(np).array().abs();
   measured_ = true;
@@ -202,8 +207,8 @@ bool ClosedFormFlow::step(double t_limit) {
   for (std::size_t c = 0; c < point_.modes.size(); ++c)
     if (point_.modes[c] == ContactMode::kStick) statistics_.stick_time[c] += tau;
   const bool ends = found.guard >= 0 || point_.time >= limit;
+  if (ends) lift_point();
   if (options_.audit) account(tau, ends);
-
   if (found.guard >= 0) return settle(found.guard, found.touching);
   if (found.spare > kSpareToGrow) {
     const int growth = std::clamp(std::ilogb(found.spare) / 8, 1, kLargestGrowth);
@@ -211,13 +216,11 @@ bool ClosedFormFlow::step(double t_limit) {
   }
   if (!ends) return false;
   if (corner) return settle(-1, false);
-  lift_point();
   if (carries_) push_tangents();
   return false;
 }
 
 bool ClosedFormFlow::settle(int guard, bool touching) {
-  lift_point();
   const double window_end = begin_ + tables_->length(level_);
   const Guard* reached = guard >= 0 ? &guards_[static_cast<std::size_t>(guard)] : nullptr;
   const bool salts = carries_ && !touching;

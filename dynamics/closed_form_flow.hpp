@@ -158,6 +158,7 @@ class ClosedFormFlow {
   std::vector<int> compliant_;                   ///< contacts behind a contact spring
   Eigen::VectorXd x_, inputs_, x_begin_, inputs_begin_;
   Eigen::VectorXd free_, amplitude_;  ///< at the step's begin: x less what follows the inputs, and its pairs' sizes
+  Eigen::VectorXd resting_;           ///< what follows the inputs, where those are constant: under a periodic drive
   bool measured_ = false;             ///< these two belong to x_
   double begin_ = 0.0;
   DrivePhase phase_;  ///< at begin_, of a periodic drive

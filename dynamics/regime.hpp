@@ -151,6 +151,16 @@ struct RegimeAudit {
   std::vector<RegimeStep> point;
 };
 
+/// Integrals of squares of a regime's free motion, whatever drives it: ∫ x_fᵀQ x_f dt = [x_fᵀY x_f] (see AuditForms).
+struct RegimeForms {
+  bool found = false;
+  /// Lower triangles of Y of the contacts' work and of the viscous loss, off-diagonal entries doubled, zeros above
+  /// [2np x 2np]; empty: no quadratic part.
+  Eigen::MatrixXd contact, viscous;
+  /// `viscous` is minus the energy of free motion, which n squares give in the modes of the slipping structure.
+  bool viscous_is_energy = false;
+};
+
 /// A regime and its tables for windows of length top·2^{-level}, built when first used; safe to share between threads.
 class RegimeTables {
  public:
@@ -173,6 +183,11 @@ class RegimeTables {
   [[nodiscard]] const RegimeChange& change(int level) const {
     return changes_.get(level, [&](RegimeChange& out) { make(out, level); });
   }
+  /// @param make  make(regime, RegimeForms&) fills them when they are first asked for
+  template <class Make>
+  [[nodiscard]] const RegimeForms& forms(Make make) const {
+    return forms_.get(0, [&](RegimeForms& out) { make(regime_, out); });
+  }
   [[nodiscard]] const RegimeAudit& audit(int level) const {
     return audits_.get(level, [&](RegimeAudit& out) { make(out, level); });
   }
@@ -190,6 +205,7 @@ class RegimeTables {
   LazyLevels<RegimeWindow, kLevels> windows_;
   LazyLevels<RegimeChange, kLevels> changes_;
   LazyLevels<RegimeAudit, kLevels> audits_;
+  LazyLevels<RegimeForms, 1> forms_;
 };
 
 /// x(h); `out_x` may be `x` itself. `inputs` stay as they are.
