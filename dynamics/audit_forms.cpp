@@ -297,7 +297,10 @@ void AuditForms::begin(const Place& at, const Eigen::VectorXd& inputs) {
     s.with_inputs_cosine = s.along_cosine.dot(inputs);
     s.with_inputs_sine = s.along_sine.dot(inputs);
   }
-  if (forms_.viscous_is_energy) resting_.noalias() = held_ * inputs;
+  if (forms_.viscous_is_energy) {
+    resting_.setZero(held_.rows());
+    kernels::kernels().product(held_.data(), held_.rows(), held_.cols(), inputs.data(), resting_.data());
+  }
   at_begin_ = values(at);
 }
 

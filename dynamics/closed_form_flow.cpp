@@ -83,7 +83,9 @@ void ClosedFormFlow::enter_regime() {
     inputs_(r.speed_input() + 1) = resolver_.drive().acceleration(point_.time);
   }
   inputs_(r.speed_input() + 2) = 1.0;
-  x_.noalias() = r.from_slipping * point_.x;
+  const kernels::Kernels& vector = kernels::kernels();
+  x_.setZero(r.from_slipping.rows());
+  vector.product(r.from_slipping.data(), x_.size(), point_.x.size(), point_.x.data(), x_.data());
   if (!oscillator_states_.empty())
     x_.noalias() += r.from_oscillators * Eigen::VectorXd(point_.internal(oscillator_states_));
   if (overlay) {
@@ -91,7 +93,10 @@ void ClosedFormFlow::enter_regime() {
     overlay->state.add(phase, -1.0, x_);
   }
   amplitude_.resize(r.pairs.np);
-  if (overlay) resting_.noalias() = r.particular * inputs_;
+  if (overlay) {
+    resting_.setZero(x_.size());
+    vector.product(r.particular.data(), x_.size(), inputs_.size(), inputs_.data(), resting_.data());
+  }
   measure_amplitudes();
   if (regime_->forms) regime_->forms->begin({point_.time, x_, free_, point_.x}, inputs_);
   if (regime_->belt) regime_->belt->begin(point_.time, x_, inputs_);
@@ -238,8 +243,7 @@ bool ClosedFormFlow::settle(int guard, bool touching) {
 void ClosedFormFlow::lift(const Visited& in, double t, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs,
                           Eigen::VectorXd& out_x, Eigen::VectorXd& out_force) const {
   const Regime& r = in.tables->regime();
-  out_x.noalias() = r.to_slipping * x;
-  out_x.noalias() += r.inputs_slipping * inputs;
+  r.lift(x, inputs, out_x);
   out_force.resize(nc_);
   for (int c = 0; c < nc_; ++c)
     out_force(c) = r.roles[static_cast<std::size_t>(c)] == ContactRole::kSliding

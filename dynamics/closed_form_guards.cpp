@@ -202,8 +202,11 @@ void ClosedFormFlow::judge(const BernsteinPolynomial& polynomial, double remaind
   here.at = here.guess = root->at;
   if (!here.resolved) {
     here.refinement = 1 + std::min(8, std::ilogb(remainder / tolerance) / 8);
-    const std::optional<FirstRoot> likely = first_root(polynomial);
-    here.guess = likely && !likely->touching ? likely->at : 0.0;
+    // Up to `at` the polynomial is positive.
+    BernsteinPolynomial before, after;
+    polynomial.split(here.at, before, after);
+    const std::optional<FirstRoot> likely = first_root(after);
+    here.guess = likely && !likely->touching ? here.at + (1.0 - here.at) * likely->at : 0.0;
   }
   if (found.guard < 0 || here.at < found.at) {
     here.others = found.guard < 0 ? found.others : found.at;

@@ -73,6 +73,8 @@ struct Regime {
   [[nodiscard]] bool sticks(int c) const { return follows[static_cast<std::size_t>(c)]; }
   /// ι after a time t.
   void advance_inputs(Eigen::VectorXd& inputs, double t) const;
+  /// State of the slipping model: to_slipping x + inputs_slipping ι.
+  void lift(const Eigen::VectorXd& x, const Eigen::VectorXd& inputs, Eigen::VectorXd& out_slipping) const;
   /// Value of output k.
   [[nodiscard]] double output(Eigen::Index k, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs) const;
   /// Time derivative of (row, coefficients): again of that form.
@@ -107,6 +109,9 @@ struct Regime {
   Eigen::MatrixXd from_slipping;    ///< state of the slipping model → x [2np x 2np_s]
   Eigen::MatrixXd to_slipping;      ///< x → state of the slipping model [2np_s x 2np]
   Eigen::MatrixXd inputs_slipping;  ///< ι → its part there [2np_s x ni]
+  /// Where the slipping model's states are displacements and their rates, the displacements' rows of `to_slipping`: the
+  /// rates are these rows of Gx. Else empty [np_s x 2np].
+  Eigen::MatrixXd to_displacements;
   Eigen::MatrixXd from_oscillators;  ///< (ζ, ζ̇ contact after contact) → x [2np x 2k]; no columns without oscillators
   Eigen::MatrixXd to_oscillators;  ///< x → them [2k x 2np]
 
@@ -124,6 +129,7 @@ struct Regime {
 
  private:
   void prepare_bounds();
+  void prepare_lift(const ModalModel& slipping);
 };
 
 /// What a time h does: x(h) = e^{Gh} x + response ι.

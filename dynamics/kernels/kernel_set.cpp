@@ -11,6 +11,8 @@ const Kernels kSet{
     .name = SLIPMODE_TEXT(SLIPMODE_KERNEL_SET),
     .dot = dot,
     .add_scaled = add_scaled,
+    .product = product,
+    .two_products = two_products,
     .node_sums = node_sums,
     .matrix8 = matrix8,
     .solve_stribeck = solve_stribeck,

@@ -11,6 +11,9 @@ namespace SLIPMODE_KERNEL_SET {
 
 double dot(const double* a, const double* b, Index size);
 void add_scaled(double a, const double* x, double* y, Index size);
+void product(const double* A, Index rows, Index columns, const double* x, double* out);
+void two_products(const double* A, Index rows, Index columns, const double* x, const double* y, double* out_x,
+                  double* out_y);
 void node_sums(const double* columns, const double* x, Index count, const double* start, double* out);
 void matrix8(const double* A, const double* x, double* out);
 

@@ -92,6 +92,11 @@ struct Kernels {
   double (*dot)(const double* a, const double* b, Index size);  ///< size a multiple of eight
   /// y += a x.
   void (*add_scaled)(double a, const double* x, double* y, Index size);
+  /// out += A x. @param A  [rows x columns], rows a multiple of eight
+  void (*product)(const double* A, Index rows, Index columns, const double* x, double* out);
+  /// The same of two vectors at once: A is read once.
+  void (*two_products)(const double* A, Index rows, Index columns, const double* x, const double* y, double* out_x,
+                       double* out_y);
   /// out = Σ_i column_i x_i + start [8]; start may be null.
   void (*node_sums)(const double* columns, const double* x, Index count, const double* start, double* out);
   /// y = A x, A [8 x 8].

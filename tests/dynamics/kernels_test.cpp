@@ -41,6 +41,22 @@ TEST_P(EachKernelSet, SumsAsPlainArithmeticDoes) {
   }
 }
 
+TEST_P(EachKernelSet, MultipliesMatricesOfAnyNumberOfRowsOfEight) {
+  for (const Eigen::Index rows : {8, 16, 24, 40, 80, 88, 200}) {
+    for (const Eigen::Index columns : {1, 4, 16, 80}) {
+      const Eigen::MatrixXd A = Eigen::Map<const Eigen::MatrixXd>(numbers(rows * columns, 1).data(), rows, columns);
+      const Eigen::VectorXd x = numbers(columns, 2), y = numbers(columns, 3), from = numbers(rows, 4);
+      const double bound = 1e-15 * static_cast<double>(columns + 1);
+      Eigen::VectorXd by_x = from, two_x = from, two_y = -from;
+      set().product(A.data(), rows, columns, x.data(), by_x.data());
+      EXPECT_LT((by_x - (from + A * x)).cwiseAbs().maxCoeff(), bound);
+      set().two_products(A.data(), rows, columns, x.data(), y.data(), two_x.data(), two_y.data());
+      EXPECT_EQ(two_x, by_x) << "sums have one order";
+      EXPECT_LT((two_y - (A * y - from)).cwiseAbs().maxCoeff(), bound);
+    }
+  }
+}
+
 TEST_P(EachKernelSet, SolvesTheNewtonEquationsOfAStep) {
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     const Matrix8 A = 2.0 * radau().integral;
@@ -123,6 +139,25 @@ TEST_P(EachKernelSet, MovesOscillatorsExactlyToRounding) {
       EXPECT_NEAR(change(i) * pairs.w(i), static_cast<double>(to_x * w), bound) << "seed " << seed << ", pair " << i;
       EXPECT_NEAR(change(np + i), static_cast<double>(to_v), bound) << "seed " << seed << ", pair " << i;
     }
+  }
+}
+
+TEST_P(EachKernelSet, PassesAWindowAsTheChangeSays) {
+  constexpr Eigen::Index np = 16;
+  const Eigen::VectorXd d = numbers(4 * np, 1), scale = numbers(2 * np, 2).cwiseAbs();
+  Eigen::VectorXd x = numbers(2 * np, 3), free = numbers(2 * np, 4), size(np);
+  const Eigen::VectorXd old_x = x, old_free = free;
+  const double* of = d.data();
+  set().pass({np, of, of + np, of + 2 * np, of + 3 * np, scale.data(), scale.data() + np}, x.data(), free.data(),
+             size.data());
+  for (Eigen::Index i = 0; i < np; ++i) {
+    const double by1 = d(i) * old_free(i) + d(np + i) * old_free(np + i);
+    const double by2 = d(2 * np + i) * old_free(i) + d(3 * np + i) * old_free(np + i);
+    EXPECT_NEAR(x(i), old_x(i) + by1, 1e-15);
+    EXPECT_NEAR(x(np + i), old_x(np + i) + by2, 1e-15);
+    EXPECT_NEAR(free(i), old_free(i) + by1, 1e-15);
+    EXPECT_NEAR(free(np + i), old_free(np + i) + by2, 1e-15);
+    EXPECT_NEAR(size(i), scale(i) * std::abs(free(i)) + scale(np + i) * std::abs(free(np + i)), 1e-15);
   }
 }
 
