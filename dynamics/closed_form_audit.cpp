@@ -16,8 +16,9 @@ constexpr double kDriveRest = 1.0;
 void ClosedFormFlow::account(double tau, bool ends) {
   if (!regime_->forms && !regime_->belt) return integrate(tau);
   if (!ends) return;
-  const StayWork work =
-      regime_->forms ? regime_->forms->until(point_.time, x_) : regime_->belt->until(point_.time, x_, inputs_);
+  if (regime_->forms && !measured_) measure_amplitudes();
+  const StayWork work = regime_->forms ? regime_->forms->until({point_.time, x_, free_, point_.x})
+                                       : regime_->belt->until(point_.time, x_, inputs_);
   work_.add(work.contact, work.drive, work.viscous, work.force);
 }
 

@@ -62,7 +62,7 @@ void ClosedFormFlow::enter_regime() {
     Visited& now = visited_.back();
     if (resolver_.drive().belt() == nullptr) {
       now.overlay = std::make_unique<DriveOverlay>(tables.regime(), slipping_, resolver_.drive());
-      if (options_.audit) now.forms = AuditForms::make(tables.regime(), slipping_, *now.overlay);
+      if (options_.audit) now.forms = AuditForms::make(tables, slipping_, *now.overlay);
     } else if (options_.audit && resolver_.drive().is_constant()) {
       now.belt = BeltWork::make(tables.regime());
     }
@@ -83,17 +83,23 @@ void ClosedFormFlow::enter_regime() {
     inputs_(r.speed_input() + 1) = resolver_.drive().acceleration(point_.time);
   }
   inputs_(r.speed_input() + 2) = 1.0;
-  x_.noalias() = r.from_slipping * point_.x;
+  const kernels::Kernels& vector = kernels::kernels();
+  x_.setZero(r.from_slipping.rows());
+  vector.product(r.from_slipping.data(), x_.size(), point_.x.size(), point_.x.data(), x_.data());
   if (!oscillator_states_.empty())
     x_.noalias() += r.from_oscillators * Eigen::VectorXd(point_.internal(oscillator_states_));
   if (overlay) {
     for (Eigen::Index c = 0; c < nc_; ++c) inputs_(c) -= overlay->inputs.at(c, phase);
     overlay->state.add(phase, -1.0, x_);
   }
-  if (regime_->forms) regime_->forms->begin(point_.time, x_, inputs_);
-  if (regime_->belt) regime_->belt->begin(point_.time, x_, inputs_);
   amplitude_.resize(r.pairs.np);
+  if (overlay) {
+    resting_.setZero(x_.size());
+    vector.product(r.particular.data(), x_.size(), inputs_.size(), inputs_.data(), resting_.data());
+  }
   measure_amplitudes();
+  if (regime_->forms) regime_->forms->begin({point_.time, x_, free_, point_.x}, inputs_);
+  if (regime_->belt) regime_->belt->begin(point_.time, x_, inputs_);
   set_guards();
   drop_idle_guards();
   foresee_starts();
@@ -106,20 +112,35 @@ double ClosedFormFlow::drive_velocity(double t, const Eigen::VectorXd& inputs) c
 void ClosedFormFlow::measure_amplitudes() {
   const Regime& r = tables_->regime();
   const auto np = r.pairs.np;
-  free_ = x_;
-  free_.noalias() -= r.particular * inputs_;
+  if (regime_->overlay) {
+    free_ = x_ - resting_;
+  } else {
+    free_ = x_;
+    free_.noalias() -= r.particular * inputs_;
+  }
   amplitude_.array() =
       r.scale1.array() * free_.head(np).array().abs() + r.scale2.array() * free_.tail(np).array().abs();
+  measured_ = true;
 }
 
 void ClosedFormFlow::move(double tau) {
   const Regime& r = tables_->regime();
+  measured_ = false;
   if (!r.motion.available()) return advance(*tables_, tau, x_, inputs_);
   r.motion.add(tau, free_.data(), x_.data());
   if (regime_->overlay) return;  // then all inputs are constant
   r.advance_inputs(inputs_, tau);
   for (Eigen::Index k = 0; k <= r.speed_input(); ++k)
     if (const double change = inputs_(k) - inputs_begin_(k); change != 0.0) x_ += change * r.particular.col(k);
+}
+
+void ClosedFormFlow::pass_window() {
+  const Regime& r = tables_->regime();
+  if (!regime_->overlay || !r.motion.available()) return move(tables_->length(level_));
+  const RegimeChange& d = tables_->change(level_);
+  kernels::kernels().pass(
+      {r.pairs.np, d.d11.data(), d.d12.data(), d.d21.data(), d.d22.data(), r.scale1.data(), r.scale2.data()}, x_.data(),
+      free_.data(), amplitude_.data());
 }
 
 bool ClosedFormFlow::step(double t_limit) {
@@ -140,7 +161,7 @@ bool ClosedFormFlow::step(double t_limit) {
     if (guard.exempt_until > begin_) end = std::min(end, guard.exempt_until);
   const double remaining = end - begin_;
 
-  measure_amplitudes();
+  if (!measured_) measure_amplitudes();
   Search found;
   double h = 0.0, tau = 0.0;
   for (;;) {
@@ -161,12 +182,13 @@ bool ClosedFormFlow::step(double t_limit) {
   x_begin_ = x_;
   inputs_begin_ = inputs_;
   if (found.guard >= 0 && !found.touching) {
-    // Up to the part that is proved clear; from there Newton, which may prove itself.
+    // Up to the part that is proved clear; beyond it Newton, which may prove itself.
     if (!found.resolved) tau *= kUsed;
-    move(tau);
-    double root = tau;
-    const bool proved = approach(guards_[static_cast<std::size_t>(found.guard)], root);
-    if (proved ? root <= std::min(h, remaining) && (found.alone || found.resolved) : found.resolved) {
+    double root = (found.guess > 0.0 ? found.guess : found.at) * h;
+    const bool proved =
+        (found.resolved || found.guess > 0.0) && approach(guards_[static_cast<std::size_t>(found.guard)], tau, root);
+    const bool first = found.resolved || root <= found.others * h;
+    if (proved ? root <= std::min(h, remaining) && first : found.resolved) {
       tau = root;
     } else {
       x_ = x_begin_;
@@ -175,6 +197,8 @@ bool ClosedFormFlow::step(double t_limit) {
       found.guard = -1;
       level_ = std::min(level_ + found.refinement, RegimeTables::kLevels - 1);
     }
+  } else if (tau == h) {
+    pass_window();
   } else {
     move(tau);
   }
@@ -188,8 +212,8 @@ bool ClosedFormFlow::step(double t_limit) {
   for (std::size_t c = 0; c < point_.modes.size(); ++c)
     if (point_.modes[c] == ContactMode::kStick) statistics_.stick_time[c] += tau;
   const bool ends = found.guard >= 0 || point_.time >= limit;
+  if (ends) lift_point();
   if (options_.audit) account(tau, ends);
-
   if (found.guard >= 0) return settle(found.guard, found.touching);
   if (found.spare > kSpareToGrow) {
     const int growth = std::clamp(std::ilogb(found.spare) / 8, 1, kLargestGrowth);
@@ -197,13 +221,11 @@ bool ClosedFormFlow::step(double t_limit) {
   }
   if (!ends) return false;
   if (corner) return settle(-1, false);
-  lift_point();
   if (carries_) push_tangents();
   return false;
 }
 
 bool ClosedFormFlow::settle(int guard, bool touching) {
-  lift_point();
   const double window_end = begin_ + tables_->length(level_);
   const Guard* reached = guard >= 0 ? &guards_[static_cast<std::size_t>(guard)] : nullptr;
   const bool salts = carries_ && !touching;
@@ -221,8 +243,7 @@ bool ClosedFormFlow::settle(int guard, bool touching) {
 void ClosedFormFlow::lift(const Visited& in, double t, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs,
                           Eigen::VectorXd& out_x, Eigen::VectorXd& out_force) const {
   const Regime& r = in.tables->regime();
-  out_x.noalias() = r.to_slipping * x;
-  out_x.noalias() += r.inputs_slipping * inputs;
+  r.lift(x, inputs, out_x);
   out_force.resize(nc_);
   for (int c = 0; c < nc_; ++c)
     out_force(c) = r.roles[static_cast<std::size_t>(c)] == ContactRole::kSliding

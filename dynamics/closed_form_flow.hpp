@@ -83,7 +83,8 @@ class ClosedFormFlow {
     double at = 1.0;        ///< fraction of the window before which no guard vanishes
     bool resolved = false;  ///< nothing is left out that matters: `at` is the event
     bool touching = false;  ///< resolved: the guard comes within tolerance of zero and goes back
-    bool alone = true;      ///< no other guard may vanish in this window
+    double others = 2.0;    ///< no other guard vanishes before this
+    double guess = 0.0;     ///< where the guard vanishes in all likelihood; 0: not in this window
     int refinement = 1;     ///< not resolved: levels to go down until it is
     double spare = 1e300;   ///< smallest ratio of a guard's least value to its remainder
   };
@@ -101,6 +102,8 @@ class ClosedFormFlow {
   void drop_idle_guards();
   /// Takes the state, which is that of the step's begin, on by tau.
   void move(double tau);
+  /// The same over a whole window of the level.
+  void pass_window();
   void foresee_starts();
   /// The size of an output's values, which its rounding error is measured by.
   [[nodiscard]] double scale(const Guard& guard) const;
@@ -108,8 +111,9 @@ class ClosedFormFlow {
   [[nodiscard]] double second_derivative(const Guard& guard, double t) const;
   [[nodiscard]] Search search(int level) const;
   void judge(const BernsteinPolynomial& polynomial, double remainder, double tolerance, int guard, Search& found) const;
-  /// Takes the state on to where the guard vanishes; tau follows. True if that is proved to be the first time.
-  [[nodiscard]] bool approach(const Guard& guard, double& tau);
+  /// Takes the state on to where the guard vanishes, near tau, which follows. True if that is proved to be the first
+  /// time after `from`.
+  [[nodiscard]] bool approach(const Guard& guard, double from, double& tau);
   /// Bound on the second derivative of an output over the window.
   [[nodiscard]] double curvature(Eigen::Index output) const;
   /// Adds the work of a step of this length; where forms integrate whole stays, once a stay or the run `ends`.
@@ -154,6 +158,8 @@ class ClosedFormFlow {
   std::vector<int> compliant_;                   ///< contacts behind a contact spring
   Eigen::VectorXd x_, inputs_, x_begin_, inputs_begin_;
   Eigen::VectorXd free_, amplitude_;  ///< at the step's begin: x less what follows the inputs, and its pairs' sizes
+  Eigen::VectorXd resting_;           ///< what follows the inputs, where those are constant: under a periodic drive
+  bool measured_ = false;             ///< these two belong to x_
   double begin_ = 0.0;
   DrivePhase phase_;  ///< at begin_, of a periodic drive
   mutable double phase_time_ = std::numeric_limits<double>::quiet_NaN();

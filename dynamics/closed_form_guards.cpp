@@ -17,6 +17,8 @@ constexpr double kStarting = 1e-9;
 /// … and with zero slope, if that is below this share of its scale times the fastest rate.
 constexpr double kSimpleStart = 1e-9;
 constexpr int kNewtonSteps = 20;
+/// Newton steps of less than this phase of the fastest pair go on from where the last one led.
+constexpr double kClose = 0.25;
 constexpr int kHalvings = 3;
 
 }  // namespace
@@ -197,11 +199,21 @@ void ClosedFormFlow::judge(const BernsteinPolynomial& polynomial, double remaind
     if (!root) return;
     here.touching = here.resolved;
   }
-  here.at = root->at;
-  if (!here.resolved) here.refinement = 1 + std::min(8, std::ilogb(remainder / tolerance) / 8);
-  here.alone = found.guard < 0;
-  if (found.guard < 0 || here.at < found.at) found = here;
-  found.alone = here.alone;
+  here.at = here.guess = root->at;
+  if (!here.resolved) {
+    here.refinement = 1 + std::min(8, std::ilogb(remainder / tolerance) / 8);
+    // Up to `at` the polynomial is positive.
+    BernsteinPolynomial before, after;
+    polynomial.split(here.at, before, after);
+    const std::optional<FirstRoot> likely = first_root(after);
+    here.guess = likely && !likely->touching ? here.at + (1.0 - here.at) * likely->at : 0.0;
+  }
+  if (found.guard < 0 || here.at < found.at) {
+    here.others = found.guard < 0 ? found.others : found.at;
+    found = here;
+  } else {
+    found.others = std::min(found.others, here.at);
+  }
 }
 
 ClosedFormFlow::Search ClosedFormFlow::search(int level) const {
@@ -251,25 +263,29 @@ ClosedFormFlow::Search ClosedFormFlow::search(int level) const {
   return found;
 }
 
-bool ClosedFormFlow::approach(const Guard& guard, double& tau) {
-  // Newton on the exact guard, from a time at which it is not yet reached.
-  const double rate = tables_->regime().rate, from = tau, bend = curvature(guard.output);
+bool ClosedFormFlow::approach(const Guard& guard, double from, double& tau) {
+  // Newton on the exact guard.
+  const double rate = tables_->regime().rate, bend = curvature(guard.output);
+  const double rounding = std::numeric_limits<double>::epsilon() / 2.0 * scale(guard);
   double slope = 0.0;
+  move(tau);
   for (int k = 0; k < kNewtonSteps; ++k) {
     const GuardValue now = evaluate(guard, begin_ + tau);
     slope = now.rate;
     const double shift = -now.value / slope;
     if (!(slope < 0.0) || !(std::abs(shift) * rate < 2.0) || tau + shift < 0.0) return false;
     tau += shift;
-    if (tables_->regime().motion.available()) {
+    if (!tables_->regime().motion.available() && std::abs(shift) * rate < kClose) {
+      advance(*tables_, shift, x_, inputs_);
+    } else {
       x_ = x_begin_;
       inputs_ = inputs_begin_;
       move(tau);
-    } else {
-      advance(*tables_, shift, x_, inputs_);
     }
-    // Newton squares its error, with a factor of about the guard's curvature by its slope.
-    if (std::abs(shift) * rate < 1e-15 || shift * shift * bend < 1e-15 / rate * std::abs(slope)) break;
+    // Newton squares its error, with a factor of about the guard's curvature by its slope. It is done where that is
+    // beyond the clock, or leaves of the guard no more than its rounding.
+    if (std::abs(shift) * rate < 1e-15 || shift * shift * bend < std::max(1e-15 / rate * std::abs(slope), rounding))
+      break;
   }
   // The guard falls all the way from `from`: it vanishes here for the first time.
   return tau <= from || (tau - from) * bend < std::abs(slope);

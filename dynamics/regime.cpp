@@ -12,6 +12,8 @@ namespace {
 
 /// Frequencies below this share of the structure's fastest may be rounding of zero: a rigid-body motion.
 constexpr double kPerhapsZero = 1e-12;
+/// Rates of displacements, as rows of their own and by the pairs' motion, are the same to this share of a column.
+constexpr double kSameRates = 1e-12;
 
 }  // namespace
 
@@ -39,6 +41,40 @@ Regime::Regime(const HybridSystem& system, const ModalModel& slipping, const std
   coefficient2 = coefficient1;
   derive(row2, coefficient2);
   prepare_bounds();
+  prepare_lift(slipping);
+}
+
+void Regime::prepare_lift(const ModalModel& slipping) {
+  if (!slipping.proportional || pairs.n == 0) return;
+  const auto np = pairs.np, ns = slipping.np;
+  const Eigen::MatrixXd rows = to_slipping.topRows(ns);
+  Eigen::MatrixXd rates(ns, 2 * np);
+  rates.leftCols(np) = rows.leftCols(np) * pairs.g11.asDiagonal();
+  rates.leftCols(np) += rows.rightCols(np) * pairs.g21.asDiagonal();
+  rates.rightCols(np) = rows.leftCols(np) * pairs.g12.asDiagonal();
+  rates.rightCols(np) += rows.rightCols(np) * pairs.g22.asDiagonal();
+  for (Eigen::Index j = 0; j < 2 * np; ++j) {
+    const auto own = to_slipping.col(j).tail(ns);
+    if (!((rates.col(j) - own).norm() <= kSameRates * own.norm())) return;
+  }
+  to_displacements = rows;
+}
+
+void Regime::lift(const Eigen::VectorXd& x, const Eigen::VectorXd& inputs, Eigen::VectorXd& out_slipping) const {
+  const kernels::Kernels& vector = kernels::kernels();
+  const auto size = to_slipping.rows();
+  out_slipping.setZero(size);
+  if (to_displacements.size() == 0) {
+    vector.product(to_slipping.data(), size, to_slipping.cols(), x.data(), out_slipping.data());
+  } else {
+    const auto np = pairs.np;
+    Eigen::VectorXd moving(2 * np);
+    moving.head(np) = pairs.g11.cwiseProduct(x.head(np)) + pairs.g12.cwiseProduct(x.tail(np));
+    moving.tail(np) = pairs.g21.cwiseProduct(x.head(np)) + pairs.g22.cwiseProduct(x.tail(np));
+    vector.two_products(to_displacements.data(), size / 2, 2 * np, x.data(), moving.data(), out_slipping.data(),
+                        out_slipping.data() + size / 2);
+  }
+  vector.product(inputs_slipping.data(), size, inputs_slipping.cols(), inputs.data(), out_slipping.data());
 }
 
 void Regime::prepare_bounds() {

@@ -73,6 +73,8 @@ struct Regime {
   [[nodiscard]] bool sticks(int c) const { return follows[static_cast<std::size_t>(c)]; }
   /// ι after a time t.
   void advance_inputs(Eigen::VectorXd& inputs, double t) const;
+  /// State of the slipping model: to_slipping x + inputs_slipping ι.
+  void lift(const Eigen::VectorXd& x, const Eigen::VectorXd& inputs, Eigen::VectorXd& out_slipping) const;
   /// Value of output k.
   [[nodiscard]] double output(Eigen::Index k, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs) const;
   /// Time derivative of (row, coefficients): again of that form.
@@ -107,6 +109,9 @@ struct Regime {
   Eigen::MatrixXd from_slipping;    ///< state of the slipping model → x [2np x 2np_s]
   Eigen::MatrixXd to_slipping;      ///< x → state of the slipping model [2np_s x 2np]
   Eigen::MatrixXd inputs_slipping;  ///< ι → its part there [2np_s x ni]
+  /// Where the slipping model's states are displacements and their rates, the displacements' rows of `to_slipping`: the
+  /// rates are these rows of Gx. Else empty [np_s x 2np].
+  Eigen::MatrixXd to_displacements;
   Eigen::MatrixXd from_oscillators;  ///< (ζ, ζ̇ contact after contact) → x [2np x 2k]; no columns without oscillators
   Eigen::MatrixXd to_oscillators;  ///< x → them [2k x 2np]
 
@@ -124,6 +129,7 @@ struct Regime {
 
  private:
   void prepare_bounds();
+  void prepare_lift(const ModalModel& slipping);
 };
 
 /// What a time h does: x(h) = e^{Gh} x + response ι.
@@ -131,6 +137,11 @@ struct RegimeStep {
   double h = 0.0;
   Eigen::VectorXd e11, e12, e21, e22;
   Eigen::MatrixXd response;  ///< [2np x ni]
+};
+
+/// What a time h changes of the free motion, e^{Gh} − I, where the regime has that in closed form.
+struct RegimeChange {
+  Eigen::VectorXd d11, d12, d21, d22;  ///< [np]
 };
 
 /// Outputs over a window of length h as polynomials of degree 7 in Bernstein form, with what interpolation leaves out.
@@ -144,6 +155,16 @@ struct RegimeWindow {
 struct RegimeAudit {
   GaussRule rule;
   std::vector<RegimeStep> point;
+};
+
+/// Integrals of squares of a regime's free motion, whatever drives it: ∫ x_fᵀQ x_f dt = [x_fᵀY x_f] (see AuditForms).
+struct RegimeForms {
+  bool found = false;
+  /// Lower triangles of Y of the contacts' work and of the viscous loss, off-diagonal entries doubled, zeros above
+  /// [2np x 2np]; empty: no quadratic part.
+  Eigen::MatrixXd contact, viscous;
+  /// `viscous` is minus the energy of free motion, which n squares give in the modes of the slipping structure.
+  bool viscous_is_energy = false;
 };
 
 /// A regime and its tables for windows of length top·2^{-level}, built when first used; safe to share between threads.
@@ -165,6 +186,14 @@ class RegimeTables {
   [[nodiscard]] const RegimeWindow& window(int level) const {
     return windows_.get(level, [&](RegimeWindow& out) { make(out, level); });
   }
+  [[nodiscard]] const RegimeChange& change(int level) const {
+    return changes_.get(level, [&](RegimeChange& out) { make(out, level); });
+  }
+  /// @param make  make(regime, RegimeForms&) fills them when they are first asked for
+  template <class Make>
+  [[nodiscard]] const RegimeForms& forms(Make make) const {
+    return forms_.get(0, [&](RegimeForms& out) { make(regime_, out); });
+  }
   [[nodiscard]] const RegimeAudit& audit(int level) const {
     return audits_.get(level, [&](RegimeAudit& out) { make(out, level); });
   }
@@ -172,6 +201,7 @@ class RegimeTables {
  private:
   void make(RegimeStep& out, int level) const;
   void make(RegimeWindow& out, int level) const;
+  void make(RegimeChange& out, int level) const;
   void make(RegimeAudit& out, int level) const;
   void step_of(double h, RegimeStep& out) const;
 
@@ -179,7 +209,9 @@ class RegimeTables {
   std::array<double, kLevels> length_{};
   LazyLevels<RegimeStep, kLevels> steps_;
   LazyLevels<RegimeWindow, kLevels> windows_;
+  LazyLevels<RegimeChange, kLevels> changes_;
   LazyLevels<RegimeAudit, kLevels> audits_;
+  LazyLevels<RegimeForms, 1> forms_;
 };
 
 /// x(h); `out_x` may be `x` itself. `inputs` stay as they are.

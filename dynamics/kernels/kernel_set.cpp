@@ -12,6 +12,8 @@ const Kernels kSet{
     .dot = dot,
     .product_integral = product_integral,
     .add_scaled = add_scaled,
+    .product = product,
+    .two_products = two_products,
     .node_sums = node_sums,
     .matrix8 = matrix8,
     .solve_stribeck = solve_stribeck,
@@ -25,6 +27,8 @@ const Kernels kSet{
     .loss = loss,
     .taylor = taylor,
     .taylor_work = taylor_work,
+    .free_motion = free_motion,
+    .pass = pass,
 };
 
 }  // namespace slipmode::dynamics::kernels::SLIPMODE_KERNEL_SET

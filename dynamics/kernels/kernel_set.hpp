@@ -12,6 +12,9 @@ namespace SLIPMODE_KERNEL_SET {
 double dot(const double* a, const double* b, Index size);
 double product_integral(const ProductRule& rule, const double* a, const double* b, double b_start);
 void add_scaled(double a, const double* x, double* y, Index size);
+void product(const double* A, Index rows, Index columns, const double* x, double* out);
+void two_products(const double* A, Index rows, Index columns, const double* x, const double* y, double* out_x,
+                  double* out_y);
 void node_sums(const double* columns, const double* x, Index count, const double* start, double* out);
 void matrix8(const double* A, const double* x, double* out);
 
@@ -29,6 +32,9 @@ void taylor(const PairArrays& pairs, const double* x, const double* coefficient,
 Work taylor_work(const PairArrays& pairs, const double* velocity_row, const double* damping, const double* x,
                  const double* coefficient, double tau, int terms, const SeriesRule& rule, double* out_moments,
                  double* out_x);
+
+void free_motion(const MotionArrays& pairs, double t, const double* free, double* x);
+void pass(const ChangeArrays& change, double* x, double* free, double* out_size);
 
 extern const Kernels kSet;
 

@@ -80,6 +80,21 @@ struct Trial {
   double* velocity;          ///< of the last step, then of this one [8]
 };
 
+/// Pairs that oscillate: e^{Gt} = e^{τt}(cos wt I + sin wt A), A = (G − τI)/w of trace zero.
+struct MotionArrays {
+  Index np = 0;
+  const double *decay, *frequency;  ///< τ and w [np]
+  const double *a11, *a12, *a21;    ///< A [np]
+};
+
+/// What a certain time changes of pairs that move freely, D = e^{Gt} − I, and the scales that their sizes are measured
+/// in.
+struct ChangeArrays {
+  Index np = 0;
+  const double *d11, *d12, *d21, *d22;  ///< [np]
+  const double *scale1, *scale2;        ///< [np]
+};
+
 /// What one width offers.
 struct Kernels {
   const char* name;
@@ -89,6 +104,11 @@ struct Kernels {
   double (*product_integral)(const ProductRule& rule, const double* a, const double* b, double b_start);
   /// y += a x.
   void (*add_scaled)(double a, const double* x, double* y, Index size);
+  /// out += A x. @param A  [rows x columns], rows a multiple of eight
+  void (*product)(const double* A, Index rows, Index columns, const double* x, double* out);
+  /// The same of two vectors at once: A is read once.
+  void (*two_products)(const double* A, Index rows, Index columns, const double* x, const double* y, double* out_x,
+                       double* out_y);
   /// out = Σ_i column_i x_i + start [8]; start may be null.
   void (*node_sums)(const double* columns, const double* x, Index count, const double* start, double* out);
   /// y = A x, A [8 x 8].
@@ -125,6 +145,10 @@ struct Kernels {
   Work (*taylor_work)(const PairArrays& pairs, const double* velocity_row, const double* damping, const double* x,
                       const double* coefficient, double tau, int terms, const SeriesRule& rule, double* out_moments,
                       double* out_x);
+  /// x += (e^{Gt} − I) free, each part of the difference by itself: short times and slow pairs lose nothing.
+  void (*free_motion)(const MotionArrays& pairs, double t, const double* free, double* x);
+  /// x += D free, free += D free, and the new sizes scale₁ |free₁| + scale₂ |free₂| [np].
+  void (*pass)(const ChangeArrays& change, double* x, double* free, double* out_size);
 };
 
 /// The sets that this processor runs, widest first.

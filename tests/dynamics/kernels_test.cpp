@@ -41,6 +41,22 @@ TEST_P(EachKernelSet, SumsAsPlainArithmeticDoes) {
   }
 }
 
+TEST_P(EachKernelSet, MultipliesMatricesOfAnyNumberOfRowsOfEight) {
+  for (const Eigen::Index rows : {8, 16, 24, 40, 80, 88, 200}) {
+    for (const Eigen::Index columns : {1, 4, 16, 80}) {
+      const Eigen::MatrixXd A = Eigen::Map<const Eigen::MatrixXd>(numbers(rows * columns, 1).data(), rows, columns);
+      const Eigen::VectorXd x = numbers(columns, 2), y = numbers(columns, 3), from = numbers(rows, 4);
+      const double bound = 1e-15 * static_cast<double>(columns + 1);
+      Eigen::VectorXd by_x = from, two_x = from, two_y = -from;
+      set().product(A.data(), rows, columns, x.data(), by_x.data());
+      EXPECT_LT((by_x - (from + A * x)).cwiseAbs().maxCoeff(), bound);
+      set().two_products(A.data(), rows, columns, x.data(), y.data(), two_x.data(), two_y.data());
+      EXPECT_EQ(two_x, by_x) << "sums have one order";
+      EXPECT_LT((two_y - (A * y - from)).cwiseAbs().maxCoeff(), bound);
+    }
+  }
+}
+
 TEST_P(EachKernelSet, SolvesTheNewtonEquationsOfAStep) {
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     const Matrix8 A = 2.0 * radau().integral;
@@ -84,13 +100,79 @@ TEST_P(EachKernelSet, SlidesAsStribecksLawSays) {
   }
 }
 
+/// Oscillating pairs of rates from slow to fast, hardly damped to strongly.
+struct Oscillators {
+  explicit Oscillators(std::uint64_t seed, Eigen::Index np) : decay(np), w(np), a11(np), a12(np), a21(np) {
+    fixtures::Random random(seed);
+    for (Eigen::Index i = 0; i < np; ++i) {
+      w(i) = std::pow(10.0, random.uniform(-2.0, 4.0));
+      decay(i) = -w(i) * std::pow(10.0, random.uniform(-4.0, 0.0));
+      a11(i) = -decay(i) / w(i);  // of [0 1; −ω² −d]
+      a12(i) = 1.0 / w(i);
+      a21(i) = -(w(i) * w(i) + decay(i) * decay(i)) / w(i);
+    }
+  }
+  [[nodiscard]] MotionArrays arrays() const {
+    return {decay.size(), decay.data(), w.data(), a11.data(), a12.data(), a21.data()};
+  }
+  Eigen::VectorXd decay, w, a11, a12, a21;
+};
+
+TEST_P(EachKernelSet, MovesOscillatorsExactlyToRounding) {
+  constexpr Eigen::Index np = 16;
+  fixtures::Random random(5);
+  for (std::uint64_t seed = 0; seed < 500; ++seed) {
+    const Oscillators pairs(seed, np);
+    const double t = std::pow(10.0, random.uniform(-7.0, 2.0));
+    Eigen::VectorXd free = numbers(2 * np, 1000 + seed), change = Eigen::VectorXd::Zero(2 * np);
+    free.head(np).array() /= pairs.w.array();
+    set().free_motion(pairs.arrays(), t, free.data(), change.data());
+    for (Eigen::Index i = 0; i < np; ++i) {
+      // e^{Gt} − I in long double.
+      const long double w = pairs.w(i), size = std::exp(static_cast<long double>(pairs.decay(i)) * t);
+      const long double c = size * std::cos(w * t), s = size * std::sin(w * t), x = free(i), v = free(np + i);
+      const long double to_x = (c + s * pairs.a11(i) - 1) * x + s * pairs.a12(i) * v;
+      const long double to_v = s * pairs.a21(i) * x + (c - s * pairs.a11(i) - 1) * v;
+      // The angle wt is rounded before it is reduced, and −τt before it is raised.
+      const double scale = std::abs(pairs.a21(i)) * std::abs(free(i)) + std::abs(free(np + i));
+      const double bound = 4e-16 * (1.0 + pairs.w(i) * t) * scale;
+      EXPECT_NEAR(change(i) * pairs.w(i), static_cast<double>(to_x * w), bound) << "seed " << seed << ", pair " << i;
+      EXPECT_NEAR(change(np + i), static_cast<double>(to_v), bound) << "seed " << seed << ", pair " << i;
+    }
+  }
+}
+
+TEST_P(EachKernelSet, PassesAWindowAsTheChangeSays) {
+  constexpr Eigen::Index np = 16;
+  const Eigen::VectorXd d = numbers(4 * np, 1), scale = numbers(2 * np, 2).cwiseAbs();
+  Eigen::VectorXd x = numbers(2 * np, 3), free = numbers(2 * np, 4), size(np);
+  const Eigen::VectorXd old_x = x, old_free = free;
+  const double* of = d.data();
+  set().pass({np, of, of + np, of + 2 * np, of + 3 * np, scale.data(), scale.data() + np}, x.data(), free.data(),
+             size.data());
+  for (Eigen::Index i = 0; i < np; ++i) {
+    const double by1 = d(i) * old_free(i) + d(np + i) * old_free(np + i);
+    const double by2 = d(2 * np + i) * old_free(i) + d(3 * np + i) * old_free(np + i);
+    EXPECT_NEAR(x(i), old_x(i) + by1, 1e-15);
+    EXPECT_NEAR(x(np + i), old_x(np + i) + by2, 1e-15);
+    EXPECT_NEAR(free(i), old_free(i) + by1, 1e-15);
+    EXPECT_NEAR(free(np + i), old_free(np + i) + by2, 1e-15);
+    EXPECT_NEAR(size(i), scale(i) * std::abs(free(i)) + scale(np + i) * std::abs(free(np + i)), 1e-15);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Widths, EachKernelSet, testing::Range<std::size_t>(0, available().size()),
                          [](const auto& one) { return std::string(available()[one.param]->name); });
 
-TEST(KernelSets, OfTwoVectorWidthsGiveTheSameBytes) {
+std::vector<const Kernels*> fused_sets() {
   std::vector<const Kernels*> fused;
   for (const Kernels* set : available())
     if (std::string(set->name) != "generic") fused.push_back(set);
+  return fused;
+}
+
+TEST(KernelSets, OfTwoVectorWidthsGiveTheSameBytes) {
+  const std::vector<const Kernels*> fused = fused_sets();
   if (fused.size() < 2) GTEST_SKIP() << "this processor runs one vector width with fused multiply-add";
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     const Matrix8 kernel = (0.01 + 0.5 * std::fmod(0.37 * static_cast<double>(seed), 1.0)) * radau().integral;
@@ -121,6 +203,22 @@ TEST(KernelSets, OfTwoVectorWidthsGiveTheSameBytes) {
     }
     EXPECT_EQ(std::memcmp(out[0].data(), out[2].data(), sizeof(Vector8)), 0) << "seed " << seed;
     EXPECT_EQ(std::memcmp(out[1].data(), out[3].data(), sizeof(Vector8)), 0) << "seed " << seed;
+  }
+}
+
+TEST(KernelSets, OfTwoVectorWidthsMoveOscillatorsToTheSameBytes) {
+  const std::vector<const Kernels*> fused = fused_sets();
+  if (fused.size() < 2) GTEST_SKIP() << "this processor runs one vector width with fused multiply-add";
+  constexpr Eigen::Index np = 24;
+  fixtures::Random random(6);
+  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+    const Oscillators pairs(seed, np);
+    const double t = std::pow(10.0, random.uniform(-7.0, 2.0));
+    const Eigen::VectorXd free = numbers(2 * np, seed), from = numbers(2 * np, 7 * seed);
+    Eigen::VectorXd wide = from, narrow = from;
+    fused[0]->free_motion(pairs.arrays(), t, free.data(), wide.data());
+    fused[1]->free_motion(pairs.arrays(), t, free.data(), narrow.data());
+    EXPECT_EQ(std::memcmp(wide.data(), narrow.data(), 2 * np * sizeof(double)), 0) << "seed " << seed;
   }
 }
 
