@@ -164,10 +164,11 @@ bool ClosedFormFlow::step(double t_limit) {
   if (!measured_) measure_amplitudes();
   Search found;
   double h = 0.0, tau = 0.0;
+  bool finest = false;
   for (;;) {
     h = tables_->length(level_);
     found = search(level_);
-    const bool finest = level_ + 1 >= RegimeTables::kLevels || !(begin_ + h > begin_);
+    finest = level_ + 1 >= RegimeTables::kLevels || !(begin_ + h > begin_);
     if (found.guard < 0 || found.at * h >= remaining) {
       found.guard = -1;
       tau = std::min(h, remaining);
@@ -188,12 +189,17 @@ bool ClosedFormFlow::step(double t_limit) {
     const bool proved =
         (found.resolved || found.guess > 0.0) && approach(guards_[static_cast<std::size_t>(found.guard)], tau, root);
     const bool first = found.resolved || root <= found.others * h;
-    if (proved ? root <= std::min(h, remaining) && first : found.resolved) {
+    // Where windows are finer than the clock, a root beyond the window is now, or the guard is clear until shortly
+    // before.
+    const double clear = begin_ + kUsed * root;
+    const bool now = finest && !(clear > begin_);
+    if (proved ? now || (root <= std::min(h, remaining) && first) : found.resolved) {
       tau = root;
     } else {
       x_ = x_begin_;
       inputs_ = inputs_begin_;
       move(tau);
+      if (proved && finest) guards_[static_cast<std::size_t>(found.guard)].exempt_until = clear;
       found.guard = -1;
       level_ = std::min(level_ + found.refinement, RegimeTables::kLevels - 1);
     }
