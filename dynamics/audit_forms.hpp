@@ -24,9 +24,8 @@ struct StayWork {
 ///     ∫ x_fᵀQ x_f dt = [x_fᵀY x_f],  GᵀY + YG = Q;     ∫ x_fᵀr e^{iθ} dt = Re [x_fᵀy e^{iθ}],  (Gᵀ + iω) y = r.
 ///
 /// The quadratic part of the viscous loss is minus the energy of x_f, as it must be: of many pairs, and where Y says so
-/// too, n squares take its place. Costs O(n) then, else O(n²), per stay whatever its length, where quadrature would follow
-/// the fastest mode.
-/// Source: docs/theory/compliant-contacts.md, section 4.
+/// too, n squares take its place. Costs O(n) then, else O(n²), per stay whatever its length, where quadrature would
+/// follow the fastest mode. Source: docs/theory/compliant-contacts.md, section 4.
 class AuditForms {
  public:
   /// Null where a mode has no damping to speak of, or drifts, or the drive has several harmonics: then the integrals
