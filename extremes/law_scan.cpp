@@ -317,8 +317,8 @@ class Scan {
     for (const double t : timelines_[static_cast<std::size_t>(c)].times()) {
       const auto k = static_cast<Index>(std::ceil((t - s.times(0)) / h)) - 1;
       // One contact's event may set off another's.
-      const auto same = std::ranges::equal_range(event_times_, t);
-      if (same.size() > 1 || k < 4 || k >= s.times.size() || !quiet(s.times(k - 4), t - 1e-12 * (1.0 + t)) ||
+      const auto [first, last] = std::equal_range(event_times_.begin(), event_times_.end(), t);
+      if (last - first > 1 || k < 4 || k >= s.times.size() || !quiet(s.times(k - 4), t - 1e-12 * (1.0 + t)) ||
           !smooth_drive(s.times(k - 4), t) || t - s.times(k) < 1e-9 * h)
         continue;
       const double x = (t - s.times(k)) / h;
