@@ -27,6 +27,33 @@ Eigen::VectorXd numbers(Eigen::Index count, std::uint64_t seed, double size = 1.
   return Eigen::VectorXd::NullaryExpr(count, [&] { return random.uniform(-size, size); });
 }
 
+/// What a state adds to a trial.
+struct TrialState {
+  Index n, np;
+  const Eigen::VectorXd &free, &x;
+};
+
+/// A trial step of μ_k = μ_s − μ_k = 0.6, to rounding. It points at the arguments.
+Trial stribeck_trial(double alpha, const TrialState& state, const Matrix8& kernel, const Vector8& load,
+                     const Vector8& drive, Vector8& forces, Vector8& velocity) {
+  return {.n = state.n,
+          .np = state.np,
+          .free = state.free.data(),
+          .load = load.data(),
+          .kernel = kernel.data(),
+          .kernel_norm = kernel.cwiseAbs().rowwise().sum().maxCoeff(),
+          .x = state.x.data(),
+          .drive = drive.data(),
+          .sign = 1.0,
+          .kinetic = 0.6,
+          .drop = 0.6,
+          .alpha = alpha,
+          .ahead = nullptr,
+          .force_error = 1e-14,
+          .forces = forces.data(),
+          .velocity = velocity.data()};
+}
+
 TEST_P(EachKernelSet, SumsAsPlainArithmeticDoes) {
   for (const Eigen::Index size : {8, 16, 24, 80, 1000}) {
     const Eigen::VectorXd a = numbers(size, 1), b = numbers(size, 2);
@@ -77,22 +104,7 @@ TEST_P(EachKernelSet, SlidesAsStribecksLawSays) {
     const Vector8 drive = Vector8::Constant(0.3), load = Vector8::Constant(0.05);
     const Eigen::VectorXd none = Eigen::VectorXd::Zero(64);
     Vector8 forces = Vector8::Constant(0.9), velocity;
-    const Trial trial{.n = 0,
-                      .np = 0,
-                      .free = none.data(),
-                      .load = load.data(),
-                      .kernel = kernel.data(),
-                      .kernel_norm = kernel.cwiseAbs().rowwise().sum().maxCoeff(),
-                      .x = none.data(),
-                      .drive = drive.data(),
-                      .sign = 1.0,
-                      .kinetic = 0.6,
-                      .drop = 0.6,
-                      .alpha = alpha,
-                      .ahead = nullptr,
-                      .force_error = 1e-14,
-                      .forces = forces.data(),
-                      .velocity = velocity.data()};
+    const Trial trial = stribeck_trial(alpha, {0, 0, none, none}, kernel, load, drive, forces, velocity);
     ASSERT_TRUE(set().solve_stribeck(trial));
     EXPECT_LT((velocity - load - kernel * forces).cwiseAbs().maxCoeff(), 1e-14);
     for (int j = 0; j < 8; ++j)
@@ -176,27 +188,13 @@ TEST(KernelSets, OfTwoVectorWidthsGiveTheSameBytes) {
   if (fused.size() < 2) GTEST_SKIP() << "this processor runs one vector width with fused multiply-add";
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     const Matrix8 kernel = (0.01 + 0.5 * std::fmod(0.37 * static_cast<double>(seed), 1.0)) * radau().integral;
-    const Eigen::VectorXd x = numbers(32, seed), free = numbers(8 * 32, 1000 + seed, 0.1), drive = numbers(8, 7);
+    const Eigen::VectorXd x = numbers(32, seed), free = numbers(8 * 32, 1000 + seed, 0.1);
+    const Vector8 drive = numbers(8, 7);
     std::vector<Vector8> out;
     for (const Kernels* set : fused) {
       Vector8 forces = Vector8::Constant(0.9), velocity = Vector8::Zero();
       const Vector8 load = Vector8::Zero();
-      const Trial trial{.n = 13,
-                        .np = 16,
-                        .free = free.data(),
-                        .load = load.data(),
-                        .kernel = kernel.data(),
-                        .kernel_norm = kernel.cwiseAbs().rowwise().sum().maxCoeff(),
-                        .x = x.data(),
-                        .drive = drive.data(),
-                        .sign = 1.0,
-                        .kinetic = 0.6,
-                        .drop = 0.6,
-                        .alpha = 3.0,
-                        .ahead = nullptr,
-                        .force_error = 1e-14,
-                        .forces = forces.data(),
-                        .velocity = velocity.data()};
+      const Trial trial = stribeck_trial(3.0, {13, 16, free, x}, kernel, load, drive, forces, velocity);
       static_cast<void>(set->solve_stribeck(trial));
       out.push_back(forces);
       out.push_back(velocity);
