@@ -3,6 +3,7 @@
 #include "core/errors.hpp"
 #include "fixtures/clearance_scenes.hpp"
 #include "fixtures/scenes.hpp"
+#include "fixtures/shaken_scenes.hpp"
 #include "orbits/orbit_map.hpp"
 
 #include <gtest/gtest.h>
@@ -129,6 +130,53 @@ TEST(StrobeMap, FollowingValuesStartWhereTheOneBeforeEnded) {
   const auto system = fixtures::clearance_pair(0.6);
   const StrobePoint longer = strobe(system, system.rest(), options);
   EXPECT_LT((map.points[1]->section - longer.section).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+// The same for a contact with states of its own: its spring's stretch, its oscillator's displacement and velocity.
+TEST(StrobeMap, FollowingValuesKeepTheContactsOwnStates) {
+  const friction::NormalOscillator own{
+      .mass = 0.5, .support_stiffness = 1.0, .spring_stiffness = 2.0, .spring_damping = 0.01, .slope = 0.4};
+  const auto system = fixtures::single_mass(
+      1.0, 0.05, 1.0, {.direction = {}, .law = friction::CompliantCoulomb{0.4, 0.3, 8.0}, .normal_load = {1.0, own}},
+      friction::Shaker{.amplitude = 0.9, .frequency_hz = 0.7 / (2.0 * std::numbers::pi)});
+  const auto same = [&](double) { return system; };
+  StrobeOptions options = watching(1);
+  options.periods = 7;
+  options.kept = 5;
+  options.follow = true;
+  const StrobeMap map = strobe_map(same, kFromRest, {0.0, 0.0}, options);
+  options.periods = 14;
+  const StrobePoint longer = strobe(system, system.rest(), options);
+  const double reach = longer.section.cwiseAbs().maxCoeff();
+  EXPECT_LT((map.points[1]->section - longer.section).cwiseAbs().maxCoeff(), 1e-9 * reach);
+}
+
+// Random contacts, rigid or behind a spring, under random loads; and the next value may have any amplitude.
+TEST(StrobeMap, FollowsThroughAnyContact) {
+  int compared = 0;
+  for (std::uint64_t seed = 0; seed < 120; ++seed) {
+    const auto system = fixtures::random_piecewise_linear(seed);
+    const friction::Shaker* shaker = system.drive().shaker();
+    if (shaker == nullptr) continue;
+    const auto at = [&](double amplitude) {
+      friction::Shaker changed = *shaker;
+      changed.amplitude = amplitude;
+      return system.with_drive(changed);
+    };
+    StrobeOptions options = watching(system.size());
+    options.periods = 3;
+    options.kept = 2;
+    options.follow = true;
+    const StrobeMap map =
+        strobe_map(at, kFromRest, {shaker->amplitude, shaker->amplitude, 0.3 * shaker->amplitude}, options);
+    for (const auto& point : map.points) ASSERT_EQ(point->failure, "") << seed;
+    options.periods = 6;
+    const StrobePoint longer = strobe(system, system.rest(), options);
+    const double reach = longer.section.cwiseAbs().maxCoeff();
+    EXPECT_LT((map.points[1]->section - longer.section).cwiseAbs().maxCoeff(), 1e-7 * reach) << seed;
+    ++compared;
+  }
+  EXPECT_GT(compared, 60);
 }
 
 TEST(StrobeMap, HasTheSameBytesForAnyNumberOfThreadsAndTakesOverWhatIsThere) {
