@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "orbits/map_waveform.hpp"
+#include "orbits/motion_scale.hpp"
 
 #include <fmt/format.h>
 
@@ -35,24 +36,15 @@ void check(const dynamics::HybridSystem& system, const StrobeOptions& options) {
   }
 }
 
-/// Relative distance of section states m apart, at most, over the last max(3m, 20) of them.
-double repeat_distance(const Eigen::MatrixXd& q, const Eigen::MatrixXd& v, Eigen::Index m) {
-  const Eigen::Index stretch = std::min(q.cols() - m, std::max<Eigen::Index>(3 * m, 20));
-  const auto relative = [&](const Eigen::MatrixXd& x) {
-    const double reach = x.cwiseAbs().maxCoeff();
-    const double apart = (x.rightCols(stretch) - x.middleCols(x.cols() - stretch - m, stretch)).cwiseAbs().maxCoeff();
-    return reach > 0.0 ? apart / reach : 0.0;
-  };
-  return std::max(relative(q), relative(v));
-}
-
-void find_order(const Eigen::MatrixXd& q, const Eigen::MatrixXd& v, const StrobeOptions& options,
+void find_order(const Eigen::MatrixXd& section, const detail::MotionScale& scale, const StrobeOptions& options,
                 StrobePoint& out_point) {
-  // Half of the sections at least must be seen to repeat.
-  for (int m = 1; m <= options.max_order && 2 * m <= q.cols(); ++m) {
-    const double apart = repeat_distance(q, v, m);
+  // Half of the sections at least must be seen to repeat, over the last max(3m, 20) of them.
+  for (Eigen::Index m = 1; m <= options.max_order && 2 * m <= section.cols(); ++m) {
+    const Eigen::Index stretch = std::min(section.cols() - m, std::max<Eigen::Index>(3 * m, 20));
+    const double apart =
+        scale.distance(section.rightCols(stretch) - section.middleCols(section.cols() - stretch - m, stretch));
     if (apart > options.tolerance) continue;
-    out_point.order = m;
+    out_point.order = static_cast<int>(m);
     out_point.mismatch = apart;
     return;
   }
@@ -120,10 +112,11 @@ StrobePoint strobe(const dynamics::HybridSystem& system, const dynamics::State& 
   const Eigen::Index steps = Eigen::Index{options.kept} * options.samples;
   const Eigen::MatrixXd q = with_end(run.q, steps, run.final_state.q), v = with_end(run.v, steps, run.final_state.v);
   const auto section = Eigen::seqN(Eigen::Index{0}, Eigen::Index{options.kept} + 1, Eigen::Index{options.samples});
-  const Eigen::MatrixXd section_q = q(Eigen::all, section), section_v = v(Eigen::all, section);
-  find_order(section_q, section_v, options, point);
+  Eigen::MatrixXd states(2 * system.size(), options.kept + 1);
+  states << q(Eigen::all, section), v(Eigen::all, section);
+  find_order(states, detail::MotionScale(q, v), options, point);
   measure_amplitudes(q, v, step, options, point);
-  point.section = options.rows * section_q.leftCols(options.kept);
+  point.section = options.rows * states.topLeftCorner(system.size(), options.kept);
   point.end = run.final_state;
   return point;
 }

@@ -119,6 +119,37 @@ TEST(StrobeMap, IsTheBifurcationDiagramOfTheSingleMass) {
   EXPECT_EQ(map.points[2]->section.cols(), 100);
 }
 
+/// S0's single mass where it has period 3, its coordinate counted from far away.
+dynamics::HybridSystem far_backlash(double shift) {
+  const auto near = fixtures::backlash_mass(0.47);
+  std::vector<friction::Contact> contacts = near.contacts();
+  contacts.front().offset = -shift;
+  return {near.structure(), contacts, near.drive(), {}, near.force_directions()};
+}
+
+// Where the coordinate is counted from changes nothing: neither the order nor what the map finds.
+TEST(StrobeMap, SubharmonicsAreSeenBesideALargeMean) {
+  constexpr double kShift = 1e6;
+  const auto start = fixtures::state(Eigen::VectorXd::Constant(1, kShift + 3.0), Eigen::VectorXd::Zero(1));
+  const auto system = far_backlash(kShift);
+  EXPECT_EQ(strobe(system, start, watching(1)).order, 3);
+  const MapPoint settled = settled_orbit(system, start, {.max_order = 6});
+  EXPECT_EQ(settled.order, 3);
+}
+
+// The same mass beside one that swings a million times as far, once per period of the force.
+TEST(StrobeMap, SubharmonicsAreSeenBesideALargerMotion) {
+  const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(2, 2);
+  std::vector<friction::Contact> contacts = fixtures::backlash_mass(0.47).contacts();
+  contacts.front().direction = Eigen::Vector2d::UnitX();
+  const friction::Force force{0.47, {{.amplitude = 1.0}, {.amplitude = 1e6, .direction = 1}}};
+  const dynamics::HybridSystem system(
+      fem::Structure(fem::Matrix(unit), fem::Matrix(Eigen::MatrixXd(Eigen::Vector2d(0.05, 0.5).asDiagonal())),
+                     fem::Matrix(Eigen::MatrixXd(Eigen::Vector2d(0.0, 1.0).asDiagonal()))),
+      contacts, force, {}, unit);
+  EXPECT_EQ(strobe(system, fixtures::state(Eigen::Vector2d(3.0, 0.0), Eigen::Vector2d::Zero()), watching(2)).order, 3);
+}
+
 // Two runs of 40 periods that follow each other are one of 80.
 TEST(StrobeMap, FollowingValuesStartWhereTheOneBeforeEnded) {
   StrobeOptions options = watching(2);
