@@ -6,6 +6,7 @@
 #include "cli/sweep_report.hpp"
 #include "cli/sweep_request.hpp"
 #include "cli/sweep_store.hpp"
+#include "cli/swept_model.hpp"
 #include "cli/validation_setup.hpp"
 #include "cli/verbs.hpp"
 #include "rom/reduce.hpp"
@@ -25,22 +26,9 @@ struct Subject {
   std::string title, identity;
 };
 
-/// Systems by the key's value. The belt's speed is special: modal data are then shared by all values.
-diagnostics::SystemFactory system_factory(const scene::Scene& scene, const std::string& key,
-                                          const std::optional<pod::Basis>& basis) {
-  if (key == "drive.speed" && scene.drive.is_constant()) {
-    const dynamics::HybridSystem full = scene::build_system(scene);
-    return (basis ? diagnostics::reduced_belt_model(full, *basis) : diagnostics::belt_model(full)).system;
-  }
-  return [scene, key, basis](double value) {
-    const dynamics::HybridSystem full = scene::build_system(scene::set_key(scene, key, value));
-    return basis ? rom::reduce(full, *basis) : full;
-  };
-}
-
 Subject full_subject(const scene::Scene& scene, const std::string& key) {
   const dynamics::HybridSystem system = scene::build_system(scene);
-  return {.model = {.system = system_factory(scene, key, {})},
+  return {.model = swept_model(scene, key),
           .start = scene::initial_state(scene, system),
           .title = fmt::format("full model, {} degrees of freedom", system.size()),
           .identity = "full"};
@@ -49,10 +37,7 @@ Subject full_subject(const scene::Scene& scene, const std::string& key) {
 Subject reduced_subject(const scene::Scene& scene, const std::string& key, const std::string& file) {
   const dynamics::HybridSystem system = scene::build_system(scene);
   const pod::Basis basis = reduced_basis(file, system.size());
-  const diagnostics::Model belt = diagnostics::reduced_belt_model(system, basis);
-  return {.model = {.system = system_factory(scene, key, basis),
-                    .basis = basis,
-                    .energy_offset = key == "drive.speed" ? belt.energy_offset : 0.0},
+  return {.model = swept_model(scene, key, basis),
           .start = rom::restrict_state(system.structure(), basis, scene::initial_state(scene, system)),
           .title = fmt::format("reduced model, {} modes", basis.modes()),
           .identity = "rom " + file_fingerprint(file)};

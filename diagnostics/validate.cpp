@@ -206,7 +206,7 @@ class Validation {
       const dynamics::HybridSystem system = reduction.model->system(options_.speed);
       const dynamics::State start = projected(reduction.basis, report_.full.end);
       row.attractor = settle(system, start, attractor_settling());
-      row.attractor->mean_energy += reduction.model->energy_offset;
+      row.attractor->mean_energy += energy_offset_at(*reduction.model, options_.speed);
       row.distance = attractor_distance(report_.full, *row.attractor);
       row.lyapunov = exponent(system, *row.attractor);
       row.horizon = deviation_up_to_horizon(full_.structure(), full_model_, *reduction.model, options_.speed,
