@@ -78,7 +78,7 @@ Report run(const Session& session, const AdviseArguments& arguments) {
     report.text += summary(effects, advice);
     report.data = {{"verb", "advise"}, {"limit_percent", limit}, {"effects", list}, {"study", to_json(done, scene)}};
     if (arguments.output.empty()) return;
-    scene::StoreWriter writer(arguments.output);
+    scene::StoreWriter writer(arguments.output, scene.units);
     scene::save(writer, scene::provenance_of(scene, "slipmode advise"));
     store_study(writer, done, scene);
     writer.commit();

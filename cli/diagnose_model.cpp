@@ -139,7 +139,7 @@ Report diagnose_scene(const Session& session, const DiagnoseRequest& request, co
   const std::string file = model_file(request);
   if (file.empty()) return report;
   const Units units = Units::of(scene.units);
-  scene::StoreWriter writer(file);
+  scene::StoreWriter writer(file, scene.units);
   scene::save(writer,
               scene::provenance_of(scene, models.verdict ? "slipmode diagnose --verdict" : "slipmode diagnose"));
   store_exponents(writer, spectra, units);

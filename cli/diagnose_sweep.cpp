@@ -218,7 +218,7 @@ Report diagnose_over(const Session& session, const scene::Scene& scene, const Di
   const SweepAxis axis = sweep_axis(over.key, units);
   Report report;
   report.data = {{"verb", "diagnose"}, {"file", request.output}, {"key", over.key}};
-  scene::StoreWriter writer(request.output);
+  scene::StoreWriter writer(request.output, scene.units);
   scene::save(writer, scene::provenance_of(scene, task));
   for (std::size_t m = 0; m < swept.size(); ++m) {
     if (belt) store_sweep(writer, fmt::format("sweep/{}", swept[m].role), swept[m].title, axis, units, swept[m].points);

@@ -86,7 +86,7 @@ double hertz(double omega) { return omega / (2.0 * std::numbers::pi); }
 
 void store(const std::filesystem::path& path, const scene::Scene& scene, const ModeSets& sets) {
   const Units units = Units::of(scene.units);
-  scene::StoreWriter writer(path);
+  scene::StoreWriter writer(path, scene.units);
   scene::save(writer, scene::provenance_of(scene, "slipmode modes"));
   const auto write = [&](const std::string& group, const fem::Modes& modes, const std::string& what) {
     writer.describe_group(group, what);

@@ -76,7 +76,8 @@ Figure delay_map(const StoreReader& store) {
   const Eigen::Index count = series.values.size() - delay;
   if (count < 1) store.fail("trajectory/times", "too few samples for a delay map; simulate for longer");
   return figures::panel_grid(
-      {{fmt::format("delay of {:.3g} s, a quarter of a drive period", static_cast<double>(delay) * series.interval),
+      {{fmt::format("delay of {:.3g}{}, a quarter of a drive period", static_cast<double>(delay) * series.interval,
+                    scene::load_scene_of(store).units == "SI" ? " s" : ""),
         {{"", series.values.head(count), series.values.tail(count), Series::Look::kDots, figures::kFullColour}}}},
       {.columns = 1, .panel_height = 700, .x_label = series.label, .y_label = "the same, later"});
 }
@@ -88,14 +89,15 @@ Figure spectrum(const StoreReader& store) {
   const double highest = kShown / series.period;
   Eigen::Index shown = 1;
   while (shown + 1 < found.frequency_hz.size() && found.frequency_hz[shown] < highest) ++shown;
-  return figures::panel_grid({{fmt::format("mean of {} segments, Hann's window", found.segments),
-                               {{"", found.frequency_hz.segment(1, shown), found.amplitude.segment(1, shown),
-                                 Series::Look::kLine, figures::kFullColour}}}},
-                             {.columns = 1,
-                              .panel_height = 480,
-                              .x_label = figures::axis_label("frequency", "Hz"),
-                              .y_label = "amplitude of the " + series.label,
-                              .log_y = true});
+  return figures::panel_grid(
+      {{fmt::format("mean of {} segments, Hann's window", found.segments),
+        {{"", found.frequency_hz.segment(1, shown), found.amplitude.segment(1, shown), Series::Look::kLine,
+          figures::kFullColour}}}},
+      {.columns = 1,
+       .panel_height = 480,
+       .x_label = figures::axis_label("frequency", Units::of(scene::load_scene_of(store).units).frequency),
+       .y_label = "amplitude of the " + series.label,
+       .log_y = true});
 }
 
 }  // namespace slipmode::cli

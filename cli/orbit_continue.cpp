@@ -137,7 +137,7 @@ Report run(const Session& session, const OrbitContinueArguments& arguments) {
 
   const orbits::ContinuationOptions options = continuation_options(arguments, range, start, search.options);
   const std::vector<NamedBranch> branches = follow(family, found.orbit, start, options, arguments.switches);
-  scene::StoreWriter writer(arguments.output);
+  scene::StoreWriter writer(arguments.output, scene.units);
   scene::save(writer, scene::provenance_of(scene, fmt::format("slipmode orbit continue --over {}", arguments.over)));
   store_branches(writer, range.key, branches, family);
   writer.commit();

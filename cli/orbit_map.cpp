@@ -100,7 +100,7 @@ Report interrupted(const Task& task) {
 }
 
 scene::StoreWriter writer_of(const Task& task) {
-  scene::StoreWriter writer(task.arguments.output);
+  scene::StoreWriter writer(task.arguments.output, task.scene.units);
   scene::save(writer, scene::provenance_of(task.scene, task.command));
   return writer;
 }

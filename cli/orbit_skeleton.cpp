@@ -133,7 +133,7 @@ ModelSkeleton shown(const Recorded& model, orbits::Skeleton skeleton) {
 }
 
 scene::StoreWriter begin_store(const OrbitSkeletonArguments& arguments, const scene::Scene& scene) {
-  scene::StoreWriter writer(arguments.output);
+  scene::StoreWriter writer(arguments.output, scene.units);
   scene::save(writer, scene::provenance_of(scene, fmt::format("slipmode orbit skeleton --model {}{}", arguments.model,
                                                               arguments.compare_with.empty()
                                                                   ? ""

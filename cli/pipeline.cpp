@@ -73,7 +73,7 @@ class Pipeline {
     session_.check_interrupt();
     scene::Provenance provenance = scene::provenance_of(scene_, "slipmode run");
     provenance.audit = run.audit;
-    scene::StoreWriter writer(file("trajectory.h5"));
+    scene::StoreWriter writer(file("trajectory.h5"), scene_.units);
     scene::save(writer, provenance);
     scene::save(writer, scene::kTrajectoryGroup, run);
     writer.commit();
@@ -88,7 +88,7 @@ class Pipeline {
   void pod() {
     result_.pod = pod::pod(result_.ensemble->ensemble);
     result_.ensemble->ensemble = {};
-    scene::StoreWriter writer(file("pod.h5"));
+    scene::StoreWriter writer(file("pod.h5"), scene_.units);
     scene::save(writer, scene::provenance_of(scene_, "slipmode run"));
     scene::save(writer, scene::kPodGroup, *result_.pod);
     writer.commit();
@@ -100,7 +100,7 @@ class Pipeline {
     for (const auto& candidate : candidates_) {
       const pod::Basis basis = candidate.basis.truncated(result_.chosen);
       const std::string name = fmt::format("reduced_{}.h5", candidate.name == "POM" ? "pom" : "lnm");
-      scene::StoreWriter writer(file(name));
+      scene::StoreWriter writer(file(name), scene_.units);
       scene::save(writer, scene::provenance_of(scene_, "slipmode run"));
       scene::save(writer, scene::kReducedGroup,
                   scene::ReducedModel{.system = rom::reduce(full_, basis), .basis = basis});

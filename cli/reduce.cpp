@@ -54,7 +54,7 @@ Report run(const Session& session, const ReduceArguments& arguments) {
   const pod::Basis basis = source.basis.truncated(modes);
   const dynamics::HybridSystem reduced = rom::reduce(full, basis);
 
-  scene::StoreWriter writer(arguments.output);
+  scene::StoreWriter writer(arguments.output, scene.units);
   scene::save(writer, scene::provenance_of(scene, fmt::format("slipmode reduce --modes {}", modes)));
   scene::save(writer, scene::kReducedGroup, scene::ReducedModel{.system = reduced, .basis = basis});
   writer.commit();

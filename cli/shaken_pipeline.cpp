@@ -78,7 +78,7 @@ class ShakenPipeline {
     session_.check_interrupt();
     scene::Provenance provenance = scene::provenance_of(scene_, "slipmode run");
     provenance.audit = run.audit;
-    scene::StoreWriter writer(file("trajectory.h5"));
+    scene::StoreWriter writer(file("trajectory.h5"), scene_.units);
     scene::save(writer, provenance);
     scene::save(writer, scene::kTrajectoryGroup, run);
     if (scene_.sensors) store_sensors(writer, scene_, run.q);
@@ -104,7 +104,7 @@ class ShakenPipeline {
   void pod() {
     modes_ = shaken_modes(scene_, full_.structure(), snapshots_);
     snapshots_ = {};
-    scene::StoreWriter writer(file("pod.h5"));
+    scene::StoreWriter writer(file("pod.h5"), scene_.units);
     scene::save(writer, scene::provenance_of(scene_, "slipmode run"));
     save(writer, modes_);
     writer.commit();
@@ -120,7 +120,7 @@ class ShakenPipeline {
     const Eigen::Index modes = chosen_modes(scene_.reduction.choice, basis.energy, basis.modes(),
                                             fmt::format("basis '{}'", scene::to_string(scene_.reduction.basis)));
     const pod::Basis kept = basis.truncated(modes);
-    scene::StoreWriter writer(file("reduced.h5"));
+    scene::StoreWriter writer(file("reduced.h5"), scene_.units);
     scene::save(writer, scene::provenance_of(scene_, "slipmode run"));
     scene::save(writer, scene::kReducedGroup, scene::ReducedModel{.system = rom::reduce(full_, kept), .basis = kept});
     writer.commit();

@@ -169,7 +169,7 @@ Report run_shaken_sweep(const Session& session, const SweepRequest& request, con
   const Units units = Units::of(scene.units);
   const DrivenAxes axes{sweep_axis(over.key, units), reading_name(scene), reading_unit(scene)};
   const std::string group = swept.basis ? "sweep/reduced" : "sweep/full";
-  scene::StoreWriter writer(request.output);
+  scene::StoreWriter writer(request.output, scene.units);
   scene::save(writer, scene::provenance_of(scene, task));
   const std::string up_title = request.both ? swept.title + ", upward" : swept.title;
   if (!found.up.empty()) store_driven(writer, group, up_title, axes, units, found.up);

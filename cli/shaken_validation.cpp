@@ -83,9 +83,9 @@ scene::Table agreement_table(const DrivenValidationReport& report) {
            {"trusted_share", {"1", "share of values where the distance is within what is trusted"}, trusted},
            {"band_from", {"Hz", "longest run of trusted values: first"}, from},
            {"band_to", {"Hz", "longest run of trusted values: last"}, to},
-           {"wall", {"s", "median clock time of a timed run"}, wall},
-           {"cpu", {"s", "median processor time of a timed run"}, cpu},
-           {"setup", {"s", "projection and modal data"}, setup},
+           {"wall", {"s", "median clock time of a timed run", scene::Meaning::Of::kClock}, wall},
+           {"cpu", {"s", "median processor time of a timed run", scene::Meaning::Of::kClock}, cpu},
+           {"setup", {"s", "projection and modal data", scene::Meaning::Of::kClock}, setup},
            {"failure", {"", "why there is no such model; empty: there is"}, failure}}};
 }
 
@@ -97,8 +97,9 @@ void store(scene::StoreWriter& writer, const DrivenValidationReport& report, con
   writer.write(group + "/noise", report.noise.mean_wasserstein,
                {"1", "mean distance between two full sweeps from different starts"});
   writer.write(group + "/noise_at", report.noise.wasserstein, {"1", "the same at each value"});
-  writer.write(group + "/full_wall", report.cost.wall, {"s", "median clock time of a timed run of the full model"});
-  writer.write(group + "/full_cpu", report.cost.cpu, {"s", "its processor time"});
+  writer.write(group + "/full_wall", report.cost.wall,
+               {"s", "median clock time of a timed run of the full model", scene::Meaning::Of::kClock});
+  writer.write(group + "/full_cpu", report.cost.cpu, {"s", "its processor time", scene::Meaning::Of::kClock});
   store_driven(writer, group + "/full", "full model", axes, units, report.full, SectionDetail::kReading);
   store_driven(writer, group + "/again", "full model from another start", axes, units, report.again,
                SectionDetail::kReading);
@@ -185,7 +186,7 @@ DrivenValidationReport validate_shaken_into(const Session& session, const scene:
                                           options);
   }
   if (report.interrupted) throw Interrupted();
-  scene::StoreWriter writer(file);
+  scene::StoreWriter writer(file, scene.units);
   scene::save(writer, scene::provenance_of(scene, "slipmode validate"));
   store(writer, report, scene);
   writer.commit();

@@ -55,7 +55,7 @@ Report run_trajectory(const Session& session, const SimulateArguments& arguments
       simulate_or_part(session, system, scene::initial_state(scene, system), scene::simulate_options(scene));
   const dynamics::Trajectory& trajectory = run.trajectory;
 
-  scene::StoreWriter writer(arguments.output);
+  scene::StoreWriter writer(arguments.output, scene.units);
   scene::Provenance provenance = scene::provenance_of(scene, "slipmode simulate");
   provenance.audit = trajectory.audit;
   scene::save(writer, provenance);

@@ -85,7 +85,7 @@ double worst_audit(const diagnostics::EnsembleRun& run) {
 
 void store_ensemble(const std::filesystem::path& path, const scene::Scene& scene, const diagnostics::EnsembleRun& run) {
   const Units units = Units::of(scene.units);
-  scene::StoreWriter writer(path);
+  scene::StoreWriter writer(path, scene.units);
   scene::Provenance provenance = scene::provenance_of(scene, "slipmode simulate");
   scene::Table members{.description = "runs of the ensemble", .columns = {}};
   std::vector<double> parameter, start, columns, events, residual;

@@ -88,8 +88,7 @@ Report run(const Session& session, const SweepRequest& request) {
        .sink = journal_sink(journal)});
   if (result.interrupted) return interrupted_sweep(request, over, result.points.size());
 
-  const Units units = Units::of(scene.units);
-  scene::StoreWriter writer(request.output);
+  scene::StoreWriter writer(request.output, scene.units);
   scene::save(writer, scene::provenance_of(scene, task));
   store_sweep(writer, swept.model.basis ? "sweep/reduced" : "sweep/full", swept.title, sweep_axis(over.key, units),
               units, result.points);

@@ -75,7 +75,7 @@ Report run(const Session& session, const TradeArguments& arguments) {
   };
   const auto finish = [&](const trade::Study& done) {
     if (!arguments.output.empty()) {
-      scene::StoreWriter writer(arguments.output);
+      scene::StoreWriter writer(arguments.output, scene.units);
       scene::save(writer, scene::provenance_of(scene, "slipmode trade"));
       store_study(writer, done, scene);
       writer.commit();

@@ -36,7 +36,7 @@ diagnostics::ValidationReport validate_into(const Session& session, const scene:
   if (report.interrupted) throw Interrupted();
 
   const Units units = Units::of(scene.units);
-  scene::StoreWriter writer(file);
+  scene::StoreWriter writer(file, scene.units);
   scene::save(writer, scene::provenance_of(scene, "slipmode validate"));
   store_validation(writer, report, units);
   store_portraits(writer, "portraits/levels", level_portraits(full, candidates.front(), report), units);

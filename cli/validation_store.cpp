@@ -154,14 +154,16 @@ void store_bifurcation(scene::StoreWriter& writer, const diagnostics::Bifurcatio
 void store_cost(scene::StoreWriter& writer, const diagnostics::Cost& cost, const Units& units) {
   const std::string group = "validation/cost/";
   writer.write(group + "duration", cost.duration, {units.time, "simulated time of the timed run"});
-  writer.write(group + "full_wall", cost.full_wall, {"s", "median wall time, full model"});
-  writer.write(group + "full_cpu", cost.full_cpu, {"s", "median CPU time, full model"});
-  writer.write(group + "reduced_wall", cost.reduced_wall, {"s", "median wall time, reduced model"});
-  writer.write(group + "reduced_cpu", cost.reduced_cpu, {"s", "median CPU time, reduced model"});
+  writer.write(group + "full_wall", cost.full_wall, {"s", "median wall time, full model", scene::Meaning::Of::kClock});
+  writer.write(group + "full_cpu", cost.full_cpu, {"s", "median CPU time, full model", scene::Meaning::Of::kClock});
+  writer.write(group + "reduced_wall", cost.reduced_wall,
+               {"s", "median wall time, reduced model", scene::Meaning::Of::kClock});
+  writer.write(group + "reduced_cpu", cost.reduced_cpu,
+               {"s", "median CPU time, reduced model", scene::Meaning::Of::kClock});
   writer.write(group + "full_setup_wall", cost.full_setup_wall,
-               {"s", "wall time of the full model's modal data, once"});
+               {"s", "wall time of the full model's modal data, once", scene::Meaning::Of::kClock});
   writer.write(group + "projection_wall", cost.projection_wall,
-               {"s", "wall time of the projection and its set-up, once"});
+               {"s", "wall time of the projection and its set-up, once", scene::Meaning::Of::kClock});
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "cli/slipmode_process.hpp"
 #include "cli/small_scenes.hpp"
+#include "scene/store.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -30,6 +31,22 @@ TEST(Run, LeavesTablesDataAndFiguresInTheFolder) {
   EXPECT_GE(summary["figures"].size(), 14U);
   for (const std::string name : summary["figures"]) EXPECT_TRUE(is_figure(folder.path() / "out/free" / name)) << name;
   EXPECT_FALSE(fs::exists(folder.path() / "out/free.partial"));
+}
+
+// In a dimensionless scene every number of the model is a pure one; clocks still count seconds.
+TEST(Run, OfADimensionlessSceneNamesNoDimensions) {
+  const TemporaryFolder folder;
+  write_file(folder.path() / "free.toml", kFreeEnds);
+  ASSERT_EQ(slipmode_in(folder, {"run", "free.toml", "-o", "out", "--quiet"}).exit_code, 0);
+  ASSERT_EQ(slipmode_in(folder, {"orbit", "find", "free.toml", "-o", "out/orbit.h5", "--quiet"}).exit_code, 0);
+  for (const char* name : {"trajectory.h5", "ensemble.h5", "pod.h5", "reduced_pom.h5", "validation.h5", "orbit.h5"}) {
+    for (const auto& entry : slipmode::scene::StoreReader(folder.path() / "out" / name).entries()) {
+      const std::string& units = entry.meaning.units;
+      const bool clock = entry.name.starts_with("validation/cost/") && units == "s";
+      const bool pure = units.empty() || units == "1" || units == "%" || units == "rad" || units.starts_with("bit");
+      EXPECT_TRUE(clock || pure) << name << ": " << entry.name << " [" << units << "]";
+    }
+  }
 }
 
 TEST(Run, GivesTheSameForAnyNumberOfThreads) {
