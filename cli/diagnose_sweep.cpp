@@ -215,7 +215,7 @@ Report diagnose_over(const Session& session, const scene::Scene& scene, const Di
   }
 
   const Units units = Units::of(scene.units);
-  const SweepAxis axis = sweep_axis(over.key, units);
+  const SweepAxis axis = sweep_axis(scene, over.key);
   Report report;
   report.data = {{"verb", "diagnose"}, {"file", request.output}, {"key", over.key}};
   scene::StoreWriter writer(request.output, scene.units);

@@ -4,6 +4,7 @@
 #include "cli/figures/panels.hpp"
 #include "cli/figures/response_diagram.hpp"
 #include "cli/figures/style.hpp"
+#include "cli/sweep_store.hpp"
 #include "cli/units.hpp"
 #include "scene/orbit_records.hpp"
 #include "scene/provenance.hpp"
@@ -87,11 +88,9 @@ std::vector<bool> stable_points(const scene::Table& points) {
   return stable;
 }
 
-std::string key_label(const scene::Scene& scene, const std::string& key) {
-  if (key == "drive.omega") return figures::axis_label("drive frequency {/Symbol w}", Units::of(scene.units).angular);
-  if (key == "drive.amplitude") return figures::axis_label("drive amplitude", Units::of(scene.units).force);
-  if (key == "drive.speed") return figures::axis_label("belt speed", Units::of(scene.units).velocity);
-  return figures::literal(key);
+std::string axis_label_of(const scene::Scene& scene, const std::string& key) {
+  const SweepAxis axis = sweep_axis(scene, key);
+  return axis.label == key ? figures::literal(key) : figures::axis_label(axis.label, axis.units);
 }
 
 /// Points and special points of a branch in one sequence: where stability changes, the curve changes its look.
@@ -135,7 +134,7 @@ Figure response(const StoreReader& store) {
   const std::string place = scene::to_string(scene.contacts.front().at);
   return figures::response_diagram(
       curves, marks,
-      {.parameter = key_label(scene, store.text("branches/key")),
+      {.parameter = axis_label_of(scene, store.text("branches/key")),
        .value = figures::axis_label("half the range of displacement at " + place, Units::of(scene.units).length)});
 }
 
@@ -160,7 +159,7 @@ Figure branch_multipliers(const StoreReader& store) {
   }
   return figures::panel_grid(panels, {.columns = 1,
                                       .panel_height = panels.size() > 1 ? 320 : 560,
-                                      .x_label = key_label(scene, store.text("branches/key")),
+                                      .x_label = axis_label_of(scene, store.text("branches/key")),
                                       .y_label = "|multiplier| [–]",
                                       .shared_y = false,
                                       .log_y = true});

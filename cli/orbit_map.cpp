@@ -83,13 +83,6 @@ std::function<dynamics::State(const dynamics::HybridSystem&)> start_of(const sce
   return [&scene](const dynamics::HybridSystem& system) { return scene::initial_state(scene, system); };
 }
 
-/// Axis of a key; a force's own have names of their own.
-SweepAxis axis_of(const scene::Scene& scene, const std::string& key, const Units& units) {
-  if (scene.drive.force() != nullptr && key == "drive.omega") return {key, "frequency ω", units.angular};
-  if (scene.drive.force() != nullptr && key == "drive.amplitude") return {key, "amplitude of the force A", units.force};
-  return sweep_axis(key, units);
-}
-
 Report interrupted(const Task& task) {
   Report report;
   report.exit_code = kInterrupted;
@@ -143,8 +136,8 @@ Report run_map(const Task& task) {
   }
   const Units units = Units::of(task.scene.units);
   scene::StoreWriter writer = writer_of(task);
-  store_map(writer, axis_of(task.scene, task.over[0].key, units), axis_of(task.scene, task.over[1].key, units), grid,
-            maps, units.length);
+  store_map(writer, sweep_axis(task.scene, task.over[0].key), sweep_axis(task.scene, task.over[1].key), grid, maps,
+            units.length);
   writer.commit();
 
   report.text = fmt::format("{}: {} x {} points of {} and {}\n", task.scene.title, grid.x.size(), grid.y.size(),
@@ -192,7 +185,7 @@ Report run_strobe(const Task& task) {
   }
   const Units units = Units::of(task.scene.units);
   scene::StoreWriter writer = writer_of(task);
-  store_strobe(writer, axis_of(task.scene, over.key, units), runs, units.length);
+  store_strobe(writer, sweep_axis(task.scene, over.key), runs, units.length);
   writer.commit();
 
   report.text = fmt::format("{}: {} values of {}\n", task.scene.title, over.values.size(), over.key);

@@ -167,7 +167,7 @@ Report run_shaken_sweep(const Session& session, const SweepRequest& request, con
   if (found.interrupted) return interrupted_sweep(request, over, journal.records().size());
 
   const Units units = Units::of(scene.units);
-  const DrivenAxes axes{sweep_axis(over.key, units), reading_name(scene), reading_unit(scene)};
+  const DrivenAxes axes{sweep_axis(scene, over.key), reading_name(scene), reading_unit(scene)};
   const std::string group = swept.basis ? "sweep/reduced" : "sweep/full";
   scene::StoreWriter writer(request.output, scene.units);
   scene::save(writer, scene::provenance_of(scene, task));

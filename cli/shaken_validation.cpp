@@ -91,7 +91,7 @@ scene::Table agreement_table(const DrivenValidationReport& report) {
 
 void store(scene::StoreWriter& writer, const DrivenValidationReport& report, const scene::Scene& scene) {
   const Units units = Units::of(scene.units);
-  const DrivenAxes axes{sweep_axis("drive.frequency", units), reading_name(scene), reading_unit(scene)};
+  const DrivenAxes axes{sweep_axis(scene, "drive.frequency"), reading_name(scene), reading_unit(scene)};
   const std::string group = kShakenValidationGroup;
   scene::save(writer, group + "/agreement", agreement_table(report));
   writer.write(group + "/noise", report.noise.mean_wasserstein,

@@ -101,7 +101,7 @@ void store_ensemble(const std::filesystem::path& path, const scene::Scene& scene
     failure.push_back(member.failure);
   }
   const bool shaken = scene.drive.shaker() != nullptr;
-  const scene::Column driven = shaken ? scene::Column{"frequency", {"Hz", "shaker frequency"}, parameter}
+  const scene::Column driven = shaken ? scene::Column{"frequency", {units.frequency, "shaker frequency"}, parameter}
                                : scene.force
                                    ? scene::Column{"omega", {units.angular, "frequency of the force"}, parameter}
                                    : scene::Column{"speed", {units.velocity, "belt speed"}, parameter};

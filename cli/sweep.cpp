@@ -90,8 +90,8 @@ Report run(const Session& session, const SweepRequest& request) {
 
   scene::StoreWriter writer(request.output, scene.units);
   scene::save(writer, scene::provenance_of(scene, task));
-  store_sweep(writer, swept.model.basis ? "sweep/reduced" : "sweep/full", swept.title, sweep_axis(over.key, units),
-              units, result.points);
+  store_sweep(writer, swept.model.basis ? "sweep/reduced" : "sweep/full", swept.title, sweep_axis(scene, over.key),
+              Units::of(scene.units), result.points);
   writer.commit();
   journal.remove();
   Report report = summary(request, swept, over, result.points);

@@ -87,9 +87,12 @@ diagnostics::SweepSink journal_sink(scene::Journal& journal) {
           .store = [&journal](const SweepPoint& point) { journal.append(to_record(point)); }};
 }
 
-SweepAxis sweep_axis(const std::string& key, const Units& units) {
+SweepAxis sweep_axis(const scene::Scene& scene, const std::string& key) {
+  const Units units = Units::of(scene.units);
   if (key == "drive.speed") return {key, "belt speed V", units.velocity};
-  if (key == "drive.frequency") return {key, "frequency f", units.time == "s" ? "Hz" : "1"};
+  if (key == "drive.frequency") return {key, "frequency f", units.frequency};
+  if (key == "drive.omega") return {key, "frequency ω", units.angular};
+  if (key == "drive.amplitude" && scene.force) return {key, "amplitude of the force A", units.force};
   if (key == "drive.amplitude") return {key, "amplitude of the shaker", units.length};
   if (key.starts_with("contact.") && key.ends_with(".stiffness")) return {key, "contact stiffness", units.stiffness};
   const bool load = key.ends_with("normal_load") || key.ends_with("normal_load.constant");

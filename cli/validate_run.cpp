@@ -38,7 +38,7 @@ diagnostics::ValidationReport validate_into(const Session& session, const scene:
   const Units units = Units::of(scene.units);
   scene::StoreWriter writer(file, scene.units);
   scene::save(writer, scene::provenance_of(scene, "slipmode validate"));
-  store_validation(writer, report, units);
+  store_validation(writer, report, scene);
   store_portraits(writer, "portraits/levels", level_portraits(full, candidates.front(), report), units);
   store_portraits(writer, "portraits/orbits", orbit_portraits(full, candidates.front(), report), units);
   writer.commit();

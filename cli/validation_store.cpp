@@ -168,7 +168,8 @@ void store_cost(scene::StoreWriter& writer, const diagnostics::Cost& cost, const
 
 }  // namespace
 
-void store_validation(scene::StoreWriter& writer, const ValidationReport& report, const Units& units) {
+void store_validation(scene::StoreWriter& writer, const ValidationReport& report, const scene::Scene& scene) {
+  const Units units = Units::of(scene.units);
   store_full(writer, report, units);
   scene::save(writer, "validation/shares", share_table(report, units));
   scene::save(writer, "validation/orbits", orbit_table(report, units));
@@ -176,7 +177,7 @@ void store_validation(scene::StoreWriter& writer, const ValidationReport& report
   if (report.cost) store_cost(writer, *report.cost, units);
   if (report.verdict) store_verdict(writer, *report.verdict, units);
   if (report.sweep) {
-    const SweepAxis axis = sweep_axis("drive.speed", units);
+    const SweepAxis axis = sweep_axis(scene, "drive.speed");
     const std::string reduced = fmt::format("reduced model, {} {}s", report.chosen, report.candidates.front().name);
     store_sweep(writer, "sweep/full", "full model", axis, units, report.sweep->full);
     store_sweep(writer, "sweep/reduced", reduced, axis, units, report.sweep->reduced);

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "cli/session.hpp"
-#include "cli/units.hpp"
 #include "diagnostics/validate.hpp"
+#include "scene/scene.hpp"
 #include "scene/store.hpp"
 
 #include <string>
@@ -11,7 +11,8 @@ namespace slipmode::cli {
 
 /// Writes the tables of a validation: `validation/shares` (form of S4 Table 3.1), `validation/orbits` (S4 Table 3.2),
 /// `validation/full`, `validation/bifurcation`, `validation/cost`, and `sweep/full`, `sweep/reduced`.
-void store_validation(scene::StoreWriter& writer, const diagnostics::ValidationReport& report, const Units& units);
+void store_validation(scene::StoreWriter& writer, const diagnostics::ValidationReport& report,
+                      const scene::Scene& scene);
 
 /// The same numbers as JSON, slip states left out.
 [[nodiscard]] Json to_json(const diagnostics::ValidationReport& report);
