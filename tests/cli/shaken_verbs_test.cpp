@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <algorithm>
+#include <csignal>
 #include <string>
 #include <vector>
 
@@ -114,6 +115,17 @@ TEST_F(Shaken, SweepsUpAndDownStandInOneFile) {
   const StoreReader store(path("both.h5"));
   EXPECT_EQ(load_table(store, "sweep/reduced/values").numbers("parameter").front(), 10.0);
   EXPECT_EQ(load_table(store, "sweep/reduced_reverse/values").numbers("parameter").front(), 11.0);
+}
+
+TEST_F(Shaken, AnInterruptedSweepUpAndDownCountsBothPasses) {
+  const auto sweep = small({"sweep", kShakenBeam, "--over", "drive.frequency=8:12:0.1", "--follow", "--both", "-o",
+                            "both.h5", "--json", "--threads", "1"});
+  SlipmodeProcess process(sweep, folder.path());
+  ASSERT_TRUE(process.signal_when([this] { return journalled("both.h5") >= 45; }, SIGINT)) << process.wait().err;
+  const Outcome stopped = process.wait();
+  ASSERT_EQ(stopped.exit_code, 130);
+  EXPECT_GE(stopped.json()["finished"], 45);
+  EXPECT_EQ(stopped.json()["values"], 82);
 }
 
 TEST_F(Shaken, AnyKeyOfTheSceneCanBeSwept) {
