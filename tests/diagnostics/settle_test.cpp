@@ -60,6 +60,8 @@ struct KnownOrbit {
   std::vector<double> x10;
 };
 
+void PrintTo(const KnownOrbit& orbit, std::ostream* out) { *out << "period " << orbit.period; }
+
 class SettleChain : public testing::TestWithParam<KnownOrbit> {};
 
 TEST_P(SettleChain, FindsTheOrbitsOfAnEventDrivenFixedStepProgram) {
