@@ -58,7 +58,7 @@ scene::Table share_table(const ValidationReport& report, const Units& units) {
               return row.start_error;
             })},
            {"motion", {"", "what the reduced model settles to"}, words([](const auto&, const ShareRow& row) {
-              return std::string(row.attractor ? diagnostics::to_string(row.attractor->period.motion) : "failed");
+              return std::string(row.attractor ? diagnostics::attractor_word(*row.attractor, row.lyapunov) : "failed");
             })},
            {"period", {"", "slips per period; 0: not periodic"}, settled([](const ShareRow& row) {
               return static_cast<double>(row.attractor->period.period);

@@ -17,13 +17,20 @@ using diagnostics::OrbitRow;
 using diagnostics::ShareRow;
 using diagnostics::ValidationReport;
 
+/// "period 5", or the kind of motion as its exponent tells it.
+std::string attractor_text(const diagnostics::Settled& settled,
+                           const std::optional<diagnostics::LyapunovExponent>& exponent) {
+  const bool periodic = settled.period.motion == diagnostics::Motion::kPeriodic;
+  return periodic ? motion_text(settled.period) : diagnostics::attractor_word(settled, exponent);
+}
+
 std::vector<std::string> share_cells(const ShareRow& row) {
   const bool ok = row.failure.empty();
   return {fixed(row.energy, 2),
           fixed(ok ? row.horizon.dX : kNone, 2),
           fixed(ok ? row.horizon.dE : kNone, 2),
           fixed(row.attractor ? row.distance.wasserstein : kNone, 3),
-          row.attractor ? motion_text(row.attractor->period) : "failed",
+          row.attractor ? attractor_text(*row.attractor, row.lyapunov) : "failed",
           fixed(row.lyapunov ? row.lyapunov->bits : kNone, 4)};
 }
 
@@ -152,7 +159,8 @@ std::string sweep_text(const ValidationReport& report) {
 }  // namespace
 
 std::string summary_text(const ValidationReport& report) {
-  std::string out = fmt::format("Full model at V = {:g}: {}", report.speed, motion_text(report.full.period));
+  std::string out =
+      fmt::format("Full model at V = {:g}: {}", report.speed, attractor_text(report.full, report.lyapunov));
   if (report.lyapunov) {
     const double error_bits = report.lyapunov->error / std::numbers::ln2;
     out += fmt::format(", largest exponent {:.4f} ± {:.4f} bit per unit of time", report.lyapunov->bits, error_bits);

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 namespace slipmode::diagnostics {
@@ -29,6 +30,10 @@ struct FullOrbit {
   std::optional<Orbit> orbit = {};
   std::string failure = {};
 };
+
+constexpr double kStandardErrors = 4.0;
+
+bool is_positive(const LyapunovExponent& exponent) { return exponent.nats > kStandardErrors * exponent.error; }
 
 /// The work of one validation, part after part; each part runs its items in parallel.
 class Validation {
@@ -302,3 +307,25 @@ ValidationReport validate(const dynamics::HybridSystem& full, const std::vector<
 }
 
 }  // namespace slipmode::diagnostics
+std::vector<Eigen::Index> mode_ladder(Eigen::Index most, Eigen::Index chosen) {
+  constexpr Eigen::Index kAllUpTo = 12;
+  std::vector<Eigen::Index> ladder;
+  for (Eigen::Index L = 1; L <= most; ++L) {
+    const bool power = (L & (L - 1)) == 0, between = L % 3 == 0 && ((L / 3) & (L / 3 - 1)) == 0;
+    if (most <= kAllUpTo || L == most || L == chosen || power || between) ladder.push_back(L);
+  }
+  return ladder;
+}
+
+bool ShareRow::is_chaotic() const { return lyapunov && is_positive(*lyapunov); }
+
+std::string attractor_word(const Settled& settled, const std::optional<LyapunovExponent>& exponent) {
+  constexpr double kMostGrowth = 0.01;  // per slip
+  if (settled.period.motion != Motion::kAperiodic) return to_string(settled.period.motion);
+  if (!exponent) return to_string(Motion::kUndecided);
+  if (is_positive(*exponent)) return to_string(Motion::kAperiodic);
+  const double bound = kStandardErrors * exponent->error;
+  const bool zero = std::abs(exponent->nats) <= bound && exponent->nats + bound < kMostGrowth * settled.slip_rate;
+  return zero ? "quasi-periodic" : to_string(Motion::kUndecided);
+}
+

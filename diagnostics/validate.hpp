@@ -66,7 +66,7 @@ struct ShareRow {
 
   /// Aperiodic with an exponent above zero by more than four standard errors: motion without a period may as well be
   /// quasi-periodic or still decaying.
-  [[nodiscard]] bool is_chaotic() const { return lyapunov && lyapunov->nats > 4.0 * lyapunov->error; }
+  [[nodiscard]] bool is_chaotic() const;
 };
 
 /// One cell of the periodic-orbit table (the form of S4 Table 3.2): one speed, one basis, one L.
@@ -117,3 +117,13 @@ struct ValidationReport {
 [[nodiscard]] Eigen::Index modes_for_share(const Eigen::VectorXd& captured, double share);
 
 }  // namespace slipmode::diagnostics
+/// Numbers of modes to try of 1..most: all up to twelve, else few and growing, with `chosen` among them:
+/// 1 2 3 4 6 8 12 16 24 ... most. @param chosen  1..most
+[[nodiscard]] std::vector<Eigen::Index> mode_ladder(Eigen::Index most, Eigen::Index chosen);
+
+/// What a settled motion is, in a word. Without a period it is told by its largest exponent: "aperiodic" where that is
+/// above zero by more than four standard errors, "quasi-periodic" where it is zero to within them and growth at their
+/// end would be less than 1 % from slip to slip, "undecided" otherwise and where none was measured: still settling,
+/// a period longer than those looked for, or too short a record.
+[[nodiscard]] std::string attractor_word(const Settled& settled, const std::optional<LyapunovExponent>& exponent);
+

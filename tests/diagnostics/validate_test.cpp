@@ -48,6 +48,25 @@ ValidationOptions quick_validation() {
   return options;
 }
 
+// Chaos needs an exponent above its error; a torus one that is zero within a small error; else nothing is known.
+TEST(AttractorWord, CallsAperiodicOnlyWhatHasAPositiveExponent) {
+  const auto word = [](Motion motion, std::optional<LyapunovExponent> exponent) {
+    Settled settled;
+    settled.period.motion = motion;
+    settled.slip_rate = 0.1;
+    return attractor_word(settled, exponent);
+  };
+  const auto exponent = [](double nats, double error) { return LyapunovExponent{.nats = nats, .error = error}; };
+  EXPECT_EQ(word(Motion::kAperiodic, exponent(0.0139, 0.0004)), "aperiodic");
+  EXPECT_EQ(word(Motion::kAperiodic, exponent(7e-5, 3e-5)), "quasi-periodic");
+  EXPECT_EQ(word(Motion::kAperiodic, exponent(-3e-5, 3e-5)), "quasi-periodic");
+  EXPECT_EQ(word(Motion::kAperiodic, exponent(1e-3, 5e-4)), "undecided") << "may be chaos: too large an error";
+  EXPECT_EQ(word(Motion::kAperiodic, exponent(-2e-3, 1e-4)), "undecided") << "still settling";
+  EXPECT_EQ(word(Motion::kAperiodic, std::nullopt), "undecided");
+  EXPECT_EQ(word(Motion::kUndecided, std::nullopt), "undecided");
+  EXPECT_EQ(word(Motion::kPeriodic, std::nullopt), "periodic");
+}
+
 TEST(Validate, GivesATableRowForEveryNumberOfModesAndBasis) {
   const ValidationReport report = validate(study().full, study().candidates, study().start, quick_validation());
   ASSERT_EQ(report.candidates.size(), 2u);
