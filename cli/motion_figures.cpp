@@ -4,7 +4,9 @@
 #include "cli/figures/style.hpp"
 #include "cli/shaken_model.hpp"
 #include "cli/units.hpp"
+#include "diagnostics/model.hpp"
 #include "diagnostics/spectrum.hpp"
+#include "dynamics/simulate.hpp"
 #include "scene/provenance.hpp"
 #include "scene/records.hpp"
 
@@ -37,25 +39,46 @@ ReadingSeries reading_of(const StoreReader& store) {
           .label = figures::axis_label(reading_name(scene), reading_unit(scene))};
 }
 
+/// Slider less contact, its rate, and the friction force of the first contact.
+struct Loops {
+  Eigen::VectorXd way, speed, force;
+};
+
+/// The cycles after a state, fine enough to draw, corners at events included: samples kept for statistics are too
+/// coarse for the passages between stick and slip.
+Loops loops_after(const scene::Scene& scene, const dynamics::State& state) {
+  constexpr double kCycles = 8.0, kSamplesPerCycle = 1024.0;
+  const dynamics::HybridSystem system = scene::build_system(scene);
+  const friction::Shaker& shaker = *scene.drive.shaker();
+  dynamics::FlowOptions flow = scene.flow;
+  flow.audit = false;
+  const dynamics::Trajectory run = dynamics::simulate(system, diagnostics::continued(system, state),
+                                                      {.duration = kCycles * shaker.period(),
+                                                       .sample = shaker.period() / kSamplesPerCycle,
+                                                       .output = dynamics::SimulateOptions::Output::kContacts,
+                                                       .flow = flow});
+  std::vector<double> way, speed, force;
+  const auto add = [&](double t, double q, double v, double lambda) {
+    way.push_back(shaker.displacement(t) - q);
+    speed.push_back(shaker.velocity(t) - v);
+    force.push_back(lambda);
+  };
+  auto event = run.events.begin();
+  for (Eigen::Index i = 0; i < run.times.size(); ++i) {
+    for (; event != run.events.end() && event->time <= run.times[i]; ++event) {
+      if (event->contact == 0) add(event->time, event->displacement, event->velocity, event->force);
+    }
+    add(run.times[i], run.contact_q(0, i), run.contact_v(0, i), run.lambda(0, i));
+  }
+  return {figures::to_vector(way), figures::to_vector(speed), figures::to_vector(force)};
+}
+
 }  // namespace
 
 Figure friction_loops(const StoreReader& store) {
-  constexpr double kCycles = 8.0;
   const scene::Scene scene = scene::load_scene_of(store);
   const Units units = Units::of(scene.units);
-  const friction::Shaker& shaker = *scene.drive.shaker();
-  const dynamics::Trajectory run = scene::load_trajectory(store);
-  const double from = run.times[run.times.size() - 1] - kCycles * shaker.period();
-  Eigen::Index first = 0;
-  while (first + 1 < run.times.size() && run.times[first] < from) ++first;
-  const Eigen::Index count = run.times.size() - first;
-  Eigen::VectorXd way(count), speed(count), force(count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const double t = run.times[first + i];
-    way[i] = shaker.displacement(t) - run.contact_q(0, first + i);
-    speed[i] = shaker.velocity(t) - run.contact_v(0, first + i);
-    force[i] = run.lambda(0, first + i);
-  }
+  const auto [way, speed, force] = loops_after(scene, scene::load_trajectory(store).final_state);
   const std::string name = scene.contacts.front().name;
   return figures::panel_grid({{name,
                                {{"", way, force, Series::Look::kLine, figures::kFullColour}},

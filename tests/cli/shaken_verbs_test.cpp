@@ -152,6 +152,21 @@ TEST_F(Shaken, ThePipelineLeavesSummaryValidationAndFigures) {
   }
 }
 
+// Eight cycles of 16 samples are a scribble; what is drawn is the motion itself, corners at events included.
+TEST_F(Shaken, LoopsAreDrawnFinerThanTheRecordIsSampled) {
+  json({"simulate", kShakenBeam, "--single", "-o", "run.h5"});
+  ASSERT_EQ(slipmode_in(folder, {"plot", "run.h5", "--figure", "loops", "-o", "loops.svg"}).exit_code, 0);
+  const std::string drawn = bytes_of(path("loops.svg"));
+  std::size_t longest = 0;  // points of a curve: "x,y" pairs in a path
+  for (std::size_t begin = drawn.find("<path"); begin != std::string::npos; begin = drawn.find("<path", begin + 1)) {
+    const auto end = drawn.find('>', begin);
+    longest =
+        std::max(longest, static_cast<std::size_t>(std::count(drawn.begin() + static_cast<std::ptrdiff_t>(begin),
+                                                              drawn.begin() + static_cast<std::ptrdiff_t>(end), ',')));
+  }
+  EXPECT_GT(longest, 8U * 512U);
+}
+
 TEST_F(Shaken, MistakesAreToldWithTheirRemedy) {
   const auto refused = [&](const std::vector<std::string>& arguments, const std::string& words) {
     const Outcome outcome = run(arguments);
