@@ -2,6 +2,7 @@
 #include "cli/trade_report.hpp"
 #include "cli/trade_request.hpp"
 #include "cli/verbs.hpp"
+#include "scene/own_times.hpp"
 #include "scene/provenance.hpp"
 #include "trade/effects.hpp"
 #include "trade/variants.hpp"
@@ -55,7 +56,7 @@ Json json_of(const trade::Effect& effect, const trade::EffectAdvice& advice) {
 
 Report run(const Session& session, const AdviseArguments& arguments) {
   if (!arguments.output.empty()) require_writable(arguments.output);
-  const scene::Scene scene = session.load(arguments.scene);
+  const scene::Scene scene = scene::with_own_times(session.load(arguments.scene));
   const double limit = parse_percent("--error", arguments.error);
   std::optional<trade::Measure> only;
   if (!arguments.measure.empty()) only = parse_measure(arguments.measure);

@@ -7,6 +7,7 @@
 #include "cli/validation_setup.hpp"
 #include "diagnostics/shared_starts.hpp"
 #include "rom/reduce.hpp"
+#include "scene/own_times.hpp"
 #include "scene/provenance.hpp"
 
 #include <fmt/format.h>
@@ -107,7 +108,7 @@ void draw_diagnosis(const DiagnoseRequest& request, const std::string& file, Rep
 }
 
 Report diagnose_scene(const Session& session, const DiagnoseRequest& request, const ModelRequest& models) {
-  const scene::Scene scene = session.load(request.input);
+  const scene::Scene scene = scene::with_own_times(session.load(request.input));
   check_diagnosis_outputs(request);
   if (!models.over.empty()) {
     if (models.verdict) throw InvalidInput("--verdict and --over: expected one of them");

@@ -19,6 +19,7 @@
 #include "cli/trade_figures.hpp"
 #include "cli/validation_setup.hpp"
 #include "rom/reduce.hpp"
+#include "scene/own_times.hpp"
 #include "scene/provenance.hpp"
 #include "scene/records.hpp"
 #include "scene/table.hpp"
@@ -113,7 +114,7 @@ bool has_values(const figures::DeviationCase& motion) {
 }
 
 Figure deviation(const StoreReader& store) {
-  const scene::Scene scene = scene::load_scene_of(store);
+  const scene::Scene scene = scene::with_own_times(scene::load_scene_of(store));
   const scene::Table shares = scene::load_table(store, "validation/shares");
   const scene::Table orbits = scene::load_table(store, "validation/orbits");
   std::vector<figures::DeviationCase> cases;

@@ -11,6 +11,7 @@
 #include "cli/verbs.hpp"
 #include "rom/reduce.hpp"
 #include "scene/journal.hpp"
+#include "scene/own_times.hpp"
 #include "scene/records.hpp"
 
 #include <fmt/format.h>
@@ -65,7 +66,7 @@ Report summary(const SweepRequest& request, const Subject& swept, const Over& ov
 Report run(const Session& session, const SweepRequest& request) {
   require_writable(request.output);
   const Over over = parse_over(request.over);
-  const scene::Scene scene = session.load(request.scene);
+  const scene::Scene scene = scene::with_own_times(session.load(request.scene));
   refuse_force(scene, "sweep");
   if (is_shaken(scene)) return run_shaken_sweep(session, request, over, scene);
   require_belt_request(request);

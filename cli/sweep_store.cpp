@@ -179,8 +179,8 @@ std::string undecided_note(const std::vector<SweepPoint>& points) {
   if (!any) return {};
   return fmt::format(
       "  undecided: still settling, or too few slips to tell, after {:g} time units; to wait longer:\n"
-      "  --set validation.sweep_limit=100000.0\n",
-      waited);
+      "  --set validation.sweep_limit={:g}\n",
+      waited, 10.0 * waited);
 }
 
 }  // namespace slipmode::cli

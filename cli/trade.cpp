@@ -5,6 +5,7 @@
 #include "cli/trade_report.hpp"
 #include "cli/trade_request.hpp"
 #include "cli/verbs.hpp"
+#include "scene/own_times.hpp"
 #include "scene/provenance.hpp"
 #include "trade/variants.hpp"
 
@@ -53,7 +54,7 @@ Report run(const Session& session, const TradeArguments& arguments) {
   if (!arguments.output.empty()) require_writable(arguments.output);
   if (!arguments.write.empty()) require_writable(arguments.write);
   if (!arguments.figures.empty()) figures::require_gnuplot();
-  const scene::Scene scene = session.load(arguments.scene);
+  const scene::Scene scene = scene::with_own_times(session.load(arguments.scene));
   const trade::Wish wish = wish_of(arguments, scene);
   const std::vector<trade::Axis> available = trade::axes_of(scene);
   const std::vector<trade::Axis> axes =

@@ -92,6 +92,7 @@ Json to_json(const ValidationReport& report) {
     const auto& b = *report.bifurcation;
     out["bifurcation"] = {{"values", b.values},
                           {"failed", b.failed},
+                          {"decided", b.decided},
                           {"same_motion", b.same_motion},
                           {"same_period", b.same_period},
                           {"periodic_full", b.periodic_full},

@@ -142,8 +142,11 @@ void store_bifurcation(scene::StoreWriter& writer, const diagnostics::Bifurcatio
   const std::string group = "validation/bifurcation/";
   writer.write(group + "values", static_cast<std::int64_t>(comparison.values), {"", "values with both results"});
   writer.write(group + "failed", static_cast<std::int64_t>(comparison.failed), {"", "values without"});
-  writer.write(group + "same_motion", comparison.same_motion, {"1", "share with the same kind of motion"});
-  writer.write(group + "same_period", comparison.same_period, {"1", "share with the same kind and period"});
+  writer.write(group + "decided", static_cast<std::int64_t>(comparison.decided),
+               {"", "values where neither motion is undecided"});
+  writer.write(group + "same_motion", comparison.same_motion,
+               {"1", "share of those decided with the same kind of motion; NaN: none is"});
+  writer.write(group + "same_period", comparison.same_period, {"1", "the same with the same kind and period"});
   writer.write(group + "periodic_full", comparison.periodic_full, {"1", "share periodic in the full model"});
   writer.write(group + "periodic_reduced", comparison.periodic_reduced, {"1", "share periodic in the reduced model"});
   writer.write(group + "mean_wasserstein", comparison.mean_wasserstein, {units.length, "mean distance of slip states"});

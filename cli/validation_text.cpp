@@ -171,6 +171,12 @@ std::string summary_text(const ValidationReport& report) {
       "the settled motions (two full runs: {}); λ: largest exponent\n",
       100.0 * report.full.stick_fraction, fixed(report.noise.wasserstein, 3));
   out += shares_text(report);
+  if (report.left_out_above > 0) {
+    out += fmt::format(
+        "  left out: more than {} modes, as the last two rows are within the scatter of two full runs; [validation]\n"
+        "  modes brings them\n",
+        report.left_out_above);
+  }
   if (!report.candidates.front().orbits.empty()) {
     out += "\nPeriodic orbits: deviation over one period where the periods are the same\n" + orbits_text(report);
   }
@@ -178,8 +184,12 @@ std::string summary_text(const ValidationReport& report) {
     out +=
         fmt::format("\nBelt-speed sweep: {} values, full model and {} {}s, in {:.2f} s\n{}", report.sweep->full.size(),
                     report.chosen, report.candidates.front().name, report.sweep_wall, sweep_text(report));
-    out += fmt::format("  same period at {:.1f} % of the values, median distance of slip states {}\n",
-                       100.0 * report.bifurcation->same_period, fixed(report.bifurcation->median_wasserstein, 3));
+    const auto& both = *report.bifurcation;
+    out += fmt::format(
+        "  decided in both models: {} of {} values{}; median distance of slip states {}\n", both.decided,
+        report.sweep->full.size(),
+        both.decided > 0 ? fmt::format(", same period at {:.1f} % of these", 100.0 * both.same_period) : std::string(),
+        fixed(both.median_wasserstein, 3));
   }
   if (report.verdict) out += fmt::format("\n{}", verdict_text(*report.verdict, true));
   if (report.cost) {

@@ -22,8 +22,11 @@ struct Candidate {
 };
 
 struct ValidationOptions {
-  double speed = 0.2;                     ///< belt speed of the energy-share table (the ensemble's) [m/s]
-  std::vector<Eigen::Index> modes = {};   ///< L to try; empty: 1..basis size
+  double speed = 0.2;                    ///< belt speed of the energy-share table (the ensemble's) [m/s]
+  std::vector<Eigen::Index> modes = {};  ///< L to try; empty: 1..basis size
+  /// Modes are tried in their order, ascending, up to the chosen number at least, until every candidate's slip states
+  /// are within three times the distance of two full runs, twice running. False: all are tried.
+  bool grow = false;
   double horizon = 100.0;                 ///< of the shared-start comparison [s]
   int horizon_starts = 16;                ///< starts on the full model's attractor
   double horizon_gap = 200.0;             ///< between those starts [s]
@@ -90,6 +93,7 @@ struct ValidationReport {
   AttractorDistance noise = {};                   ///< between two independent full runs: as close as full is to itself
   std::optional<LyapunovExponent> lyapunov = {};  ///< of the full model; empty when its motion is not aperiodic
   std::vector<CandidateReport> candidates = {};
+  Eigen::Index left_out_above = 0;  ///< with `grow`: more modes than this were not tried; 0: all were
   Eigen::Index chosen = 0;
   std::optional<PairedSweep> sweep = {};  ///< first candidate at `chosen` modes
   std::optional<BifurcationComparison> bifurcation = {};
@@ -113,10 +117,6 @@ struct ValidationReport {
 [[nodiscard]] ValidationReport validate(const dynamics::HybridSystem& full, const std::vector<Candidate>& candidates,
                                         const dynamics::State& start, const ValidationOptions& options);
 
-/// The smallest L whose cumulative share reaches `share`, else the number of shares.
-[[nodiscard]] Eigen::Index modes_for_share(const Eigen::VectorXd& captured, double share);
-
-}  // namespace slipmode::diagnostics
 /// Numbers of modes to try of 1..most: all up to twelve, else few and growing, with `chosen` among them:
 /// 1 2 3 4 6 8 12 16 24 ... most. @param chosen  1..most
 [[nodiscard]] std::vector<Eigen::Index> mode_ladder(Eigen::Index most, Eigen::Index chosen);
@@ -127,3 +127,7 @@ struct ValidationReport {
 /// a period longer than those looked for, or too short a record.
 [[nodiscard]] std::string attractor_word(const Settled& settled, const std::optional<LyapunovExponent>& exponent);
 
+/// The smallest L whose cumulative share reaches `share`, else the number of shares.
+[[nodiscard]] Eigen::Index modes_for_share(const Eigen::VectorXd& captured, double share);
+
+}  // namespace slipmode::diagnostics
