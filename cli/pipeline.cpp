@@ -23,14 +23,13 @@ class Pipeline {
       : session_(session), scene_(scene), folder_(std::move(folder)), full_(scene::build_system(scene)) {}
 
   PipelineResult run() {
-    const bool validates = has_section(scene_, "validation");
-    const bool reduces = validates || has_section(scene_, "reduction");
-    const bool gathers = reduces || has_section(scene_, "ensemble");
+    const bool validates = has_section(scene_, "validation"), gathers = gathers_ensemble(scene_);
+    result_.left_out = left_out_of(scene_);
     timed("modes", [this] { modes(); });
     timed("trajectory", [this, gathers] { trajectory(gathers); });
     if (gathers) timed("ensemble", [this] { ensemble(); });
-    if (reduces) timed("pod", [this] { pod(); });
-    if (reduces) timed("reduce", [this] { reduce(); });
+    if (gathers) timed("pod", [this] { pod(); });
+    if (gathers) timed("reduce", [this] { reduce(); });
     if (validates) timed("validate", [this] { validate(); });
     timed("figures", [this] { figures(); });
     return std::move(result_);

@@ -1,6 +1,7 @@
 #include "cli/shaken_pipeline.hpp"
 
 #include "cli/file_figures.hpp"
+#include "cli/pipeline.hpp"
 #include "cli/pipeline_figures.hpp"
 #include "cli/shaken_bases.hpp"
 #include "cli/shaken_model.hpp"
@@ -30,17 +31,17 @@ class ShakenPipeline {
   }
 
   Report run() {
-    const bool validates = has_section(scene_, "validation");
-    const bool reduces = validates || has_section(scene_, "reduction");
-    const bool gathers = reduces || has_section(scene_, "ensemble");
+    const bool validates = has_section(scene_, "validation"), gathers = gathers_ensemble(scene_);
     timed("modes", [this] { modes(); });
     timed("trajectory", [this] { trajectory(); });
     if (gathers) timed("ensemble", [this] { ensemble(); });
-    if (reduces) timed("pod", [this] { pod(); });
-    if (reduces) timed("reduce", [this] { reduce(); });
+    if (gathers) timed("pod", [this] { pod(); });
+    if (gathers) timed("reduce", [this] { reduce(); });
     if (validates) timed("validate", [this] { validate(); });
     timed("figures", [this] { figures(); });
-    report_.text += "\n  " + times_ + '\n';
+    const std::vector<LeftOut> left_out = left_out_of(scene_);
+    if (!left_out.empty()) report_.data["left_out"] = to_json(left_out);
+    report_.text += left_out_text(left_out) + "\n  " + times_ + '\n';
     report_.data["files"] = files_;
     return std::move(report_);
   }
