@@ -3,6 +3,7 @@
 #include "cli/trade_request.hpp"
 #include "cli/verbs.hpp"
 #include "results/provenance.hpp"
+#include "scene/own_times.hpp"
 #include "trade/effects.hpp"
 #include "trade/variants.hpp"
 
@@ -55,7 +56,7 @@ Json json_of(const trade::Effect& effect, const trade::EffectAdvice& advice) {
 
 Report run(const Session& session, const AdviseArguments& arguments) {
   if (!arguments.output.empty()) require_writable(arguments.output);
-  const scene::Scene scene = session.load(arguments.scene);
+  const scene::Scene scene = scene::with_own_times(session.load(arguments.scene));
   const double limit = parse_percent("--error", arguments.error);
   std::optional<trade::Measure> only;
   if (!arguments.measure.empty()) only = parse_measure(arguments.measure);
@@ -78,7 +79,7 @@ Report run(const Session& session, const AdviseArguments& arguments) {
     report.text += summary(effects, advice);
     report.data = {{"verb", "advise"}, {"limit_percent", limit}, {"effects", list}, {"study", to_json(done, scene)}};
     if (arguments.output.empty()) return;
-    results::StoreWriter writer(arguments.output);
+    results::StoreWriter writer(arguments.output, scene.units);
     results::save(writer, results::provenance_of(scene, "slipmode advise"));
     store_study(writer, done, scene);
     writer.commit();

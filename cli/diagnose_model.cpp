@@ -8,6 +8,7 @@
 #include "diagnostics/shared_starts.hpp"
 #include "results/provenance.hpp"
 #include "rom/reduce.hpp"
+#include "scene/own_times.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -107,7 +108,7 @@ void draw_diagnosis(const DiagnoseRequest& request, const std::string& file, Rep
 }
 
 Report diagnose_scene(const Session& session, const DiagnoseRequest& request, const ModelRequest& models) {
-  const scene::Scene scene = session.load(request.input);
+  const scene::Scene scene = scene::with_own_times(session.load(request.input));
   check_diagnosis_outputs(request);
   if (!models.over.empty()) {
     if (models.verdict) throw InvalidInput("--verdict and --over: expected one of them");
@@ -139,7 +140,7 @@ Report diagnose_scene(const Session& session, const DiagnoseRequest& request, co
   const std::string file = model_file(request);
   if (file.empty()) return report;
   const results::Units units = results::Units::of(scene.units);
-  results::StoreWriter writer(file);
+  results::StoreWriter writer(file, scene.units);
   results::save(writer,
                 results::provenance_of(scene, models.verdict ? "slipmode diagnose --verdict" : "slipmode diagnose"));
   store_exponents(writer, spectra, units);

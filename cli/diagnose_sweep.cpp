@@ -3,13 +3,13 @@
 #include "cli/json_values.hpp"
 #include "cli/sweep_report.hpp"
 #include "cli/sweep_request.hpp"
+#include "cli/swept_model.hpp"
 #include "cli/validation_setup.hpp"
 #include "core/none.hpp"
 #include "diagnostics/shared_starts.hpp"
 #include "results/journal.hpp"
 #include "results/provenance.hpp"
 #include "results/sweep_store.hpp"
-#include "rom/reduce.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -29,7 +29,7 @@ constexpr double kSweptShare = 0.25;
 /// One model over the key.
 struct SweptModel {
   std::string title, role;  ///< role: "full" or "reduced"
-  diagnostics::SystemFactory system;
+  diagnostics::Model model;
   dynamics::State start;
   std::vector<diagnostics::SweepPoint> points = {};  ///< of the bifurcation diagram; empty where there is none
 };
@@ -39,14 +39,6 @@ struct ExponentPoint {
   Eigen::VectorXd nats, error;
   std::string failure;
 };
-
-diagnostics::SystemFactory swept_factory(const scene::Scene& scene, const std::string& key,
-                                         const std::optional<pod::Basis>& basis) {
-  return [scene, key, basis](double value) {
-    const dynamics::HybridSystem full = scene::build_system(scene::set_key(scene, key, value));
-    return basis ? rom::reduce(full, *basis) : full;
-  };
-}
 
 std::vector<SweptModel> swept_models(const scene::Scene& scene, const Over& over, const ModelRequest& request) {
   if (request.files.size() > 1)
@@ -58,12 +50,12 @@ std::vector<SweptModel> swept_models(const scene::Scene& scene, const Over& over
     subjects.candidates.erase(subjects.candidates.begin() + 1, subjects.candidates.end());
   std::vector<SweptModel> models = {{.title = fmt::format("full model, {} degrees of freedom", subjects.full.size()),
                                      .role = "full",
-                                     .system = swept_factory(scene, over.key, {}),
+                                     .model = swept_model(scene, over.key),
                                      .start = subjects.start}};
   for (const diagnostics::VerdictCandidate& candidate : subjects.candidates) {
     models.push_back({.title = fmt::format("reduced model, {}", candidate.name),
                       .role = "reduced",
-                      .system = swept_factory(scene, over.key, candidate.basis),
+                      .model = swept_model(scene, over.key, candidate.basis),
                       .start = diagnostics::on_subspace(subjects.full.structure(), candidate.basis, subjects.start)});
     models.back().start.time = subjects.start.time;
   }
@@ -86,7 +78,7 @@ bool draw_diagram(const Session& session, const scene::Scene& scene, const Over&
                      own.model = number;
                      kept.store(own);
                    }}};
-  diagnostics::SweepResult result = diagnostics::sweep({.system = model.system}, over.values, model.start, options);
+  diagnostics::SweepResult result = diagnostics::sweep(model.model, over.values, model.start, options);
   model.points = std::move(result.points);
   return !result.interrupted;
 }
@@ -114,7 +106,7 @@ ExponentPoint measure_at(const SweptModel& model, std::size_t index, double valu
     options.transient = 0.0;
   }
   try {
-    const dynamics::HybridSystem system = model.system(value);
+    const dynamics::HybridSystem system = model.model.system(value);
     const Eigen::Index all = 2 * system.size() + system.internal_size();
     options.exponents = std::min(options.exponents, all);
     const diagnostics::LyapunovSpectrum spectrum = diagnostics::lyapunov_spectrum(system, start, options);
@@ -224,10 +216,10 @@ Report diagnose_over(const Session& session, const scene::Scene& scene, const Di
   }
 
   const results::Units units = results::Units::of(scene.units);
-  const results::SweepAxis axis = results::sweep_axis(over.key, units);
+  const results::SweepAxis axis = results::sweep_axis(scene, over.key);
   Report report;
   report.data = {{"verb", "diagnose"}, {"file", request.output}, {"key", over.key}};
-  results::StoreWriter writer(request.output);
+  results::StoreWriter writer(request.output, scene.units);
   results::save(writer, results::provenance_of(scene, task));
   for (std::size_t m = 0; m < swept.size(); ++m) {
     if (belt)

@@ -1,14 +1,6 @@
 #include "cli/file_figures.hpp"
 
 #include "cli/exponents_figures.hpp"
-#include "figures/bifurcation.hpp"
-#include "figures/deviation.hpp"
-#include "figures/energy_shares.hpp"
-#include "figures/mode_shapes.hpp"
-#include "figures/panels.hpp"
-#include "figures/phase_portraits.hpp"
-#include "figures/style.hpp"
-#include "figures/time_history.hpp"
 #include "cli/map_figures.hpp"
 #include "cli/orbit_figures.hpp"
 #include "cli/portraits.hpp"
@@ -18,10 +10,19 @@
 #include "cli/skeleton_figures.hpp"
 #include "cli/trade_figures.hpp"
 #include "cli/validation_setup.hpp"
+#include "figures/bifurcation.hpp"
+#include "figures/deviation.hpp"
+#include "figures/energy_shares.hpp"
+#include "figures/mode_shapes.hpp"
+#include "figures/panels.hpp"
+#include "figures/phase_portraits.hpp"
+#include "figures/style.hpp"
+#include "figures/time_history.hpp"
 #include "results/provenance.hpp"
 #include "results/records.hpp"
 #include "results/table.hpp"
 #include "rom/reduce.hpp"
+#include "scene/own_times.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -113,7 +114,7 @@ bool has_values(const figures::DeviationCase& motion) {
 }
 
 Figure deviation(const StoreReader& store) {
-  const scene::Scene scene = results::load_scene_of(store);
+  const scene::Scene scene = scene::with_own_times(results::load_scene_of(store));
   const results::Table shares = results::load_table(store, "validation/shares");
   const results::Table orbits = results::load_table(store, "validation/orbits");
   std::vector<figures::DeviationCase> cases;

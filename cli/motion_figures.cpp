@@ -1,9 +1,11 @@
 #include "cli/motion_figures.hpp"
 
+#include "cli/shaken_model.hpp"
+#include "diagnostics/model.hpp"
+#include "diagnostics/spectrum.hpp"
+#include "dynamics/simulate.hpp"
 #include "figures/panels.hpp"
 #include "figures/style.hpp"
-#include "cli/shaken_model.hpp"
-#include "diagnostics/spectrum.hpp"
 #include "results/provenance.hpp"
 #include "results/records.hpp"
 #include "results/units.hpp"
@@ -37,25 +39,46 @@ ReadingSeries reading_of(const StoreReader& store) {
           .label = figures::axis_label(reading_name(scene), reading_unit(scene))};
 }
 
+/// Slider less contact, its rate, and the friction force of the first contact.
+struct Loops {
+  Eigen::VectorXd way, speed, force;
+};
+
+/// The cycles after a state, fine enough to draw, corners at events included: samples kept for statistics are too
+/// coarse for the passages between stick and slip.
+Loops loops_after(const scene::Scene& scene, const dynamics::State& state) {
+  constexpr double kCycles = 8.0, kSamplesPerCycle = 1024.0;
+  const dynamics::HybridSystem system = scene::build_system(scene);
+  const friction::Shaker& shaker = *scene.drive.shaker();
+  dynamics::FlowOptions flow = scene.flow;
+  flow.audit = false;
+  const dynamics::Trajectory run = dynamics::simulate(system, diagnostics::continued(system, state),
+                                                      {.duration = kCycles * shaker.period(),
+                                                       .sample = shaker.period() / kSamplesPerCycle,
+                                                       .output = dynamics::SimulateOptions::Output::kContacts,
+                                                       .flow = flow});
+  std::vector<double> way, speed, force;
+  const auto add = [&](double t, double q, double v, double lambda) {
+    way.push_back(shaker.displacement(t) - q);
+    speed.push_back(shaker.velocity(t) - v);
+    force.push_back(lambda);
+  };
+  auto event = run.events.begin();
+  for (Eigen::Index i = 0; i < run.times.size(); ++i) {
+    for (; event != run.events.end() && event->time <= run.times[i]; ++event) {
+      if (event->contact == 0) add(event->time, event->displacement, event->velocity, event->force);
+    }
+    add(run.times[i], run.contact_q(0, i), run.contact_v(0, i), run.lambda(0, i));
+  }
+  return {figures::to_vector(way), figures::to_vector(speed), figures::to_vector(force)};
+}
+
 }  // namespace
 
 Figure friction_loops(const StoreReader& store) {
-  constexpr double kCycles = 8.0;
   const scene::Scene scene = results::load_scene_of(store);
   const results::Units units = results::Units::of(scene.units);
-  const friction::Shaker& shaker = *scene.drive.shaker();
-  const dynamics::Trajectory run = results::load_trajectory(store);
-  const double from = run.times[run.times.size() - 1] - kCycles * shaker.period();
-  Eigen::Index first = 0;
-  while (first + 1 < run.times.size() && run.times[first] < from) ++first;
-  const Eigen::Index count = run.times.size() - first;
-  Eigen::VectorXd way(count), speed(count), force(count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const double t = run.times[first + i];
-    way[i] = shaker.displacement(t) - run.contact_q(0, first + i);
-    speed[i] = shaker.velocity(t) - run.contact_v(0, first + i);
-    force[i] = run.lambda(0, first + i);
-  }
+  const auto [way, speed, force] = loops_after(scene, results::load_trajectory(store).final_state);
   const std::string name = scene.contacts.front().name;
   return figures::panel_grid({{name,
                                {{"", way, force, Series::Look::kLine, figures::kFullColour}},
@@ -76,7 +99,8 @@ Figure delay_map(const StoreReader& store) {
   const Eigen::Index count = series.values.size() - delay;
   if (count < 1) store.fail("trajectory/times", "too few samples for a delay map; simulate for longer");
   return figures::panel_grid(
-      {{fmt::format("delay of {:.3g} s, a quarter of a drive period", static_cast<double>(delay) * series.interval),
+      {{fmt::format("delay of {:.3g}{}, a quarter of a drive period", static_cast<double>(delay) * series.interval,
+                    results::load_scene_of(store).units == "SI" ? " s" : ""),
         {{"", series.values.head(count), series.values.tail(count), Series::Look::kDots, figures::kFullColour}}}},
       {.columns = 1, .panel_height = 700, .x_label = series.label, .y_label = "the same, later"});
 }
@@ -88,14 +112,15 @@ Figure spectrum(const StoreReader& store) {
   const double highest = kShown / series.period;
   Eigen::Index shown = 1;
   while (shown + 1 < found.frequency_hz.size() && found.frequency_hz[shown] < highest) ++shown;
-  return figures::panel_grid({{fmt::format("mean of {} segments, Hann's window", found.segments),
-                               {{"", found.frequency_hz.segment(1, shown), found.amplitude.segment(1, shown),
-                                 Series::Look::kLine, figures::kFullColour}}}},
-                             {.columns = 1,
-                              .panel_height = 480,
-                              .x_label = figures::axis_label("frequency", "Hz"),
-                              .y_label = "amplitude of the " + series.label,
-                              .log_y = true});
+  return figures::panel_grid(
+      {{fmt::format("mean of {} segments, Hann's window", found.segments),
+        {{"", found.frequency_hz.segment(1, shown), found.amplitude.segment(1, shown), Series::Look::kLine,
+          figures::kFullColour}}}},
+      {.columns = 1,
+       .panel_height = 480,
+       .x_label = figures::axis_label("frequency", results::Units::of(results::load_scene_of(store).units).frequency),
+       .y_label = "amplitude of the " + series.label,
+       .log_y = true});
 }
 
 }  // namespace slipmode::cli

@@ -137,7 +137,7 @@ Report run(const Session& session, const OrbitContinueArguments& arguments) {
 
   const orbits::ContinuationOptions options = continuation_options(arguments, range, start, search.options);
   const std::vector<NamedBranch> branches = follow(family, found.orbit, start, options, arguments.switches);
-  results::StoreWriter writer(arguments.output);
+  results::StoreWriter writer(arguments.output, scene.units);
   results::save(writer,
                 results::provenance_of(scene, fmt::format("slipmode orbit continue --over {}", arguments.over)));
   store_branches(writer, range.key, branches, family);

@@ -7,6 +7,7 @@
 #include "results/orbit_records.hpp"
 #include "results/provenance.hpp"
 #include "results/records.hpp"
+#include "results/sweep_store.hpp"
 #include "results/units.hpp"
 
 #include <fmt/format.h>
@@ -87,12 +88,9 @@ std::vector<bool> stable_points(const results::Table& points) {
   return stable;
 }
 
-std::string key_label(const scene::Scene& scene, const std::string& key) {
-  if (key == "drive.omega")
-    return figures::axis_label("drive frequency {/Symbol w}", results::Units::of(scene.units).angular);
-  if (key == "drive.amplitude") return figures::axis_label("drive amplitude", results::Units::of(scene.units).force);
-  if (key == "drive.speed") return figures::axis_label("belt speed", results::Units::of(scene.units).velocity);
-  return figures::literal(key);
+std::string axis_label_of(const scene::Scene& scene, const std::string& key) {
+  const results::SweepAxis axis = results::sweep_axis(scene, key);
+  return axis.label == key ? figures::literal(key) : figures::axis_label(axis.label, axis.units);
 }
 
 /// Points and special points of a branch in one sequence: where stability changes, the curve changes its look.
@@ -135,7 +133,7 @@ Figure response(const StoreReader& store) {
   }
   const std::string place = scene::to_string(scene.contacts.front().at);
   return figures::response_diagram(curves, marks,
-                                   {.parameter = key_label(scene, store.text("branches/key")),
+                                   {.parameter = axis_label_of(scene, store.text("branches/key")),
                                     .value = figures::axis_label("half the range of displacement at " + place,
                                                                  results::Units::of(scene.units).length)});
 }
@@ -161,7 +159,7 @@ Figure branch_multipliers(const StoreReader& store) {
   }
   return figures::panel_grid(panels, {.columns = 1,
                                       .panel_height = panels.size() > 1 ? 320 : 560,
-                                      .x_label = key_label(scene, store.text("branches/key")),
+                                      .x_label = axis_label_of(scene, store.text("branches/key")),
                                       .y_label = "|multiplier| [–]",
                                       .shared_y = false,
                                       .log_y = true});

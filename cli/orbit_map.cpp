@@ -83,13 +83,6 @@ std::function<dynamics::State(const dynamics::HybridSystem&)> start_of(const sce
   return [&scene](const dynamics::HybridSystem& system) { return scene::initial_state(scene, system); };
 }
 
-/// Axis of a key; a force's own have names of their own.
-results::SweepAxis axis_of(const scene::Scene& scene, const std::string& key, const results::Units& units) {
-  if (scene.drive.force() != nullptr && key == "drive.omega") return {key, "frequency ω", units.angular};
-  if (scene.drive.force() != nullptr && key == "drive.amplitude") return {key, "amplitude of the force A", units.force};
-  return results::sweep_axis(key, units);
-}
-
 Report interrupted(const Task& task) {
   Report report;
   report.exit_code = kInterrupted;
@@ -100,7 +93,7 @@ Report interrupted(const Task& task) {
 }
 
 results::StoreWriter writer_of(const Task& task) {
-  results::StoreWriter writer(task.arguments.output);
+  results::StoreWriter writer(task.arguments.output, task.scene.units);
   results::save(writer, results::provenance_of(task.scene, task.command));
   return writer;
 }
@@ -144,8 +137,8 @@ Report run_map(const Task& task) {
   }
   const results::Units units = results::Units::of(task.scene.units);
   results::StoreWriter writer = writer_of(task);
-  results::store_map(writer, axis_of(task.scene, task.over[0].key, units), axis_of(task.scene, task.over[1].key, units),
-                     grid, maps, units.length);
+  results::store_map(writer, results::sweep_axis(task.scene, task.over[0].key),
+                     results::sweep_axis(task.scene, task.over[1].key), grid, maps, units.length);
   writer.commit();
 
   report.text = fmt::format("{}: {} x {} points of {} and {}\n", task.scene.title, grid.x.size(), grid.y.size(),
@@ -193,7 +186,7 @@ Report run_strobe(const Task& task) {
   }
   const results::Units units = results::Units::of(task.scene.units);
   results::StoreWriter writer = writer_of(task);
-  results::store_strobe(writer, axis_of(task.scene, over.key, units), runs, units.length);
+  results::store_strobe(writer, results::sweep_axis(task.scene, over.key), runs, units.length);
   writer.commit();
 
   report.text = fmt::format("{}: {} values of {}\n", task.scene.title, over.values.size(), over.key);

@@ -133,7 +133,7 @@ ModelSkeleton shown(const Recorded& model, orbits::Skeleton skeleton) {
 }
 
 results::StoreWriter begin_store(const OrbitSkeletonArguments& arguments, const scene::Scene& scene) {
-  results::StoreWriter writer(arguments.output);
+  results::StoreWriter writer(arguments.output, scene.units);
   results::save(
       writer,
       results::provenance_of(

@@ -23,14 +23,13 @@ class Pipeline {
       : session_(session), scene_(scene), folder_(std::move(folder)), full_(scene::build_system(scene)) {}
 
   PipelineResult run() {
-    const bool validates = has_section(scene_, "validation");
-    const bool reduces = validates || has_section(scene_, "reduction");
-    const bool gathers = reduces || has_section(scene_, "ensemble");
+    const bool validates = has_section(scene_, "validation"), gathers = gathers_ensemble(scene_);
+    result_.left_out = left_out_of(scene_);
     timed("modes", [this] { modes(); });
     timed("trajectory", [this, gathers] { trajectory(gathers); });
     if (gathers) timed("ensemble", [this] { ensemble(); });
-    if (reduces) timed("pod", [this] { pod(); });
-    if (reduces) timed("reduce", [this] { reduce(); });
+    if (gathers) timed("pod", [this] { pod(); });
+    if (gathers) timed("reduce", [this] { reduce(); });
     if (validates) timed("validate", [this] { validate(); });
     timed("figures", [this] { figures(); });
     return std::move(result_);
@@ -73,7 +72,7 @@ class Pipeline {
     session_.check_interrupt();
     results::Provenance provenance = results::provenance_of(scene_, "slipmode run");
     provenance.audit = run.audit;
-    results::StoreWriter writer(file("trajectory.h5"));
+    results::StoreWriter writer(file("trajectory.h5"), scene_.units);
     results::save(writer, provenance);
     results::save(writer, results::kTrajectoryGroup, run);
     writer.commit();
@@ -88,7 +87,7 @@ class Pipeline {
   void pod() {
     result_.pod = pod::pod(result_.ensemble->ensemble);
     result_.ensemble->ensemble = {};
-    results::StoreWriter writer(file("pod.h5"));
+    results::StoreWriter writer(file("pod.h5"), scene_.units);
     results::save(writer, results::provenance_of(scene_, "slipmode run"));
     results::save(writer, results::kPodGroup, *result_.pod);
     writer.commit();
@@ -100,7 +99,7 @@ class Pipeline {
     for (const auto& candidate : candidates_) {
       const pod::Basis basis = candidate.basis.truncated(result_.chosen);
       const std::string name = fmt::format("reduced_{}.h5", candidate.name == "POM" ? "pom" : "lnm");
-      results::StoreWriter writer(file(name));
+      results::StoreWriter writer(file(name), scene_.units);
       results::save(writer, results::provenance_of(scene_, "slipmode run"));
       results::save(writer, results::kReducedGroup,
                     results::ReducedModel{.system = rom::reduce(full_, basis), .basis = basis});

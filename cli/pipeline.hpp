@@ -11,6 +11,18 @@
 
 namespace slipmode::cli {
 
+/// A part that the scene does not ask for, and the table of the scene that brings it.
+struct LeftOut {
+  std::string what, brought_by;
+};
+/// Parts of the pipeline that a scene's tables leave out.
+[[nodiscard]] std::vector<LeftOut> left_out_of(const scene::Scene& scene);
+/// The same for a program's and a person's summary; nothing where nothing is left out.
+[[nodiscard]] Json to_json(const std::vector<LeftOut>& left_out);
+[[nodiscard]] std::string left_out_text(const std::vector<LeftOut>& left_out);
+/// True where a scene has what modes and reduced models are made of: an ensemble is asked for, or what needs one is.
+[[nodiscard]] bool gathers_ensemble(const scene::Scene& scene);
+
 /// What the whole pipeline did, in the order it did it. Parts the scene does not ask for are empty.
 struct PipelineResult {
   struct Stage {
@@ -24,6 +36,7 @@ struct PipelineResult {
   std::optional<pod::PodResult> pod;
   Eigen::Index chosen = 0;
   std::optional<diagnostics::ValidationReport> validation;
+  std::vector<LeftOut> left_out;
   std::vector<std::string> files, figures;  ///< names in the folder
 
   /// Wall time of ensemble, POD and reduction: what a reduced model costs before its first run [s].

@@ -34,6 +34,33 @@ std::string payback(double runs) {
 
 }  // namespace
 
+bool gathers_ensemble(const scene::Scene& scene) {
+  return has_section(scene, "ensemble") || has_section(scene, "reduction") || has_section(scene, "validation");
+}
+
+std::vector<LeftOut> left_out_of(const scene::Scene& scene) {
+  std::vector<LeftOut> out;
+  if (!gathers_ensemble(scene)) out.push_back({"ensemble, proper orthogonal modes and reduced models", "[ensemble]"});
+  if (!has_section(scene, "validation"))
+    out.push_back({"comparison of reduced models with the full one", "[validation]"});
+  return out;
+}
+
+Json to_json(const std::vector<LeftOut>& left_out) {
+  Json out = Json::array();
+  for (const LeftOut& part : left_out) out.push_back({{"what", part.what}, {"brought_by", part.brought_by}});
+  return out;
+}
+
+std::string left_out_text(const std::vector<LeftOut>& left_out) {
+  std::string out;
+  for (const LeftOut& part : left_out) {
+    out += fmt::format("  left out: {}; the table {} in the scene brings it, with defaults if empty\n", part.what,
+                       part.brought_by);
+  }
+  return out;
+}
+
 Json to_json(const PipelineResult& result, const scene::Scene& scene) {
   Json out = {{"verb", "run"}, {"title", scene.title}, {"units", scene.units}};
   out["modes"] = {{"slipping_omega", json_list(result.slipping)}, {"sticking_omega", json_list(result.sticking)}};
@@ -51,6 +78,7 @@ Json to_json(const PipelineResult& result, const scene::Scene& scene) {
       out["validation"]["cost"]["break_even_runs"] = result.validation->cost->break_even(result.basis_wall());
     }
   }
+  if (!result.left_out.empty()) out["left_out"] = to_json(result.left_out);
   for (const auto& stage : result.stages) out["seconds"][stage.name] = stage.wall;
   if (result.validation) out["seconds"]["validate_sweep"] = result.validation->sweep_wall;  // part of validate
   out["files"] = result.files;
@@ -77,7 +105,7 @@ std::string summary_text(const PipelineResult& result, const scene::Scene& scene
                          payback(result.validation->cost->break_even(result.basis_wall())));
     }
   }
-  out += '\n';
+  out += left_out_text(result.left_out) + '\n';
   std::string times;
   for (const auto& stage : result.stages) {
     times += fmt::format("{}{} {:.2f} s", times.empty() ? "" : ", ", stage.name, stage.wall);

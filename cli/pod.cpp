@@ -34,7 +34,7 @@ Report run_shaken(const PodArguments& arguments, const scene::Scene& scene, cons
   }
   const ShakenModes modes = shaken_modes(scene, scene::build_system(scene).structure(), ensemble);
   provenance.command = "slipmode pod";
-  results::StoreWriter writer(arguments.output);
+  results::StoreWriter writer(arguments.output, scene.units);
   results::save(writer, provenance);
   save(writer, modes);
   writer.commit();
@@ -55,13 +55,12 @@ Report run(const Session& session, const PodArguments& arguments) {
   results::Provenance provenance = results::load_provenance(store);
   const pod::Ensemble ensemble = load_snapshots(store);
   session.check_interrupt();
-  if (const scene::Scene scene = results::load_scene_of(store); is_shaken(scene)) {
-    return run_shaken(arguments, scene, ensemble, std::move(provenance));
-  }
+  const scene::Scene scene = results::load_scene_of(store);
+  if (is_shaken(scene)) return run_shaken(arguments, scene, ensemble, std::move(provenance));
   const pod::PodResult result = decompose(ensemble, arguments);
 
   provenance.command = "slipmode pod";
-  results::StoreWriter writer(arguments.output);
+  results::StoreWriter writer(arguments.output, scene.units);
   results::save(writer, provenance);
   results::save(writer, results::kPodGroup, result);
   writer.commit();

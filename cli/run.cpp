@@ -1,9 +1,10 @@
-#include "figures/gnuplot.hpp"
 #include "cli/pipeline.hpp"
 #include "cli/shaken_model.hpp"
 #include "cli/shaken_pipeline.hpp"
 #include "cli/verbs.hpp"
 #include "cli/work_folder.hpp"
+#include "figures/gnuplot.hpp"
+#include "scene/own_times.hpp"
 
 #include <fmt/format.h>
 #include <fstream>
@@ -49,7 +50,7 @@ Report run_scene(const Session& session, const scene::Scene& scene, const std::f
 }
 
 Report run(const Session& session, const RunArguments& arguments) {
-  const scene::Scene scene = session.load(arguments.scene);
+  const scene::Scene scene = scene::with_own_times(session.load(arguments.scene));
   figures::require_gnuplot();
   WorkFolder folder(arguments.output);
   std::filesystem::remove(folder.path() / "INCOMPLETE.txt");

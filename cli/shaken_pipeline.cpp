@@ -1,6 +1,7 @@
 #include "cli/shaken_pipeline.hpp"
 
 #include "cli/file_figures.hpp"
+#include "cli/pipeline.hpp"
 #include "cli/pipeline_figures.hpp"
 #include "cli/shaken_bases.hpp"
 #include "cli/shaken_model.hpp"
@@ -30,17 +31,17 @@ class ShakenPipeline {
   }
 
   Report run() {
-    const bool validates = has_section(scene_, "validation");
-    const bool reduces = validates || has_section(scene_, "reduction");
-    const bool gathers = reduces || has_section(scene_, "ensemble");
+    const bool validates = has_section(scene_, "validation"), gathers = gathers_ensemble(scene_);
     timed("modes", [this] { modes(); });
     timed("trajectory", [this] { trajectory(); });
     if (gathers) timed("ensemble", [this] { ensemble(); });
-    if (reduces) timed("pod", [this] { pod(); });
-    if (reduces) timed("reduce", [this] { reduce(); });
+    if (gathers) timed("pod", [this] { pod(); });
+    if (gathers) timed("reduce", [this] { reduce(); });
     if (validates) timed("validate", [this] { validate(); });
     timed("figures", [this] { figures(); });
-    report_.text += "\n  " + times_ + '\n';
+    const std::vector<LeftOut> left_out = left_out_of(scene_);
+    if (!left_out.empty()) report_.data["left_out"] = to_json(left_out);
+    report_.text += left_out_text(left_out) + "\n  " + times_ + '\n';
     report_.data["files"] = files_;
     return std::move(report_);
   }
@@ -78,7 +79,7 @@ class ShakenPipeline {
     session_.check_interrupt();
     results::Provenance provenance = results::provenance_of(scene_, "slipmode run");
     provenance.audit = run.audit;
-    results::StoreWriter writer(file("trajectory.h5"));
+    results::StoreWriter writer(file("trajectory.h5"), scene_.units);
     results::save(writer, provenance);
     results::save(writer, results::kTrajectoryGroup, run);
     if (scene_.sensors) store_sensors(writer, scene_, run.q);
@@ -104,7 +105,7 @@ class ShakenPipeline {
   void pod() {
     modes_ = shaken_modes(scene_, full_.structure(), snapshots_);
     snapshots_ = {};
-    results::StoreWriter writer(file("pod.h5"));
+    results::StoreWriter writer(file("pod.h5"), scene_.units);
     results::save(writer, results::provenance_of(scene_, "slipmode run"));
     save(writer, modes_);
     writer.commit();
@@ -120,7 +121,7 @@ class ShakenPipeline {
     const Eigen::Index modes = chosen_modes(scene_.reduction.choice, basis.energy, basis.modes(),
                                             fmt::format("basis '{}'", scene::to_string(scene_.reduction.basis)));
     const pod::Basis kept = basis.truncated(modes);
-    results::StoreWriter writer(file("reduced.h5"));
+    results::StoreWriter writer(file("reduced.h5"), scene_.units);
     results::save(writer, results::provenance_of(scene_, "slipmode run"));
     results::save(writer, results::kReducedGroup,
                   results::ReducedModel{.system = rom::reduce(full_, kept), .basis = kept});

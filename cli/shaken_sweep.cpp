@@ -168,9 +168,9 @@ Report run_shaken_sweep(const Session& session, const SweepRequest& request, con
   if (found.interrupted) return interrupted_sweep(request, over, journal.records().size());
 
   const results::Units units = results::Units::of(scene.units);
-  const results::DrivenAxes axes{results::sweep_axis(over.key, units), reading_name(scene), reading_unit(scene)};
+  const results::DrivenAxes axes{results::sweep_axis(scene, over.key), reading_name(scene), reading_unit(scene)};
   const std::string group = swept.basis ? "sweep/reduced" : "sweep/full";
-  results::StoreWriter writer(request.output);
+  results::StoreWriter writer(request.output, scene.units);
   results::save(writer, results::provenance_of(scene, task));
   const std::string up_title = request.both ? swept.title + ", upward" : swept.title;
   if (!found.up.empty()) results::store_driven(writer, group, up_title, axes, units, found.up);

@@ -83,23 +83,24 @@ results::Table agreement_table(const DrivenValidationReport& report) {
            {"trusted_share", {"1", "share of values where the distance is within what is trusted"}, trusted},
            {"band_from", {"Hz", "longest run of trusted values: first"}, from},
            {"band_to", {"Hz", "longest run of trusted values: last"}, to},
-           {"wall", {"s", "median clock time of a timed run"}, wall},
-           {"cpu", {"s", "median processor time of a timed run"}, cpu},
-           {"setup", {"s", "projection and modal data"}, setup},
+           {"wall", {"s", "median clock time of a timed run", results::Meaning::Of::kClock}, wall},
+           {"cpu", {"s", "median processor time of a timed run", results::Meaning::Of::kClock}, cpu},
+           {"setup", {"s", "projection and modal data", results::Meaning::Of::kClock}, setup},
            {"failure", {"", "why there is no such model; empty: there is"}, failure}}};
 }
 
 void store(results::StoreWriter& writer, const DrivenValidationReport& report, const scene::Scene& scene) {
   const results::Units units = results::Units::of(scene.units);
-  const results::DrivenAxes axes{results::sweep_axis("drive.frequency", units), reading_name(scene),
+  const results::DrivenAxes axes{results::sweep_axis(scene, "drive.frequency"), reading_name(scene),
                                  reading_unit(scene)};
   const std::string group = kShakenValidationGroup;
   results::save(writer, group + "/agreement", agreement_table(report));
   writer.write(group + "/noise", report.noise.mean_wasserstein,
                {"1", "mean distance between two full sweeps from different starts"});
   writer.write(group + "/noise_at", report.noise.wasserstein, {"1", "the same at each value"});
-  writer.write(group + "/full_wall", report.cost.wall, {"s", "median clock time of a timed run of the full model"});
-  writer.write(group + "/full_cpu", report.cost.cpu, {"s", "its processor time"});
+  writer.write(group + "/full_wall", report.cost.wall,
+               {"s", "median clock time of a timed run of the full model", results::Meaning::Of::kClock});
+  writer.write(group + "/full_cpu", report.cost.cpu, {"s", "its processor time", results::Meaning::Of::kClock});
   results::store_driven(writer, group + "/full", "full model", axes, units, report.full,
                         results::SectionDetail::kReading);
   results::store_driven(writer, group + "/again", "full model from another start", axes, units, report.again,
@@ -187,7 +188,7 @@ DrivenValidationReport validate_shaken_into(const Session& session, const scene:
                                           options);
   }
   if (report.interrupted) throw Interrupted();
-  results::StoreWriter writer(file);
+  results::StoreWriter writer(file, scene.units);
   results::save(writer, results::provenance_of(scene, "slipmode validate"));
   store(writer, report, scene);
   writer.commit();

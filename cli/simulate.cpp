@@ -55,7 +55,7 @@ Report run_trajectory(const Session& session, const SimulateArguments& arguments
       simulate_or_part(session, system, scene::initial_state(scene, system), scene::simulate_options(scene));
   const dynamics::Trajectory& trajectory = run.trajectory;
 
-  results::StoreWriter writer(arguments.output);
+  results::StoreWriter writer(arguments.output, scene.units);
   results::Provenance provenance = results::provenance_of(scene, "slipmode simulate");
   provenance.audit = trajectory.audit;
   results::save(writer, provenance);

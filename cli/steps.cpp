@@ -85,7 +85,7 @@ double worst_audit(const diagnostics::EnsembleRun& run) {
 
 void store_ensemble(const std::filesystem::path& path, const scene::Scene& scene, const diagnostics::EnsembleRun& run) {
   const results::Units units = results::Units::of(scene.units);
-  results::StoreWriter writer(path);
+  results::StoreWriter writer(path, scene.units);
   results::Provenance provenance = results::provenance_of(scene, "slipmode simulate");
   results::Table members{.description = "runs of the ensemble", .columns = {}};
   std::vector<double> parameter, start, columns, events, residual;
@@ -101,7 +101,7 @@ void store_ensemble(const std::filesystem::path& path, const scene::Scene& scene
     failure.push_back(member.failure);
   }
   const bool shaken = scene.drive.shaker() != nullptr;
-  const results::Column driven = shaken ? results::Column{"frequency", {"Hz", "shaker frequency"}, parameter}
+  const results::Column driven = shaken ? results::Column{"frequency", {units.frequency, "shaker frequency"}, parameter}
                                  : scene.force
                                      ? results::Column{"omega", {units.angular, "frequency of the force"}, parameter}
                                      : results::Column{"speed", {units.velocity, "belt speed"}, parameter};

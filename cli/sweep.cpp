@@ -4,6 +4,7 @@
 #include "cli/steps.hpp"
 #include "cli/sweep_report.hpp"
 #include "cli/sweep_request.hpp"
+#include "cli/swept_model.hpp"
 #include "cli/validation_setup.hpp"
 #include "cli/verbs.hpp"
 #include "results/journal.hpp"
@@ -11,6 +12,7 @@
 #include "results/reduced_file.hpp"
 #include "results/sweep_store.hpp"
 #include "rom/reduce.hpp"
+#include "scene/own_times.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -25,22 +27,9 @@ struct Subject {
   std::string title, identity;
 };
 
-/// Systems by the key's value. The belt's speed is special: modal data are then shared by all values.
-diagnostics::SystemFactory system_factory(const scene::Scene& scene, const std::string& key,
-                                          const std::optional<pod::Basis>& basis) {
-  if (key == "drive.speed" && scene.drive.is_constant()) {
-    const dynamics::HybridSystem full = scene::build_system(scene);
-    return (basis ? diagnostics::reduced_belt_model(full, *basis) : diagnostics::belt_model(full)).system;
-  }
-  return [scene, key, basis](double value) {
-    const dynamics::HybridSystem full = scene::build_system(scene::set_key(scene, key, value));
-    return basis ? rom::reduce(full, *basis) : full;
-  };
-}
-
 Subject full_subject(const scene::Scene& scene, const std::string& key) {
   const dynamics::HybridSystem system = scene::build_system(scene);
-  return {.model = {.system = system_factory(scene, key, {})},
+  return {.model = swept_model(scene, key),
           .start = scene::initial_state(scene, system),
           .title = fmt::format("full model, {} degrees of freedom", system.size()),
           .identity = "full"};
@@ -49,10 +38,7 @@ Subject full_subject(const scene::Scene& scene, const std::string& key) {
 Subject reduced_subject(const scene::Scene& scene, const std::string& key, const std::string& file) {
   const dynamics::HybridSystem system = scene::build_system(scene);
   const pod::Basis basis = results::reduced_basis(file, system.size());
-  const diagnostics::Model belt = diagnostics::reduced_belt_model(system, basis);
-  return {.model = {.system = system_factory(scene, key, basis),
-                    .basis = basis,
-                    .energy_offset = key == "drive.speed" ? belt.energy_offset : 0.0},
+  return {.model = swept_model(scene, key, basis),
           .start = rom::restrict_state(system.structure(), basis, scene::initial_state(scene, system)),
           .title = fmt::format("reduced model, {} modes", basis.modes()),
           .identity = "rom " + file_fingerprint(file)};
@@ -80,7 +66,7 @@ Report summary(const SweepRequest& request, const Subject& swept, const Over& ov
 Report run(const Session& session, const SweepRequest& request) {
   require_writable(request.output);
   const Over over = parse_over(request.over);
-  const scene::Scene scene = session.load(request.scene);
+  const scene::Scene scene = scene::with_own_times(session.load(request.scene));
   refuse_force(scene, "sweep");
   if (is_shaken(scene)) return run_shaken_sweep(session, request, over, scene);
   require_belt_request(request);
@@ -103,11 +89,10 @@ Report run(const Session& session, const SweepRequest& request) {
        .sink = results::journal_sink(journal)});
   if (result.interrupted) return interrupted_sweep(request, over, result.points.size());
 
-  const results::Units units = results::Units::of(scene.units);
-  results::StoreWriter writer(request.output);
+  results::StoreWriter writer(request.output, scene.units);
   results::save(writer, results::provenance_of(scene, task));
   results::store_sweep(writer, swept.model.basis ? "sweep/reduced" : "sweep/full", swept.title,
-                       results::sweep_axis(over.key, units), units, result.points);
+                       results::sweep_axis(scene, over.key), results::Units::of(scene.units), result.points);
   writer.commit();
   journal.remove();
   Report report = summary(request, swept, over, result.points);

@@ -55,13 +55,14 @@ void check_values(const scene::Scene& scene, const Over& over) {
 }
 
 Report interrupted_sweep(const SweepRequest& request, const Over& over, std::size_t finished) {
+  const std::size_t values = over.values.size() * (request.both ? 2 : 1);
   Report report;
   report.exit_code = kInterrupted;
   report.text = fmt::format(
       "interrupted with {} of {} values done; they are kept in {}\nThe same command goes on from "
       "there.",
-      finished, over.values.size(), results::Journal::path_for(request.output).string());
-  report.data = {{"verb", "sweep"}, {"finished", finished}, {"values", over.values.size()}, {"message", report.text}};
+      finished, values, results::Journal::path_for(request.output).string());
+  report.data = {{"verb", "sweep"}, {"finished", finished}, {"values", values}, {"message", report.text}};
   return report;
 }
 

@@ -36,7 +36,7 @@ void require_belt_request(const SweepRequest& request);
 /// A short name of a file's bytes.
 [[nodiscard]] std::string file_fingerprint(const std::string& path);
 
-/// What to say when Ctrl-C came: how far it got, and that the same command goes on.
+/// What to say when Ctrl-C came: how far it got, of both passes where there are two, and that the same command goes on.
 [[nodiscard]] Report interrupted_sweep(const SweepRequest& request, const Over& over, std::size_t finished);
 
 /// The sweep of a scene with a shaker.

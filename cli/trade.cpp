@@ -1,11 +1,12 @@
-#include "figures/gnuplot.hpp"
 #include "cli/steps.hpp"
 #include "cli/trade_bases.hpp"
 #include "cli/trade_figures.hpp"
 #include "cli/trade_report.hpp"
 #include "cli/trade_request.hpp"
 #include "cli/verbs.hpp"
+#include "figures/gnuplot.hpp"
 #include "results/provenance.hpp"
+#include "scene/own_times.hpp"
 #include "trade/variants.hpp"
 
 #include <fmt/format.h>
@@ -53,7 +54,7 @@ Report run(const Session& session, const TradeArguments& arguments) {
   if (!arguments.output.empty()) require_writable(arguments.output);
   if (!arguments.write.empty()) require_writable(arguments.write);
   if (!arguments.figures.empty()) figures::require_gnuplot();
-  const scene::Scene scene = session.load(arguments.scene);
+  const scene::Scene scene = scene::with_own_times(session.load(arguments.scene));
   const trade::Wish wish = wish_of(arguments, scene);
   const std::vector<trade::Axis> available = trade::axes_of(scene);
   const std::vector<trade::Axis> axes =
@@ -75,7 +76,7 @@ Report run(const Session& session, const TradeArguments& arguments) {
   };
   const auto finish = [&](const trade::Study& done) {
     if (!arguments.output.empty()) {
-      results::StoreWriter writer(arguments.output);
+      results::StoreWriter writer(arguments.output, scene.units);
       results::save(writer, results::provenance_of(scene, "slipmode trade"));
       store_study(writer, done, scene);
       writer.commit();

@@ -1,8 +1,8 @@
 #include "cli/trade_figures.hpp"
 
+#include "cli/trade_report.hpp"
 #include "figures/pareto.hpp"
 #include "figures/style.hpp"
-#include "cli/trade_report.hpp"
 #include "results/provenance.hpp"
 #include "results/table.hpp"
 
@@ -41,7 +41,7 @@ figures::Figure front_of(const Fronts& fronts, Measure measure) {
                       .group = group_of(fronts.names[i], fronts.axes[i]),
                       .cost = 1e3 * offers.back().cost,
                       .error = offers.back().error,
-                      .assured = offers.back().assured()});
+                      .resolved = offers.back().resolved()});
   }
   for (const std::size_t i : trade::pareto_front(offers)) points[i].on_front = true;
   const bool shared = measure != Measure::kDx && measure != Measure::kDe;  // one scatter for all

@@ -56,7 +56,7 @@ results::Table candidate_table(const Study& study, const scene::Scene& scene) {
                        })});
   }
   const auto add = [&](const std::string& name, const std::string& what, const auto& value) {
-    columns.push_back({name, {"s", what}, numbers(rows, value)});
+    columns.push_back({name, {"s", what, results::Meaning::Of::kClock}, numbers(rows, value)});
   };
   add("time", "processor time of a timed run, median", [](const Row& r) { return r.cost.cpu; });
   add("time_low", "its least", [](const Row& r) { return r.cost.cpu_low; });

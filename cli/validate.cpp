@@ -9,6 +9,7 @@
 #include "cli/validation_store.hpp"
 #include "cli/verbs.hpp"
 #include "results/records.hpp"
+#include "scene/own_times.hpp"
 
 #include <fmt/format.h>
 
@@ -36,7 +37,7 @@ Report run_shaken(const Session& session, const ValidateArguments& arguments, sc
 
 Report run(const Session& session, const ValidateArguments& arguments) {
   require_writable(arguments.output);
-  const scene::Scene scene = session.load(arguments.scene);
+  const scene::Scene scene = scene::with_own_times(session.load(arguments.scene));
   refuse_force(scene, "validate");
   const dynamics::HybridSystem full = scene::build_system(scene);
   if (is_shaken(scene)) {

@@ -37,9 +37,9 @@ diagnostics::ValidationReport validate_into(const Session& session, const scene:
   if (report.interrupted) throw Interrupted();
 
   const results::Units units = results::Units::of(scene.units);
-  results::StoreWriter writer(file);
+  results::StoreWriter writer(file, scene.units);
   results::save(writer, results::provenance_of(scene, "slipmode validate"));
-  store_validation(writer, report, units);
+  store_validation(writer, report, scene);
   store_portraits(writer, "portraits/levels", level_portraits(full, candidates.front(), report), units);
   store_portraits(writer, "portraits/orbits", orbit_portraits(full, candidates.front(), report), units);
   writer.commit();

@@ -10,8 +10,8 @@ using diagnostics::OrbitRow;
 using diagnostics::ShareRow;
 using diagnostics::ValidationReport;
 
-Json settled_json(const diagnostics::Settled& settled) {
-  return {{"motion", diagnostics::to_string(settled.period.motion)},
+Json settled_json(const diagnostics::Settled& settled, const std::optional<diagnostics::LyapunovExponent>& exponent) {
+  return {{"motion", diagnostics::attractor_word(settled, exponent)},
           {"period", settled.period.period},
           {"T", settled.period.T},
           {"stick_fraction", settled.stick_fraction},
@@ -41,7 +41,7 @@ Json share_json(const ShareRow& row) {
   out["horizon"] = deviation_json(row.horizon);
   out["start_error"] = row.start_error;
   if (row.attractor) {
-    out["attractor"] = settled_json(*row.attractor);
+    out["attractor"] = settled_json(*row.attractor, row.lyapunov);
     out["distance"] = distance_json(row.distance);
   }
   if (row.lyapunov) out["lyapunov_bits"] = row.lyapunov->bits;
@@ -73,7 +73,7 @@ Json motions_json(const std::vector<diagnostics::SweepPoint>& points) {
 Json to_json(const ValidationReport& report) {
   Json out = {{"speed", report.speed},
               {"chosen_modes", report.chosen},
-              {"full", settled_json(report.full)},
+              {"full", settled_json(report.full, report.lyapunov)},
               {"noise", distance_json(report.noise)}};
   if (report.lyapunov) {
     out["lyapunov_bits"] = report.lyapunov->bits;
@@ -92,6 +92,7 @@ Json to_json(const ValidationReport& report) {
     const auto& b = *report.bifurcation;
     out["bifurcation"] = {{"values", b.values},
                           {"failed", b.failed},
+                          {"decided", b.decided},
                           {"same_motion", b.same_motion},
                           {"same_period", b.same_period},
                           {"periodic_full", b.periodic_full},

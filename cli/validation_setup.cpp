@@ -44,6 +44,7 @@ diagnostics::SettleOptions sweep_settle_options(const scene::Scene& scene) {
   diagnostics::SettleOptions options = settle_options(scene);
   options.limit = scene.validation.sweep_limit;
   options.block = std::min(options.block, options.limit);
+  options.patience = 1.0;
   options.flow.audit = false;
   return options;
 }
@@ -93,6 +94,7 @@ diagnostics::ModelVerdictOptions verdict_options(const scene::Scene& scene) {
 
 diagnostics::ValidationOptions validation_options(const scene::Scene& scene,
                                                   const std::vector<diagnostics::Candidate>& candidates) {
+  constexpr double kHorizonSamples = 1000.0, kIntervalsInHorizon = 5.0;
   const auto& spec = scene.validation;
   const diagnostics::Candidate& first = candidates.front();
   Eigen::VectorXd shares = first.captured;
@@ -104,21 +106,24 @@ diagnostics::ValidationOptions validation_options(const scene::Scene& scene,
   options.speed = scene.drive.velocity(0.0);
   options.modes.assign(spec.modes.begin(), spec.modes.end());
   if (candidates.size() == 1) options.modes = {available};
-  if (options.modes.empty()) {
-    for (Eigen::Index L = 1; L <= available; ++L) options.modes.push_back(L);
-  }
   options.horizon = spec.horizon;
+  options.horizon_gap = 2.0 * spec.horizon;
+  options.sample = spec.horizon / kHorizonSamples;
   options.horizon_starts = spec.horizon_starts;
   options.orbit_speeds = spec.orbits;
   options.orbit_tolerance = spec.orbit_tolerance;
   options.chosen = candidates.size() == 1 ? available
                                           : chosen_modes(scene.reduction.choice, shares, available,
                                                          fmt::format("the ensemble's {} basis", first.name));
+  options.grow = options.modes.empty();
+  if (options.grow) options.modes = diagnostics::mode_ladder(available, options.chosen);
   options.sweep_values = spec.speeds.values();
   options.sweep_segments = static_cast<std::size_t>(spec.segments);
   options.settle = settle_options(scene);
   options.sweep_settle = sweep_settle_options(scene);
   options.lyapunov.duration = spec.lyapunov_duration;
+  options.lyapunov.transient = spec.transient;
+  options.lyapunov.interval = spec.horizon / kIntervalsInHorizon;
   options.lyapunov.seed = scene.ensemble.seed;
   options.lyapunov.flow = scene.flow;
   options.cost_duration = spec.cost_duration;

@@ -58,7 +58,7 @@ results::Table share_table(const ValidationReport& report, const results::Units&
               return row.start_error;
             })},
            {"motion", {"", "what the reduced model settles to"}, words([](const auto&, const ShareRow& row) {
-              return std::string(row.attractor ? diagnostics::to_string(row.attractor->period.motion) : "failed");
+              return std::string(row.attractor ? diagnostics::attractor_word(*row.attractor, row.lyapunov) : "failed");
             })},
            {"period", {"", "slips per period; 0: not periodic"}, settled([](const ShareRow& row) {
               return static_cast<double>(row.attractor->period.period);
@@ -142,8 +142,11 @@ void store_bifurcation(results::StoreWriter& writer, const diagnostics::Bifurcat
   const std::string group = "validation/bifurcation/";
   writer.write(group + "values", static_cast<std::int64_t>(comparison.values), {"", "values with both results"});
   writer.write(group + "failed", static_cast<std::int64_t>(comparison.failed), {"", "values without"});
-  writer.write(group + "same_motion", comparison.same_motion, {"1", "share with the same kind of motion"});
-  writer.write(group + "same_period", comparison.same_period, {"1", "share with the same kind and period"});
+  writer.write(group + "decided", static_cast<std::int64_t>(comparison.decided),
+               {"", "values where neither motion is undecided"});
+  writer.write(group + "same_motion", comparison.same_motion,
+               {"1", "share of those decided with the same kind of motion; NaN: none is"});
+  writer.write(group + "same_period", comparison.same_period, {"1", "the same with the same kind and period"});
   writer.write(group + "periodic_full", comparison.periodic_full, {"1", "share periodic in the full model"});
   writer.write(group + "periodic_reduced", comparison.periodic_reduced, {"1", "share periodic in the reduced model"});
   writer.write(group + "mean_wasserstein", comparison.mean_wasserstein, {units.length, "mean distance of slip states"});
@@ -154,19 +157,23 @@ void store_bifurcation(results::StoreWriter& writer, const diagnostics::Bifurcat
 void store_cost(results::StoreWriter& writer, const diagnostics::Cost& cost, const results::Units& units) {
   const std::string group = "validation/cost/";
   writer.write(group + "duration", cost.duration, {units.time, "simulated time of the timed run"});
-  writer.write(group + "full_wall", cost.full_wall, {"s", "median wall time, full model"});
-  writer.write(group + "full_cpu", cost.full_cpu, {"s", "median CPU time, full model"});
-  writer.write(group + "reduced_wall", cost.reduced_wall, {"s", "median wall time, reduced model"});
-  writer.write(group + "reduced_cpu", cost.reduced_cpu, {"s", "median CPU time, reduced model"});
+  writer.write(group + "full_wall", cost.full_wall,
+               {"s", "median wall time, full model", results::Meaning::Of::kClock});
+  writer.write(group + "full_cpu", cost.full_cpu, {"s", "median CPU time, full model", results::Meaning::Of::kClock});
+  writer.write(group + "reduced_wall", cost.reduced_wall,
+               {"s", "median wall time, reduced model", results::Meaning::Of::kClock});
+  writer.write(group + "reduced_cpu", cost.reduced_cpu,
+               {"s", "median CPU time, reduced model", results::Meaning::Of::kClock});
   writer.write(group + "full_setup_wall", cost.full_setup_wall,
-               {"s", "wall time of the full model's modal data, once"});
+               {"s", "wall time of the full model's modal data, once", results::Meaning::Of::kClock});
   writer.write(group + "projection_wall", cost.projection_wall,
-               {"s", "wall time of the projection and its set-up, once"});
+               {"s", "wall time of the projection and its set-up, once", results::Meaning::Of::kClock});
 }
 
 }  // namespace
 
-void store_validation(results::StoreWriter& writer, const ValidationReport& report, const results::Units& units) {
+void store_validation(results::StoreWriter& writer, const ValidationReport& report, const scene::Scene& scene) {
+  const results::Units units = results::Units::of(scene.units);
   store_full(writer, report, units);
   results::save(writer, "validation/shares", share_table(report, units));
   results::save(writer, "validation/orbits", orbit_table(report, units));
@@ -174,7 +181,7 @@ void store_validation(results::StoreWriter& writer, const ValidationReport& repo
   if (report.cost) store_cost(writer, *report.cost, units);
   if (report.verdict) store_verdict(writer, *report.verdict, units);
   if (report.sweep) {
-    const results::SweepAxis axis = results::sweep_axis("drive.speed", units);
+    const results::SweepAxis axis = results::sweep_axis(scene, "drive.speed");
     const std::string reduced = fmt::format("reduced model, {} {}s", report.chosen, report.candidates.front().name);
     results::store_sweep(writer, "sweep/full", "full model", axis, units, report.sweep->full);
     results::store_sweep(writer, "sweep/reduced", reduced, axis, units, report.sweep->reduced);

@@ -3,7 +3,7 @@
 #include "cli/session.hpp"
 #include "diagnostics/validate.hpp"
 #include "results/store.hpp"
-#include "results/units.hpp"
+#include "scene/scene.hpp"
 
 #include <string>
 
@@ -12,7 +12,7 @@ namespace slipmode::cli {
 /// Writes the tables of a validation: `validation/shares` (form of S4 Table 3.1), `validation/orbits` (S4 Table 3.2),
 /// `validation/full`, `validation/bifurcation`, `validation/cost`, and `sweep/full`, `sweep/reduced`.
 void store_validation(results::StoreWriter& writer, const diagnostics::ValidationReport& report,
-                      const results::Units& units);
+                      const scene::Scene& scene);
 
 /// The same numbers as JSON, slip states left out.
 [[nodiscard]] Json to_json(const diagnostics::ValidationReport& report);

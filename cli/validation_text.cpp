@@ -17,13 +17,20 @@ using diagnostics::OrbitRow;
 using diagnostics::ShareRow;
 using diagnostics::ValidationReport;
 
+/// "period 5", or the kind of motion as its exponent tells it.
+std::string attractor_text(const diagnostics::Settled& settled,
+                           const std::optional<diagnostics::LyapunovExponent>& exponent) {
+  const bool periodic = settled.period.motion == diagnostics::Motion::kPeriodic;
+  return periodic ? results::motion_text(settled.period) : diagnostics::attractor_word(settled, exponent);
+}
+
 std::vector<std::string> share_cells(const ShareRow& row) {
   const bool ok = row.failure.empty();
   return {fixed(row.energy, 2),
           fixed(ok ? row.horizon.dX : kNone, 2),
           fixed(ok ? row.horizon.dE : kNone, 2),
           fixed(row.attractor ? row.distance.wasserstein : kNone, 3),
-          row.attractor ? results::motion_text(row.attractor->period) : "failed",
+          row.attractor ? attractor_text(*row.attractor, row.lyapunov) : "failed",
           fixed(row.lyapunov ? row.lyapunov->bits : kNone, 4)};
 }
 
@@ -153,7 +160,8 @@ std::string sweep_text(const ValidationReport& report) {
 }  // namespace
 
 std::string summary_text(const ValidationReport& report) {
-  std::string out = fmt::format("Full model at V = {:g}: {}", report.speed, results::motion_text(report.full.period));
+  std::string out =
+      fmt::format("Full model at V = {:g}: {}", report.speed, attractor_text(report.full, report.lyapunov));
   if (report.lyapunov) {
     const double error_bits = report.lyapunov->error / std::numbers::ln2;
     out += fmt::format(", largest exponent {:.4f} ± {:.4f} bit per unit of time", report.lyapunov->bits, error_bits);
@@ -164,6 +172,12 @@ std::string summary_text(const ValidationReport& report) {
       "the settled motions (two full runs: {}); λ: largest exponent\n",
       100.0 * report.full.stick_fraction, fixed(report.noise.wasserstein, 3));
   out += shares_text(report);
+  if (report.left_out_above > 0) {
+    out += fmt::format(
+        "  left out: more than {} modes, as the last two rows are within the scatter of two full runs; [validation]\n"
+        "  modes brings them\n",
+        report.left_out_above);
+  }
   if (!report.candidates.front().orbits.empty()) {
     out += "\nPeriodic orbits: deviation over one period where the periods are the same\n" + orbits_text(report);
   }
@@ -171,8 +185,12 @@ std::string summary_text(const ValidationReport& report) {
     out +=
         fmt::format("\nBelt-speed sweep: {} values, full model and {} {}s, in {:.2f} s\n{}", report.sweep->full.size(),
                     report.chosen, report.candidates.front().name, report.sweep_wall, sweep_text(report));
-    out += fmt::format("  same period at {:.1f} % of the values, median distance of slip states {}\n",
-                       100.0 * report.bifurcation->same_period, fixed(report.bifurcation->median_wasserstein, 3));
+    const auto& both = *report.bifurcation;
+    out += fmt::format(
+        "  decided in both models: {} of {} values{}; median distance of slip states {}\n", both.decided,
+        report.sweep->full.size(),
+        both.decided > 0 ? fmt::format(", same period at {:.1f} % of these", 100.0 * both.same_period) : std::string(),
+        fixed(both.median_wasserstein, 3));
   }
   if (report.verdict) out += fmt::format("\n{}", verdict_text(*report.verdict, true));
   if (report.cost) {

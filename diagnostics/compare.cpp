@@ -166,8 +166,11 @@ BifurcationComparison compare_sweeps(const std::vector<SweepPoint>& full, const 
     ++result.values;
     const PeriodResult& a = full[i].settled.period;
     const PeriodResult& b = reduced[i].settled.period;
-    result.same_motion += a.motion == b.motion ? 1.0 : 0.0;
-    result.same_period += a.motion == b.motion && a.period == b.period ? 1.0 : 0.0;
+    if (a.motion != Motion::kUndecided && b.motion != Motion::kUndecided) {
+      ++result.decided;
+      result.same_motion += a.motion == b.motion ? 1.0 : 0.0;
+      result.same_period += a.motion == b.motion && a.period == b.period ? 1.0 : 0.0;
+    }
     result.periodic_full += a.motion == Motion::kPeriodic ? 1.0 : 0.0;
     result.periodic_reduced += b.motion == Motion::kPeriodic ? 1.0 : 0.0;
     const AttractorDistance distance = attractor_distance(full[i].settled, reduced[i].settled);
@@ -175,11 +178,11 @@ BifurcationComparison compare_sweeps(const std::vector<SweepPoint>& full, const 
     wassersteins.push_back(distance.wasserstein);
     hausdorffs.push_back(distance.hausdorff);
   }
-  if (result.values > 0) {
-    const auto values = static_cast<double>(result.values);
-    for (double* share : {&result.same_motion, &result.same_period, &result.periodic_full, &result.periodic_reduced}) {
-      *share /= values;
-    }
+  for (double* share : {&result.same_motion, &result.same_period}) {
+    *share = result.decided > 0 ? *share / static_cast<double>(result.decided) : kNone;
+  }
+  for (double* share : {&result.periodic_full, &result.periodic_reduced}) {
+    if (result.values > 0) *share /= static_cast<double>(result.values);
   }
   result.mean_wasserstein = mean(wassersteins);
   result.median_wasserstein = median(wassersteins);

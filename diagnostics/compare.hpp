@@ -80,8 +80,9 @@ struct AttractorDistance {
 struct BifurcationComparison {
   std::size_t values = 0;      ///< where both models gave a result
   std::size_t failed = 0;      ///< where at least one did not
-  double same_motion = 0.0;    ///< share of values with the same kind of motion
-  double same_period = 0.0;    ///< share of values with the same kind and, if periodic, the same period
+  std::size_t decided = 0;     ///< where neither motion is undecided: an undecided one beside another is no agreement
+  double same_motion = 0.0;    ///< share of the values decided with the same kind of motion; NaN: none is decided
+  double same_period = 0.0;    ///< the same with the same kind and, if periodic, the same period
   double periodic_full = 0.0;  ///< share periodic in the full model
   double periodic_reduced = 0.0;
   double mean_wasserstein = 0.0;    ///< mean over the values where both have slip states [m]

@@ -43,7 +43,11 @@ Model reduced_belt_model(const dynamics::HybridSystem& full, const pod::Basis& b
   const dynamics::HybridSystem reduced = rom::reduce(full, basis);
   return {.system = [reduced](double speed) { return reduced.with_drive(friction::Belt::constant(speed)); },
           .basis = basis,
-          .energy_offset = projection_energy(full, basis)};
+          .energy_offset = [offset = projection_energy(full, basis)](double) { return offset; }};
+}
+
+double energy_offset_at(const Model& model, double parameter) {
+  return model.energy_offset ? model.energy_offset(parameter) : 0.0;
 }
 
 dynamics::State lifted(const Model& model, const dynamics::State& state) {

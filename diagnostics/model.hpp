@@ -17,8 +17,9 @@ using SystemFactory = std::function<dynamics::HybridSystem(double parameter)>;
 struct Model {
   SystemFactory system;
   std::optional<pod::Basis> basis = {};  ///< set for a reduced model: how its states lift to the full ones
-  /// Added to HybridSystem::energy so that a reduced model's energy is that of its lifted state [J].
-  double energy_offset = 0.0;
+  /// Added to HybridSystem::energy so that a reduced model's energy is that of its lifted state [J]; it moves with the
+  /// stiffness and the load. Empty: zero.
+  std::function<double(double parameter)> energy_offset = {};
 };
 
 /// The full model with belt speed as the parameter; modal data are shared by all speeds.
@@ -30,6 +31,9 @@ struct Model {
 /// The model reduced to `basis`, belt speed as the parameter; energy_offset is projection_energy.
 /// @throws InvalidInput  as rom::reduce
 [[nodiscard]] Model reduced_belt_model(const dynamics::HybridSystem& full, const pod::Basis& basis);
+
+/// Model::energy_offset at a value, zero where there is none [J].
+[[nodiscard]] double energy_offset_at(const Model& model, double parameter);
 
 /// A state in full coordinates: lifted for a reduced model, unchanged for a full one.
 [[nodiscard]] dynamics::State lifted(const Model& model, const dynamics::State& state);

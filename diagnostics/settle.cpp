@@ -18,6 +18,9 @@ void check(const SettleOptions& options) {
     throw InvalidInput(fmt::format("settle: expected block > 0, transient >= 0, limit >= block, found {}, {}, {}",
                                    options.block, options.transient, options.limit));
   }
+  if (!(options.patience >= 0.0)) {
+    throw InvalidInput(fmt::format("settle: expected patience >= 0, found {}", options.patience));
+  }
   if (options.max_slips < 1 || options.energy_samples < 0) {
     throw InvalidInput(fmt::format("settle: expected max_slips >= 1 and energy_samples >= 0, found {}, {}",
                                    options.max_slips, options.energy_samples));
@@ -97,13 +100,13 @@ class Settling {
 
   Settled run_all() {
     const bool own_scale = options_.period.scale.empty();
-    double waited = 0.0;
+    double waited = 0.0, limit = options_.limit;
     while (true) {
       check_stop(options_);
-      const double length = std::min(options_.block, options_.limit - waited);
+      const double until = std::min(waited + options_.block, limit);
       const dynamics::State begin = out_.end;
-      const dynamics::Trajectory block = run_block(length, waited + length >= options_.limit);
-      waited += length;
+      const dynamics::Trajectory block = run_block(until - waited, until >= limit);
+      waited = until;
       if (own_scale) options_.period.scale = reach_.scale();
       out_.period = detect_period(slips_, options_.period);
       if (out_.period.motion == Motion::kPeriodic && out_.period.doubt <= kNoDoubt) break;
@@ -116,7 +119,10 @@ class Settling {
         out_.period = {.motion = Motion::kSticking};
         break;
       }
-      if (waited >= options_.limit) break;
+      if (waited >= limit) {
+        if (limit > options_.limit || !patience_will_tell(waited)) break;
+        limit *= 1.0 + options_.patience;
+      }
     }
     if (slips_.empty() && out_.period.motion == Motion::kUndecided && out_.stick_fraction >= 1.0) {
       out_.period.motion = Motion::kSticking;
@@ -185,6 +191,15 @@ class Settling {
   [[nodiscard]] bool is_at_rest() const {
     return out_.stick_fraction >= 1.0 && system_.drive().is_constant() &&
            system_.drive().velocity(out_.end.time) == 0.0;
+  }
+
+  /// True when there are too few slips for a verdict, and enough by the end of patience if they go on coming like this.
+  [[nodiscard]] bool patience_will_tell(double waited) const {
+    constexpr double kReserve = 1.05;  // slips come irregularly
+    if (options_.patience == 0.0 || out_.period.motion != Motion::kUndecided || slips_.empty()) return false;
+    const auto seen = static_cast<double>(std::ranges::count(slips_, out_.period.contact, &SlipState::contact));
+    const double needed = kReserve * (options_.period.repeats + 1.0) * options_.period.max_period;
+    return needed * waited <= seen * (1.0 + options_.patience) * options_.limit;
   }
 
   void forget_old_slips() {

@@ -13,6 +13,9 @@ struct SettleOptions {
   double transient = 1000.0;  ///< run first, nothing kept [s]
   double block = 5000.0;      ///< then runs of this length, each judged [s]
   double limit = 100000.0;    ///< until the motion is periodic or so much time has passed, transient not counted [s]
+  /// Share of the limit that is waited longer where it leaves a motion undecided and slips come often enough that there
+  /// will be enough of them by then.
+  double patience = 0.0;
   PeriodOptions period = {};
   int max_slips = 1000;      ///< slip states reported when the motion is not periodic: the last ones
   int energy_samples = 512;  ///< equally spaced, over a period or the last block; 0: no mean energy is taken
@@ -38,7 +41,7 @@ struct Settled {
 /// Runs `start` until it is seen to be periodic, stuck or sliding for a whole block, or the limit is reached.
 /// A period in doubt (PeriodResult::doubt) is waited for as well. Slips of earlier blocks are kept while they may help
 /// to see a long period (as at very low belt speed).
-/// @throws InvalidInput      for block ≤ 0, transient < 0, limit < block, and as simulate
+/// @throws InvalidInput      for block ≤ 0, transient < 0, limit < block, patience < 0, and as simulate
 /// @throws NumericalFailure  as simulate
 /// @throws Interrupted       if the stop flag was set
 [[nodiscard]] Settled settle(const dynamics::HybridSystem& system, const dynamics::State& start,

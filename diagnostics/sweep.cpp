@@ -22,7 +22,7 @@ Settled settle_at(const Model& model, double value, const dynamics::State& start
   SettleOptions settling = options.settle;
   settling.stop = options.parallel.stop;
   Settled settled = settle(model.system(value), start, settling);
-  settled.mean_energy += model.energy_offset;
+  settled.mean_energy += energy_offset_at(model, value);
   return settled;
 }
 

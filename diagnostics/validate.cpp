@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 namespace slipmode::diagnostics {
@@ -29,6 +30,10 @@ struct FullOrbit {
   std::optional<Orbit> orbit = {};
   std::string failure = {};
 };
+
+constexpr double kStandardErrors = 4.0;
+
+bool is_positive(const LyapunovExponent& exponent) { return exponent.nats > kStandardErrors * exponent.error; }
 
 /// The work of one validation, part after part; each part runs its items in parallel.
 class Validation {
@@ -67,6 +72,7 @@ class Validation {
   }
 
  private:
+  /// By number of modes where they grow, so that those of all candidates come together; else by candidate.
   void prepare_reductions() {
     for (std::size_t c = 0; c < candidates_.size(); ++c) {
       report_.candidates.push_back({.name = candidates_[c].name});
@@ -80,6 +86,7 @@ class Validation {
         reductions_.push_back(std::move(reduction));
       }
     }
+    if (options_.grow) std::ranges::stable_sort(reductions_, {}, &Reduction::modes);
   }
 
   /// The batch's options, with progress counted over the whole validation.
@@ -170,31 +177,61 @@ class Validation {
   // thread about as long as a row, the full model's exponent.
 
   void run_reduced() {
-    const std::size_t per_reduction = 1 + full_orbits_.size();
-    std::vector<ShareRow> shares(reductions_.size());
-    std::vector<OrbitRow> orbits(reductions_.size() * full_orbits_.size());
-    run_items(1 + reductions_.size() * per_reduction, [&](std::size_t i) {
-      if (i == 0) {
+    std::vector<OrbitRow> orbits;
+    const std::size_t count = reductions_.size(), together = options_.grow ? candidates_.size() : count;
+    std::size_t sunk = 0, begin = 0;
+    for (; begin < count && sunk < kSunkLevels; begin += together) {
+      run_reductions(begin, begin + together, orbits);
+      const bool enough = reductions_[begin].modes >= report_.chosen;
+      sunk = options_.grow && enough && is_within_scatter() ? sunk + 1 : 0;
+    }
+    if (begin < count) {
+      report_.left_out_above = reductions_[begin - 1].modes;
+      total_ -= (count - begin) * (1 + full_orbits_.size());
+    }
+    for (std::size_t o = 0; o < full_orbits_.size(); ++o) {
+      for (std::size_t r = 0; r < begin; ++r) {
+        report_.candidates[reductions_[r].candidate].orbits.push_back(std::move(orbits[r * full_orbits_.size() + o]));
+      }
+    }
+  }
+
+  /// Rows and cells of the reductions [begin, end); the full model's exponent beside the first ones.
+  void run_reductions(std::size_t begin, std::size_t end, std::vector<OrbitRow>& out_orbits) {
+    const std::size_t parts = 1 + full_orbits_.size(), first = begin == 0 ? 1 : 0;
+    std::vector<ShareRow> shares(end - begin);
+    out_orbits.resize(end * full_orbits_.size());
+    run_items(first + (end - begin) * parts, [&](std::size_t i) {
+      if (i < first) {
         report_.lyapunov = exponent(full_model_.system(options_.speed), report_.full);
         return;
       }
-      const std::size_t r = (i - 1) / per_reduction;
-      const std::size_t part = (i - 1) % per_reduction;
+      const std::size_t r = begin + (i - first) / parts, part = (i - first) % parts;
       if (part == 0) {
-        shares[r] = share_row(reductions_[r]);
+        shares[r - begin] = share_row(reductions_[r]);
       } else {
-        orbits[r * full_orbits_.size() + part - 1] = orbit_row(reductions_[r], part - 1);
+        out_orbits[r * full_orbits_.size() + part - 1] = orbit_row(reductions_[r], part - 1);
       }
     });
-    for (std::size_t r = 0; r < reductions_.size(); ++r) {
-      report_.candidates[reductions_[r].candidate].shares.push_back(std::move(shares[r]));
+    for (std::size_t r = begin; r < end; ++r) {
+      report_.candidates[reductions_[r].candidate].shares.push_back(std::move(shares[r - begin]));
     }
-    for (std::size_t o = 0; o < full_orbits_.size(); ++o) {
-      for (std::size_t r = 0; r < reductions_.size(); ++r) {
-        OrbitRow& row = orbits[r * full_orbits_.size() + o];
-        report_.candidates[reductions_[r].candidate].orbits.push_back(std::move(row));
-      }
-    }
+  }
+
+  /// The last row of every candidate is about as near to the full model as another full run, or, where that is the same
+  /// to rounding, to a thousandth of the reach of its slip states. Without slip states states from shared starts
+  /// decide.
+  [[nodiscard]] bool is_within_scatter() const {
+    constexpr double kSameReach = 1e-3, kSamePercent = 1.0;
+    constexpr double kScatter = 3.0;  // the distance of one pair of runs scatters by as much as it is
+    const auto [low, high] = std::ranges::minmax_element(report_.full.slips, {}, &SlipState::displacement);
+    const double reach = report_.full.slips.empty() ? 0.0 : high->displacement - low->displacement;
+    return std::ranges::all_of(report_.candidates, [&](const CandidateReport& candidate) {
+      const ShareRow& row = candidate.shares.back();
+      if (!row.attractor) return false;
+      if (report_.full.slips.empty()) return row.attractor->slips.empty() && row.horizon.dX <= kSamePercent;
+      return row.distance.wasserstein <= std::max(kScatter * report_.noise.wasserstein, kSameReach * reach);
+    });
   }
 
   [[nodiscard]] ShareRow share_row(const Reduction& reduction) const {
@@ -206,7 +243,7 @@ class Validation {
       const dynamics::HybridSystem system = reduction.model->system(options_.speed);
       const dynamics::State start = projected(reduction.basis, report_.full.end);
       row.attractor = settle(system, start, attractor_settling());
-      row.attractor->mean_energy += reduction.model->energy_offset;
+      row.attractor->mean_energy += energy_offset_at(*reduction.model, options_.speed);
       row.distance = attractor_distance(report_.full, *row.attractor);
       row.lyapunov = exponent(system, *row.attractor);
       row.horizon = deviation_up_to_horizon(full_.structure(), full_model_, *reduction.model, options_.speed,
@@ -279,6 +316,8 @@ class Validation {
     }));
   }
 
+  static constexpr std::size_t kSunkLevels = 2;  ///< one alone may be within the scatter by chance
+
   const dynamics::HybridSystem& full_;
   const std::vector<Candidate>& candidates_;
   dynamics::State start_;
@@ -294,6 +333,28 @@ class Validation {
 };
 
 }  // namespace
+
+std::vector<Eigen::Index> mode_ladder(Eigen::Index most, Eigen::Index chosen) {
+  constexpr Eigen::Index kAllUpTo = 12;
+  std::vector<Eigen::Index> ladder;
+  for (Eigen::Index L = 1; L <= most; ++L) {
+    const bool power = (L & (L - 1)) == 0, between = L % 3 == 0 && ((L / 3) & (L / 3 - 1)) == 0;
+    if (most <= kAllUpTo || L == most || L == chosen || power || between) ladder.push_back(L);
+  }
+  return ladder;
+}
+
+bool ShareRow::is_chaotic() const { return lyapunov && is_positive(*lyapunov); }
+
+std::string attractor_word(const Settled& settled, const std::optional<LyapunovExponent>& exponent) {
+  constexpr double kMostGrowth = 0.01;  // per slip
+  if (settled.period.motion != Motion::kAperiodic) return to_string(settled.period.motion);
+  if (!exponent) return to_string(Motion::kUndecided);
+  if (is_positive(*exponent)) return to_string(Motion::kAperiodic);
+  const double bound = kStandardErrors * exponent->error;
+  const bool zero = std::abs(exponent->nats) <= bound && exponent->nats + bound < kMostGrowth * settled.slip_rate;
+  return zero ? "quasi-periodic" : to_string(Motion::kUndecided);
+}
 
 ValidationReport validate(const dynamics::HybridSystem& full, const std::vector<Candidate>& candidates,
                           const dynamics::State& start, const ValidationOptions& options) {

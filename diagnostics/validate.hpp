@@ -22,8 +22,11 @@ struct Candidate {
 };
 
 struct ValidationOptions {
-  double speed = 0.2;                     ///< belt speed of the energy-share table (the ensemble's) [m/s]
-  std::vector<Eigen::Index> modes = {};   ///< L to try; empty: 1..basis size
+  double speed = 0.2;                    ///< belt speed of the energy-share table (the ensemble's) [m/s]
+  std::vector<Eigen::Index> modes = {};  ///< L to try; empty: 1..basis size
+  /// Modes are tried in their order, ascending, up to the chosen number at least, until every candidate's slip states
+  /// are within three times the distance of two full runs, twice running. False: all are tried.
+  bool grow = false;
   double horizon = 100.0;                 ///< of the shared-start comparison [s]
   int horizon_starts = 16;                ///< starts on the full model's attractor
   double horizon_gap = 200.0;             ///< between those starts [s]
@@ -66,7 +69,7 @@ struct ShareRow {
 
   /// Aperiodic with an exponent above zero by more than four standard errors: motion without a period may as well be
   /// quasi-periodic or still decaying.
-  [[nodiscard]] bool is_chaotic() const { return lyapunov && lyapunov->nats > 4.0 * lyapunov->error; }
+  [[nodiscard]] bool is_chaotic() const;
 };
 
 /// One cell of the periodic-orbit table (the form of S4 Table 3.2): one speed, one basis, one L.
@@ -90,6 +93,7 @@ struct ValidationReport {
   AttractorDistance noise = {};                   ///< between two independent full runs: as close as full is to itself
   std::optional<LyapunovExponent> lyapunov = {};  ///< of the full model; empty when its motion is not aperiodic
   std::vector<CandidateReport> candidates = {};
+  Eigen::Index left_out_above = 0;  ///< with `grow`: more modes than this were not tried; 0: all were
   Eigen::Index chosen = 0;
   std::optional<PairedSweep> sweep = {};  ///< first candidate at `chosen` modes
   std::optional<BifurcationComparison> bifurcation = {};
@@ -112,6 +116,16 @@ struct ValidationReport {
 /// @throws NumericalFailure  if the full model at `speed` fails; other failures are recorded in their rows
 [[nodiscard]] ValidationReport validate(const dynamics::HybridSystem& full, const std::vector<Candidate>& candidates,
                                         const dynamics::State& start, const ValidationOptions& options);
+
+/// Numbers of modes to try of 1..most: all up to twelve, else few and growing, with `chosen` among them:
+/// 1 2 3 4 6 8 12 16 24 ... most. @param chosen  1..most
+[[nodiscard]] std::vector<Eigen::Index> mode_ladder(Eigen::Index most, Eigen::Index chosen);
+
+/// What a settled motion is, in a word. Without a period it is told by its largest exponent: "aperiodic" where that is
+/// above zero by more than four standard errors, "quasi-periodic" where it is zero to within them and growth at their
+/// end would be less than 1 % from slip to slip, "undecided" otherwise and where none was measured: still settling,
+/// a period longer than those looked for, or too short a record.
+[[nodiscard]] std::string attractor_word(const Settled& settled, const std::optional<LyapunovExponent>& exponent);
 
 /// The smallest L whose cumulative share reaches `share`, else the number of shares.
 [[nodiscard]] Eigen::Index modes_for_share(const Eigen::VectorXd& captured, double share);

@@ -51,10 +51,10 @@ std::string front_data(Figure& figure, std::vector<ParetoPoint> front, const Lim
     error.push_back(std::max(value, y.low));
   };
   for (std::size_t k = 0; k < front.size(); ++k) {
-    add(front[k].cost, k == 0 ? y.high : front[k - 1].assured);
-    add(front[k].cost, front[k].assured);
+    add(front[k].cost, k == 0 ? y.high : front[k - 1].resolved);
+    add(front[k].cost, front[k].resolved);
   }
-  if (!front.empty()) add(x.high, front.back().assured);
+  if (!front.empty()) add(x.high, front.back().resolved);
   return figure.data({to_vector(cost), to_vector(error)});
 }
 
@@ -66,7 +66,7 @@ void label_front(Figure& figure, const std::vector<ParetoPoint>& front, const Li
   };
   std::vector<std::pair<double, double>> taken;
   for (const ParetoPoint& point : front) {
-    const double height = std::max(point.assured, y.low);
+    const double height = std::max(point.resolved, y.low);
     const std::pair<double, double> here = {place(point.cost, x), place(height, y)};
     const bool free = std::ranges::none_of(taken, [&](const auto& other) {
       return std::abs(other.first - here.first) < kCloseX && std::abs(other.second - here.second) < kCloseY;

@@ -9,11 +9,11 @@ namespace slipmode::figures {
 
 /// One configuration as a point.
 struct ParetoPoint {
-  std::string name;      ///< written beside it on the front
-  std::string group;     ///< each has its symbol and colour, in order of appearance
-  double cost = 0.0;     ///< [ms]
-  double error = 0.0;    ///< [%]
-  double assured = 0.0;  ///< error or its scatter, the larger of the two: what the front is made of [%]
+  std::string name;       ///< written beside it on the front
+  std::string group;      ///< each has its symbol and colour, in order of appearance
+  double cost = 0.0;      ///< [ms]
+  double error = 0.0;     ///< [%]
+  double resolved = 0.0;  ///< error or its scatter, the larger of the two: what the front is made of [%]
   bool on_front = false;
 };
 

@@ -3,6 +3,7 @@
 #include "core/decompositions.hpp"
 #include "core/errors.hpp"
 #include "orbits/map_waveform.hpp"
+#include "orbits/motion_scale.hpp"
 
 #include <fmt/format.h>
 
@@ -60,31 +61,33 @@ class Settling {
 
  private:
   void advance(int count) {
-    const dynamics::Trajectory run = dynamics::simulate(
-        system_, state_,
-        {.duration = count * period_, .sample = period_, .keep_events = false, .flow = options_.shooting.flow});
+    constexpr Eigen::Index kSamples = 8;  // per period: enough to see how far the motion reaches
+    const dynamics::Trajectory run = dynamics::simulate(system_, state_,
+                                                        {.duration = count * period_,
+                                                         .sample = period_ / kSamples,
+                                                         .keep_events = false,
+                                                         .flow = options_.shooting.flow});
     const Eigen::Index n = system_.size();
     const Eigen::Index kept = std::min<Eigen::Index>(section_.cols(), options_.max_order);
     Eigen::MatrixXd section(2 * n, kept + count);
     section.leftCols(kept) = section_.rightCols(kept);
     // The first sample is the state the block began with; the last may be lost to rounding, the final state is not.
-    section.topRows(n).middleCols(kept, count - 1) = run.q.middleCols(1, count - 1);
-    section.bottomRows(n).middleCols(kept, count - 1) = run.v.middleCols(1, count - 1);
+    const auto between = Eigen::seqN(kSamples, count - 1, kSamples);
+    section.topRows(n).middleCols(kept, count - 1) = run.q(Eigen::all, between);
+    section.bottomRows(n).middleCols(kept, count - 1) = run.v(Eigen::all, between);
     section.col(kept + count - 1) << run.final_state.q, run.final_state.v;
     section_ = std::move(section);
-    reach_ = Eigen::Vector2d(section_.topRows(n).cwiseAbs().maxCoeff(), section_.bottomRows(n).cwiseAbs().maxCoeff());
+    scale_ = detail::MotionScale(run.q, run.v);
     const double begin = state_.time;
     state_ = run.final_state;
     state_.time = begin;  // the same phase of the drive: late times would cost digits
   }
 
-  /// Distance of two states, displacements and velocities each relative to the reach of the motion.
+  /// Distance of two states' displacements and velocities, relative to the motion.
   [[nodiscard]] double distance(const Eigen::Ref<const Eigen::VectorXd>& a,
                                 const Eigen::Ref<const Eigen::VectorXd>& b) const {
     const Eigen::Index n = system_.size();
-    const double q = (a.head(n) - b.head(n)).cwiseAbs().maxCoeff();
-    const double v = (a.segment(n, n) - b.segment(n, n)).cwiseAbs().maxCoeff();
-    return std::max(reach_(0) > 0.0 ? q / reach_(0) : 0.0, reach_(1) > 0.0 ? v / reach_(1) : 0.0);
+    return scale_.distance(a.head(2 * n) - b.head(2 * n));
   }
 
   /// The stable orbit the motion is about to settle on.
@@ -159,8 +162,8 @@ class Settling {
   const MapOptions& options_;
   double period_;
   dynamics::State state_;
-  Eigen::MatrixXd section_;                          ///< (q; q̇) once per period, the last ones
-  Eigen::Vector2d reach_ = Eigen::Vector2d::Zero();  ///< largest |q| and |q̇| among them
+  Eigen::MatrixXd section_;    ///< (q; q̇) once per period, the last ones
+  detail::MotionScale scale_;  ///< of the last block
 };
 
 /// The sum of harmonics at time 0: real part and time derivative of Σ_m Im(X_m e^{imωt}).

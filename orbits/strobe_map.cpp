@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "orbits/map_waveform.hpp"
+#include "orbits/motion_scale.hpp"
 
 #include <fmt/format.h>
 
@@ -35,34 +36,33 @@ void check(const dynamics::HybridSystem& system, const StrobeOptions& options) {
   }
 }
 
-/// Relative distance of section states m apart, at most, over the last max(3m, 20) of them.
-double repeat_distance(const Eigen::MatrixXd& q, const Eigen::MatrixXd& v, Eigen::Index m) {
-  const Eigen::Index stretch = std::min(q.cols() - m, std::max<Eigen::Index>(3 * m, 20));
-  const auto relative = [&](const Eigen::MatrixXd& x) {
-    const double reach = x.cwiseAbs().maxCoeff();
-    const double apart = (x.rightCols(stretch) - x.middleCols(x.cols() - stretch - m, stretch)).cwiseAbs().maxCoeff();
-    return reach > 0.0 ? apart / reach : 0.0;
-  };
-  return std::max(relative(q), relative(v));
-}
-
-void find_order(const Eigen::MatrixXd& q, const Eigen::MatrixXd& v, const StrobeOptions& options,
+void find_order(const Eigen::MatrixXd& section, const detail::MotionScale& scale, const StrobeOptions& options,
                 StrobePoint& out_point) {
-  // Half of the sections at least must be seen to repeat.
-  for (int m = 1; m <= options.max_order && 2 * m <= q.cols(); ++m) {
-    const double apart = repeat_distance(q, v, m);
+  // Half of the sections at least must be seen to repeat, over the last max(3m, 20) of them.
+  for (Eigen::Index m = 1; m <= options.max_order && 2 * m <= section.cols(); ++m) {
+    const Eigen::Index stretch = std::min(section.cols() - m, std::max<Eigen::Index>(3 * m, 20));
+    const double apart =
+        scale.distance(section.rightCols(stretch) - section.middleCols(section.cols() - stretch - m, stretch));
     if (apart > options.tolerance) continue;
-    out_point.order = m;
+    out_point.order = static_cast<int>(m);
     out_point.mismatch = apart;
     return;
   }
 }
 
-void measure_amplitudes(const dynamics::Trajectory& run, double step, const StrobeOptions& options,
+/// The first `steps` samples and the end. As a sample the end may be lost to rounding.
+Eigen::MatrixXd with_end(const Eigen::MatrixXd& samples, Eigen::Index steps, const Eigen::VectorXd& end) {
+  Eigen::MatrixXd all(samples.rows(), steps + 1);
+  all << samples.leftCols(steps), end;
+  return all;
+}
+
+/// @param q, v  samples one step apart, the end of the last step among them
+void measure_amplitudes(const Eigen::MatrixXd& q, const Eigen::MatrixXd& v, double step, const StrobeOptions& options,
                         StrobePoint& out_point) {
-  const Eigen::MatrixXd y = options.rows * run.q;
-  const Eigen::MatrixXd slope = options.rows * run.v;
-  const Eigen::Index steps = static_cast<Eigen::Index>(options.kept) * options.samples;
+  const Eigen::MatrixXd y = options.rows * q;
+  const Eigen::MatrixXd slope = options.rows * v;
+  const Eigen::Index steps = q.cols() - 1;
   out_point.alternating.resize(y.rows());
   out_point.effective.resize(y.rows());
   for (Eigen::Index r = 0; r < y.rows(); ++r) {
@@ -73,9 +73,20 @@ void measure_amplitudes(const dynamics::Trajectory& run, double step, const Stro
   }
 }
 
-/// The same point of the drive's cycle at another frequency: the cycle begins anew at time 0.
-dynamics::State carried(const dynamics::State& end) {
-  return {.time = 0.0, .q = end.q, .v = end.v, .internal = end.internal};
+/// The same point of the drive's cycle at another value: the cycle begins anew at time 0. Modes are derived anew, as
+/// the old ones need not hold, but for contacts behind a spring: there sliding at μ_k N is not told from sticking by
+/// position, velocity and stretch.
+dynamics::State carried(const dynamics::HybridSystem& system, const dynamics::State& end) {
+  dynamics::State begin{.time = 0.0, .q = end.q, .v = end.v, .internal = end.internal};
+  const auto is_compliant = [](const friction::Contact& contact) {
+    return std::holds_alternative<friction::CompliantCoulomb>(contact.law);
+  };
+  if (end.modes.empty() || std::ranges::none_of(system.contacts(), is_compliant)) return begin;
+  begin.modes = dynamics::simulate(system, begin, {.flow = {.audit = false}}).final_state.modes;
+  for (std::size_t c = 0; c < begin.modes.size(); ++c) {
+    if (is_compliant(system.contacts()[c])) begin.modes[c] = end.modes[c];
+  }
+  return begin;
 }
 
 }  // namespace
@@ -91,20 +102,22 @@ StrobePoint strobe(const dynamics::HybridSystem& system, const dynamics::State& 
   check(system, options);
   const double period = system.drive().period().value();
   const double step = period / options.samples;
-  // A little longer than needed: the last sample must not be lost to rounding.
   const dynamics::Trajectory run = dynamics::simulate(system, start,
-                                                      {.duration = options.periods * period + 0.5 * step,
+                                                      {.duration = options.periods * period,
                                                        .transient = (options.periods - options.kept) * period,
                                                        .sample = step,
                                                        .keep_events = false,
                                                        .flow = options.flow});
   StrobePoint point;
+  const Eigen::Index steps = Eigen::Index{options.kept} * options.samples;
+  const Eigen::MatrixXd q = with_end(run.q, steps, run.final_state.q), v = with_end(run.v, steps, run.final_state.v);
   const auto section = Eigen::seqN(Eigen::Index{0}, Eigen::Index{options.kept} + 1, Eigen::Index{options.samples});
-  const Eigen::MatrixXd q = run.q(Eigen::all, section), v = run.v(Eigen::all, section);
-  find_order(q, v, options, point);
-  measure_amplitudes(run, step, options, point);
-  point.section = options.rows * q.leftCols(options.kept);
-  point.end = {.time = start.time + options.periods * period, .q = q.rightCols<1>(), .v = v.rightCols<1>()};
+  Eigen::MatrixXd states(2 * system.size(), options.kept + 1);
+  states << q(Eigen::all, section), v(Eigen::all, section);
+  find_order(states, detail::MotionScale(q, v), options, point);
+  measure_amplitudes(q, v, step, options, point);
+  point.section = options.rows * states.topLeftCorner(system.size(), options.kept);
+  point.end = run.final_state;
   return point;
 }
 
@@ -122,7 +135,7 @@ StrobeMap strobe_map(const std::function<dynamics::HybridSystem(double)>& system
     if (map.points[k]) return;
     const dynamics::HybridSystem here = system(values[k]);
     const bool first = !options.follow || k == 0;
-    const dynamics::State begin = first ? start(here) : carried(map.points[k - 1]->end);
+    const dynamics::State begin = first ? start(here) : carried(here, map.points[k - 1]->end);
     StrobePoint point;
     try {
       point = strobe(here, begin, options);

@@ -16,6 +16,8 @@ namespace slipmode::results {
 struct Meaning {
   std::string units;
   std::string description;
+  /// Of the model: in a dimensionless scene its metres and newtons are pure numbers. A clock's seconds stay seconds.
+  enum class Of : std::uint8_t { kModel, kClock } of = Of::kModel;
 };
 
 /// Writes one HDF5 result file. The content goes to a temporary in the same folder; `commit` renames it into place, so
@@ -33,7 +35,8 @@ struct Meaning {
 ///                       message names file, dataset and remedy
 class StoreWriter {
  public:
-  explicit StoreWriter(std::filesystem::path path);
+  /// @param unit_system  a scene's `units`, "SI" or "dimensionless": what the model's numbers are in
+  explicit StoreWriter(std::filesystem::path path, const std::string& unit_system = "SI");
   ~StoreWriter();
   StoreWriter(StoreWriter&&) noexcept;
   StoreWriter& operator=(StoreWriter&&) noexcept;

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -55,14 +56,27 @@ Hdf5Handle text_type(std::size_t length) {
   return type;
 }
 
+/// "N s/m" and its like: made of metres, kilograms, seconds.
+bool has_dimension(const std::string& units) {
+  constexpr std::array<std::string_view, 6> kUnits = {"m", "kg", "s", "N", "J", "Hz"};
+  constexpr const char* kBetween = " /,";
+  for (std::size_t begin = 0; begin < units.size();) {
+    const std::size_t end = std::min(units.find_first_of(kBetween, begin), units.size());
+    if (std::ranges::find(kUnits, std::string_view(units).substr(begin, end - begin)) != kUnits.end()) return true;
+    begin = end + 1;
+  }
+  return false;
+}
+
 }  // namespace
 
 struct StoreWriter::Impl {
   fs::path path;
   fs::path temporary;
   Hdf5Handle file;
+  bool dimensionless = false;
 
-  explicit Impl(fs::path target) : path(std::move(target)) {
+  Impl(fs::path target, bool without_dimensions) : path(std::move(target)), dimensionless(without_dimensions) {
     check_target(path);
     temporary = temporary_beside(path);
     const QuietHdf5 quiet;
@@ -131,12 +145,14 @@ struct StoreWriter::Impl {
     if (count > 0 && H5Dwrite(set.id(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) {
       fail(name, "could not be written; is the disc full?");
     }
-    attribute(set.id(), "units", meaning.units);
+    const bool is_number = dimensionless && meaning.of == Meaning::Of::kModel && has_dimension(meaning.units);
+    attribute(set.id(), "units", is_number ? "1" : meaning.units);
     attribute(set.id(), "description", meaning.description);
   }
 };
 
-StoreWriter::StoreWriter(fs::path path) : impl_(std::make_unique<Impl>(std::move(path))) {}
+StoreWriter::StoreWriter(fs::path path, const std::string& unit_system)
+    : impl_(std::make_unique<Impl>(std::move(path), unit_system != "SI")) {}
 StoreWriter::~StoreWriter() = default;
 StoreWriter::StoreWriter(StoreWriter&&) noexcept = default;
 StoreWriter& StoreWriter::operator=(StoreWriter&&) noexcept = default;

@@ -87,9 +87,12 @@ diagnostics::SweepSink journal_sink(Journal& journal) {
           .store = [&journal](const SweepPoint& point) { journal.append(to_record(point)); }};
 }
 
-SweepAxis sweep_axis(const std::string& key, const Units& units) {
+SweepAxis sweep_axis(const scene::Scene& scene, const std::string& key) {
+  const Units units = Units::of(scene.units);
   if (key == "drive.speed") return {key, "belt speed V", units.velocity};
-  if (key == "drive.frequency") return {key, "frequency f", units.time == "s" ? "Hz" : "1"};
+  if (key == "drive.frequency") return {key, "frequency f", units.frequency};
+  if (key == "drive.omega") return {key, "frequency ω", units.angular};
+  if (key == "drive.amplitude" && scene.force) return {key, "amplitude of the force A", units.force};
   if (key == "drive.amplitude") return {key, "amplitude of the shaker", units.length};
   if (key.starts_with("contact.") && key.ends_with(".stiffness")) return {key, "contact stiffness", units.stiffness};
   const bool load = key.ends_with("normal_load") || key.ends_with("normal_load.constant");
@@ -176,8 +179,8 @@ std::string undecided_note(const std::vector<SweepPoint>& points) {
   if (!any) return {};
   return fmt::format(
       "  undecided: still settling, or too few slips to tell, after {:g} time units; to wait longer:\n"
-      "  --set validation.sweep_limit=100000.0\n",
-      waited);
+      "  --set validation.sweep_limit={:g}\n",
+      waited, 10.0 * waited);
 }
 
 }  // namespace slipmode::results

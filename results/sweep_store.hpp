@@ -5,6 +5,7 @@
 #include "results/store.hpp"
 #include "results/table.hpp"
 #include "results/units.hpp"
+#include "scene/scene.hpp"
 
 #include <string>
 #include <vector>
@@ -25,7 +26,7 @@ struct SweepAxis {
   std::string label;  ///< for an axis: "belt speed V"
   std::string units;
 };
-[[nodiscard]] SweepAxis sweep_axis(const std::string& key, const Units& units);
+[[nodiscard]] SweepAxis sweep_axis(const scene::Scene& scene, const std::string& key);
 
 /// Writes `group`: a table `values` (one row per value), a table `slips` (one row per slip state) and a title.
 void store_sweep(StoreWriter& writer, const std::string& group, const std::string& title, const SweepAxis& axis,

@@ -7,7 +7,7 @@ namespace slipmode::results {
 /// Units of stored and drawn quantities: SI, or "1" for all in a dimensionless scene.
 struct Units {
   std::string length = "1", velocity = "1", force = "1", time = "1", rate = "1", energy = "1", angular = "1",
-              stiffness = "1";
+              frequency = "1", stiffness = "1";
 
   /// @param system  a scene's `units`: "SI" or "dimensionless"
   [[nodiscard]] static Units of(const std::string& system) {
@@ -19,6 +19,7 @@ struct Units {
             .rate = "1/s",
             .energy = "J",
             .angular = "rad/s",
+            .frequency = "Hz",
             .stiffness = "N/m"};
   }
 };

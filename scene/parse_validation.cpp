@@ -129,6 +129,7 @@ ValidationSpec read_validation(TomlReader in, const Scene& scene) {
   spec.transient = in.number_or("transient", spec.transient, kNonNegative);
   spec.block = in.number_or("block", spec.block, kPositive);
   spec.limit = in.number_or("limit", std::max(spec.limit, spec.block), kPositive);
+  if (!in.has("block")) spec.block = std::min(spec.block, spec.limit);
   if (spec.limit < spec.block) in.fail("limit", "shorter than one block", fmt::format(">= block = {}", spec.block));
   spec.sweep_limit = in.number_or("sweep_limit", spec.sweep_limit, kPositive);
   spec.period_tolerance = in.number_or("period_tolerance", spec.period_tolerance, kPositive);

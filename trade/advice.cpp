@@ -191,8 +191,8 @@ std::string recommendation(const Study& study, Measure measure, double limit) {
   }
   const auto best = most_accurate(offers);
   if (!best) return fmt::format("{} nothing that was tried will do, or the measure has no value here", asked);
-  return fmt::format("{} nothing that was tried is assured; nearest is {} ({})", asked, study.rows[*best].variant.name,
-                     error_text(study.rows[*best], measure));
+  return fmt::format("{} not assured by anything that was tried; nearest is {} ({})", asked,
+                     study.rows[*best].variant.name, error_text(study.rows[*best], measure));
 }
 
 }  // namespace slipmode::trade

@@ -27,7 +27,7 @@ struct Choice {
 };
 
 /// With a limit the cheapest configuration that is assured to keep to it; with a budget the most accurate one within;
-/// with both the cheapest that keeps to both. "Assured": error and its noise are both below the limit.
+/// with both the cheapest that keeps to both. "Assured": error and noise together are below the limit.
 /// @throws InvalidInput  when there is none: the message says the most accurate, or the cheapest, that exists
 [[nodiscard]] Choice choose(const Study& study, const Wish& wish);
 

@@ -21,8 +21,8 @@ std::optional<std::size_t> least(std::span<const Offer> offers, const Allow& all
 }
 
 constexpr auto kAny = [](const Offer&) { return true; };
-constexpr auto kByCost = [](const Offer& offer) { return std::tuple(offer.cost, offer.assured()); };
-constexpr auto kByError = [](const Offer& offer) { return std::tuple(offer.assured(), offer.cost); };
+constexpr auto kByCost = [](const Offer& offer) { return std::tuple(offer.cost, offer.resolved()); };
+constexpr auto kByError = [](const Offer& offer) { return std::tuple(offer.resolved(), offer.cost); };
 
 }  // namespace
 
@@ -37,8 +37,8 @@ std::vector<std::size_t> pareto_front(std::span<const Offer> offers) {
   std::vector<std::size_t> front;
   double best = std::numeric_limits<double>::infinity();
   for (const std::size_t i : order) {
-    if (!(offers[i].assured() < best)) continue;
-    best = offers[i].assured();
+    if (!(offers[i].resolved() < best)) continue;
+    best = offers[i].resolved();
     front.push_back(i);
   }
   return front;

@@ -102,6 +102,28 @@ TEST_F(OrbitMap, OverOneKeyGivesVerdictsAndAmplitudes) {
   }
 }
 
+// A force's keys are named and have units wherever they are an axis.
+TEST_F(OrbitMap, AxesOfAForceAreTheSameInEveryVerb) {
+  struct Axis {
+    std::string over, label, units;
+  };
+  for (const Axis& axis : {Axis{"drive.amplitude=1:1.2:0.1", "amplitude of the force A", "N"},
+                           Axis{"drive.omega=0.6:0.65:0.05", "frequency ω", "rad/s"}}) {
+    const auto made = [&](std::vector<std::string> words, const std::string& file) {
+      words.insert(words.end(), {kBacklash, "--over", axis.over, "--set", "units=SI", "-o", file});
+      const Outcome outcome = slipmode_in(folder, words);
+      EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+      return results::StoreReader(folder.path() / file);
+    };
+    const results::StoreReader map = made({"orbit", "map", "--periods", "200"}, "map.h5");
+    EXPECT_EQ(map.text("strobe/label"), axis.label);
+    EXPECT_EQ(map.entry("strobe/from_scene/values/parameter").meaning.units, axis.units);
+    const results::StoreReader exponents = made({"diagnose", "--duration", "50"}, "exponents.h5");
+    EXPECT_EQ(exponents.text("exponents/full/label"), axis.label);
+    EXPECT_EQ(exponents.entry("exponents/full/values/parameter").meaning.units, axis.units);
+  }
+}
+
 TEST_F(OrbitMap, SaysWhatIsWrong) {
   const auto refused = [&](const std::vector<std::string>& arguments) {
     std::vector<std::string> words = {"orbit", "map"};

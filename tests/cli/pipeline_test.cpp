@@ -1,5 +1,6 @@
 #include "cli/slipmode_process.hpp"
 #include "cli/small_scenes.hpp"
+#include "results/store.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -32,6 +33,22 @@ TEST(Run, LeavesTablesDataAndFiguresInTheFolder) {
   EXPECT_FALSE(fs::exists(folder.path() / "out/free.partial"));
 }
 
+// In a dimensionless scene every number of the model is a pure one; clocks still count seconds.
+TEST(Run, OfADimensionlessSceneNamesNoDimensions) {
+  const TemporaryFolder folder;
+  write_file(folder.path() / "free.toml", kFreeEnds);
+  ASSERT_EQ(slipmode_in(folder, {"run", "free.toml", "-o", "out", "--quiet"}).exit_code, 0);
+  ASSERT_EQ(slipmode_in(folder, {"orbit", "find", "free.toml", "-o", "out/orbit.h5", "--quiet"}).exit_code, 0);
+  for (const char* name : {"trajectory.h5", "ensemble.h5", "pod.h5", "reduced_pom.h5", "validation.h5", "orbit.h5"}) {
+    for (const auto& entry : slipmode::results::StoreReader(folder.path() / "out" / name).entries()) {
+      const std::string& units = entry.meaning.units;
+      const bool clock = entry.name.starts_with("validation/cost/") && units == "s";
+      const bool pure = units.empty() || units == "1" || units == "%" || units == "rad" || units.starts_with("bit");
+      EXPECT_TRUE(clock || pure) << name << ": " << entry.name << " [" << units << "]";
+    }
+  }
+}
+
 TEST(Run, GivesTheSameForAnyNumberOfThreads) {
   const TemporaryFolder folder;
   write_file(folder.path() / "free.toml", kFreeEnds);
@@ -52,6 +69,69 @@ TEST(Run, DoesOnlyWhatTheSceneAsksFor) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(outcome.json()["files"], nlohmann::json({"trajectory.h5"}));
   EXPECT_FALSE(outcome.json().contains("validation"));
+  const auto left_out = outcome.json()["left_out"];
+  ASSERT_EQ(left_out.size(), 2U);
+  EXPECT_EQ(left_out[0]["brought_by"], "[ensemble]");
+  EXPECT_EQ(left_out[1]["brought_by"], "[validation]");
+}
+
+TEST(Run, OfOwnMatricesWithAnEnsembleGivesModesAndReducedModels) {
+  const TemporaryFolder folder;
+  write_file(folder.path() / "own.toml", kOwnMatrices);
+  const Outcome outcome = slipmode_in(folder, {"run", "own.toml", "-o", "out"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const char* name : {"ensemble.h5", "pod.h5", "reduced_pom.h5", "reduced_lnm.h5"}) {
+    EXPECT_TRUE(fs::exists(folder.path() / "out" / name)) << name;
+  }
+  EXPECT_THAT(outcome.out, HasSubstr("reduction: "));
+  EXPECT_THAT(outcome.out, HasSubstr("left out: comparison"));
+  EXPECT_THAT(outcome.out, HasSubstr("[validation]"));
+}
+
+// An empty [validation] is enough: times and speeds are the structure's and the belt's own.
+TEST(Run, OfOwnMatricesIsComparedInItsOwnTimes) {
+  const TemporaryFolder folder;
+  write_file(folder.path() / "own.toml", kOwnMatrices + "[validation]\n");
+  const Outcome outcome = slipmode_in(folder, {"run", "own.toml", "-o", "out", "--json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto validation = outcome.json()["validation"];
+  EXPECT_FALSE(outcome.json().contains("left_out"));
+  EXPECT_LT(validation["cost"]["duration"], 10.0) << "seconds; 10000 of them would be 1.6 million periods";
+  EXPECT_EQ(validation["bifurcation"]["values"], 50);
+  EXPECT_GT(validation["bifurcation"]["decided"], 15);
+  for (const auto& row : validation["bases"]["POM"]["shares"]) {
+    EXPECT_EQ(row.contains("failure"), row["modes"] < 2) << row << ": one mode cannot tell two contacts apart";
+  }
+}
+
+TEST(Run, OfManyMassesComparesFewReducedModels) {
+  const TemporaryFolder folder;
+  const std::string chain = SLIPMODE_SOURCE_DIR "/datasets/chain10/scene.toml";
+  const Outcome outcome = slipmode_in(folder, {"run",
+                                               chain,
+                                               "-o",
+                                               "out",
+                                               "--json",
+                                               "--set",
+                                               "structure.masses=30",
+                                               "--set",
+                                               "contact.0.at=30",
+                                               "--set",
+                                               "validation.speeds={from=0.3, to=0.1, step=0.1}",
+                                               "--set",
+                                               "validation.orbits=[]",
+                                               "--set",
+                                               "time={duration=2000.0, transient=1000.0, sample=0.5}",
+                                               "--set",
+                                               "validation.lyapunov_duration=2000.0",
+                                               "--set",
+                                               "validation.limit=20000.0",
+                                               "--set",
+                                               "validation.cost_duration=0.0"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto shares = outcome.json()["validation"]["bases"]["POM"]["shares"];
+  EXPECT_LE(shares.size(), 12U) << "of thirty";
+  EXPECT_EQ(outcome.json()["validation"]["bases"]["LNM"]["shares"].size(), shares.size());
 }
 
 TEST(Run, KeepsAndMarksWhatWasFinishedBeforeANumericalFailure) {

@@ -43,6 +43,8 @@ struct Command {
   std::vector<std::string> arguments;  ///< output file `out.h5` and threads are added
 };
 
+void PrintTo(const Command& command, std::ostream* out) { *out << command.name; }
+
 class SameBytes : public testing::TestWithParam<Command> {};
 
 TEST_P(SameBytes, OnEveryVectorWidthAndForAnyNumberOfThreads) {

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <algorithm>
+#include <csignal>
 #include <string>
 #include <vector>
 
@@ -116,6 +117,17 @@ TEST_F(Shaken, SweepsUpAndDownStandInOneFile) {
   EXPECT_EQ(load_table(store, "sweep/reduced_reverse/values").numbers("parameter").front(), 11.0);
 }
 
+TEST_F(Shaken, AnInterruptedSweepUpAndDownCountsBothPasses) {
+  const auto sweep = small({"sweep", kShakenBeam, "--over", "drive.frequency=8:12:0.1", "--follow", "--both", "-o",
+                            "both.h5", "--json", "--threads", "1"});
+  SlipmodeProcess process(sweep, folder.path());
+  ASSERT_TRUE(process.signal_when([this] { return journalled("both.h5") >= 45; }, SIGINT)) << process.wait().err;
+  const Outcome stopped = process.wait();
+  ASSERT_EQ(stopped.exit_code, 130);
+  EXPECT_GE(stopped.json()["finished"], 45);
+  EXPECT_EQ(stopped.json()["values"], 82);
+}
+
 TEST_F(Shaken, AnyKeyOfTheSceneCanBeSwept) {
   for (const std::string over :
        {"drive.amplitude=0.001:0.003:0.001", "contact.0.mu_s=0.55:0.85:0.15", "contact.0.stiffness=10000:30000:10000",
@@ -138,6 +150,21 @@ TEST_F(Shaken, ThePipelineLeavesSummaryValidationAndFigures) {
         "agreement.png", "sweep_pomf.svg", "sweep_lnm.png", "pomfs.svg", "loops.png", "delay.png", "spectrum.svg"}) {
     EXPECT_TRUE(fs::exists(path("out/" + name))) << name;
   }
+}
+
+// Eight cycles of 16 samples are a scribble; what is drawn is the motion itself, corners at events included.
+TEST_F(Shaken, LoopsAreDrawnFinerThanTheRecordIsSampled) {
+  json({"simulate", kShakenBeam, "--single", "-o", "run.h5"});
+  ASSERT_EQ(slipmode_in(folder, {"plot", "run.h5", "--figure", "loops", "-o", "loops.svg"}).exit_code, 0);
+  const std::string drawn = bytes_of(path("loops.svg"));
+  std::size_t longest = 0;  // points of a curve: "x,y" pairs in a path
+  for (std::size_t begin = drawn.find("<path"); begin != std::string::npos; begin = drawn.find("<path", begin + 1)) {
+    const auto end = drawn.find('>', begin);
+    longest =
+        std::max(longest, static_cast<std::size_t>(std::count(drawn.begin() + static_cast<std::ptrdiff_t>(begin),
+                                                              drawn.begin() + static_cast<std::ptrdiff_t>(end), ',')));
+  }
+  EXPECT_GT(longest, 8U * 512U);
 }
 
 TEST_F(Shaken, MistakesAreToldWithTheirRemedy) {

@@ -36,6 +36,39 @@ transient = 10.0
 sample = 0.05
 )";
 
+/// A structure of its own matrices in SI units, slowest period 6 ms, two contacts, an ensemble and no more.
+inline const std::string kOwnMatrices = R"(
+title = "own matrices"
+units = "SI"
+[structure]
+kind = "matrices"
+mass = [[0.2, 0.0, 0.0], [0.0, 0.2, 0.0], [0.0, 0.0, 0.1]]
+damping = [[4.0, -2.0, 0.0], [-2.0, 4.0, -2.0], [0.0, -2.0, 2.0]]
+stiffness = [[8e5, -4e5, 0.0], [-4e5, 8e5, -4e5], [0.0, -4e5, 4e5]]
+[[contact]]
+at = 1
+law = "coulomb"
+mu_s = 0.5
+mu_k = 0.3
+normal_load = 20.0
+[[contact]]
+at = 3
+law = "coulomb"
+mu_s = 0.5
+mu_k = 0.3
+normal_load = 20.0
+[drive]
+kind = "belt"
+speed = 0.01
+[time]
+duration = 3.0
+transient = 1.0
+sample = 0.001
+[ensemble]
+members = 2
+spread = 1e-6
+)";
+
 /// Three masses with free ends on ground springs, one Stribeck contact in the middle; all sections of a scene.
 inline const std::string kFreeEnds = R"(
 title = "free ends"

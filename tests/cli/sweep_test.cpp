@@ -85,6 +85,39 @@ TEST_F(Sweep, OfAReducedModelGivesTheSameBytesForAnyNumberOfThreads) {
   EXPECT_EQ(bytes("t1.h5"), bytes("t2.h5"));
 }
 
+// With all modes a reduced model is the full one, on an affine basis too; periodic motion has the same mean energy.
+TEST_F(Sweep, OfAReducedModelWithAllModesHasTheFullModelsEnergies) {
+  ASSERT_EQ(slipmode_in(folder, {"simulate", "free.toml", "-o", "run.h5"}).exit_code, 0);
+  ASSERT_EQ(slipmode_in(folder, {"pod", "run.h5", "-o", "pod.h5"}).exit_code, 0);
+  ASSERT_EQ(slipmode_in(folder, {"reduce", "free.toml", "pod.h5", "--modes", "3", "-o", "rom.h5"}).exit_code, 0);
+  const auto energies = [&](const std::string& file, const std::string& model) {
+    return slipmode::results::load_table(slipmode::results::StoreReader(folder.path() / file),
+                                         "sweep/" + model + "/values");
+  };
+  const auto expect_same = [&](const slipmode::results::Table& full, const slipmode::results::Table& reduced) {
+    ASSERT_EQ(full.rows(), reduced.rows());
+    for (std::size_t i = 0; i < full.rows(); ++i) {
+      ASSERT_EQ(full.texts("motion")[i], "periodic");
+      const double energy = full.numbers("mean_energy")[i];
+      EXPECT_NEAR(reduced.numbers("mean_energy")[i], energy, 1e-4 * energy);
+    }
+  };
+  for (const std::string over : {"drive.speed=0.2:0.21:0.01", "contact.0.mu_s=0.3:0.4:0.1",
+                                 "contact.0.normal_load=1.5:2:0.5", "structure.stiffness=1:1.2:0.1"}) {
+    ASSERT_EQ(slipmode_in(folder, {"sweep", "free.toml", "--over", over, "-o", "full.h5"}).exit_code, 0);
+    ASSERT_EQ(slipmode_in(folder, {"sweep", "free.toml", "--over", over, "--model", "rom:rom.h5", "-o", "reduced.h5"})
+                  .exit_code,
+              0);
+    SCOPED_TRACE(over);
+    expect_same(energies("full.h5", "full"), energies("reduced.h5", "reduced"));
+    ASSERT_EQ(slipmode_in(folder, {"diagnose", "free.toml", "pod.h5", "--modes", "3", "--over", over, "--duration",
+                                   "20", "-o", "over.h5"})
+                  .exit_code,
+              0);
+    expect_same(energies("over.h5", "full"), energies("over.h5", "reduced"));
+  }
+}
+
 TEST_F(Sweep, SimulatesNoLongerAtAValueThanItsOwnLimit) {
   const Outcome outcome =
       slipmode_in(folder, {"sweep", "free.toml", "--over", "drive.speed=0.3:0.2:0.1", "-o", "sweep.h5", "--set",

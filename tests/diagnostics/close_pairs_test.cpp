@@ -10,8 +10,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
 
 namespace slipmode::diagnostics {
@@ -105,7 +107,12 @@ TEST_P(ClosePairsOf, AreTheSameForAnyNumberOfThreads) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(NoiseSineLorenzHenonGrid, ClosePairsOf, ::testing::Range(0, 5));
+std::string record_name(const testing::TestParamInfo<int>& info) {
+  constexpr std::array kNames = {"WhiteNoise", "Sine", "Lorenz", "Henon", "Grid"};
+  return kNames.at(static_cast<std::size_t>(info.param));
+}
+
+INSTANTIATE_TEST_SUITE_P(NoiseSineLorenzHenonGrid, ClosePairsOf, ::testing::Range(0, 5), record_name);
 
 TEST(ClosePairs, AreFoundByTheTreeWhereMostAreFarApartAndOneByOneWhereItPrunesNothing) {
   const Series line = fixtures::sine(20000, 0.0517), noise = fixtures::white_noise(20000, 5);

@@ -191,10 +191,31 @@ TEST(CompareSweeps, CountsWhatAgrees) {
   EXPECT_EQ(found.failed, 1u);
   EXPECT_NEAR(found.same_period, 2.0 / 4.0, 1e-15);
 
+  EXPECT_EQ(found.decided, 4u);
+
   reduced[1].parameter = 0.41;
   EXPECT_THROW((void)compare_sweeps(full, reduced), InvalidInput);
   reduced.pop_back();
   EXPECT_THROW((void)compare_sweeps(full, reduced), InvalidInput);
+}
+
+TEST(CompareSweeps, AnUndecidedMotionAgreesWithNothing) {
+  const auto with = [](std::vector<Motion> motions) {
+    std::vector<SweepPoint> points;
+    for (const Motion motion : motions)
+      points.push_back(point(0.1 * static_cast<double>(points.size()), {1.0}, motion, 0));
+    return points;
+  };
+  const auto full = with({Motion::kUndecided, Motion::kUndecided, Motion::kSticking, Motion::kSticking});
+  BifurcationComparison found =
+      compare_sweeps(full, with({Motion::kUndecided, Motion::kAperiodic, Motion::kSticking, Motion::kSliding}));
+  EXPECT_EQ(found.values, 4u);
+  EXPECT_EQ(found.decided, 2u);
+  EXPECT_EQ(found.same_motion, 0.5);
+  EXPECT_EQ(found.same_period, 0.5);
+  found = compare_sweeps(full, with(std::vector<Motion>(4, Motion::kUndecided)));
+  EXPECT_EQ(found.decided, 0u);
+  EXPECT_TRUE(std::isnan(found.same_period)) << "no agreement, and no disagreement either";
 }
 
 }  // namespace

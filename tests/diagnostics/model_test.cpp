@@ -42,7 +42,8 @@ TEST(Model, ReducedEnergyPlusOffsetIsTheLiftedStatesEnergy) {
   basis.mean = Eigen::VectorXd::LinSpaced(10, 0.3, 3.0);
   const Model reduced = reduced_belt_model(system, basis);
   const dynamics::State state{0.0, Eigen::Vector4d(0.4, -0.3, 0.2, 0.1), Eigen::Vector4d(0.1, 0.2, -0.3, 0.4), {}};
-  EXPECT_NEAR(reduced.system(0.3).energy(state) + reduced.energy_offset, system.energy(lifted(reduced, state)), 1e-12);
+  EXPECT_NEAR(reduced.system(0.3).energy(state) + energy_offset_at(reduced, 0.3), system.energy(lifted(reduced, state)),
+              1e-12);
   EXPECT_EQ(reduced.system(0.3).drive().velocity(0.0), 0.3);
 }
 

@@ -11,10 +11,17 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <ostream>
+#include <string>
 #include <tuple>
 #include <vector>
 
 namespace slipmode::diagnostics {
+
+static void PrintTo(Metric metric, std::ostream* out) {
+  *out << (metric == Metric::kMaximum ? "maximum" : "Euclidean");
+}
+
 namespace {
 
 /// Every allowed point by distance, then index: what any search must agree with.
@@ -81,7 +88,11 @@ TEST_P(NeighbourTreeOf, CountsAsManyAsItFinds) {
 
 INSTANTIATE_TEST_SUITE_P(Dimensions, NeighbourTreeOf,
                          ::testing::Combine(::testing::Values(1, 2, 3, 6),
-                                            ::testing::Values(Metric::kEuclidean, Metric::kMaximum)));
+                                            ::testing::Values(Metric::kEuclidean, Metric::kMaximum)),
+                         [](const auto& one) {
+                           const bool maximum = std::get<1>(one.param) == Metric::kMaximum;
+                           return std::to_string(std::get<0>(one.param)) + (maximum ? "Maximum" : "Euclidean");
+                         });
 
 TEST(NeighbourTree, RefusesPointsThatAreNotFinite) {
   Eigen::MatrixXd points = Eigen::MatrixXd::Zero(2, 3);

@@ -60,6 +60,8 @@ struct KnownOrbit {
   std::vector<double> x10;
 };
 
+void PrintTo(const KnownOrbit& orbit, std::ostream* out) { *out << "period " << orbit.period; }
+
 class SettleChain : public testing::TestWithParam<KnownOrbit> {};
 
 TEST_P(SettleChain, FindsTheOrbitsOfAnEventDrivenFixedStepProgram) {
@@ -84,6 +86,25 @@ INSTANTIATE_TEST_SUITE_P(Chain10, SettleChain,
                                          KnownOrbit{
                                              0.41, 5, 227.26927, {9.18711, 9.72520, 10.86653, 11.09104, 11.46713}}),
                          [](const auto& instance) { return "period" + std::to_string(instance.param.period); });
+
+// A verdict on chaos needs 4 · 64 slips: with a fifth too few the rest is waited for, with half too few it is not.
+TEST(Settle, WaitsALittleLongerForTheLastSlipsThatTell) {
+  const dynamics::HybridSystem system = tests::chain10(0.2);
+  SettleOptions options{.transient = 1000.0, .block = 5000.0, .limit = 5000.0};
+  const double rate = settle(system, system.rest(), options).slip_rate;
+  const auto with = [&](double slips, double patience) {
+    options.block = options.limit = slips / rate;
+    options.patience = patience;
+    return settle(system, system.rest(), options);
+  };
+  EXPECT_EQ(with(200.0, 0.0).period.motion, Motion::kUndecided);
+  const Settled waited = with(200.0, 0.5);
+  EXPECT_EQ(waited.period.motion, Motion::kAperiodic);
+  EXPECT_EQ(waited.time, 1000.0 + 1.5 * options.limit);
+  const Settled hopeless = with(100.0, 0.5);
+  EXPECT_EQ(hopeless.period.motion, Motion::kUndecided);
+  EXPECT_EQ(hopeless.time, 1000.0 + options.limit);
+}
 
 TEST(Settle, WaitsOutASlowDecayAndReportsTheShortPeriod) {
   // One of the motions at 0.39 is a period-1 orbit reached so slowly (time constant about 5000) that multiples of the

@@ -48,6 +48,25 @@ ValidationOptions quick_validation() {
   return options;
 }
 
+// Chaos needs an exponent above its error; a torus one that is zero within a small error; else nothing is known.
+TEST(AttractorWord, CallsAperiodicOnlyWhatHasAPositiveExponent) {
+  const auto word = [](Motion motion, std::optional<LyapunovExponent> exponent) {
+    Settled settled;
+    settled.period.motion = motion;
+    settled.slip_rate = 0.1;
+    return attractor_word(settled, exponent);
+  };
+  const auto exponent = [](double nats, double error) { return LyapunovExponent{.nats = nats, .error = error}; };
+  EXPECT_EQ(word(Motion::kAperiodic, exponent(0.0139, 0.0004)), "aperiodic");
+  EXPECT_EQ(word(Motion::kAperiodic, exponent(7e-5, 3e-5)), "quasi-periodic");
+  EXPECT_EQ(word(Motion::kAperiodic, exponent(-3e-5, 3e-5)), "quasi-periodic");
+  EXPECT_EQ(word(Motion::kAperiodic, exponent(1e-3, 5e-4)), "undecided") << "may be chaos: too large an error";
+  EXPECT_EQ(word(Motion::kAperiodic, exponent(-2e-3, 1e-4)), "undecided") << "still settling";
+  EXPECT_EQ(word(Motion::kAperiodic, std::nullopt), "undecided");
+  EXPECT_EQ(word(Motion::kUndecided, std::nullopt), "undecided");
+  EXPECT_EQ(word(Motion::kPeriodic, std::nullopt), "periodic");
+}
+
 TEST(Validate, GivesATableRowForEveryNumberOfModesAndBasis) {
   const ValidationReport report = validate(study().full, study().candidates, study().start, quick_validation());
   ASSERT_EQ(report.candidates.size(), 2u);
@@ -85,6 +104,33 @@ TEST(Validate, AllModesAreTheFullModel) {
     EXPECT_LT(row.horizon.dE, 1e-5);
     EXPECT_TRUE(row.is_chaotic());
   }
+}
+
+TEST(ModeLadder, IsAllOfFewAndGrowsBeyond) {
+  EXPECT_EQ(mode_ladder(5, 3), (std::vector<Eigen::Index>{1, 2, 3, 4, 5}));
+  EXPECT_EQ(mode_ladder(100, 10), (std::vector<Eigen::Index>{1, 2, 3, 4, 6, 8, 10, 12, 16, 24, 32, 48, 64, 96, 100}));
+}
+
+// What is tried is what would be tried without growing; the two last rows are within the scatter.
+TEST(Validate, GrowsUntilTheDeviationSinksIntoTheScatter) {
+  ValidationOptions options = quick_validation();
+  options.modes = {1, 2, 4, 6, 7, 8, 9, 10};
+  const ValidationReport all = validate(study().full, study().candidates, study().start, options);
+  options.grow = true;
+  const ValidationReport grown = validate(study().full, study().candidates, study().start, options);
+  const std::size_t tried = grown.candidates[0].shares.size();
+  ASSERT_LT(tried, options.modes.size());
+  EXPECT_EQ(grown.left_out_above, options.modes[tried - 1]);
+  EXPECT_GE(grown.left_out_above, grown.chosen);
+  const auto within = [&](std::size_t i) {
+    return all.candidates[0].shares[i].distance.wasserstein <= 3.0 * all.noise.wasserstein &&
+           all.candidates[1].shares[i].distance.wasserstein <= 3.0 * all.noise.wasserstein;
+  };
+  EXPECT_TRUE(within(tried - 1) && within(tried - 2));
+  for (std::size_t i = 0; i < tried; ++i) {
+    EXPECT_EQ(grown.candidates[1].shares[i].distance.wasserstein, all.candidates[1].shares[i].distance.wasserstein);
+  }
+  EXPECT_EQ(all.left_out_above, 0);
 }
 
 TEST(Validate, AllModesHaveTheFullOrbit) {

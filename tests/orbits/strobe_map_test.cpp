@@ -3,6 +3,7 @@
 #include "core/errors.hpp"
 #include "fixtures/clearance_scenes.hpp"
 #include "fixtures/scenes.hpp"
+#include "fixtures/shaken_scenes.hpp"
 #include "orbits/orbit_map.hpp"
 
 #include <gtest/gtest.h>
@@ -118,6 +119,37 @@ TEST(StrobeMap, IsTheBifurcationDiagramOfTheSingleMass) {
   EXPECT_EQ(map.points[2]->section.cols(), 100);
 }
 
+/// S0's single mass where it has period 3, its coordinate counted from far away.
+dynamics::HybridSystem far_backlash(double shift) {
+  const auto near = fixtures::backlash_mass(0.47);
+  std::vector<friction::Contact> contacts = near.contacts();
+  contacts.front().offset = -shift;
+  return {near.structure(), contacts, near.drive(), {}, near.force_directions()};
+}
+
+// Where the coordinate is counted from changes nothing: neither the order nor what the map finds.
+TEST(StrobeMap, SubharmonicsAreSeenBesideALargeMean) {
+  constexpr double kShift = 1e6;
+  const auto start = fixtures::state(Eigen::VectorXd::Constant(1, kShift + 3.0), Eigen::VectorXd::Zero(1));
+  const auto system = far_backlash(kShift);
+  EXPECT_EQ(strobe(system, start, watching(1)).order, 3);
+  const MapPoint settled = settled_orbit(system, start, {.max_order = 6});
+  EXPECT_EQ(settled.order, 3);
+}
+
+// The same mass beside one that swings a million times as far, once per period of the force.
+TEST(StrobeMap, SubharmonicsAreSeenBesideALargerMotion) {
+  const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(2, 2);
+  std::vector<friction::Contact> contacts = fixtures::backlash_mass(0.47).contacts();
+  contacts.front().direction = Eigen::Vector2d::UnitX();
+  const friction::Force force{0.47, {{.amplitude = 1.0}, {.amplitude = 1e6, .direction = 1}}};
+  const dynamics::HybridSystem system(
+      fem::Structure(fem::Matrix(unit), fem::Matrix(Eigen::MatrixXd(Eigen::Vector2d(0.05, 0.5).asDiagonal())),
+                     fem::Matrix(Eigen::MatrixXd(Eigen::Vector2d(0.0, 1.0).asDiagonal()))),
+      contacts, force, {}, unit);
+  EXPECT_EQ(strobe(system, fixtures::state(Eigen::Vector2d(3.0, 0.0), Eigen::Vector2d::Zero()), watching(2)).order, 3);
+}
+
 // Two runs of 40 periods that follow each other are one of 80.
 TEST(StrobeMap, FollowingValuesStartWhereTheOneBeforeEnded) {
   StrobeOptions options = watching(2);
@@ -129,6 +161,53 @@ TEST(StrobeMap, FollowingValuesStartWhereTheOneBeforeEnded) {
   const auto system = fixtures::clearance_pair(0.6);
   const StrobePoint longer = strobe(system, system.rest(), options);
   EXPECT_LT((map.points[1]->section - longer.section).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+// The same for a contact with states of its own: its spring's stretch, its oscillator's displacement and velocity.
+TEST(StrobeMap, FollowingValuesKeepTheContactsOwnStates) {
+  const friction::NormalOscillator own{
+      .mass = 0.5, .support_stiffness = 1.0, .spring_stiffness = 2.0, .spring_damping = 0.01, .slope = 0.4};
+  const auto system = fixtures::single_mass(
+      1.0, 0.05, 1.0, {.direction = {}, .law = friction::CompliantCoulomb{0.4, 0.3, 8.0}, .normal_load = {1.0, own}},
+      friction::Shaker{.amplitude = 0.9, .frequency_hz = 0.7 / (2.0 * std::numbers::pi)});
+  const auto same = [&](double) { return system; };
+  StrobeOptions options = watching(1);
+  options.periods = 7;
+  options.kept = 5;
+  options.follow = true;
+  const StrobeMap map = strobe_map(same, kFromRest, {0.0, 0.0}, options);
+  options.periods = 14;
+  const StrobePoint longer = strobe(system, system.rest(), options);
+  const double reach = longer.section.cwiseAbs().maxCoeff();
+  EXPECT_LT((map.points[1]->section - longer.section).cwiseAbs().maxCoeff(), 1e-9 * reach);
+}
+
+// Random contacts, rigid or behind a spring, under random loads; and the next value may have any amplitude.
+TEST(StrobeMap, FollowsThroughAnyContact) {
+  int compared = 0;
+  for (std::uint64_t seed = 0; seed < 120; ++seed) {
+    const auto system = fixtures::random_piecewise_linear(seed);
+    const friction::Shaker* shaker = system.drive().shaker();
+    if (shaker == nullptr) continue;
+    const auto at = [&](double amplitude) {
+      friction::Shaker changed = *shaker;
+      changed.amplitude = amplitude;
+      return system.with_drive(changed);
+    };
+    StrobeOptions options = watching(system.size());
+    options.periods = 3;
+    options.kept = 2;
+    options.follow = true;
+    const StrobeMap map =
+        strobe_map(at, kFromRest, {shaker->amplitude, shaker->amplitude, 0.3 * shaker->amplitude}, options);
+    for (const auto& point : map.points) ASSERT_EQ(point->failure, "") << seed;
+    options.periods = 6;
+    const StrobePoint longer = strobe(system, system.rest(), options);
+    const double reach = longer.section.cwiseAbs().maxCoeff();
+    EXPECT_LT((map.points[1]->section - longer.section).cwiseAbs().maxCoeff(), 1e-7 * reach) << seed;
+    ++compared;
+  }
+  EXPECT_GT(compared, 60);
 }
 
 TEST(StrobeMap, HasTheSameBytesForAnyNumberOfThreadsAndTakesOverWhatIsThere) {

@@ -64,6 +64,22 @@ TEST(Store, EveryTypeReadsBackToTheSameBits) {
   EXPECT_FALSE(in.has("x/y/z"));
 }
 
+TEST(Store, UnitsOfADimensionlessModelAreOne) {
+  const TemporaryFolder folder;
+  const auto units_in = [&](const std::string& system, const Meaning& meaning) {
+    StoreWriter out(folder.path() / "a.h5", system);
+    out.write("number", 1.0, meaning);
+    out.commit();
+    return StoreReader(folder.path() / "a.h5").entry("number").meaning.units;
+  };
+  for (const char* units : {"m", "kg", "N s/m", "1/s, s", "rad/s", "Hz"}) {
+    EXPECT_EQ(units_in("dimensionless", {units, ""}), "1") << units;
+    EXPECT_EQ(units_in("SI", {units, ""}), units);
+  }
+  for (const char* units : {"", "1", "%", "rad"}) EXPECT_EQ(units_in("dimensionless", {units, ""}), units);
+  EXPECT_EQ(units_in("dimensionless", {"s", "of a clock", Meaning::Of::kClock}), "s");
+}
+
 TEST(Store, SameContentGivesTheSameBytes) {
   const TemporaryFolder folder;
   for (const char* name : {"a.h5", "b.h5"}) {

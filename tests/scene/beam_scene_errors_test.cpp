@@ -67,7 +67,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadValue{"modal_ratio = 0.01",
                  "ratio = [0.01, 0.02]\nfrequency = 3",
                  {"structure.damping.frequency = 3: wrong type", "an array of 2 values"}},
-        BadValue{"modal_ratio = 0.01", "", {"structure.damping.coefficient: missing key"}}));
+        BadValue{"modal_ratio = 0.01", "", {"structure.damping.coefficient: missing key"}}),
+    tests::bad_value_name);
 
 INSTANTIATE_TEST_SUITE_P(
     Contact, BadBeam,
@@ -111,7 +112,8 @@ INSTANTIATE_TEST_SUITE_P(
                  {"contact.0.normal_load.oscillator.mass = 0", "a number > 0"}},
         BadValue{"tilt_deg = 0.312", "tilt_deg = 90", {"contact.0.tilt_deg = 90", "between -90 and 90"}},
         BadValue{"tilt_deg = 0.312", "tilt_deg = 40", {"contact.0.tilt_deg = 40", "slides by itself", "valid: mu tan"}},
-        BadValue{"tilt_deg = 0.312", "tilt_deg = -65", {"contact.0.tilt_deg = -65", "jams the slider"}}));
+        BadValue{"tilt_deg = 0.312", "tilt_deg = -65", {"contact.0.tilt_deg = -65", "jams the slider"}}),
+    tests::bad_value_name);
 
 INSTANTIATE_TEST_SUITE_P(
     Drive, BadBeam,
@@ -146,7 +148,8 @@ INSTANTIATE_TEST_SUITE_P(
                  {"s.toml:52: validation.frequencies", "no value >= 0 everywhere from 5 to 60 Hz"}},
         BadValue{tests::kBeamCurve,
                  "{ polynomial = [3e-3, -1.95e-4, 3e-6] }",  // negative between 25 and 40 Hz only
-                 {"validation.frequencies", "everywhere from 5 to 60 Hz"}}));
+                 {"validation.frequencies", "everywhere from 5 to 60 Hz"}}),
+    tests::bad_value_name);
 
 INSTANTIATE_TEST_SUITE_P(
     Runs, BadBeam,
@@ -181,7 +184,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadValue{"[\"pomf\", \"lnm+static\"]", "[]", {"validation.bases = []: empty", "one or more of"}},
         BadValue{"follow = \"both\"", "follow = \"back\"", {"validation.follow = \"back\"", "\"none\""}},
         BadValue{"follow = \"both\"", "segments = 3", {"validation.segments = 3: belongs to a belt"}},
-        BadValue{"follow = \"both\"", "orbits = [1]", {"validation.orbits = [1]: belongs to a belt"}}));
+        BadValue{"follow = \"both\"", "orbits = [1]", {"validation.orbits = [1]: belongs to a belt"}}),
+    tests::bad_value_name);
 
 INSTANTIATE_TEST_SUITE_P(
     Belt, BadBelt,
@@ -190,7 +194,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadValue{"duration = 3", "cycles = 3", {"time.cycles = 3: counts a shaker's cycles", "valid: duration"}},
         BadValue{"[time]", "[ensemble]\nfrequencies = [1]\n[time]", {"ensemble.frequencies", "a shaker", "speeds"}},
         BadValue{"[time]", "[validation]\nkept = 1\n[time]", {"validation.kept = 1: belongs to a shaker"}},
-        BadValue{"[time]", "[reduction]\nfunctions = 1\n[time]", {"reduction.functions = 1", "add [sensors]"}}));
+        BadValue{"[time]", "[reduction]\nfunctions = 1\n[time]", {"reduction.functions = 1", "add [sensors]"}}),
+    tests::bad_value_name);
 
 TEST(BadBeamScene, ChainsHaveNoSensorsAndNoBeamBases) {
   const std::string chain = "units = \"SI\"\n[structure]\nkind = \"chain\"\nmasses = 3\n" +

@@ -4,6 +4,7 @@
 #include "core/decompositions.hpp"
 #include "core/errors.hpp"
 #include "fem/modes.hpp"
+#include "fixtures/test_names.hpp"
 #include "scene/scene.hpp"
 
 #include <gtest/gtest.h>
@@ -74,6 +75,8 @@ struct Variant {
   std::string from, to, written;
 };
 
+void PrintTo(const Variant& variant, std::ostream* out) { *out << variant.written; }
+
 class BeamVariants : public testing::TestWithParam<Variant> {};
 
 TEST_P(BeamVariants, AreWrittenAndReadBackToTheSameBytes) {
@@ -114,7 +117,8 @@ INSTANTIATE_TEST_SUITE_P(
         Variant{kTime, "duration = 3\nsample = 0.01\n", "duration = 3.0\ntransient = 0.0\nsample = 0.01"},
         Variant{"gauge = 0.1\n", "", "kept = 50.0\nmodes = [1, 2]"},
         Variant{"frequencies = { from = 5.0, to = 60.0, step = 0.1 }\n", "", "[validation]\ncycles = 60.0"},
-        Variant{"kind = \"strain\"", "kind = \"displacement\"", "kind = \"displacement\""}));
+        Variant{"kind = \"strain\"", "kind = \"displacement\"", "kind = \"displacement\""}),
+    [](const auto& one) { return fixtures::numbered_name(one.index, one.param.written); });
 
 TEST(BeamScene, ABeamCanLieOnABelt) {
   const Scene s = parse_scene(tests::kBeamOnBelt);

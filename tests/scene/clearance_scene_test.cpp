@@ -219,7 +219,8 @@ INSTANTIATE_TEST_SUITE_P(
                  {"s.toml:5: structure.mass", "row 2 is no array of 2 numbers", "square matrix"}},
         BadValue{"kind = \"masses\"\nmass = [0.5, 2.0]",
                  "kind = \"matrices\"\nmass = [[1.0, 0.0], [0.0, 1.0]]\ndamping = [[1.0]]",
-                 {"s.toml:6: structure.damping", "1 rows", "a 2 x 2 matrix"}}));
+                 {"s.toml:6: structure.damping", "1 rows", "a 2 x 2 matrix"}}),
+    tests::bad_value_name);
 
 INSTANTIATE_TEST_SUITE_P(
     Contact, BadClearance,
@@ -238,7 +239,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadValue{"between = [1, 2]\nlaw", "between = [1]\nlaw", {"contact.0.between = [1]", "two different masses"}},
         BadValue{"[drive]",
                  "[[contact]]\nbetween = [2, 1]\nlaw = \"clearance\"\nstop = { stiffness = 1.0, gap = 2.0 }\n[drive]",
-                 {"contact.1.between", "contact.0 is on this pair of masses already"}}));
+                 {"contact.1.between", "contact.0 is on this pair of masses already"}}),
+    tests::bad_value_name);
 
 INSTANTIATE_TEST_SUITE_P(
     Drive, BadClearance,
@@ -257,7 +259,8 @@ INSTANTIATE_TEST_SUITE_P(
                  {"validation", "the drive is a force", "slipmode orbit"}},
         BadValue{"[initial]", "[ensemble]\nspeeds = [1.0]\n[initial]", {"ensemble.speeds", "the drive is a force"}},
         BadValue{"displacement = [0.1, 0.7]", "at = \"static\"", {"initial.at = \"static\"", "a force", "\"rest\""}},
-        BadValue{"[time]", "[time]\nduration = 3.0", {"time.duration", "given in cycles too"}}));
+        BadValue{"[time]", "[time]\nduration = 3.0", {"time.duration", "given in cycles too"}}),
+    tests::bad_value_name);
 
 TEST(ClearanceScene, StaticStartOnABeltIsRefusedWithAClearance) {
   std::string text = kPair.substr(0, kPair.find("[drive]"));

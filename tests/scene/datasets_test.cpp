@@ -5,6 +5,7 @@
 #include "diagnostics/lyapunov.hpp"
 #include "diagnostics/settle.hpp"
 #include "dynamics/simulate.hpp"
+#include "fixtures/test_names.hpp"
 #include "pod/pod.hpp"
 #include "scene/scene.hpp"
 #include "scene/toml_reader.hpp"
@@ -227,11 +228,11 @@ TEST_P(Dataset, GivesWhatIsExpected) {
   }
 }
 
+void PrintTo(const Expectation& e, std::ostream* out) { *out << e.dataset << " " << e.measure; }
+
 INSTANTIATE_TEST_SUITE_P(Shipped, Dataset, testing::ValuesIn(all_expectations()), [](const auto& instance) {
-  std::string name = instance.param.dataset + "_" + instance.param.measure + "_" + std::to_string(instance.index);
-  std::ranges::replace_if(
-      name, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
-  return name;
+  const Expectation& e = instance.param;
+  return fixtures::name_part(e.dataset + "_" + e.measure + "_" + std::to_string(instance.index));
 });
 
 }  // namespace

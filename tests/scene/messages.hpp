@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/errors.hpp"
+#include "fixtures/test_names.hpp"
 #include "scene/scene.hpp"
 
 #include <gtest/gtest.h>
@@ -8,6 +9,7 @@
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <ostream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -47,6 +49,13 @@ struct BadValue {
   std::string from, to;            ///< change to the text of a scene
   std::vector<std::string> parts;  ///< of the message
 };
+
+/// Printed as what is put in: GoogleTest would show the bytes of the strings' pointers, others in every run.
+inline void PrintTo(const BadValue& bad, std::ostream* out) { *out << bad.to; }
+
+inline std::string bad_value_name(const testing::TestParamInfo<BadValue>& info) {
+  return fixtures::numbered_name(info.index, info.param.to.empty() ? "no " + info.param.from : info.param.to);
+}
 
 /// @throws std::runtime_error  if the file cannot be read
 inline std::string bytes_of(const std::filesystem::path& path) {
