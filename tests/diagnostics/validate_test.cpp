@@ -193,6 +193,7 @@ TEST(Validate, ComparesSweepsAndCostAtTheChosenNumberOfModes) {
   options.modes = {10};
   options.chosen = 10;
   options.sweep_values = {0.45, 0.44, 0.43};
+  options.sweep_settle.limit = 20000.0;  // 0.044 slips per unit: more than a verdict needs
   options.cost_duration = 200.0;
   options.cost_repeats = 1;
   std::size_t last = 0, total = 0;
@@ -205,6 +206,7 @@ TEST(Validate, ComparesSweepsAndCostAtTheChosenNumberOfModes) {
   EXPECT_EQ(last, total);
   ASSERT_TRUE(report.bifurcation.has_value());
   EXPECT_EQ(report.bifurcation->values, 3u);
+  EXPECT_EQ(report.bifurcation->decided, 3u);
   EXPECT_EQ(report.bifurcation->same_motion, 1.0);
   ASSERT_TRUE(report.cost.has_value());
   EXPECT_GT(report.cost->full_wall, 0.0);
