@@ -1,11 +1,11 @@
 #include "cli/diagnose.hpp"
 
 #include "cli/diagnose_model.hpp"
-#include "figures/gnuplot.hpp"
 #include "cli/series_figures.hpp"
 #include "cli/series_findings.hpp"
 #include "cli/series_store.hpp"
 #include "cli/verbs.hpp"
+#include "figures/gnuplot.hpp"
 #include "results/series_input.hpp"
 
 #include <fmt/format.h>

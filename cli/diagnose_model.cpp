@@ -1,11 +1,12 @@
 #include "cli/diagnose_model.hpp"
+#include "cli/exponents_report.hpp"
 
 #include "cli/diagnose_subjects.hpp"
 #include "cli/diagnose_sweep.hpp"
-#include "cli/exponents_figures.hpp"
-#include "cli/exponents_store.hpp"
 #include "cli/validation_setup.hpp"
 #include "diagnostics/shared_starts.hpp"
+#include "figures/exponents_figures.hpp"
+#include "results/exponents_store.hpp"
 #include "results/provenance.hpp"
 #include "rom/reduce.hpp"
 #include "scene/own_times.hpp"
@@ -43,15 +44,15 @@ class SharedProgress {
   std::mutex mutex_;
 };
 
-std::vector<ModelExponents> measure_models(const Session& session, const DiagnoseSubjects& subjects,
-                                           const diagnostics::TangentOptions& options) {
+std::vector<results::ModelExponents> measure_models(const Session& session, const DiagnoseSubjects& subjects,
+                                                    const diagnostics::TangentOptions& options) {
   const std::size_t count = subjects.candidates.size() + 1;
-  std::vector<ModelExponents> models(count);
+  std::vector<results::ModelExponents> models(count);
   ProgressLine line("exponents", session.progress_mode());
   SharedProgress progress(line, count);
   const ParallelOptions parallel{.threads = session.threads, .stop = session.stop, .progress = {}};
   rethrow_first(parallel_for(count, parallel, [&](std::size_t i) {
-    ModelExponents& model = models[i];
+    results::ModelExponents& model = models[i];
     diagnostics::TangentOptions own = options;
     own.progress = progress.of(i);
     try {
@@ -103,7 +104,7 @@ void check_diagnosis_outputs(const DiagnoseRequest& request) {
 
 void draw_diagnosis(const DiagnoseRequest& request, const std::string& file, Report& report) {
   if (request.figures.empty()) return;
-  report.data["figures"] = draw_exponents_figures(results::StoreReader(file), request.figures);
+  report.data["figures"] = figures::draw_exponents_figures(results::StoreReader(file), request.figures);
   report.text += fmt::format("Figures: {}\n", request.figures);
 }
 
@@ -125,8 +126,8 @@ Report diagnose_scene(const Session& session, const DiagnoseRequest& request, co
                                    2 * subjects.full.size() + subjects.full.internal_size()));
   std::optional<diagnostics::VerdictTable> verdict;
   if (models.verdict) verdict = judge_models(session, scene, subjects, options);
-  const std::vector<ModelExponents> spectra =
-      verdict ? exponents_of(*verdict) : measure_models(session, subjects, options);
+  const std::vector<results::ModelExponents> spectra =
+      verdict ? results::exponents_of(*verdict) : measure_models(session, subjects, options);
   if (verdict && !verdict->models.front().failure.empty())
     throw NumericalFailure("the full model failed " + verdict->models.front().failure, options.transient, {}, 0.0);
 
@@ -143,8 +144,8 @@ Report diagnose_scene(const Session& session, const DiagnoseRequest& request, co
   results::StoreWriter writer(file, scene.units);
   results::save(writer,
                 results::provenance_of(scene, models.verdict ? "slipmode diagnose --verdict" : "slipmode diagnose"));
-  store_exponents(writer, spectra, units);
-  if (verdict) store_verdict(writer, *verdict, units);
+  results::store_exponents(writer, spectra, units);
+  if (verdict) results::store_verdict(writer, *verdict, units);
   writer.commit();
   report.data["file"] = file;
   report.text += fmt::format("Numbers and histories: {}\n", file);

@@ -1,21 +1,21 @@
 #include "cli/file_figures.hpp"
 
-#include "cli/exponents_figures.hpp"
-#include "cli/map_figures.hpp"
-#include "cli/orbit_figures.hpp"
 #include "cli/portraits.hpp"
 #include "cli/series_figures.hpp"
 #include "cli/shaken_figures.hpp"
 #include "cli/shaken_model.hpp"
-#include "cli/skeleton_figures.hpp"
 #include "cli/trade_figures.hpp"
 #include "cli/validation_setup.hpp"
 #include "figures/bifurcation.hpp"
 #include "figures/deviation.hpp"
 #include "figures/energy_shares.hpp"
+#include "figures/exponents_figures.hpp"
+#include "figures/map_figures.hpp"
 #include "figures/mode_shapes.hpp"
+#include "figures/orbit_figures.hpp"
 #include "figures/panels.hpp"
 #include "figures/phase_portraits.hpp"
+#include "figures/skeleton_figures.hpp"
 #include "figures/style.hpp"
 #include "figures/time_history.hpp"
 #include "results/provenance.hpp"
@@ -95,7 +95,7 @@ figures::DeviationCase deviation_case(const results::Table& table, const std::st
   for (const std::size_t row : rows) by_basis[table.texts("basis")[row]].push_back(row);
   figures::DeviationCase motion{.title = title, .curves = {}};
   for (const auto& [basis, of_basis] : by_basis) {
-    const auto pick = [&](const std::string& column) {
+    const auto pick = [&, &of_basis = of_basis](const std::string& column) {
       Eigen::VectorXd values(static_cast<Eigen::Index>(of_basis.size()));
       for (Eigen::Index i = 0; i < values.size(); ++i) values[i] = table.numbers(column)[of_basis[i]];
       return values;
@@ -220,9 +220,9 @@ Figure trajectory_portrait(const StoreReader& store) {
 }
 
 /// Figures of files made from a scene with a belt.
-std::vector<FileFigure> belt_figures_of(const StoreReader& store) {
+std::vector<figures::FileFigure> belt_figures_of(const StoreReader& store) {
   using Axes = figures::PortraitLayout::Axes;
-  std::vector<FileFigure> out;
+  std::vector<figures::FileFigure> out;
   const auto add = [&](const std::string& group, std::string name, std::string what, auto draw) {
     if (store.has(group)) out.push_back({std::move(name), std::move(what), [&store, draw] { return draw(store); }});
   };
@@ -242,13 +242,15 @@ std::vector<FileFigure> belt_figures_of(const StoreReader& store) {
 
 }  // namespace
 
-std::vector<FileFigure> figures_of(const StoreReader& store) {
-  if (std::vector<FileFigure> maps = map_figures_of(store); !maps.empty()) return maps;
-  if (std::vector<FileFigure> skeletons = skeleton_figures_of(store); !skeletons.empty()) return skeletons;
-  if (std::vector<FileFigure> series = series_figures_of(store); !series.empty()) return series;
-  if (std::vector<FileFigure> exponents = exponents_figures_of(store); !exponents.empty()) return exponents;
-  if (std::vector<FileFigure> fronts = trade_figures_of(store); !fronts.empty()) return fronts;
-  std::vector<FileFigure> orbits = orbit_figures_of(store);
+std::vector<figures::FileFigure> figures_of(const StoreReader& store) {
+  if (std::vector<figures::FileFigure> maps = figures::map_figures_of(store); !maps.empty()) return maps;
+  if (std::vector<figures::FileFigure> skeletons = figures::skeleton_figures_of(store); !skeletons.empty())
+    return skeletons;
+  if (std::vector<figures::FileFigure> series = series_figures_of(store); !series.empty()) return series;
+  if (std::vector<figures::FileFigure> exponents = figures::exponents_figures_of(store); !exponents.empty())
+    return exponents;
+  if (std::vector<figures::FileFigure> fronts = trade_figures_of(store); !fronts.empty()) return fronts;
+  std::vector<figures::FileFigure> orbits = figures::orbit_figures_of(store);
   if (!orbits.empty()) {
     if (store.has(results::kTrajectoryGroup)) {
       orbits.push_back(
@@ -258,9 +260,9 @@ std::vector<FileFigure> figures_of(const StoreReader& store) {
   }
   if (!store.has("provenance")) return belt_figures_of(store);
   if (!is_shaken(results::load_scene_of(store))) return belt_figures_of(store);
-  std::vector<FileFigure> out = shaken_figures_of(store);
+  std::vector<figures::FileFigure> out = shaken_figures_of(store);
   if (!store.has(results::kTrajectoryGroup)) return out;
-  for (FileFigure& figure : belt_figures_of(store)) {
+  for (figures::FileFigure& figure : belt_figures_of(store)) {
     if (figure.name == "history" || figure.name == "portrait") out.push_back(std::move(figure));
   }
   return out;

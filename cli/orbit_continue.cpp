@@ -1,9 +1,9 @@
-#include "cli/branch_store.hpp"
 #include "cli/orbit_family.hpp"
 #include "cli/orbit_report.hpp"
 #include "cli/orbit_search.hpp"
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
+#include "results/branch_store.hpp"
 #include "results/provenance.hpp"
 
 #include <fmt/format.h>
@@ -36,10 +36,10 @@ orbits::ContinuationOptions continuation_options(const OrbitContinueArguments& a
 }
 
 /// The branch that leaves at a special point, of two mirror images one.
-NamedBranch switched(const orbits::SystemFamily& family, const orbits::SpecialPoint& special,
-                     orbits::ContinuationOptions options) {
-  NamedBranch side{.title = fmt::format("from {} at {:.8g}", orbits::to_string(special.kind), special.parameter),
-                   .branch = {}};
+results::NamedBranch switched(const orbits::SystemFamily& family, const orbits::SpecialPoint& special,
+                              orbits::ContinuationOptions options) {
+  results::NamedBranch side{
+      .title = fmt::format("from {} at {:.8g}", orbits::to_string(special.kind), special.parameter), .branch = {}};
   try {
     const orbits::BranchPoint first = orbits::switch_branch(family, special, options).front();
     options.direction = first.parameter >= special.parameter ? 1 : -1;
@@ -57,9 +57,9 @@ NamedBranch switched(const orbits::SystemFamily& family, const orbits::SpecialPo
   return side;
 }
 
-std::vector<NamedBranch> follow(const orbits::SystemFamily& family, const orbits::PeriodicOrbit& orbit, double start,
-                                const orbits::ContinuationOptions& options, bool switches) {
-  std::vector<NamedBranch> branches = {
+std::vector<results::NamedBranch> follow(const orbits::SystemFamily& family, const orbits::PeriodicOrbit& orbit,
+                                         double start, const orbits::ContinuationOptions& options, bool switches) {
+  std::vector<results::NamedBranch> branches = {
       {.title = "main branch", .branch = orbits::continue_orbit(family, orbit, start, options)}};
   if (!switches) return branches;
   const std::vector<orbits::SpecialPoint> special = branches.front().branch.special;
@@ -71,7 +71,7 @@ std::vector<NamedBranch> follow(const orbits::SystemFamily& family, const orbits
   return branches;
 }
 
-Json branch_json(const NamedBranch& named) {
+Json branch_json(const results::NamedBranch& named) {
   const orbits::Branch& branch = named.branch;
   Json special = Json::array();
   for (const orbits::SpecialPoint& point : branch.special) {
@@ -99,7 +99,7 @@ Json branch_json(const NamedBranch& named) {
   return data;
 }
 
-std::string branch_text(const NamedBranch& named) {
+std::string branch_text(const results::NamedBranch& named) {
   const orbits::Branch& branch = named.branch;
   std::string text = fmt::format("{}: {} orbits", named.title, branch.points.size());
   if (!branch.points.empty()) {
@@ -136,16 +136,16 @@ Report run(const Session& session, const OrbitContinueArguments& arguments) {
   if (!found.converged()) return not_found("orbit continue", found);
 
   const orbits::ContinuationOptions options = continuation_options(arguments, range, start, search.options);
-  const std::vector<NamedBranch> branches = follow(family, found.orbit, start, options, arguments.switches);
+  const std::vector<results::NamedBranch> branches = follow(family, found.orbit, start, options, arguments.switches);
   results::StoreWriter writer(arguments.output, scene.units);
   results::save(writer,
                 results::provenance_of(scene, fmt::format("slipmode orbit continue --over {}", arguments.over)));
-  store_branches(writer, range.key, branches, family);
+  results::store_branches(writer, range.key, branches, family);
   writer.commit();
 
   Report report;
   Json list = Json::array();
-  for (const NamedBranch& branch : branches) {
+  for (const results::NamedBranch& branch : branches) {
     list.push_back(branch_json(branch));
     report.text += branch_text(branch);
   }

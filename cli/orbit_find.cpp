@@ -40,7 +40,7 @@ Report run(const Session& session, const OrbitFindArguments& arguments) {
   const orbits::ShootingResult result = orbits::shoot(system, start.guess, start.options);
   if (!result.converged()) return not_found("orbit find", result);
 
-  const std::vector<orbits::Amplitude> amplitudes = contact_amplitudes(system, result.orbit);
+  const std::vector<orbits::Amplitude> amplitudes = orbits::contact_amplitudes(system, result.orbit);
   Report report;
   report.data = {{"verb", "orbit find"}, {"title", scene.title}, {"model", model.title()}};
   report.data.update(orbit_json(system, result.orbit, amplitudes));

@@ -2,6 +2,7 @@
 
 #include "cli/json_values.hpp"
 #include "cli/text_table.hpp"
+#include "results/table.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -64,18 +65,6 @@ std::string amplitude_table(const dynamics::HybridSystem& system, const std::vec
 
 }  // namespace
 
-std::vector<orbits::Amplitude> contact_amplitudes(const dynamics::HybridSystem& system, const PeriodicOrbit& orbit) {
-  std::vector<orbits::Amplitude> amplitudes;
-  for (const friction::Contact& contact : system.contacts()) {
-    orbits::Amplitude own = orbits::amplitude(system, orbit, contact.direction);
-    own.min += contact.offset;
-    own.max += contact.offset;
-    own.mean += contact.offset;
-    amplitudes.push_back(own);
-  }
-  return amplitudes;
-}
-
 std::string multipliers_text(const Eigen::VectorXcd& multipliers) {
   constexpr std::size_t kShown = 6;
   std::vector<std::string> texts;
@@ -122,9 +111,9 @@ Json orbit_json(const dynamics::HybridSystem& system, const PeriodicOrbit& orbit
                {"iterations", orbit.iterations},
                {"residuals", orbit.residuals}};
   data["start"] = {{"time", orbit.start.time},
-                   {"displacement", json_list(orbit.start.q)},
-                   {"velocity", json_list(orbit.start.v)},
-                   {"internal", json_list(orbit.start.internal)}};
+                   {"displacement", results::values_of(orbit.start.q)},
+                   {"velocity", results::values_of(orbit.start.v)},
+                   {"internal", results::values_of(orbit.start.internal)}};
   Json sizes = Json::array();
   for (std::size_t c = 0; c < amplitudes.size(); ++c) {
     const orbits::Amplitude& own = amplitudes[c];
@@ -154,14 +143,15 @@ Report not_found(const std::string& verb, const orbits::ShootingResult& result) 
   Report report;
   report.exit_code = kNumericalFailure;
   report.text = fmt::format("no orbit from this guess ({}): {}", orbits::to_string(result.status), result.message);
-  report.data = {{"verb", verb},
-                 {"message", report.text},
-                 {"reason", orbits::to_string(result.status)},
-                 {"period", best.period},
-                 {"residual", best.residual},
-                 {"iterations", best.iterations},
-                 {"residuals", best.residuals},
-                 {"best", {{"displacement", json_list(best.start.q)}, {"velocity", json_list(best.start.v)}}}};
+  report.data = {
+      {"verb", verb},
+      {"message", report.text},
+      {"reason", orbits::to_string(result.status)},
+      {"period", best.period},
+      {"residual", best.residual},
+      {"iterations", best.iterations},
+      {"residuals", best.residuals},
+      {"best", {{"displacement", results::values_of(best.start.q)}, {"velocity", results::values_of(best.start.v)}}}};
   return report;
 }
 

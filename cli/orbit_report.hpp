@@ -8,10 +8,6 @@
 
 namespace slipmode::cli {
 
-/// Sizes of the contacts' displacements along an orbit, one per contact.
-[[nodiscard]] std::vector<orbits::Amplitude> contact_amplitudes(const dynamics::HybridSystem& system,
-                                                                const orbits::PeriodicOrbit& orbit);
-
 /// "1.42099, 0.148245", "-0.224835 ± 0.226077i": the first few multipliers.
 [[nodiscard]] std::string multipliers_text(const Eigen::VectorXcd& multipliers);
 

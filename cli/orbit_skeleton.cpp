@@ -1,8 +1,9 @@
-#include "cli/skeleton_store.hpp"
+#include "cli/skeleton_report.hpp"
 #include "cli/verbs.hpp"
 #include "results/provenance.hpp"
 #include "results/records.hpp"
 #include "results/reduced_file.hpp"
+#include "results/skeleton_store.hpp"
 #include "rom/reduce.hpp"
 
 #include <fmt/format.h>
@@ -128,7 +129,7 @@ Pair found_in_both(const Session& session, const OrbitSkeletonArguments& argumen
           extended(reduced, own.reduced, to_reduced, "reduced, from the full model's orbits")};
 }
 
-ModelSkeleton shown(const Recorded& model, orbits::Skeleton skeleton) {
+results::ModelSkeleton shown(const Recorded& model, orbits::Skeleton skeleton) {
   return {model.title, std::move(skeleton), model.portrait};
 }
 
@@ -145,9 +146,9 @@ results::StoreWriter begin_store(const OrbitSkeletonArguments& arguments, const 
 Report run_one(const Session& session, const OrbitSkeletonArguments& arguments, const scene::Scene& scene,
                const std::optional<pod::Basis>& basis) {
   const Recorded model = record(session, arguments, scene, basis, {});
-  const ModelSkeleton found = shown(model, found_in(session, arguments, model, "skeleton"));
+  const results::ModelSkeleton found = shown(model, found_in(session, arguments, model, "skeleton"));
   results::StoreWriter writer = begin_store(arguments, scene);
-  store_skeleton(writer, basis ? "reduced" : "full", found, results::Units::of(scene.units));
+  results::store_skeleton(writer, basis ? "reduced" : "full", found, results::Units::of(scene.units));
   writer.commit();
   Report report;
   report.data = {
@@ -163,13 +164,13 @@ Report run_pair(const Session& session, const OrbitSkeletonArguments& arguments,
   Pair pair = found_in_both(session, arguments, full, reduced);
   const orbits::SkeletonComparison comparison =
       orbits::compare_skeletons(pair.full, pair.reduced, full.attractor.metric);
-  const ModelSkeleton of_full = shown(full, std::move(pair.full));
-  const ModelSkeleton of_reduced = shown(reduced, std::move(pair.reduced));
+  const results::ModelSkeleton of_full = shown(full, std::move(pair.full));
+  const results::ModelSkeleton of_reduced = shown(reduced, std::move(pair.reduced));
   const results::Units units = results::Units::of(scene.units);
   results::StoreWriter writer = begin_store(arguments, scene);
-  store_skeleton(writer, "full", of_full, units);
-  store_skeleton(writer, "reduced", of_reduced, units);
-  store_comparison(writer, comparison);
+  results::store_skeleton(writer, "full", of_full, units);
+  results::store_skeleton(writer, "reduced", of_reduced, units);
+  results::store_comparison(writer, comparison);
   writer.commit();
   Report report;
   report.data = {{"verb", "orbit skeleton"},

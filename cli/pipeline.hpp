@@ -2,6 +2,7 @@
 
 #include "cli/session.hpp"
 #include "cli/steps.hpp"
+#include "cli/validation_report.hpp"
 #include "diagnostics/validate.hpp"
 
 #include <filesystem>

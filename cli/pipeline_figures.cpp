@@ -15,7 +15,7 @@ std::vector<std::string> save_figures_of(const Session& session, const std::file
   for (const std::string& name : files) {
     if (std::find(skipped.begin(), skipped.end(), name) != skipped.end()) continue;
     const results::StoreReader store(folder / name);
-    for (const FileFigure& figure : figures_of(store)) drawn.emplace_back(figure.name, figure.draw());
+    for (const figures::FileFigure& figure : figures_of(store)) drawn.emplace_back(figure.name, figure.draw());
   }
   std::vector<std::string> names;
   for (const auto& entry : drawn) {

@@ -1,7 +1,9 @@
 #include "cli/json_values.hpp"
 #include "cli/pipeline.hpp"
 #include "cli/text_table.hpp"
-#include "cli/validation_store.hpp"
+#include "cli/validation_report.hpp"
+#include "results/table.hpp"
+#include "results/validation_store.hpp"
 
 #include <fmt/format.h>
 #include <cmath>
@@ -63,11 +65,12 @@ std::string left_out_text(const std::vector<LeftOut>& left_out) {
 
 Json to_json(const PipelineResult& result, const scene::Scene& scene) {
   Json out = {{"verb", "run"}, {"title", scene.title}, {"units", scene.units}};
-  out["modes"] = {{"slipping_omega", json_list(result.slipping)}, {"sticking_omega", json_list(result.sticking)}};
+  out["modes"] = {{"slipping_omega", results::values_of(result.slipping)},
+                  {"sticking_omega", results::values_of(result.sticking)}};
   if (result.ensemble) out["ensemble"] = ensemble_json(result);
   if (result.pod) {
     out["pod"] = {{"rank", result.pod->rank},
-                  {"shares", json_list(result.pod->shares)},
+                  {"shares", results::values_of(result.pod->shares)},
                   {"chosen_modes", result.chosen},
                   {"chosen_energy", result.pod->shares.head(result.chosen).sum()}};
   }

@@ -12,7 +12,7 @@ struct PlotArguments {
   std::string input, output, figure;
 };
 
-const FileFigure& select(const std::vector<FileFigure>& figures, const PlotArguments& arguments) {
+const figures::FileFigure& select(const std::vector<figures::FileFigure>& figures, const PlotArguments& arguments) {
   if (figures.empty()) {
     throw InvalidInput(
         fmt::format("'{}' holds nothing to draw; figures come from trajectories, PODs, reduced models, "
@@ -20,11 +20,11 @@ const FileFigure& select(const std::vector<FileFigure>& figures, const PlotArgum
                     arguments.input));
   }
   if (arguments.figure.empty()) return figures.front();
-  for (const FileFigure& figure : figures) {
+  for (const figures::FileFigure& figure : figures) {
     if (figure.name == arguments.figure) return figure;
   }
   std::vector<std::string> names;
-  for (const FileFigure& figure : figures) names.push_back(figure.name);
+  for (const figures::FileFigure& figure : figures) names.push_back(figure.name);
   throw InvalidInput(
       fmt::format("--figure {}: '{}' can give {}", arguments.figure, arguments.input, fmt::join(names, ", ")));
 }
@@ -33,14 +33,14 @@ Report run(const PlotArguments& arguments) {
   figures::require_figure_extension(arguments.output);
   require_writable(arguments.output);
   const results::StoreReader store(arguments.input);
-  const std::vector<FileFigure> figures = figures_of(store);
-  const FileFigure& figure = select(figures, arguments);
+  const std::vector<figures::FileFigure> figures = figures_of(store);
+  const figures::FileFigure& figure = select(figures, arguments);
   figures::save(figure.draw(), {arguments.output});
 
   Report report;
   report.text = fmt::format("{}: {}\n", figure.what, arguments.output);
   Json others = Json::array();
-  for (const FileFigure& other : figures) {
+  for (const figures::FileFigure& other : figures) {
     if (other.name == figure.name) continue;
     others.push_back(other.name);
     report.text += fmt::format("  also in this file: --figure {} ({})\n", other.name, other.what);

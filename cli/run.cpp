@@ -1,6 +1,7 @@
 #include "cli/pipeline.hpp"
 #include "cli/shaken_model.hpp"
 #include "cli/shaken_pipeline.hpp"
+#include "cli/validation_report.hpp"
 #include "cli/verbs.hpp"
 #include "cli/work_folder.hpp"
 #include "figures/gnuplot.hpp"

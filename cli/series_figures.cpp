@@ -1,10 +1,10 @@
 #include "cli/series_figures.hpp"
 
+#include "cli/series_store.hpp"
 #include "figures/delay_map.hpp"
 #include "figures/panels.hpp"
 #include "figures/recurrence_plot.hpp"
 #include "figures/style.hpp"
-#include "cli/series_store.hpp"
 #include "results/table.hpp"
 
 #include <fmt/format.h>
@@ -210,8 +210,8 @@ figures::Figure draw_recurrence(const results::StoreReader& store) {
 
 }  // namespace
 
-std::vector<FileFigure> series_figures_of(const results::StoreReader& store) {
-  std::vector<FileFigure> out;
+std::vector<figures::FileFigure> series_figures_of(const results::StoreReader& store) {
+  std::vector<figures::FileFigure> out;
   const auto add = [&](const std::string& group, std::string name, std::string what, auto draw) {
     if (store.has(diagnosis_path(group)))
       out.push_back({std::move(name), std::move(what), [&store, draw] { return draw(store); }});
@@ -232,7 +232,7 @@ std::vector<FileFigure> series_figures_of(const results::StoreReader& store) {
 std::vector<std::string> draw_series_figures(const results::StoreReader& store, const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
   std::vector<std::string> names;
-  for (const FileFigure& figure : series_figures_of(store)) {
+  for (const figures::FileFigure& figure : series_figures_of(store)) {
     figures::save(figure.draw(), {folder / (figure.name + ".svg"), folder / (figure.name + ".png")});
     names.push_back(figure.name);
   }

@@ -11,7 +11,7 @@ namespace slipmode::cli {
 namespace {
 
 std::vector<double> whole_numbers(Eigen::Index first, Eigen::Index count) {
-  return json_list(
+  return results::values_of(
       Eigen::VectorXd::LinSpaced(count, static_cast<double>(first), static_cast<double>(first + count - 1)));
 }
 
@@ -76,7 +76,7 @@ void save_information(results::StoreWriter& store, const diagnostics::SeriesStud
     table.columns.push_back({information_column(curve.settings),
                              {"bit", fmt::format("±{:.2g} between the halves; first minimum at {} (-1: none)",
                                                  curve.error, curve.first_minimum)},
-                             json_list(curve.bits)});
+                             results::values_of(curve.bits)});
   }
   results::save(store, diagnosis_path("information"), table);
 }
@@ -87,18 +87,18 @@ void save_neighbours(results::StoreWriter& store, const diagnostics::SeriesStudy
   results::save(store, diagnosis_path("neighbours"),
                 {"false nearest neighbours (Kennel) and Cao's averages against the dimension",
                  {{"dimension", {"", "of the embedding"}, whole_numbers(1, found.share.size())},
-                  {"share", {"1", "share of false neighbours by either criterion"}, json_list(found.share)},
-                  {"error", {"1", "half the difference between the halves"}, json_list(found.error)},
+                  {"share", {"1", "share of false neighbours by either criterion"}, results::values_of(found.share)},
+                  {"error", {"1", "half the difference between the halves"}, results::values_of(found.error)},
                   {"by_ratio",
                    {"1", fmt::format("next coordinate above {:g} distances", found.settings.ratio)},
-                   json_list(found.by_ratio)},
+                   results::values_of(found.by_ratio)},
                   {"by_size",
                    {"1", fmt::format("then farther than {:g} deviations", found.settings.size)},
-                   json_list(found.by_size)},
-                  {"E1", {"1", "Cao's E1"}, json_list(study.cao->E1)},
-                  {"E1_error", {"1", "from halves"}, json_list(study.cao->E1_error)},
-                  {"E2", {"1", "Cao's E2"}, json_list(study.cao->E2)},
-                  {"E2_error", {"1", "from halves"}, json_list(study.cao->E2_error)}}});
+                   results::values_of(found.by_size)},
+                  {"E1", {"1", "Cao's E1"}, results::values_of(study.cao->E1)},
+                  {"E1_error", {"1", "from halves"}, results::values_of(study.cao->E1_error)},
+                  {"E2", {"1", "Cao's E2"}, results::values_of(study.cao->E2)},
+                  {"E2_error", {"1", "from halves"}, results::values_of(study.cao->E2_error)}}});
 }
 
 void save_fit(results::StoreWriter& store, const std::string& group, const diagnostics::LinearFit& fit,
@@ -113,8 +113,8 @@ void save_divergence(results::StoreWriter& store, const std::string& name, const
                      const diagnostics::Series& series) {
   results::save(store, diagnosis_path(name),
                 {fmt::format("mean logarithm of the distance of neighbours, {}", name),
-                 {{"time", {series.time_unit, "since they were near"}, json_list(found.time)},
-                  {"mean_log", {"1", "natural logarithm"}, json_list(found.mean_log)}}});
+                 {{"time", {series.time_unit, "since they were near"}, results::values_of(found.time)},
+                  {"mean_log", {"1", "natural logarithm"}, results::values_of(found.mean_log)}}});
   save_fit(store, diagnosis_path(name), found.region, "nat/" + series.time_unit);
 }
 
@@ -122,9 +122,9 @@ void save_correlation(results::StoreWriter& store, const diagnostics::SeriesStud
   const diagnostics::CorrelationDimension& found = *study.correlation;
   results::save(store, diagnosis_path("correlation"),
                 {"correlation sum",
-                 {{"radius", {study.series.unit, "maximum norm"}, json_list(found.radius)},
-                  {"C", {"1", "share of pairs within it"}, json_list(found.C)},
-                  {"local_slope", {"1", "d ln C / d ln r"}, json_list(found.local_slope)}}});
+                 {{"radius", {study.series.unit, "maximum norm"}, results::values_of(found.radius)},
+                  {"C", {"1", "share of pairs within it"}, results::values_of(found.C)},
+                  {"local_slope", {"1", "d ln C / d ln r"}, results::values_of(found.local_slope)}}});
   save_fit(store, diagnosis_path("correlation"), found.plateau, "1");
 }
 
@@ -148,7 +148,7 @@ void save_curves(results::StoreWriter& store, const diagnostics::SeriesStudy& st
     results::save(store, diagnosis_path("autocorrelation"),
                   {"autocorrelation",
                    {{"lag", {"", "samples"}, whole_numbers(0, study.autocorrelation->size())},
-                    {"value", {"1", "autocorrelation"}, json_list(*study.autocorrelation)}}});
+                    {"value", {"1", "autocorrelation"}, results::values_of(*study.autocorrelation)}}});
   }
   save_information(store, study);
   save_neighbours(store, study);
@@ -158,17 +158,19 @@ void save_curves(results::StoreWriter& store, const diagnostics::SeriesStudy& st
   }
   if (study.kantz) save_divergence(store, "kantz", *study.kantz, series);
   if (study.jacobians) {
-    results::save(store, diagnosis_path("exponents"),
-                  {"exponents by fitted Jacobians, descending",
-                   {{"exponent", {"nat/" + series.time_unit, "exponent"}, json_list(study.jacobians->exponents)},
-                    {"error", {"nat/" + series.time_unit, "standard error"}, json_list(study.jacobians->error)}}});
+    results::save(
+        store, diagnosis_path("exponents"),
+        {"exponents by fitted Jacobians, descending",
+         {{"exponent", {"nat/" + series.time_unit, "exponent"}, results::values_of(study.jacobians->exponents)},
+          {"error", {"nat/" + series.time_unit, "standard error"}, results::values_of(study.jacobians->error)}}});
   }
   if (study.correlation) save_correlation(store, study);
   if (study.spectrum) {
-    results::save(store, diagnosis_path("spectrum"),
-                  {"averaged amplitude spectrum (Welch)",
-                   {{"frequency", {"1/" + series.time_unit, "frequency"}, json_list(study.spectrum->frequency_hz)},
-                    {"amplitude", {series.unit, "of the sine"}, json_list(study.spectrum->amplitude)}}});
+    results::save(
+        store, diagnosis_path("spectrum"),
+        {"averaged amplitude spectrum (Welch)",
+         {{"frequency", {"1/" + series.time_unit, "frequency"}, results::values_of(study.spectrum->frequency_hz)},
+          {"amplitude", {series.unit, "of the sine"}, results::values_of(study.spectrum->amplitude)}}});
   }
   if (study.section) {
     store.write(diagnosis_path("section/time"), study.section->time,

@@ -6,6 +6,7 @@
 #include "fem/modes.hpp"
 #include "pod/mode_shares.hpp"
 #include "results/records.hpp"
+#include "results/table.hpp"
 #include "rom/reduce.hpp"
 
 #include <fmt/format.h>
@@ -125,10 +126,11 @@ std::string text_of(const ShakenModes& modes) {
 }
 
 Json json_of(const ShakenModes& modes) {
-  Json out = {{"mass_pom", {{"shares", json_list(modes.mass_pom.shares)}, {"lnm_shares", rows_of(modes.mass_shares)}}}};
+  Json out = {{"mass_pom",
+               {{"shares", results::values_of(modes.mass_pom.shares)}, {"lnm_shares", rows_of(modes.mass_shares)}}}};
   if (!modes.pomf) return out;
-  out["pomf"] = {{"sensor_shares", json_list(modes.pomf->discrete.shares)},
-                 {"mass_shares", json_list(modes.pomf->mass_shares)},
+  out["pomf"] = {{"sensor_shares", results::values_of(modes.pomf->discrete.shares)},
+                 {"mass_shares", results::values_of(modes.pomf->mass_shares)},
                  {"lnm_shares", rows_of(modes.pomf_shares)},
                  {"condition", modes.pomf->condition}};
   return out;

@@ -1,13 +1,13 @@
 #include "cli/shaken_figures.hpp"
 
-#include "figures/panels.hpp"
-#include "figures/style.hpp"
 #include "cli/motion_figures.hpp"
 #include "cli/shaken_bases.hpp"
 #include "cli/shaken_model.hpp"
 #include "cli/shaken_validation.hpp"
 #include "fem/beam_modes.hpp"
 #include "fem/modes.hpp"
+#include "figures/panels.hpp"
+#include "figures/style.hpp"
 #include "results/provenance.hpp"
 #include "results/records.hpp"
 #include "results/table.hpp"
@@ -185,8 +185,8 @@ Figure functions_along(const StoreReader& store, const std::string& group, const
 
 }  // namespace
 
-std::vector<FileFigure> shaken_figures_of(const StoreReader& store) {
-  std::vector<FileFigure> out;
+std::vector<figures::FileFigure> shaken_figures_of(const StoreReader& store) {
+  std::vector<figures::FileFigure> out;
   const auto add = [&](std::string name, std::string what, auto draw) {
     out.push_back({std::move(name), std::move(what), [&store, draw] { return draw(store); }});
   };
@@ -198,7 +198,7 @@ std::vector<FileFigure> shaken_figures_of(const StoreReader& store) {
     for (const auto& [basis, models] : models_by_basis(store)) {
       if (!swept) break;
       add("sweep_" + basis, "sections of reduced models over the full model's",
-          [models, colour = colour_of_basis(basis)](const StoreReader& file) {
+          [models = models, colour = colour_of_basis(basis)](const StoreReader& file) {
             return multiples(file, models, colour);
           });
     }

@@ -1,4 +1,5 @@
 #include "cli/shaken_pipeline.hpp"
+#include "cli/validation_report.hpp"
 
 #include "cli/file_figures.hpp"
 #include "cli/pipeline.hpp"

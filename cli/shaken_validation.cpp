@@ -1,4 +1,5 @@
 #include "cli/shaken_validation.hpp"
+#include "cli/validation_report.hpp"
 
 #include "cli/shaken_model.hpp"
 #include "cli/text_table.hpp"

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "cli/session.hpp"
+#include "cli/validation_report.hpp"
 #include "diagnostics/driven_validation.hpp"
 #include "results/store.hpp"
 

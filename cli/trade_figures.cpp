@@ -112,9 +112,9 @@ std::vector<std::string> save_trade_figures(const trade::Study& study, const sce
   return files;
 }
 
-std::vector<FileFigure> trade_figures_of(const results::StoreReader& store) {
+std::vector<figures::FileFigure> trade_figures_of(const results::StoreReader& store) {
   if (!store.has(std::string(kTradeGroup) + "/candidates")) return {};
-  std::vector<FileFigure> out;
+  std::vector<figures::FileFigure> out;
   const Fronts fronts = fronts_of(store);
   for (const Measure measure :
        {Measure::kDe, Measure::kDx, Measure::kPoints, Measure::kSpread, Measure::kEnergy, Measure::kStick}) {

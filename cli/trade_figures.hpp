@@ -15,6 +15,6 @@ std::vector<std::string> save_trade_figures(const trade::Study& study, const sce
                                             const std::filesystem::path& folder);
 
 /// The same of a file that `slipmode trade` wrote; empty for another file.
-[[nodiscard]] std::vector<FileFigure> trade_figures_of(const results::StoreReader& store);
+[[nodiscard]] std::vector<figures::FileFigure> trade_figures_of(const results::StoreReader& store);
 
 }  // namespace slipmode::cli

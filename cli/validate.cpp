@@ -1,4 +1,5 @@
 #include "diagnostics/validate.hpp"
+#include "cli/validation_report.hpp"
 
 #include "cli/shaken_bases.hpp"
 #include "cli/shaken_model.hpp"
@@ -6,9 +7,9 @@
 #include "cli/steps.hpp"
 #include "cli/validate_run.hpp"
 #include "cli/validation_setup.hpp"
-#include "cli/validation_store.hpp"
 #include "cli/verbs.hpp"
 #include "results/records.hpp"
+#include "results/validation_store.hpp"
 #include "scene/own_times.hpp"
 
 #include <fmt/format.h>

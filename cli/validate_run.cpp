@@ -1,10 +1,10 @@
 #include "cli/validate_run.hpp"
 
 #include "cli/portraits.hpp"
-#include "cli/validation_store.hpp"
 #include "results/journal.hpp"
 #include "results/provenance.hpp"
 #include "results/sweep_store.hpp"
+#include "results/validation_store.hpp"
 
 #include <fmt/format.h>
 
@@ -39,7 +39,7 @@ diagnostics::ValidationReport validate_into(const Session& session, const scene:
   const results::Units units = results::Units::of(scene.units);
   results::StoreWriter writer(file, scene.units);
   results::save(writer, results::provenance_of(scene, "slipmode validate"));
-  store_validation(writer, report, scene);
+  results::store_validation(writer, report, scene);
   store_portraits(writer, "portraits/levels", level_portraits(full, candidates.front(), report), units);
   store_portraits(writer, "portraits/orbits", orbit_portraits(full, candidates.front(), report), units);
   writer.commit();

@@ -1,5 +1,5 @@
-#include "cli/exponents_store.hpp"
-#include "cli/validation_store.hpp"
+#include "cli/exponents_report.hpp"
+#include "cli/validation_report.hpp"
 #include "results/sweep_store.hpp"
 
 namespace slipmode::cli {
@@ -103,7 +103,7 @@ Json to_json(const ValidationReport& report) {
   }
   if (report.verdict) {
     out["verdict"] = verdict_json(*report.verdict);
-    out["exponents"] = exponents_json(exponents_of(*report.verdict));
+    out["exponents"] = exponents_json(results::exponents_of(*report.verdict));
   }
   if (report.cost) {
     const auto& c = *report.cost;

@@ -1,6 +1,6 @@
-#include "cli/exponents_store.hpp"
+#include "cli/exponents_report.hpp"
 #include "cli/text_table.hpp"
-#include "cli/validation_store.hpp"
+#include "cli/validation_report.hpp"
 #include "core/none.hpp"
 #include "results/sweep_store.hpp"
 

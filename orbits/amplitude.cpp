@@ -173,4 +173,16 @@ Amplitude amplitude(const dynamics::HybridSystem& system, const PeriodicOrbit& o
                          orbit.start.time, stacked(orbit.start), coarse.alternating);
 }
 
+std::vector<Amplitude> contact_amplitudes(const dynamics::HybridSystem& system, const PeriodicOrbit& orbit) {
+  std::vector<Amplitude> amplitudes;
+  for (const friction::Contact& contact : system.contacts()) {
+    Amplitude own = amplitude(system, orbit, contact.direction);
+    own.min += contact.offset;
+    own.max += contact.offset;
+    own.mean += contact.offset;
+    amplitudes.push_back(own);
+  }
+  return amplitudes;
+}
+
 }  // namespace slipmode::orbits

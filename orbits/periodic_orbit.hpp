@@ -125,4 +125,8 @@ struct Amplitude {
 [[nodiscard]] Amplitude amplitude(const dynamics::HybridSystem& system, const PeriodicOrbit& orbit,
                                   const Eigen::VectorXd& row);
 
+/// Sizes of the contacts' displacements along an orbit, one per contact.
+[[nodiscard]] std::vector<Amplitude> contact_amplitudes(const dynamics::HybridSystem& system,
+                                                        const PeriodicOrbit& orbit);
+
 }  // namespace slipmode::orbits

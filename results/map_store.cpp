@@ -158,12 +158,12 @@ void store_map(StoreWriter& writer, const SweepAxis& x, const SweepAxis& y, cons
   writer.describe_group(root, "settled periodic orbits over two keys; datasets are y x x");
   store_axis(writer, root + "/x", x, grid.x);
   store_axis(writer, root + "/y", y, grid.y);
-  for (const auto& [start, map] : maps) {
-    const std::string group = root + "/from_" + start;
-    writer.describe_group(group, start == "centre" ? "from the steady linear motion in the middle of the gap"
-                                                   : "from the scene's initial state");
+  for (const StartedMap& started : maps) {
+    const std::string group = root + "/from_" + started.start;
+    writer.describe_group(group, started.start == "centre" ? "from the steady linear motion in the middle of the gap"
+                                                           : "from the scene's initial state");
     const auto write = [&](const std::string& name, const Meaning& meaning, auto number) {
-      writer.write(group + "/" + name, layer(map, grid.x.size(), number), meaning);
+      writer.write(group + "/" + name, layer(started.map, grid.x.size(), number), meaning);
     };
     write("order", {"", "period in periods of the drive; 0: not periodic"}, [](const MapPoint& p) { return p.order; });
     write("crossings", {"", "changes of force law in a period; 0 also where not periodic"},
@@ -176,7 +176,7 @@ void store_map(StoreWriter& writer, const SweepAxis& x, const SweepAxis& y, cons
           [](const MapPoint& p) { return p.alternating; });
     write("residual", {"1", "mismatch of the orbit after its period"}, [](const MapPoint& p) { return p.residual; });
     write("periods", {"", "periods of the drive simulated"}, [](const MapPoint& p) { return p.periods; });
-    store_failures(writer, group + "/failures", grid, map);
+    store_failures(writer, group + "/failures", grid, started.map);
   }
 }
 

@@ -33,4 +33,9 @@ void save(StoreWriter& store, const std::string& group, const Table& table);
 /// @throws InvalidInput  when the group is not a table
 [[nodiscard]] Table load_table(const StoreReader& store, const std::string& group);
 
+/// A vector as columns of tables, and JSON, take it.
+[[nodiscard]] inline std::vector<double> values_of(const Eigen::VectorXd& values) {
+  return {values.begin(), values.end()};
+}
+
 }  // namespace slipmode::results

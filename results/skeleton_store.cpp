@@ -1,13 +1,11 @@
-#include "cli/skeleton_store.hpp"
+#include "results/skeleton_store.hpp"
 
-#include "cli/text_table.hpp"
 #include "results/orbit_records.hpp"
 #include "results/table.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-namespace slipmode::cli {
+namespace slipmode::results {
 namespace {
 
 using orbits::OrbitMatch;
@@ -30,14 +28,7 @@ std::vector<double> column(const SkeletonComparison& comparison, const Number& n
   return values;
 }
 
-/// Orbits are numbered from 1 for people.
-std::vector<std::int64_t> numbers_of(const std::vector<std::size_t>& indices) {
-  std::vector<std::int64_t> numbers;
-  for (const std::size_t index : indices) numbers.push_back(static_cast<std::int64_t>(index) + 1);
-  return numbers;
-}
-
-results::Table orbit_table(const Skeleton& skeleton, const results::Units& units) {
+Table orbit_table(const Skeleton& skeleton, const Units& units) {
   std::vector<std::string> word, stability;
   for (const SkeletonOrbit& member : skeleton.orbits) {
     word.push_back(member.orbit.word);
@@ -65,7 +56,7 @@ results::Table orbit_table(const Skeleton& skeleton, const results::Units& units
        {"word", {"", "sequence of regimes"}, word}}};
 }
 
-results::Table refusal_table(const Skeleton& skeleton, const results::Units& units) {
+Table refusal_table(const Skeleton& skeleton, const Units& units) {
   std::vector<double> length, period, distance;
   std::vector<std::string> origin, reason;
   for (const orbits::Refusal& refusal : skeleton.refusals) {
@@ -86,8 +77,13 @@ results::Table refusal_table(const Skeleton& skeleton, const results::Units& uni
 
 }  // namespace
 
-void store_skeleton(results::StoreWriter& writer, const std::string& name, const ModelSkeleton& model,
-                    const results::Units& units) {
+std::vector<std::int64_t> numbers_of(const std::vector<std::size_t>& indices) {
+  std::vector<std::int64_t> numbers;
+  for (const std::size_t index : indices) numbers.push_back(static_cast<std::int64_t>(index) + 1);
+  return numbers;
+}
+
+void store_skeleton(StoreWriter& writer, const std::string& name, const ModelSkeleton& model, const Units& units) {
   const std::string group = fmt::format("{}/{}", kSkeletonGroup, name);
   writer.describe_group(group, model.title);
   writer.write(group + "/title", model.title, {"", "which model"});
@@ -95,12 +91,12 @@ void store_skeleton(results::StoreWriter& writer, const std::string& name, const
                {"", "close returns and transferred orbits tried"});
   writer.write_columns(group + "/portrait", model.portrait,
                        {units.length, "displacement and velocity of the first contact along the attractor"});
-  results::save(writer, group + "/orbits", orbit_table(model.skeleton, units));
-  results::save(writer, group + "/refusals", refusal_table(model.skeleton, units));
+  save(writer, group + "/orbits", orbit_table(model.skeleton, units));
+  save(writer, group + "/refusals", refusal_table(model.skeleton, units));
   for (std::size_t k = 0; k < model.skeleton.orbits.size(); ++k) {
     const SkeletonOrbit& member = model.skeleton.orbits[k];
     const std::string own = fmt::format("{}/orbit_{:03}", group, k + 1);
-    results::save(writer, own, member.orbit);
+    save(writer, own, member.orbit);
     writer.write_columns(own + "/passages", member.points, {units.length, "(q; q') at the section, full model"});
     writer.write_columns(own + "/path", member.path,
                          {units.length, "(q; q') at equal parts of each interval between passages, full model"});
@@ -108,10 +104,10 @@ void store_skeleton(results::StoreWriter& writer, const std::string& name, const
   }
 }
 
-void store_comparison(results::StoreWriter& writer, const SkeletonComparison& comparison) {
+void store_comparison(StoreWriter& writer, const SkeletonComparison& comparison) {
   const std::string group = fmt::format("{}/comparison", kSkeletonGroup);
   writer.describe_group(group, "orbits of the full and of the reduced model; differences are reduced less full");
-  const results::Table matched{
+  const Table matched{
       "orbits that both have",
       {{"full",
         {"", "number of the full model's orbit, from 1"},
@@ -127,82 +123,9 @@ void store_comparison(results::StoreWriter& writer, const SkeletonComparison& co
         {"1", "root mean square distance of the paths, relative to the full orbit's size"},
         column(comparison, [](const auto& m) { return m.shape; })},
        {"share", {"1", "difference of shares"}, column(comparison, [](const auto& m) { return m.share; })}}};
-  results::save(writer, group + "/matched", matched);
+  save(writer, group + "/matched", matched);
   writer.write(group + "/missed", numbers_of(comparison.missed), {"", "orbits of the full model without a partner"});
   writer.write(group + "/extra", numbers_of(comparison.extra), {"", "orbits of the reduced model without a partner"});
 }
 
-Json skeleton_json(const ModelSkeleton& model) {
-  Json list = Json::array();
-  for (const SkeletonOrbit& member : model.skeleton.orbits) {
-    list.push_back({{"period", member.orbit.period},
-                    {"length", member.length},
-                    {"leading_modulus", member.orbit.leading_modulus},
-                    {"stability", orbits::to_string(member.orbit.stability)},
-                    {"zero_multipliers", member.orbit.zero_multipliers},
-                    {"word", member.orbit.word},
-                    {"share", member.share},
-                    {"off_attractor", member.off_attractor},
-                    {"hits", member.hits},
-                    {"residual", member.orbit.residual}});
-  }
-  Json refused = Json::array();
-  for (const orbits::Refusal& refusal : model.skeleton.refusals) {
-    const orbits::Candidate& candidate = model.skeleton.candidates[refusal.candidate];
-    refused.push_back({{"origin", candidate.origin},
-                       {"length", candidate.length},
-                       {"period", candidate.period},
-                       {"distance", candidate.distance},
-                       {"reason", refusal.reason}});
-  }
-  return {{"title", model.title},
-          {"candidates", model.skeleton.candidates.size()},
-          {"radius", model.skeleton.radius},
-          {"orbits", list},
-          {"refused", refused}};
-}
-
-std::string skeleton_text(const ModelSkeleton& model) {
-  TextTable table({"orbit", "period", "length", "|multiplier|", "", "share %", "off", "hits", "mismatch"});
-  for (std::size_t k = 0; k < model.skeleton.orbits.size(); ++k) {
-    const SkeletonOrbit& member = model.skeleton.orbits[k];
-    table.add({std::to_string(k + 1), fixed(member.orbit.period, 5), std::to_string(member.length),
-               fixed(member.orbit.leading_modulus, 4), orbits::to_string(member.orbit.stability),
-               fixed(100.0 * member.share, 1), fixed(member.off_attractor, 3), std::to_string(member.hits),
-               fmt::format("{:.1e}", member.orbit.residual)});
-  }
-  return fmt::format("{}: {} orbits from {} candidates, {} refused\n{}", model.title, model.skeleton.orbits.size(),
-                     model.skeleton.candidates.size(), model.skeleton.refusals.size(), table.str());
-}
-
-Json comparison_json(const SkeletonComparison& comparison) {
-  Json matched = Json::array();
-  for (const OrbitMatch& match : comparison.matched) {
-    matched.push_back({{"full", match.full + 1},
-                       {"reduced", match.reduced + 1},
-                       {"period", match.period},
-                       {"log_multiplier", match.log_multiplier},
-                       {"shape", match.shape},
-                       {"share", match.share}});
-  }
-  return {{"matched", matched}, {"missed", numbers_of(comparison.missed)}, {"extra", numbers_of(comparison.extra)}};
-}
-
-std::string comparison_text(const SkeletonComparison& comparison, const Skeleton& full, const Skeleton& reduced) {
-  TextTable table(
-      {"full", "reduced", "period", "length", "ΔT %", "Δln|multiplier|", "shape %", "share %", "reduced %"});
-  for (const OrbitMatch& match : comparison.matched) {
-    const SkeletonOrbit& a = full.orbits[match.full];
-    const SkeletonOrbit& b = reduced.orbits[match.reduced];
-    table.add({std::to_string(match.full + 1), std::to_string(match.reduced + 1), fixed(a.orbit.period, 4),
-               std::to_string(a.length), fixed(100.0 * match.period, 3), fixed(match.log_multiplier, 3),
-               fixed(100.0 * match.shape, 1), fixed(100.0 * a.share, 1), fixed(100.0 * b.share, 1)});
-  }
-  const auto list = [](const std::vector<std::size_t>& indices) {
-    return indices.empty() ? std::string("none") : fmt::format("{}", fmt::join(numbers_of(indices), ", "));
-  };
-  return fmt::format("{} orbits matched\n{}Missed by the reduced model: {}\nExtra in the reduced model: {}\n",
-                     comparison.matched.size(), table.str(), list(comparison.missed), list(comparison.extra));
-}
-
-}  // namespace slipmode::cli
+}  // namespace slipmode::results

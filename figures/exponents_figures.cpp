@@ -1,9 +1,9 @@
-#include "cli/exponents_figures.hpp"
+#include "figures/exponents_figures.hpp"
 
-#include "cli/exponents_store.hpp"
 #include "figures/exponent_figures.hpp"
 #include "figures/panels.hpp"
 #include "figures/style.hpp"
+#include "results/exponents_store.hpp"
 #include "results/table.hpp"
 
 #include <fmt/format.h>
@@ -12,24 +12,21 @@
 #include <cmath>
 #include <numbers>
 
-namespace slipmode::cli {
+namespace slipmode::figures {
 namespace {
 
-using figures::Figure;
-using figures::to_vector;
 using results::StoreReader;
 
 constexpr const char* kExponentUnit = "bit per unit of time";
-constexpr std::array<std::string_view, 4> kExponentModelColours = {figures::kFullColour, figures::kPomColour,
-                                                                   figures::kLnmColour, figures::kSecondColour};
+constexpr std::array<std::string_view, 4> kExponentModelColours = {kFullColour, kPomColour, kLnmColour, kSecondColour};
 
 std::string_view model_colour(std::size_t model) { return kExponentModelColours[model % kExponentModelColours.size()]; }
 
 /// Groups of models that have exponents.
 std::vector<std::string> exponent_groups(const StoreReader& store) {
   std::vector<std::string> groups;
-  for (std::size_t i = 0; store.has(fmt::format("{}/{}", kExponentsGroup, i)); ++i) {
-    const std::string group = fmt::format("{}/{}", kExponentsGroup, i);
+  for (std::size_t i = 0; store.has(fmt::format("{}/{}", results::kExponentsGroup, i)); ++i) {
+    const std::string group = fmt::format("{}/{}", results::kExponentsGroup, i);
     if (store.has(group + "/values")) groups.push_back(group);
   }
   return groups;
@@ -53,7 +50,7 @@ Eigen::Index leading_exponents(const StoreReader& store) {
 Eigen::Index finite_of(const Eigen::VectorXd& values) { return values.array().isFinite().count(); }
 
 Figure exponents_drawn(const StoreReader& store) {
-  std::vector<figures::ExponentSeries> models;
+  std::vector<ExponentSeries> models;
   for (const std::string& group : exponent_groups(store)) {
     const results::Table values = results::load_table(store, group + "/values");
     const Eigen::VectorXd bits = bits_of(values.numbers("nats"));
@@ -66,12 +63,12 @@ Figure exponents_drawn(const StoreReader& store) {
                       .error = bits_of(values.numbers("error")).head(finite),
                       .colour = model_colour(models.size())});
   }
-  return figures::exponent_spectrum(models, leading_exponents(store), kExponentUnit);
+  return exponent_spectrum(models, leading_exponents(store), kExponentUnit);
 }
 
 Figure convergence_drawn(const StoreReader& store) {
   const Eigen::Index most = leading_exponents(store);
-  std::vector<figures::ExponentHistory> models;
+  std::vector<ExponentHistory> models;
   std::string time_unit;
   for (const std::string& group : exponent_groups(store)) {
     const Eigen::MatrixXd running = store.columns(group + "/running") / std::numbers::ln2;
@@ -81,16 +78,16 @@ Figure convergence_drawn(const StoreReader& store) {
                       .running = running.topRows(std::min(most, finite))});
     time_unit = store.entry(group + "/time").meaning.units;
   }
-  return figures::exponent_convergence(models, kExponentUnit, time_unit);
+  return exponent_convergence(models, kExponentUnit, time_unit);
 }
 
 /// Cumulative distribution of the rates of expansion of the leading directions, interval by interval.
 Figure expansion_drawn(const StoreReader& store) {
   constexpr Eigen::Index kShownDirections = 3;
-  std::vector<figures::Panel> panels;
+  std::vector<Panel> panels;
   const std::vector<std::string> groups = exponent_groups(store);
   for (Eigen::Index i = 0; i < kShownDirections; ++i) {
-    figures::Panel panel{.title = fmt::format("direction {}", i + 1), .series = {}};
+    Panel panel{.title = fmt::format("direction {}", i + 1), .series = {}};
     for (std::size_t m = 0; m < groups.size(); ++m) {
       const Eigen::MatrixXd rates = store.columns(groups[m] + "/rates") / std::numbers::ln2;
       if (i >= rates.rows() || !rates.row(i).allFinite()) continue;
@@ -103,24 +100,24 @@ Figure expansion_drawn(const StoreReader& store) {
     }
     if (!panel.series.empty()) panels.push_back(std::move(panel));
   }
-  return figures::panel_grid(panels, {.columns = static_cast<int>(panels.size()),
-                                      .panel_height = 420,
-                                      .x_label = "expansion rate [bit/time]",
-                                      .y_label = "share of the intervals below"});
+  return panel_grid(panels, {.columns = static_cast<int>(panels.size()),
+                             .panel_height = 420,
+                             .x_label = "expansion rate [bit/time]",
+                             .y_label = "share of the intervals below"});
 }
 
 Figure exponents_over_key(const StoreReader& store) {
-  std::vector<figures::ExponentSweep> models;
+  std::vector<ExponentSweep> models;
   std::string label, unit, value_unit;
   for (const std::string group : {"exponents/full", "exponents/reduced"}) {
     if (!store.has(group)) continue;
     const results::Table values = results::load_table(store, group + "/values");
-    figures::ExponentSweep model{.title = store.text(group + "/title"),
-                                 .slip_parameter = {},
-                                 .slip_value = {},
-                                 .parameter = to_vector(values.numbers("parameter")),
-                                 .exponents = store.columns(group + "/nats") / std::numbers::ln2,
-                                 .colour = model_colour(models.size())};
+    ExponentSweep model{.title = store.text(group + "/title"),
+                        .slip_parameter = {},
+                        .slip_value = {},
+                        .parameter = to_vector(values.numbers("parameter")),
+                        .exponents = store.columns(group + "/nats") / std::numbers::ln2,
+                        .colour = model_colour(models.size())};
     const std::string slips = std::string("sweep/") + (group == "exponents/full" ? "full" : "reduced") + "/slips";
     if (store.has(slips)) {
       const results::Table table = results::load_table(store, slips);
@@ -132,14 +129,14 @@ Figure exponents_over_key(const StoreReader& store) {
     unit = store.entry(group + "/values/parameter").meaning.units;
     models.push_back(std::move(model));
   }
-  return figures::exponent_sweep(models, figures::axis_label(label, unit),
-                                 figures::axis_label("displacement as slip begins", value_unit), kExponentUnit);
+  return exponent_sweep(models, axis_label(label, unit), axis_label("displacement as slip begins", value_unit),
+                        kExponentUnit);
 }
 
 }  // namespace
 
 std::vector<FileFigure> exponents_figures_of(const StoreReader& store) {
-  if (!store.has(kExponentsGroup)) return {};
+  if (!store.has(results::kExponentsGroup)) return {};
   if (store.has("exponents/full"))
     return {{"exponents", "exponents against the swept key, below the bifurcation diagram",
              [&store] { return exponents_over_key(store); }}};
@@ -154,10 +151,10 @@ std::vector<std::string> draw_exponents_figures(const StoreReader& store, const 
   std::filesystem::create_directories(folder);
   std::vector<std::string> names;
   for (const FileFigure& figure : exponents_figures_of(store)) {
-    figures::save(figure.draw(), {folder / (figure.name + ".svg"), folder / (figure.name + ".png")});
+    save(figure.draw(), {folder / (figure.name + ".svg"), folder / (figure.name + ".png")});
     names.push_back(figure.name);
   }
   return names;
 }
 
-}  // namespace slipmode::cli
+}  // namespace slipmode::figures

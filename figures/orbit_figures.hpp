@@ -1,13 +1,13 @@
 #pragma once
 
-#include "cli/file_figures.hpp"
+#include "figures/file_figure.hpp"
 
 #include <vector>
 
-namespace slipmode::cli {
+namespace slipmode::figures {
 
 /// Figures of a stored orbit ("orbit", "multipliers") or of stored branches ("response", "multipliers"); none for other
 /// files.
 [[nodiscard]] std::vector<FileFigure> orbit_figures_of(const results::StoreReader& store);
 
-}  // namespace slipmode::cli
+}  // namespace slipmode::figures

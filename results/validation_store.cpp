@@ -1,13 +1,13 @@
-#include "cli/validation_store.hpp"
+#include "results/validation_store.hpp"
 
-#include "cli/exponents_store.hpp"
 #include "core/none.hpp"
+#include "results/exponents_store.hpp"
 #include "results/sweep_store.hpp"
 #include "results/table.hpp"
 
 #include <fmt/format.h>
 
-namespace slipmode::cli {
+namespace slipmode::results {
 namespace {
 
 using diagnostics::CandidateReport;
@@ -34,7 +34,7 @@ std::vector<std::string> texts(const ValidationReport& report, Rows rows, Value 
   return out;
 }
 
-results::Table share_table(const ValidationReport& report, const results::Units& units) {
+Table share_table(const ValidationReport& report, const Units& units) {
   const auto numbers = [&report](auto value) { return column(report, &CandidateReport::shares, value); };
   const auto when_ok = [&numbers](auto value) {
     return numbers([value](const ShareRow& row) { return row.failure.empty() ? value(row) : kNone; });
@@ -86,7 +86,7 @@ results::Table share_table(const ValidationReport& report, const results::Units&
             })}}};
 }
 
-results::Table orbit_table(const ValidationReport& report, const results::Units& units) {
+Table orbit_table(const ValidationReport& report, const Units& units) {
   const auto compared = [&report](auto value) {
     return column(report, &CandidateReport::orbits,
                   [value](const OrbitRow& row) { return row.comparison ? value(*row.comparison) : kNone; });
@@ -117,7 +117,7 @@ results::Table orbit_table(const ValidationReport& report, const results::Units&
             })}}};
 }
 
-void store_full(results::StoreWriter& writer, const ValidationReport& report, const results::Units& units) {
+void store_full(StoreWriter& writer, const ValidationReport& report, const Units& units) {
   const std::string group = "validation/full/";
   writer.write(group + "speed", report.speed, {units.velocity, "belt speed of the table"});
   writer.write(group + "motion", std::string(diagnostics::to_string(report.full.period.motion)),
@@ -137,8 +137,7 @@ void store_full(results::StoreWriter& writer, const ValidationReport& report, co
                {"", "number of modes of the sweep and of the cost"});
 }
 
-void store_bifurcation(results::StoreWriter& writer, const diagnostics::BifurcationComparison& comparison,
-                       const results::Units& units) {
+void store_bifurcation(StoreWriter& writer, const diagnostics::BifurcationComparison& comparison, const Units& units) {
   const std::string group = "validation/bifurcation/";
   writer.write(group + "values", static_cast<std::int64_t>(comparison.values), {"", "values with both results"});
   writer.write(group + "failed", static_cast<std::int64_t>(comparison.failed), {"", "values without"});
@@ -154,38 +153,36 @@ void store_bifurcation(results::StoreWriter& writer, const diagnostics::Bifurcat
   writer.write(group + "mean_hausdorff", comparison.mean_hausdorff, {units.length, "mean distance of slip states"});
 }
 
-void store_cost(results::StoreWriter& writer, const diagnostics::Cost& cost, const results::Units& units) {
+void store_cost(StoreWriter& writer, const diagnostics::Cost& cost, const Units& units) {
   const std::string group = "validation/cost/";
   writer.write(group + "duration", cost.duration, {units.time, "simulated time of the timed run"});
-  writer.write(group + "full_wall", cost.full_wall,
-               {"s", "median wall time, full model", results::Meaning::Of::kClock});
-  writer.write(group + "full_cpu", cost.full_cpu, {"s", "median CPU time, full model", results::Meaning::Of::kClock});
+  writer.write(group + "full_wall", cost.full_wall, {"s", "median wall time, full model", Meaning::Of::kClock});
+  writer.write(group + "full_cpu", cost.full_cpu, {"s", "median CPU time, full model", Meaning::Of::kClock});
   writer.write(group + "reduced_wall", cost.reduced_wall,
-               {"s", "median wall time, reduced model", results::Meaning::Of::kClock});
-  writer.write(group + "reduced_cpu", cost.reduced_cpu,
-               {"s", "median CPU time, reduced model", results::Meaning::Of::kClock});
+               {"s", "median wall time, reduced model", Meaning::Of::kClock});
+  writer.write(group + "reduced_cpu", cost.reduced_cpu, {"s", "median CPU time, reduced model", Meaning::Of::kClock});
   writer.write(group + "full_setup_wall", cost.full_setup_wall,
-               {"s", "wall time of the full model's modal data, once", results::Meaning::Of::kClock});
+               {"s", "wall time of the full model's modal data, once", Meaning::Of::kClock});
   writer.write(group + "projection_wall", cost.projection_wall,
-               {"s", "wall time of the projection and its set-up, once", results::Meaning::Of::kClock});
+               {"s", "wall time of the projection and its set-up, once", Meaning::Of::kClock});
 }
 
 }  // namespace
 
-void store_validation(results::StoreWriter& writer, const ValidationReport& report, const scene::Scene& scene) {
-  const results::Units units = results::Units::of(scene.units);
+void store_validation(StoreWriter& writer, const ValidationReport& report, const scene::Scene& scene) {
+  const Units units = Units::of(scene.units);
   store_full(writer, report, units);
-  results::save(writer, "validation/shares", share_table(report, units));
-  results::save(writer, "validation/orbits", orbit_table(report, units));
+  save(writer, "validation/shares", share_table(report, units));
+  save(writer, "validation/orbits", orbit_table(report, units));
   if (report.bifurcation) store_bifurcation(writer, *report.bifurcation, units);
   if (report.cost) store_cost(writer, *report.cost, units);
   if (report.verdict) store_verdict(writer, *report.verdict, units);
   if (report.sweep) {
-    const results::SweepAxis axis = results::sweep_axis(scene, "drive.speed");
+    const SweepAxis axis = sweep_axis(scene, "drive.speed");
     const std::string reduced = fmt::format("reduced model, {} {}s", report.chosen, report.candidates.front().name);
-    results::store_sweep(writer, "sweep/full", "full model", axis, units, report.sweep->full);
-    results::store_sweep(writer, "sweep/reduced", reduced, axis, units, report.sweep->reduced);
+    store_sweep(writer, "sweep/full", "full model", axis, units, report.sweep->full);
+    store_sweep(writer, "sweep/reduced", reduced, axis, units, report.sweep->reduced);
   }
 }
 
-}  // namespace slipmode::cli
+}  // namespace slipmode::results

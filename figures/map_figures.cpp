@@ -1,10 +1,10 @@
-#include "cli/map_figures.hpp"
+#include "figures/map_figures.hpp"
 
+#include "core/none.hpp"
 #include "figures/bifurcation.hpp"
 #include "figures/heat_map.hpp"
 #include "figures/panels.hpp"
 #include "figures/style.hpp"
-#include "core/none.hpp"
 #include "results/map_store.hpp"
 #include "results/table.hpp"
 
@@ -14,10 +14,9 @@
 #include <functional>
 #include <numbers>
 
-namespace slipmode::cli {
+namespace slipmode::figures {
 namespace {
 
-using figures::Figure;
 using results::StoreReader;
 
 /// "scene", "centre": the starts a result holds, in that order of names.
@@ -35,13 +34,13 @@ std::string title_of(const std::string& start) {
 }
 
 std::string axis_text(const StoreReader& store, const std::string& group) {
-  return figures::axis_label(store.text(group + "/label"), store.entry(group + "/values").meaning.units);
+  return axis_label(store.text(group + "/label"), store.entry(group + "/values").meaning.units);
 }
 
 /// One panel per start, its values made from datasets of that start.
-std::vector<figures::HeatMapPanel> map_panels(const StoreReader& store,
-                                              const std::function<Eigen::MatrixXd(const std::string& group)>& values) {
-  std::vector<figures::HeatMapPanel> panels;
+std::vector<HeatMapPanel> map_panels(const StoreReader& store,
+                                     const std::function<Eigen::MatrixXd(const std::string& group)>& values) {
+  std::vector<HeatMapPanel> panels;
   for (const std::string& start : starts_of(store, results::kMapGroup)) {
     panels.push_back({title_of(start), store.vector(std::string(results::kMapGroup) + "/x/values"),
                       store.vector(std::string(results::kMapGroup) + "/y/values"),
@@ -50,7 +49,7 @@ std::vector<figures::HeatMapPanel> map_panels(const StoreReader& store,
   return panels;
 }
 
-figures::HeatMapLayout map_layout(const StoreReader& store) {
+HeatMapLayout map_layout(const StoreReader& store) {
   return {.x_label = axis_text(store, std::string(results::kMapGroup) + "/x"),
           .y_label = axis_text(store, std::string(results::kMapGroup) + "/y"),
           .value_label = {}};
@@ -58,58 +57,57 @@ figures::HeatMapLayout map_layout(const StoreReader& store) {
 
 /// Crossings of period-1 orbits: those of other orders count more periods and are left out.
 Figure crossings(const StoreReader& store) {
-  figures::HeatMapLayout layout = map_layout(store);
+  HeatMapLayout layout = map_layout(store);
   layout.value_label = "regime changes per period";
   layout.high = 16.0;
   layout.steps = 9;
   layout.missing = "no period 1";
-  return figures::heat_maps(
-      map_panels(store,
-                 [&](const std::string& group) -> Eigen::MatrixXd {
-                   const Eigen::MatrixXd order = store.matrix(group + "/order");
-                   return (order.array() == 1.0).select(store.matrix(group + "/crossings").array(), kNone);
-                 }),
-      layout);
+  return heat_maps(map_panels(store,
+                              [&](const std::string& group) -> Eigen::MatrixXd {
+                                const Eigen::MatrixXd order = store.matrix(group + "/order");
+                                return (order.array() == 1.0).select(store.matrix(group + "/crossings").array(), kNone);
+                              }),
+                   layout);
 }
 
 Figure multipliers(const StoreReader& store) {
-  figures::HeatMapLayout layout = map_layout(store);
+  HeatMapLayout layout = map_layout(store);
   layout.value_label = "largest |multiplier|";
-  layout.colours = figures::HeatMapLayout::Colours::kGrey;
+  layout.colours = HeatMapLayout::Colours::kGrey;
   layout.missing = "not periodic";
-  return figures::heat_maps(
-      map_panels(store, [&](const std::string& group) { return store.matrix(group + "/multiplier"); }), layout);
+  return heat_maps(map_panels(store, [&](const std::string& group) { return store.matrix(group + "/multiplier"); }),
+                   layout);
 }
 
 Figure orders(const StoreReader& store) {
-  figures::HeatMapLayout layout = map_layout(store);
+  HeatMapLayout layout = map_layout(store);
   layout.value_label = "period, in periods of the drive";
   layout.low = 1.0;
   layout.high = 8.0;
   layout.steps = 8;
   layout.missing = "not periodic";
-  return figures::heat_maps(map_panels(store,
-                                       [&](const std::string& group) -> Eigen::MatrixXd {
-                                         const Eigen::MatrixXd order = store.matrix(group + "/order");
-                                         return (order.array() > 0.0).select(order.array(), kNone);
-                                       }),
-                            layout);
+  return heat_maps(map_panels(store,
+                              [&](const std::string& group) -> Eigen::MatrixXd {
+                                const Eigen::MatrixXd order = store.matrix(group + "/order");
+                                return (order.array() > 0.0).select(order.array(), kNone);
+                              }),
+                   layout);
 }
 
 Figure amplitudes(const StoreReader& store) {
-  figures::HeatMapLayout layout = map_layout(store);
+  HeatMapLayout layout = map_layout(store);
   const auto panels = map_panels(store, [&](const std::string& group) { return store.matrix(group + "/alternating"); });
   layout.high = 1e-300;
-  for (const figures::HeatMapPanel& panel : panels) {
+  for (const HeatMapPanel& panel : panels) {
     for (const double value : panel.value.reshaped()) {
       if (std::isfinite(value)) layout.high = std::max(layout.high, value);
     }
   }
   const std::string dataset =
       fmt::format("{}/from_{}/alternating", results::kMapGroup, starts_of(store, results::kMapGroup).front());
-  layout.value_label = figures::axis_label("alternating amplitude", store.entry(dataset).meaning.units);
+  layout.value_label = axis_label("alternating amplitude", store.entry(dataset).meaning.units);
   layout.missing = "not periodic";
-  return figures::heat_maps(panels, layout);
+  return heat_maps(panels, layout);
 }
 
 /// Rows of a table that belong to one contact.
@@ -133,31 +131,31 @@ struct Rows {
 
 Figure strobe_diagram(const StoreReader& store) {
   const std::string root = results::kStrobeGroup;
-  std::vector<figures::BifurcationPanel> panels;
+  std::vector<BifurcationPanel> panels;
   std::string unit, value_unit;
   for (const std::string& start : starts_of(store, root)) {
     const std::string group = fmt::format("{}/from_{}/sections", root, start);
     const results::Table sections = results::load_table(store, group);
     const Rows first(sections, 0.0);
-    panels.push_back({title_of(start), first.column("parameter"), first.column("displacement"), figures::kFullColour});
+    panels.push_back({title_of(start), first.column("parameter"), first.column("displacement"), kFullColour});
     unit = store.entry(group + "/parameter").meaning.units;
     value_unit = store.entry(group + "/displacement").meaning.units;
   }
-  return figures::bifurcation_diagram(panels, {.parameter = store.text(root + "/label"),
-                                               .parameter_unit = unit,
-                                               .value = "displacement once per period",
-                                               .value_unit = value_unit});
+  return bifurcation_diagram(panels, {.parameter = store.text(root + "/label"),
+                                      .parameter_unit = unit,
+                                      .value = "displacement once per period",
+                                      .value_unit = value_unit});
 }
 
 /// Points of a curve whose verdict is, or is not, a period of one drive's period.
-figures::Series verdict_dots(const Rows& rows, const std::string& value, bool period_one, std::string title,
-                             std::string_view colour) {
+Series verdict_dots(const Rows& rows, const std::string& value, bool period_one, std::string title,
+                    std::string_view colour) {
   const Eigen::VectorXd order = rows.column("order"), x = rows.column("parameter"), y = rows.column(value);
   std::vector<Eigen::Index> kept;
   for (Eigen::Index k = 0; k < order.size(); ++k) {
     if ((order(k) == 1.0) == period_one) kept.push_back(k);
   }
-  return {std::move(title), x(kept), y(kept), figures::Series::Look::kPoints, colour};
+  return {std::move(title), x(kept), y(kept), Series::Look::kPoints, colour};
 }
 
 /// Both amplitudes of S1 above, and below how far its test is from its verdict.
@@ -166,29 +164,28 @@ Figure strobe_amplitudes(const StoreReader& store) {
   const std::string group = fmt::format("{}/from_{}/values", root, start);
   const results::Table values = results::load_table(store, group);
   const double contacts = *std::ranges::max_element(values.numbers("contact"));
-  std::vector<figures::Panel> panels;
+  std::vector<Panel> panels;
   for (double contact = 0.0; contact <= contacts; contact += 1.0) {
     const Rows rows(values, contact);
     const Eigen::VectorXd x = rows.column("parameter");
-    panels.push_back(
-        {.title = fmt::format("contact {}", contact + 1.0),
-         .series = {{"alternating", x, rows.column("alternating"), figures::Series::Look::kLine, figures::kFullColour},
-                    {"effective × √2", x, std::numbers::sqrt2 * rows.column("effective"),
-                     figures::Series::Look::kDashed, figures::kPomColour},
-                    verdict_dots(rows, "alternating", false, "not period 1", figures::kLnmColour)}});
+    panels.push_back({.title = fmt::format("contact {}", contact + 1.0),
+                      .series = {{"alternating", x, rows.column("alternating"), Series::Look::kLine, kFullColour},
+                                 {"effective × √2", x, std::numbers::sqrt2 * rows.column("effective"),
+                                  Series::Look::kDashed, kPomColour},
+                                 verdict_dots(rows, "alternating", false, "not period 1", kLnmColour)}});
   }
   for (double contact = 0.0; contact <= contacts; contact += 1.0) {
     const Rows rows(values, contact);
     panels.push_back({.title = fmt::format("contact {}: relative difference of the two", contact + 1.0),
-                      .series = {verdict_dots(rows, "sine_gap", true, "", figures::kFullColour),
-                                 verdict_dots(rows, "sine_gap", false, "", figures::kLnmColour)}});
+                      .series = {verdict_dots(rows, "sine_gap", true, "", kFullColour),
+                                 verdict_dots(rows, "sine_gap", false, "", kLnmColour)}});
   }
   const std::string unit = store.entry(group + "/parameter").meaning.units;
-  return figures::panel_grid(panels, {.columns = static_cast<int>(contacts) + 1,
-                                      .panel_height = 330,
-                                      .x_label = figures::axis_label(store.text(root + "/label"), unit),
-                                      .y_label = {},
-                                      .shared_y = false});
+  return panel_grid(panels, {.columns = static_cast<int>(contacts) + 1,
+                             .panel_height = 330,
+                             .x_label = axis_label(store.text(root + "/label"), unit),
+                             .y_label = {},
+                             .shared_y = false});
 }
 
 }  // namespace
@@ -207,4 +204,4 @@ std::vector<FileFigure> map_figures_of(const StoreReader& store) {
   return out;
 }
 
-}  // namespace slipmode::cli
+}  // namespace slipmode::figures

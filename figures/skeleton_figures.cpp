@@ -1,10 +1,10 @@
-#include "cli/skeleton_figures.hpp"
+#include "figures/skeleton_figures.hpp"
 
 #include "figures/panels.hpp"
 #include "figures/phase_portraits.hpp"
 #include "figures/style.hpp"
-#include "cli/skeleton_store.hpp"
 #include "results/provenance.hpp"
+#include "results/skeleton_store.hpp"
 #include "results/table.hpp"
 #include "scene/scene.hpp"
 
@@ -13,19 +13,14 @@
 #include <cmath>
 #include <numeric>
 
-namespace slipmode::cli {
+namespace slipmode::figures {
 namespace {
 
-using figures::Figure;
-using figures::Series;
-using figures::to_vector;
 using results::StoreReader;
 
-std::string group_of(const std::string& model) { return fmt::format("{}/{}", kSkeletonGroup, model); }
+std::string group_of(const std::string& model) { return fmt::format("{}/{}", results::kSkeletonGroup, model); }
 
-std::string_view model_colour(const std::string& model) {
-  return model == "full" ? figures::kFullColour : figures::kPomColour;
-}
+std::string_view model_colour(const std::string& model) { return model == "full" ? kFullColour : kPomColour; }
 
 /// "full", "reduced": the models a result holds.
 std::vector<std::string> models_of(const StoreReader& store) {
@@ -42,14 +37,13 @@ class ContactView {
   explicit ContactView(const StoreReader& store)
       : scene_(results::load_scene_of(store)), contact_(scene::build_system(scene_).contacts().front()) {}
 
-  [[nodiscard]] figures::PhasePortrait attractor(const StoreReader& store, const std::string& model) const {
+  [[nodiscard]] PhasePortrait attractor(const StoreReader& store, const std::string& model) const {
     const Eigen::MatrixXd portrait = store.columns(group_of(model) + "/portrait", 2);
     return {model + " model", portrait.row(0), portrait.row(1), model_colour(model)};
   }
 
   /// @param index  of the orbit, from 0
-  [[nodiscard]] figures::PhasePortrait orbit(const StoreReader& store, const std::string& model,
-                                             std::size_t index) const {
+  [[nodiscard]] PhasePortrait orbit(const StoreReader& store, const std::string& model, std::size_t index) const {
     const results::Table orbits = results::load_table(store, group_of(model) + "/orbits");
     const Eigen::MatrixXd path = store.columns(fmt::format("{}/orbit_{:03}/path", group_of(model), index + 1));
     const Eigen::Index n = path.rows() / 2, count = path.cols();
@@ -63,7 +57,7 @@ class ContactView {
         rate, model_colour(model)};
   }
 
-  [[nodiscard]] figures::PortraitLayout layout(int columns, figures::PortraitLayout::Axes axes) const {
+  [[nodiscard]] PortraitLayout layout(int columns, PortraitLayout::Axes axes) const {
     const results::Units units = results::Units::of(scene_.units);
     return {.columns = columns,
             .displacement = "displacement",
@@ -89,9 +83,9 @@ Figure portraits(const StoreReader& store) {
   std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return share[a] > share[b]; });
   order.resize(std::min(order.size(), kShown));
   std::ranges::sort(order);
-  std::vector<figures::PhasePortrait> panels{view.attractor(store, model)};
+  std::vector<PhasePortrait> panels{view.attractor(store, model)};
   for (const std::size_t index : order) panels.push_back(view.orbit(store, model, index));
-  return figures::phase_portraits(panels, view.layout(4, figures::PortraitLayout::Axes::kShared));
+  return phase_portraits(panels, view.layout(4, PortraitLayout::Axes::kShared));
 }
 
 /// S4 Figure 3.10: both attractors, and orbits that both have, one above the other.
@@ -109,13 +103,12 @@ Figure comparison(const StoreReader& store) {
   rows.resize(std::min(rows.size(), kShown));
   std::ranges::sort(rows);
   const ContactView view(store);
-  std::vector<figures::PhasePortrait> panels;
+  std::vector<PhasePortrait> panels;
   for (const char* model : {"full", "reduced"}) {
     panels.push_back(view.attractor(store, model));
     for (const std::size_t row : rows) panels.push_back(view.orbit(store, model, index(model, row)));
   }
-  return figures::phase_portraits(
-      panels, view.layout(static_cast<int>(rows.size()) + 1, figures::PortraitLayout::Axes::kPerColumn));
+  return phase_portraits(panels, view.layout(static_cast<int>(rows.size()) + 1, PortraitLayout::Axes::kPerColumn));
 }
 
 /// Orbits of one model as points over their periods.
@@ -136,7 +129,7 @@ Figure orbit_spectrum(const StoreReader& store) {
   std::vector<OrbitPoints> points;
   for (const std::string& model : models) points.emplace_back(store, model);
   const auto panel = [&](const std::string& title, Eigen::VectorXd OrbitPoints::*value) {
-    figures::Panel out{.title = title, .series = {}};
+    Panel out{.title = title, .series = {}};
     if (store.has(group_of("comparison"))) {
       const results::Table matched = results::load_table(store, group_of("comparison") + "/matched");
       for (std::size_t row = 0; row < matched.rows(); ++row) {
@@ -146,7 +139,7 @@ Figure orbit_spectrum(const StoreReader& store) {
                               .x = to_vector({points[0].period(f), points[1].period(r)}),
                               .y = to_vector({(points[0].*value)(f), (points[1].*value)(r)}),
                               .look = Series::Look::kLine,
-                              .colour = figures::kLnmColour});
+                              .colour = kLnmColour});
       }
     }
     for (std::size_t k = 0; k < points.size(); ++k) {
@@ -156,13 +149,10 @@ Figure orbit_spectrum(const StoreReader& store) {
     return out;
   };
   const std::string unit = store.entry(group_of(models.front()) + "/orbits/period").meaning.units;
-  return figures::panel_grid({panel("growth rate ln |multiplier| / T", &OrbitPoints::exponent),
-                              panel("share of the attractor near the orbit [%]", &OrbitPoints::share)},
-                             {.columns = 1,
-                              .panel_height = 330,
-                              .x_label = figures::axis_label("period T", unit),
-                              .y_label = {},
-                              .shared_y = false});
+  return panel_grid(
+      {panel("growth rate ln |multiplier| / T", &OrbitPoints::exponent),
+       panel("share of the attractor near the orbit [%]", &OrbitPoints::share)},
+      {.columns = 1, .panel_height = 330, .x_label = axis_label("period T", unit), .y_label = {}, .shared_y = false});
 }
 
 }  // namespace
@@ -178,4 +168,4 @@ std::vector<FileFigure> skeleton_figures_of(const StoreReader& store) {
   return out;
 }
 
-}  // namespace slipmode::cli
+}  // namespace slipmode::figures

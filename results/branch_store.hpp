@@ -1,13 +1,12 @@
 #pragma once
 
-#include "cli/session.hpp"
 #include "orbits/continuation.hpp"
 #include "results/table.hpp"
 
 #include <string>
 #include <vector>
 
-namespace slipmode::cli {
+namespace slipmode::results {
 
 /// A followed branch with where it came from.
 struct NamedBranch {
@@ -17,17 +16,17 @@ struct NamedBranch {
 
 /// Writes the group `branches`: one sub-group per branch with its points, special points and why it ended.
 /// @param family  gives the systems whose contacts' amplitudes are measured
-void store_branches(results::StoreWriter& writer, const std::string& key, const std::vector<NamedBranch>& branches,
+void store_branches(StoreWriter& writer, const std::string& key, const std::vector<NamedBranch>& branches,
                     const orbits::SystemFamily& family);
 
 /// What figures need of a stored branch.
 struct StoredBranch {
   std::string title, end, reason;
-  results::Table points, special;
+  Table points, special;
   Eigen::MatrixXd modulus;  ///< |multiplier| by size [points x N]
 };
 
 /// @throws InvalidInput  when the file holds no branches, or damaged ones
-[[nodiscard]] std::vector<StoredBranch> load_branches(const results::StoreReader& store);
+[[nodiscard]] std::vector<StoredBranch> load_branches(const StoreReader& store);
 
-}  // namespace slipmode::cli
+}  // namespace slipmode::results

@@ -1,11 +1,9 @@
-#include "cli/branch_store.hpp"
-
-#include "cli/orbit_report.hpp"
+#include "results/branch_store.hpp"
 
 #include <fmt/format.h>
 #include <array>
 
-namespace slipmode::cli {
+namespace slipmode::results {
 namespace {
 
 using orbits::BranchPoint;
@@ -20,8 +18,7 @@ std::vector<double> gather(const std::vector<BranchPoint>& points, Get get) {
 }
 
 /// Columns of the contacts' displacements: "alternating_1" and so on.
-std::vector<results::Column> amplitude_columns(const std::vector<BranchPoint>& points,
-                                               const orbits::SystemFamily& family) {
+std::vector<Column> amplitude_columns(const std::vector<BranchPoint>& points, const orbits::SystemFamily& family) {
   struct Measure {
     const char* name;
     const char* what;
@@ -34,8 +31,9 @@ std::vector<results::Column> amplitude_columns(const std::vector<BranchPoint>& p
        {"alternating", "half the range of contact", &orbits::Amplitude::alternating},
        {"effective", "rms about the mean of contact", &orbits::Amplitude::effective}}};
   std::vector<std::vector<orbits::Amplitude>> all;
-  for (const BranchPoint& point : points) all.push_back(contact_amplitudes(family(point.parameter), point.orbit));
-  std::vector<results::Column> columns;
+  for (const BranchPoint& point : points)
+    all.push_back(orbits::contact_amplitudes(family(point.parameter), point.orbit));
+  std::vector<Column> columns;
   const std::size_t contacts = all.empty() ? 0 : all.front().size();
   for (std::size_t c = 0; c < contacts; ++c) {
     for (const Measure& measure : kMeasures) {
@@ -49,17 +47,16 @@ std::vector<results::Column> amplitude_columns(const std::vector<BranchPoint>& p
   return columns;
 }
 
-results::Table point_table(const std::string& key, const std::vector<BranchPoint>& points,
-                           const orbits::SystemFamily& family) {
+Table point_table(const std::string& key, const std::vector<BranchPoint>& points, const orbits::SystemFamily& family) {
   const auto add = [&points](const char* name, const char* units, const char* what, auto get) {
-    return results::Column{name, {units, what}, gather(points, get)};
+    return Column{name, {units, what}, gather(points, get)};
   };
   std::vector<std::string> stability, words;
   for (const BranchPoint& point : points) {
     stability.emplace_back(orbits::to_string(point.orbit.stability));
     words.push_back(point.orbit.word);
   }
-  results::Table table{.description = "orbits in order along the branch", .columns = {}};
+  Table table{.description = "orbits in order along the branch", .columns = {}};
   table.columns = {
       {"parameter", {"", key}, gather(points, [](const BranchPoint& p) { return p.parameter; })},
       add("arclength", "1", "along the branch, scaled", [](const BranchPoint& p) { return p.arclength; }),
@@ -73,11 +70,11 @@ results::Table point_table(const std::string& key, const std::vector<BranchPoint
           [](const BranchPoint& p) { return static_cast<double>(p.orbit.family.cols()); }),
       add("residual", "1", "mismatch after a period", [](const BranchPoint& p) { return p.orbit.residual; }),
       {"word", {"", "regimes"}, words}};
-  for (results::Column& column : amplitude_columns(points, family)) table.columns.push_back(std::move(column));
+  for (Column& column : amplitude_columns(points, family)) table.columns.push_back(std::move(column));
   return table;
 }
 
-results::Table special_table(const orbits::Branch& branch, const orbits::SystemFamily& family) {
+Table special_table(const orbits::Branch& branch, const orbits::SystemFamily& family) {
   std::vector<std::string> kind, note;
   std::vector<double> before, parameter, uncertainty, real, imaginary, amplitude;
   for (const orbits::SpecialPoint& point : branch.special) {
@@ -88,7 +85,7 @@ results::Table special_table(const orbits::Branch& branch, const orbits::SystemF
     uncertainty.push_back(point.uncertainty);
     real.push_back(point.multiplier.real());
     imaginary.push_back(point.multiplier.imag());
-    amplitude.push_back(contact_amplitudes(family(point.parameter), point.orbit).front().alternating);
+    amplitude.push_back(orbits::contact_amplitudes(family(point.parameter), point.orbit).front().alternating);
   }
   return {.description = "points where the branch changes its kind",
           .columns = {{"kind", {"", "what happens"}, kind},
@@ -127,7 +124,7 @@ Eigen::MatrixXd start_rows(const std::vector<BranchPoint>& points) {
 
 }  // namespace
 
-void store_branches(results::StoreWriter& writer, const std::string& key, const std::vector<NamedBranch>& branches,
+void store_branches(StoreWriter& writer, const std::string& key, const std::vector<NamedBranch>& branches,
                     const orbits::SystemFamily& family) {
   writer.describe_group("branches", "branches of periodic orbits over a parameter");
   writer.write("branches/key", key, {"", "the parameter: a key of the scene"});
@@ -138,8 +135,8 @@ void store_branches(results::StoreWriter& writer, const std::string& key, const 
     writer.write(group + "/title", title, {"", "which branch"});
     writer.write(group + "/end", std::string(orbits::to_string(branch.end)), {"", "why it ends"});
     writer.write(group + "/reason", branch.reason, {"", "the same in a sentence"});
-    results::save(writer, group + "/points", point_table(key, branch.points, family));
-    results::save(writer, group + "/special", special_table(branch, family));
+    save(writer, group + "/points", point_table(key, branch.points, family));
+    save(writer, group + "/special", special_table(branch, family));
     writer.write(group + "/multipliers", multiplier_rows(branch.points),
                  {"1", "Floquet multipliers, point x (real parts, imaginary parts)"});
     writer.write(group + "/start", start_rows(branch.points),
@@ -147,15 +144,15 @@ void store_branches(results::StoreWriter& writer, const std::string& key, const 
   }
 }
 
-std::vector<StoredBranch> load_branches(const results::StoreReader& store) {
+std::vector<StoredBranch> load_branches(const StoreReader& store) {
   std::vector<StoredBranch> branches;
   for (std::size_t k = 0; store.has(fmt::format("branches/{}", k)); ++k) {
     const std::string group = fmt::format("branches/{}", k);
     StoredBranch branch{.title = store.text(group + "/title"),
                         .end = store.text(group + "/end"),
                         .reason = store.text(group + "/reason"),
-                        .points = results::load_table(store, group + "/points"),
-                        .special = results::load_table(store, group + "/special"),
+                        .points = load_table(store, group + "/points"),
+                        .special = load_table(store, group + "/special"),
                         .modulus = {}};
     const Eigen::MatrixXd parts = store.matrix(group + "/multipliers");
     const Eigen::Index n = parts.cols() / 2;
@@ -166,4 +163,4 @@ std::vector<StoredBranch> load_branches(const results::StoreReader& store) {
   return branches;
 }
 
-}  // namespace slipmode::cli
+}  // namespace slipmode::results

@@ -1,13 +1,13 @@
 #pragma once
 
-#include "cli/file_figures.hpp"
+#include "figures/file_figure.hpp"
 #include "results/store.hpp"
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
-namespace slipmode::cli {
+namespace slipmode::figures {
 
 /// Figures of a diagnosed model: exponents with errors, their convergence, their rates, or exponents against a key
 /// below the bifurcation diagram; empty when the file holds none.
@@ -17,4 +17,4 @@ namespace slipmode::cli {
 /// @return the names, in order
 std::vector<std::string> draw_exponents_figures(const results::StoreReader& store, const std::filesystem::path& folder);
 
-}  // namespace slipmode::cli
+}  // namespace slipmode::figures

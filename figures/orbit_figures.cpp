@@ -1,9 +1,9 @@
-#include "cli/orbit_figures.hpp"
+#include "figures/orbit_figures.hpp"
 
-#include "cli/branch_store.hpp"
 #include "figures/panels.hpp"
 #include "figures/response_diagram.hpp"
 #include "figures/style.hpp"
+#include "results/branch_store.hpp"
 #include "results/orbit_records.hpp"
 #include "results/provenance.hpp"
 #include "results/records.hpp"
@@ -14,13 +14,9 @@
 #include <algorithm>
 #include <cmath>
 
-namespace slipmode::cli {
+namespace slipmode::figures {
 namespace {
 
-using figures::Figure;
-using figures::Panel;
-using figures::Series;
-using figures::to_vector;
 using results::StoreReader;
 
 constexpr std::string_view kStopColour = "#999999";
@@ -59,26 +55,26 @@ Figure orbit_portrait(const StoreReader& store) {
       if (law->left) add_stop(panel, *law->left, law->loss, -1.0, top, beyond(*law->left));
       if (law->right) add_stop(panel, *law->right, law->loss, 1.0, top, beyond(*law->right));
     }
-    panel.series.push_back({"", y, v, Series::Look::kLine, figures::kFullColour});
-    panel.x_label = figures::axis_label("displacement at " + scene::to_string(contact.at), units.length);
+    panel.series.push_back({"", y, v, Series::Look::kLine, kFullColour});
+    panel.x_label = axis_label("displacement at " + scene::to_string(contact.at), units.length);
     panels.push_back(std::move(panel));
   }
-  return figures::panel_grid(panels, {.columns = panels.size() > 1 ? 2 : 1,
-                                      .panel_height = 560,
-                                      .y_label = figures::axis_label("velocity", units.velocity),
-                                      .shared_x = false,
-                                      .shared_y = false});
+  return panel_grid(panels, {.columns = panels.size() > 1 ? 2 : 1,
+                             .panel_height = 560,
+                             .y_label = axis_label("velocity", units.velocity),
+                             .shared_x = false,
+                             .shared_y = false});
 }
 
 Figure orbit_multipliers(const StoreReader& store) {
   const orbits::PeriodicOrbit orbit = results::load_orbit(store);
   Eigen::MatrixXd parts(orbit.multipliers.size(), 2);
   parts << orbit.multipliers.real(), orbit.multipliers.imag();
-  return figures::multiplier_plane(parts, results::load_scene_of(store).title);
+  return multiplier_plane(parts, results::load_scene_of(store).title);
 }
 
 /// A branch of a stored table; colours tell the main branch from those that leave it.
-std::string_view colour_of(std::size_t branch) { return branch == 0 ? figures::kFullColour : figures::kPomColour; }
+std::string_view colour_of(std::size_t branch) { return branch == 0 ? kFullColour : kPomColour; }
 
 std::vector<bool> stable_points(const results::Table& points) {
   std::vector<bool> stable;
@@ -90,15 +86,15 @@ std::vector<bool> stable_points(const results::Table& points) {
 
 std::string axis_label_of(const scene::Scene& scene, const std::string& key) {
   const results::SweepAxis axis = results::sweep_axis(scene, key);
-  return axis.label == key ? figures::literal(key) : figures::axis_label(axis.label, axis.units);
+  return axis.label == key ? literal(key) : axis_label(axis.label, axis.units);
 }
 
 /// Points and special points of a branch in one sequence: where stability changes, the curve changes its look.
-figures::ResponseBranch response_branch(const StoredBranch& branch, std::string_view colour) {
+ResponseBranch response_branch(const results::StoredBranch& branch, std::string_view colour) {
   const std::vector<bool> stable = stable_points(branch.points);
   const auto& before = branch.special.numbers("before");
   std::vector<double> parameter, value;
-  figures::ResponseBranch curve{.title = branch.title, .parameter = {}, .value = {}, .stable = {}, .colour = colour};
+  ResponseBranch curve{.title = branch.title, .parameter = {}, .value = {}, .stable = {}, .colour = colour};
   for (std::size_t k = 0; k < stable.size(); ++k) {
     parameter.push_back(branch.points.numbers("parameter")[k]);
     value.push_back(branch.points.numbers("alternating_1")[k]);
@@ -118,11 +114,11 @@ figures::ResponseBranch response_branch(const StoredBranch& branch, std::string_
 /// Amplitude of the first contact over the key.
 Figure response(const StoreReader& store) {
   const scene::Scene scene = results::load_scene_of(store);
-  std::vector<figures::ResponseBranch> curves;
-  std::vector<figures::ResponseMark> marks;
-  const std::vector<StoredBranch> branches = load_branches(store);
+  std::vector<ResponseBranch> curves;
+  std::vector<ResponseMark> marks;
+  const std::vector<results::StoredBranch> branches = results::load_branches(store);
   for (std::size_t k = 0; k < branches.size(); ++k) {
-    const StoredBranch& branch = branches[k];
+    const results::StoredBranch& branch = branches[k];
     if (branch.points.rows() > 0) curves.push_back(response_branch(branch, colour_of(k)));
     if (k == 1 && !curves.empty()) curves.back().title = "branches that leave it";
     if (k > 1 && !curves.empty()) curves.back().title.clear();
@@ -132,10 +128,10 @@ Figure response(const StoreReader& store) {
     }
   }
   const std::string place = scene::to_string(scene.contacts.front().at);
-  return figures::response_diagram(curves, marks,
-                                   {.parameter = axis_label_of(scene, store.text("branches/key")),
-                                    .value = figures::axis_label("half the range of displacement at " + place,
-                                                                 results::Units::of(scene.units).length)});
+  return response_diagram(
+      curves, marks,
+      {.parameter = axis_label_of(scene, store.text("branches/key")),
+       .value = axis_label("half the range of displacement at " + place, results::Units::of(scene.units).length)});
 }
 
 /// |multipliers| over the key, the unit circle's modulus as a line.
@@ -144,8 +140,8 @@ Figure branch_multipliers(const StoreReader& store) {
   constexpr std::size_t kMost = 6;
   const scene::Scene scene = results::load_scene_of(store);
   std::vector<Panel> panels;
-  const std::vector<StoredBranch> branches = load_branches(store);
-  for (const StoredBranch& branch : branches) {
+  const std::vector<results::StoredBranch> branches = results::load_branches(store);
+  for (const results::StoredBranch& branch : branches) {
     if (branch.points.rows() == 0 || panels.size() == kMost) continue;
     const Eigen::VectorXd parameter = to_vector(branch.points.numbers("parameter"));
     Panel panel{.title = branch.title, .series = {}};
@@ -153,16 +149,16 @@ Figure branch_multipliers(const StoreReader& store) {
     for (Eigen::Index m = 0; m < branch.modulus.cols(); ++m) {
       const Eigen::ArrayXd own = branch.modulus.col(m);
       const Eigen::VectorXd shown = (own < kLeast).select(std::nan(""), own);
-      panel.series.push_back({"", parameter, shown, Series::Look::kLine, figures::kFullColour});
+      panel.series.push_back({"", parameter, shown, Series::Look::kLine, kFullColour});
     }
     panels.push_back(std::move(panel));
   }
-  return figures::panel_grid(panels, {.columns = 1,
-                                      .panel_height = panels.size() > 1 ? 320 : 560,
-                                      .x_label = axis_label_of(scene, store.text("branches/key")),
-                                      .y_label = "|multiplier| [–]",
-                                      .shared_y = false,
-                                      .log_y = true});
+  return panel_grid(panels, {.columns = 1,
+                             .panel_height = panels.size() > 1 ? 320 : 560,
+                             .x_label = axis_label_of(scene, store.text("branches/key")),
+                             .y_label = "|multiplier| [–]",
+                             .shared_y = false,
+                             .log_y = true});
 }
 
 }  // namespace
@@ -179,4 +175,4 @@ std::vector<FileFigure> orbit_figures_of(const StoreReader& store) {
   return out;
 }
 
-}  // namespace slipmode::cli
+}  // namespace slipmode::figures

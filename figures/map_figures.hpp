@@ -1,12 +1,12 @@
 #pragma once
 
-#include "cli/file_figures.hpp"
+#include "figures/file_figure.hpp"
 
 #include <vector>
 
-namespace slipmode::cli {
+namespace slipmode::figures {
 
 /// Figures of a result of `slipmode orbit map`; none when the file holds no map.
 [[nodiscard]] std::vector<FileFigure> map_figures_of(const results::StoreReader& store);
 
-}  // namespace slipmode::cli
+}  // namespace slipmode::figures
