@@ -18,7 +18,7 @@
 
 namespace {
 
-using slipmode::scene::Hdf5Handle;
+using slipmode::results::Hdf5Handle;
 
 struct Seed {
   std::vector<std::uint8_t> bytes;
@@ -97,7 +97,7 @@ void refused_or_read(const Read& read) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace slipmode::scene;
+  using namespace slipmode::results;
   const QuietHdf5 quiet;
   static const std::vector<Seed> seeds = read_seeds();
   Input input(data, size);
