@@ -128,7 +128,7 @@ TEST_P(ClosedForms, ChainWithoutFrictionFollowsItsTextbookModes) {
 TEST_P(ClosedForms, UndampedChainWithoutFrictionKeepsItsEnergy) {
   Random random(5);
   const HybridSystem system = belt_chain(friction::Coulomb{0.0, 0.0}, friction::Belt::constant(0.2), 25, 0.0);
-  const State start = state(random.vector(25, 1.0), random.vector(25, 1.0));
+  const State start = random_state(random, 25, 1.0);
   const Trajectory run = simulate(system, start, {.duration = 1e4, .flow = flow()});
   EXPECT_NEAR(system.energy(run.final_state) / system.energy(start), 1.0, 1e-10);
 }

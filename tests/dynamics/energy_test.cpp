@@ -54,7 +54,7 @@ TEST(Energy, ClosesWithALoadARampAndGeneralDamping) {
                             {{random.vector(6, 1.0), friction::Stribeck{0.5, 0.2, 3.0}, 1.0},
                              {random.vector(6, 1.0), friction::Coulomb{0.4, 0.3}, 0.5}},
                             Belt::ramp(0.4, -0.2, 100.0, 300.0), random.vector(6, 0.3));
-  expect_closed(system, state(random.vector(6, 1.0), random.vector(6, 1.0)), 500.0, {});
+  expect_closed(system, random_state(random, 6, 1.0), 500.0, {});
 }
 
 TEST(Energy, WorkAndLossesAgreeWithQuadratureOfTheReference) {
@@ -62,7 +62,7 @@ TEST(Energy, WorkAndLossesAgreeWithQuadratureOfTheReference) {
   // 5 points on 16 pieces of each Taylor step).
   const HybridSystem chain = belt_chain(friction::Stribeck{0.4, 0.2, 8.0}, Belt::constant(0.2));
   Random random(2);
-  const State start = state(random.vector(10, 1.5), random.vector(10, 1.5));
+  const State start = random_state(random, 10, 1.5);
   const Trajectory run = simulate(chain, start, {.duration = 60.0, .flow = {.tolerance = 1e-12}});
 
   const ReferenceModel model = reference_of(chain);
