@@ -190,7 +190,7 @@ void sweep(const BeamModel& model, const scene::Scene& scene, const std::vector<
     events += point.settled.events;
     if (audit) residual = std::max(residual, std::abs(point.settled.audit_residual));
   }
-  std::string text = fmt::format("{:<7}{:>5}{:9}{:12}{:10.2f}{:10.2f}{:9}", model.name, audit ? "on" : "off",
+  std::string text = fmt::format("{:<7}{:>5}{:9}{:12}{:10.2f}{:10.2f}{:>9}", model.name, audit ? "on" : "off",
                                  frequencies.size(), events, wall, cpu,
                                  audit ? fmt::format("{:.0f}", model.wanted.sweep_cpu_seconds / wanted_share()) : "-");
   if (audit) text += fmt::format("{:12.1e}", residual);
