@@ -47,7 +47,8 @@ TEST(ModelVerdict, AllModesAreTheFullModelUntilChaosPartsThem) {
   EXPECT_EQ(b.modes, 10);
   EXPECT_TRUE(a.failure.empty() && b.failure.empty());
   ASSERT_EQ(a.exponents.nats.size(), 3);
-  EXPECT_TRUE(std::isnan(a.kaplan_yorke.value));  // three exponents do not tell
+  // Three exponents tell the dimension only where their sum is below zero, which so short a stretch leaves to chance.
+  EXPECT_EQ(std::isnan(a.kaplan_yorke.value), a.exponents.nats.sum() >= 0.0);
   EXPECT_EQ(a.record.size(), 4000);
   // The flow's tolerance of 1e-9, grown by e^(0.0135 · 400) and the kicks of 80 events: below 1e-4.
   EXPECT_LT((a.record - b.record).cwiseAbs().maxCoeff(), 1e-4);
