@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <functional>
 #include <map>
-#include <memory>
 #include <utility>
 
 namespace slipmode::results {
@@ -176,18 +175,12 @@ DrivenPoint driven_from_record(const JournalRecord& record) {
 }
 
 diagnostics::DrivenSink driven_journal_sink(Journal& journal) {
-  const auto kept = std::make_shared<std::map<std::pair<std::size_t, int>, DrivenPoint>>();
+  detail::Kept<DrivenPoint, std::size_t, int> kept;
   for (const JournalRecord& record : journal.records()) {
-    DrivenPoint point = driven_from_record(record);
-    const std::pair key(point.index, point.model);
-    kept->insert_or_assign(key, std::move(point));
+    const DrivenPoint point = driven_from_record(record);
+    kept.keep({point.index, point.model}, point);
   }
-  return {.recall = [kept](std::size_t index, int model) -> std::optional<DrivenPoint> {
-            const auto found = kept->find({index, model});
-            if (found == kept->end()) return std::nullopt;
-            return found->second;
-          },
-          .store = [&journal](const DrivenPoint& point) { journal.append(to_record(point)); }};
+  return {.recall = kept, .store = [&journal](const DrivenPoint& point) { journal.append(to_record(point)); }};
 }
 
 void store_driven(StoreWriter& writer, const std::string& group, const std::string& title, const DrivenAxes& axes,

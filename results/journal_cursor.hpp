@@ -6,9 +6,14 @@
 
 #include <fmt/format.h>
 #include <Eigen/Core>
+#include <map>
+#include <memory>
+#include <optional>
+#include <tuple>
+#include <utility>
 #include <vector>
 
-/// Inside of sweep_store.cpp and driven_store.cpp: values of a journal's line, written and read in one order.
+/// Inside of the stores of sweeps and maps: values of a journal's line, written and read in one order.
 namespace slipmode::results::detail {
 
 /// Reads the values of a record one after the other.
@@ -47,6 +52,21 @@ class Cursor {
  private:
   const JournalRecord& record_;
   std::size_t at_ = 0;
+};
+
+/// Finished values by the key a runner recalls them with; a copy shares them.
+template <class Value, class... Key>
+class Kept {
+ public:
+  void keep(const std::tuple<Key...>& key, Value value) { values_->insert_or_assign(key, std::move(value)); }
+  std::optional<Value> operator()(Key... key) const {
+    const auto found = values_->find({key...});
+    return found == values_->end() ? std::nullopt : std::optional(found->second);
+  }
+
+ private:
+  std::shared_ptr<std::map<std::tuple<Key...>, Value>> values_ =
+      std::make_shared<std::map<std::tuple<Key...>, Value>>();
 };
 
 inline void append(std::vector<double>& values, const Eigen::VectorXd& vector) {

@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 #include <functional>
-#include <map>
-#include <memory>
 #include <sstream>
 #include <utility>
 
@@ -82,11 +80,10 @@ StrobePoint point_from_record(const JournalRecord& record) {
 
 /// Records of one table by index.
 template <class Value, class Read>
-std::shared_ptr<std::map<std::size_t, Value>> recorded(const Journal& journal, const std::string& table,
-                                                       const Read& read) {
-  auto kept = std::make_shared<std::map<std::size_t, Value>>();
+detail::Kept<Value, std::size_t> recorded(const Journal& journal, const std::string& table, const Read& read) {
+  detail::Kept<Value, std::size_t> kept;
   for (const JournalRecord& record : journal.records()) {
-    if (record.table == table) kept->insert_or_assign(static_cast<std::size_t>(record.index), read(record));
+    if (record.table == table) kept.keep({static_cast<std::size_t>(record.index)}, read(record));
   }
   return kept;
 }
@@ -132,24 +129,17 @@ void store_failures(StoreWriter& writer, const std::string& group, const orbits:
 }  // namespace
 
 orbits::MapSink map_sink(Journal& journal, const std::string& start) {
-  const auto kept = recorded<std::vector<MapPoint>>(journal, start, row_from_record);
-  return {.recall = [kept](std::size_t row) -> std::optional<std::vector<MapPoint>> {
-            const auto found = kept->find(row);
-            return found == kept->end() ? std::nullopt : std::optional(found->second);
-          },
-          .store = [&journal, start](
-                       std::size_t row,
-                       const std::vector<MapPoint>& points) { journal.append(to_record(start, row, points)); }};
+  return {.recall = recorded<std::vector<MapPoint>>(journal, start, row_from_record),
+          .store = [&journal, start](std::size_t row, const std::vector<MapPoint>& points) {
+            journal.append(to_record(start, row, points));
+          }};
 }
 
 orbits::StrobeSink strobe_sink(Journal& journal, const std::string& start) {
-  const auto kept = recorded<StrobePoint>(journal, start, point_from_record);
-  return {.recall = [kept](std::size_t index) -> std::optional<StrobePoint> {
-            const auto found = kept->find(index);
-            return found == kept->end() ? std::nullopt : std::optional(found->second);
-          },
-          .store = [&journal, start](std::size_t index,
-                                     const StrobePoint& point) { journal.append(to_record(start, index, point)); }};
+  return {.recall = recorded<StrobePoint>(journal, start, point_from_record),
+          .store = [&journal, start](std::size_t index, const StrobePoint& point) {
+            journal.append(to_record(start, index, point));
+          }};
 }
 
 void store_map(StoreWriter& writer, const SweepAxis& x, const SweepAxis& y, const orbits::MapGrid& grid,

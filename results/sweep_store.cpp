@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <memory>
 #include <utility>
 
 namespace slipmode::results {
@@ -73,18 +72,12 @@ SweepPoint from_record(const JournalRecord& record) {
 }
 
 diagnostics::SweepSink journal_sink(Journal& journal) {
-  const auto kept = std::make_shared<std::map<std::pair<std::size_t, int>, SweepPoint>>();
+  detail::Kept<SweepPoint, std::size_t, int> kept;
   for (const JournalRecord& record : journal.records()) {
-    SweepPoint point = from_record(record);
-    const std::pair key(point.index, point.model);
-    kept->insert_or_assign(key, std::move(point));
+    const SweepPoint point = from_record(record);
+    kept.keep({point.index, point.model}, point);
   }
-  return {.recall = [kept](std::size_t index, int model) -> std::optional<SweepPoint> {
-            const auto found = kept->find({index, model});
-            if (found == kept->end()) return std::nullopt;
-            return found->second;
-          },
-          .store = [&journal](const SweepPoint& point) { journal.append(to_record(point)); }};
+  return {.recall = kept, .store = [&journal](const SweepPoint& point) { journal.append(to_record(point)); }};
 }
 
 SweepAxis sweep_axis(const scene::Scene& scene, const std::string& key) {
