@@ -355,10 +355,58 @@ void taylor(const PairArrays& m, const double* x, const double* coefficient, dou
   }
 }
 
+namespace {
+
+/// See Kernels::taylor_work. @param kStates  the states at the rule's points are asked for, else the loss
+template <bool kStates>
+SLIPMODE_LANES_INLINE Work series_work(const PairArrays& m, const double* velocity_row, const double* damping,
+                                       const double* x, const double* coefficient, double tau, int terms,
+                                       const SeriesRule& rule, const double* moments, double* out_x) {
+  const Index np = m.np;
+  V8 contact = broadcast8(0.0), loss = contact;
+  for (Index i = 0; i < np; i += kLanes) {
+    const V8 y1 = load8(x + i), y2 = load8(x + np + i);
+    V8 place[kWorkPoints], speed[kWorkPoints];
+    for (int p = 0; p < kWorkPoints; ++p) {
+      place[p] = y1;
+      speed[p] = y2;
+    }
+    const auto add_contacts = [&](int l, V8 term1, V8 term2) __attribute__((always_inline)) {
+      for (int c = 0; c < m.contacts; ++c) {
+        const double* row = velocity_row + 2 * np * c + i;
+        contact =
+            fma8(broadcast8(moments[kMoments * c + l]), fma8(load8(row), term1, load8(row + np) * term2), contact);
+      }
+    };
+    add_contacts(0, y1, y2);
+    taylor_terms(
+        m, i, y1, y2, coefficient, tau, terms, [&](int k, V8 term1, V8 term2) __attribute__((always_inline)) {
+          for (int p = 0; p < kWorkPoints; ++p) {
+            const V8 by = broadcast8(rule.at_node[k][p]);
+            if constexpr (kStates) place[p] = fma8(by, term1, place[p]);
+            speed[p] = fma8(by, term2, speed[p]);
+          }
+          add_contacts(k + 1, term1, term2);
+        });
+    if constexpr (kStates) {
+      for (int p = 0; p < kWorkPoints; ++p) {
+        store8(out_x + 2 * np * p + i, place[p]);
+        store8(out_x + 2 * np * p + np + i, speed[p]);
+      }
+    } else {
+      V8 squares = broadcast8(0.0);
+      for (int p = 0; p < kWorkPoints; ++p) squares = fma8(broadcast8(rule.weight[p]) * speed[p], speed[p], squares);
+      loss = fma8(load8(damping + i), squares, loss);
+    }
+  }
+  return {sum8(contact), tau * sum8(loss)};
+}
+
+}  // namespace
+
 Work taylor_work(const PairArrays& m, const double* velocity_row, const double* damping, const double* x,
                  const double* coefficient, double tau, int terms, const SeriesRule& rule, double* out_moments,
                  double* out_x) {
-  const Index np = m.np;
   for (int c = 0; c < m.contacts; ++c)  // ∫ λ sˡ ds/l!, times τ
     for (int l = 0; l <= terms; l += kLanes) {
       V8 sum = broadcast8(0.0);
@@ -366,47 +414,9 @@ Work taylor_work(const PairArrays& m, const double* velocity_row, const double* 
         sum = fma8(load8(kProducts.of[k] + l), broadcast8(coefficient[kNodes * c + k]), sum);
       store8(out_moments + kMoments * c + l, sum);
     }
-  V8 contact = broadcast8(0.0), loss = contact;
-  for (Index i = 0; i < np; i += kLanes) {
-    const V8 y1 = load8(x + i), y2 = load8(x + np + i);
-    V8 speed[kWorkPoints];
-    for (int p = 0; p < kWorkPoints; ++p) speed[p] = y2;
-    const auto add_contacts = [&](int l, V8 term1, V8 term2) __attribute__((always_inline)) {
-      for (int c = 0; c < m.contacts; ++c) {
-        const double* row = velocity_row + 2 * np * c + i;
-        contact =
-            fma8(broadcast8(out_moments[kMoments * c + l]), fma8(load8(row), term1, load8(row + np) * term2), contact);
-      }
-    };
-    add_contacts(0, y1, y2);
-    if (damping != nullptr) {
-      taylor_terms(
-          m, i, y1, y2, coefficient, tau, terms, [&](int k, V8 term1, V8 term2) __attribute__((always_inline)) {
-            for (int p = 0; p < kWorkPoints; ++p) speed[p] = fma8(broadcast8(rule.at_node[k][p]), term2, speed[p]);
-            add_contacts(k + 1, term1, term2);
-          });
-      V8 squares = broadcast8(0.0);
-      for (int p = 0; p < kWorkPoints; ++p) squares = fma8(broadcast8(rule.weight[p]) * speed[p], speed[p], squares);
-      loss = fma8(load8(damping + i), squares, loss);
-    } else {
-      V8 place[kWorkPoints];
-      for (int p = 0; p < kWorkPoints; ++p) place[p] = y1;
-      taylor_terms(
-          m, i, y1, y2, coefficient, tau, terms, [&](int k, V8 term1, V8 term2) __attribute__((always_inline)) {
-            for (int p = 0; p < kWorkPoints; ++p) {
-              const V8 by = broadcast8(rule.at_node[k][p]);
-              place[p] = fma8(by, term1, place[p]);
-              speed[p] = fma8(by, term2, speed[p]);
-            }
-            add_contacts(k + 1, term1, term2);
-          });
-      for (int p = 0; p < kWorkPoints; ++p) {
-        store8(out_x + 2 * np * p + i, place[p]);
-        store8(out_x + 2 * np * p + np + i, speed[p]);
-      }
-    }
-  }
-  return {sum8(contact), tau * sum8(loss)};
+  if (damping == nullptr)
+    return series_work<true>(m, velocity_row, damping, x, coefficient, tau, terms, rule, out_moments, out_x);
+  return series_work<false>(m, velocity_row, damping, x, coefficient, tau, terms, rule, out_moments, out_x);
 }
 
 }  // namespace slipmode::dynamics::kernels::SLIPMODE_KERNEL_SET
