@@ -92,7 +92,7 @@ Report diagnosis_report(const diagnostics::SeriesStudy& study, const results::Se
   report.data["file"] = file;
   report.text += fmt::format("Numbers and curves: {}\n", file);
   if (arguments.request.figures.empty()) return report;
-  report.data["figures"] = draw_series_figures(results::StoreReader(file), arguments.request.figures);
+  report.data["figures"] = figures::save_all(series_figures_of(results::StoreReader(file)), arguments.request.figures);
   report.text += fmt::format("Figures: {}\n", arguments.request.figures);
   return report;
 }

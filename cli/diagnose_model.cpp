@@ -104,7 +104,8 @@ void check_diagnosis_outputs(const DiagnoseRequest& request) {
 
 void draw_diagnosis(const DiagnoseRequest& request, const std::string& file, Report& report) {
   if (request.figures.empty()) return;
-  report.data["figures"] = figures::draw_exponents_figures(results::StoreReader(file), request.figures);
+  report.data["figures"] =
+      figures::save_all(figures::exponents_figures_of(results::StoreReader(file)), request.figures);
   report.text += fmt::format("Figures: {}\n", request.figures);
 }
 

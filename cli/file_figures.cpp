@@ -32,7 +32,6 @@ namespace slipmode::cli {
 namespace {
 
 using figures::Figure;
-using figures::to_vector;
 using results::StoreReader;
 
 std::string_view colour_of(const std::string& role) {
@@ -222,22 +221,19 @@ Figure trajectory_portrait(const StoreReader& store) {
 /// Figures of files made from a scene with a belt.
 std::vector<figures::FileFigure> belt_figures_of(const StoreReader& store) {
   using Axes = figures::PortraitLayout::Axes;
-  std::vector<figures::FileFigure> out;
-  const auto add = [&](const std::string& group, std::string name, std::string what, auto draw) {
-    if (store.has(group)) out.push_back({std::move(name), std::move(what), [&store, draw] { return draw(store); }});
-  };
-  add("validation/shares", "deviation", "deviations against the number of modes", deviation);
-  add("sweep", "bifurcation", "slip states against the swept key", bifurcation);
-  add("portraits/levels", "levels", "phase portraits, fewer and fewer modes",
-      [](const StoreReader& file) { return portraits(file, "portraits/levels", Axes::kShared); });
-  add("portraits/orbits", "orbits", "periodic orbits, full above reduced",
-      [](const StoreReader& file) { return portraits(file, "portraits/orbits", Axes::kPerColumn); });
-  add(results::kPodGroup, "shapes", "proper orthogonal modes beside linear natural modes", shapes);
-  add(results::kPodGroup, "energy", "energy shares", energy);
-  add(results::kReducedGroup, "shapes", "basis of the reduced model", reduced_shapes);
-  add(results::kTrajectoryGroup, "history", "displacement, velocity and force of the first contact", history);
-  add(results::kTrajectoryGroup, "portrait", "phase portrait of the first contact", trajectory_portrait);
-  return out;
+  figures::FileFigures out(store);
+  out.add("validation/shares", "deviation", "deviations against the number of modes", deviation);
+  out.add("sweep", "bifurcation", "slip states against the swept key", bifurcation);
+  out.add("portraits/levels", "levels", "phase portraits, fewer and fewer modes",
+          [](const StoreReader& file) { return portraits(file, "portraits/levels", Axes::kShared); });
+  out.add("portraits/orbits", "orbits", "periodic orbits, full above reduced",
+          [](const StoreReader& file) { return portraits(file, "portraits/orbits", Axes::kPerColumn); });
+  out.add(results::kPodGroup, "shapes", "proper orthogonal modes beside linear natural modes", shapes);
+  out.add(results::kPodGroup, "energy", "energy shares", energy);
+  out.add(results::kReducedGroup, "shapes", "basis of the reduced model", reduced_shapes);
+  out.add(results::kTrajectoryGroup, "history", "displacement, velocity and force of the first contact", history);
+  out.add(results::kTrajectoryGroup, "portrait", "phase portrait of the first contact", trajectory_portrait);
+  return std::move(out.all);
 }
 
 }  // namespace

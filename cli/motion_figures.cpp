@@ -70,7 +70,7 @@ Loops loops_after(const scene::Scene& scene, const dynamics::State& state) {
     }
     add(run.times[i], run.contact_q(0, i), run.contact_v(0, i), run.lambda(0, i));
   }
-  return {figures::to_vector(way), figures::to_vector(speed), figures::to_vector(force)};
+  return {to_vector(way), to_vector(speed), to_vector(force)};
 }
 
 }  // namespace

@@ -55,14 +55,14 @@ figures::Figure draw_information(const results::StoreReader& store) {
   constexpr std::array<std::string_view, 6> kColours = {"#CCCCCC", "#AAAAAA", "#888888",
                                                         "#666666", "#444444", "#222222"};
   const results::Table table = results::load_table(store, diagnosis_path("information"));
-  const Eigen::VectorXd lag = figures::to_vector(table.numbers("lag"));
+  const Eigen::VectorXd lag = to_vector(table.numbers("lag"));
   const auto delay = static_cast<double>(store.integer(diagnosis_path("embedding/delay")));
   figures::Panel panel{.title = "average mutual information", .series = {}};
   std::size_t widths = 0;
   double top = 0.0;
   for (const results::Column& column : table.columns) {
     if (column.name == "lag") continue;
-    const Eigen::VectorXd bits = figures::to_vector(table.numbers(column.name));
+    const Eigen::VectorXd bits = to_vector(table.numbers(column.name));
     const bool width = column.name.starts_with("equal_width");
     const std::string_view colour = width                      ? kColours[std::min<std::size_t>(widths++, 5)]
                                     : column.name == "no_bins" ? figures::kLnmColour
@@ -79,8 +79,7 @@ figures::Figure draw_information(const results::StoreReader& store) {
 
 figures::Figure draw_autocorrelation(const results::StoreReader& store) {
   const results::Table table = results::load_table(store, diagnosis_path("autocorrelation"));
-  const Eigen::VectorXd lag = figures::to_vector(table.numbers("lag")),
-                        value = figures::to_vector(table.numbers("value"));
+  const Eigen::VectorXd lag = to_vector(table.numbers("lag")), value = to_vector(table.numbers("value"));
   const double last = lag(lag.size() - 1), level = std::exp(-1.0);
   figures::Panel panel{.title = "autocorrelation",
                        .series = {guide_line(0.0, level, last, level, "1/e"),
@@ -94,9 +93,9 @@ figures::Figure draw_autocorrelation(const results::StoreReader& store) {
 
 figures::Figure draw_neighbours(const results::StoreReader& store) {
   const results::Table table = results::load_table(store, diagnosis_path("neighbours"));
-  const Eigen::VectorXd d = figures::to_vector(table.numbers("dimension"));
+  const Eigen::VectorXd d = to_vector(table.numbers("dimension"));
   const auto curve = [&](const std::string& column, double scale, std::string title, std::string_view colour) {
-    return figures::Series{std::move(title), d, scale * figures::to_vector(table.numbers(column)),
+    return figures::Series{std::move(title), d, scale * to_vector(table.numbers(column)),
                            figures::Series::Look::kMarkedLine, colour};
   };
   const figures::Panel kennel{
@@ -129,8 +128,7 @@ figures::Figure draw_divergence(const results::StoreReader& store) {
        {std::pair{"across_the_flow", "across the flow"}, {"rosenstein", "Rosenstein"}, {"kantz", "Kantz"}}) {
     if (!store.has(diagnosis_path(group))) continue;
     const results::Table table = results::load_table(store, diagnosis_path(group));
-    const Eigen::VectorXd time = figures::to_vector(table.numbers("time")),
-                          log = figures::to_vector(table.numbers("mean_log"));
+    const Eigen::VectorXd time = to_vector(table.numbers("time")), log = to_vector(table.numbers("mean_log"));
     const double slope = store.number(diagnosis_path(group) + "/fit/slope");
     unit = store.entry(diagnosis_path(group) + "/time").meaning.units;
     panels.push_back({fmt::format("{}: {:.4g} nat per {}", title, slope, unit == "unit" ? "unit of time" : unit),
@@ -148,7 +146,7 @@ figures::Figure draw_divergence(const results::StoreReader& store) {
 
 figures::Figure draw_dimension(const results::StoreReader& store) {
   const results::Table table = results::load_table(store, diagnosis_path("correlation"));
-  const Eigen::VectorXd r = figures::to_vector(table.numbers("radius")), C = figures::to_vector(table.numbers("C"));
+  const Eigen::VectorXd r = to_vector(table.numbers("radius")), C = to_vector(table.numbers("C"));
   const Eigen::VectorXd log_r = r.array().log10(), log_C = C.array().log10();
   const std::string group = diagnosis_path("correlation");
   const auto begin = store.integer(group + "/fit/begin"), end = store.integer(group + "/fit/end");
@@ -157,19 +155,18 @@ figures::Figure draw_dimension(const results::StoreReader& store) {
                             .series = {{"", log_r, log_C, figures::Series::Look::kLine, figures::kFullColour},
                                        {"", log_r.segment(begin, end - begin), log_C.segment(begin, end - begin),
                                         figures::Series::Look::kMarkedLine, kFittedColour}}};
-  const figures::Panel slopes{.title = fmt::format("local slope; over the fitted part {:.3f}", slope),
-                              .series = {{"", log_r, figures::to_vector(table.numbers("local_slope")),
-                                          figures::Series::Look::kLine, figures::kFullColour},
-                                         guide_line(log_r(begin), slope, log_r(end - 1), slope, "", kFittedColour,
-                                                    figures::Series::Look::kLine)}};
+  const figures::Panel slopes{
+      .title = fmt::format("local slope; over the fitted part {:.3f}", slope),
+      .series = {
+          {"", log_r, to_vector(table.numbers("local_slope")), figures::Series::Look::kLine, figures::kFullColour},
+          guide_line(log_r(begin), slope, log_r(end - 1), slope, "", kFittedColour, figures::Series::Look::kLine)}};
   return figures::panel_grid(
       {sums, slopes}, {.panel_height = 340, .x_label = "log_{10} of the radius", .y_label = "", .shared_y = false});
 }
 
 figures::Figure draw_spectrum(const results::StoreReader& store) {
   const results::Table table = results::load_table(store, diagnosis_path("spectrum"));
-  const Eigen::VectorXd f = figures::to_vector(table.numbers("frequency")),
-                        a = figures::to_vector(table.numbers("amplitude"));
+  const Eigen::VectorXd f = to_vector(table.numbers("frequency")), a = to_vector(table.numbers("amplitude"));
   const std::string unit = store.entry(diagnosis_path("spectrum/frequency")).meaning.units;
   const figures::Panel panel{
       .title = "averaged amplitude spectrum",
@@ -211,32 +208,21 @@ figures::Figure draw_recurrence(const results::StoreReader& store) {
 }  // namespace
 
 std::vector<figures::FileFigure> series_figures_of(const results::StoreReader& store) {
-  std::vector<figures::FileFigure> out;
-  const auto add = [&](const std::string& group, std::string name, std::string what, auto draw) {
-    if (store.has(diagnosis_path(group)))
-      out.push_back({std::move(name), std::move(what), [&store, draw] { return draw(store); }});
-  };
-  add("series", "delay", "the record against itself one and two delays later", draw_delay_map);
-  add("information", "information", "average mutual information", draw_information);
-  add("autocorrelation", "autocorrelation", "autocorrelation", draw_autocorrelation);
-  add("neighbours", "neighbours", "false neighbours and Cao's averages against the dimension", draw_neighbours);
+  figures::FileFigures out(store);
+  out.add(diagnosis_path("series"), "delay", "the record against itself one and two delays later", draw_delay_map);
+  out.add(diagnosis_path("information"), "information", "average mutual information", draw_information);
+  out.add(diagnosis_path("autocorrelation"), "autocorrelation", "autocorrelation", draw_autocorrelation);
+  out.add(diagnosis_path("neighbours"), "neighbours", "false neighbours and Cao's averages against the dimension",
+          draw_neighbours);
   const bool diverges = store.has(diagnosis_path("across_the_flow")) || store.has(diagnosis_path("rosenstein"));
-  add(diverges ? "series" : "kantz", "divergence", "divergence of neighbours with the fitted part", draw_divergence);
-  add("correlation", "dimension", "correlation sum with local slopes and the fitted part", draw_dimension);
-  add("spectrum", "spectrum", "averaged amplitude spectrum", draw_spectrum);
-  add("section", "section", "Poincaré section", draw_section);
-  add("recurrence", "recurrence", "recurrence plot", draw_recurrence);
-  return out;
-}
-
-std::vector<std::string> draw_series_figures(const results::StoreReader& store, const std::filesystem::path& folder) {
-  std::filesystem::create_directories(folder);
-  std::vector<std::string> names;
-  for (const figures::FileFigure& figure : series_figures_of(store)) {
-    figures::save(figure.draw(), {folder / (figure.name + ".svg"), folder / (figure.name + ".png")});
-    names.push_back(figure.name);
-  }
-  return names;
+  out.add(diagnosis_path(diverges ? "series" : "kantz"), "divergence", "divergence of neighbours with the fitted part",
+          draw_divergence);
+  out.add(diagnosis_path("correlation"), "dimension", "correlation sum with local slopes and the fitted part",
+          draw_dimension);
+  out.add(diagnosis_path("spectrum"), "spectrum", "averaged amplitude spectrum", draw_spectrum);
+  out.add(diagnosis_path("section"), "section", "Poincaré section", draw_section);
+  out.add(diagnosis_path("recurrence"), "recurrence", "recurrence plot", draw_recurrence);
+  return std::move(out.all);
 }
 
 }  // namespace slipmode::cli

@@ -24,7 +24,6 @@ namespace {
 using figures::Figure;
 using figures::Panel;
 using figures::Series;
-using figures::to_vector;
 using results::StoreReader;
 
 std::string_view colour_of_basis(const std::string& basis) {

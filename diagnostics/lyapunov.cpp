@@ -4,6 +4,7 @@
 #include "core/errors.hpp"
 #include "core/none.hpp"
 #include "core/random.hpp"
+#include "core/to_vector.hpp"
 #include "diagnostics/model.hpp"
 #include "diagnostics/stretches.hpp"
 
@@ -22,9 +23,7 @@ namespace {
 
 /// Exponent and its scatter from the log growth of every interval.
 LyapunovExponent summarise(const std::vector<double>& logs, double interval) {
-  // A copy: sums over memory that is not aligned take another order from run to run.
-  const Eigen::RowVectorXd rates =
-      Eigen::Map<const Eigen::RowVectorXd>(logs.data(), static_cast<Eigen::Index>(logs.size()));
+  const Eigen::RowVectorXd rates = to_vector(logs).transpose();
   LyapunovExponent result{.nats = rates.sum() / (static_cast<double>(rates.size()) * interval),
                           .renormalisations = static_cast<int>(logs.size())};
   result.bits = result.nats / std::numbers::ln2;

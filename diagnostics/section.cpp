@@ -1,6 +1,7 @@
 #include "diagnostics/section.hpp"
 
 #include "core/errors.hpp"
+#include "core/to_vector.hpp"
 
 #include <fmt/format.h>
 
@@ -142,7 +143,7 @@ Section section(const Series& series, const SectionOptions& options) {
   if (!options.level) out.settings.level = series.values.mean();
   const std::vector<double> at = cut_instants(series, out.settings);
   const auto count = static_cast<Eigen::Index>(at.size());
-  out.time = Eigen::Map<const Eigen::VectorXd>(at.data(), count) * series.interval;
+  out.time = to_vector(at) * series.interval;
   out.points.resize(options.embedding.dimension, count);
   for (Eigen::Index m = 0; m < count; ++m) {
     const double instant = at[static_cast<std::size_t>(m)];

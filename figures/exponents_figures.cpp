@@ -147,14 +147,4 @@ std::vector<FileFigure> exponents_figures_of(const StoreReader& store) {
       {"expansion", "distribution of the expansion over one interval", [&store] { return expansion_drawn(store); }}};
 }
 
-std::vector<std::string> draw_exponents_figures(const StoreReader& store, const std::filesystem::path& folder) {
-  std::filesystem::create_directories(folder);
-  std::vector<std::string> names;
-  for (const FileFigure& figure : exponents_figures_of(store)) {
-    save(figure.draw(), {folder / (figure.name + ".svg"), folder / (figure.name + ".png")});
-    names.push_back(figure.name);
-  }
-  return names;
-}
-
 }  // namespace slipmode::figures

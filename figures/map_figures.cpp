@@ -191,17 +191,15 @@ Figure strobe_amplitudes(const StoreReader& store) {
 }  // namespace
 
 std::vector<FileFigure> map_figures_of(const StoreReader& store) {
-  std::vector<FileFigure> out;
-  const auto add = [&](const char* group, std::string name, std::string what, auto draw) {
-    if (store.has(group)) out.push_back({std::move(name), std::move(what), [&store, draw] { return draw(store); }});
-  };
-  add(results::kMapGroup, "crossings", "regime changes of period-1 orbits", crossings);
-  add(results::kMapGroup, "multipliers", "largest |multiplier|", multipliers);
-  add(results::kMapGroup, "orders", "periods of the orbits", orders);
-  add(results::kMapGroup, "amplitudes", "alternating amplitudes", amplitudes);
-  add(results::kStrobeGroup, "strobe", "motion seen once per period against the key", strobe_diagram);
-  add(results::kStrobeGroup, "amplitudes", "alternating and effective amplitudes against the key", strobe_amplitudes);
-  return out;
+  FileFigures out(store);
+  out.add(results::kMapGroup, "crossings", "regime changes of period-1 orbits", crossings);
+  out.add(results::kMapGroup, "multipliers", "largest |multiplier|", multipliers);
+  out.add(results::kMapGroup, "orders", "periods of the orbits", orders);
+  out.add(results::kMapGroup, "amplitudes", "alternating amplitudes", amplitudes);
+  out.add(results::kStrobeGroup, "strobe", "motion seen once per period against the key", strobe_diagram);
+  out.add(results::kStrobeGroup, "amplitudes", "alternating and effective amplitudes against the key",
+          strobe_amplitudes);
+  return std::move(out.all);
 }
 
 }  // namespace slipmode::figures

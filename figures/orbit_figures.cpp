@@ -164,15 +164,12 @@ Figure branch_multipliers(const StoreReader& store) {
 }  // namespace
 
 std::vector<FileFigure> orbit_figures_of(const StoreReader& store) {
-  std::vector<FileFigure> out;
-  const auto add = [&](const std::string& group, std::string name, std::string what, auto draw) {
-    if (store.has(group)) out.push_back({std::move(name), std::move(what), [&store, draw] { return draw(store); }});
-  };
-  add(results::kOrbitGroup, "orbit", "phase portrait of the orbit, stops drawn", orbit_portrait);
-  add(results::kOrbitGroup, "multipliers", "Floquet multipliers and the unit circle", orbit_multipliers);
-  add("branches", "response", "amplitude over the key, unstable orbits dashed, special points marked", response);
-  add("branches", "multipliers", "moduli of the Floquet multipliers over the key", branch_multipliers);
-  return out;
+  FileFigures out(store);
+  out.add(results::kOrbitGroup, "orbit", "phase portrait of the orbit, stops drawn", orbit_portrait);
+  out.add(results::kOrbitGroup, "multipliers", "Floquet multipliers and the unit circle", orbit_multipliers);
+  out.add("branches", "response", "amplitude over the key, unstable orbits dashed, special points marked", response);
+  out.add("branches", "multipliers", "moduli of the Floquet multipliers over the key", branch_multipliers);
+  return std::move(out.all);
 }
 
 }  // namespace slipmode::figures

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/to_vector.hpp"
 #include "figures/gnuplot.hpp"
 
 #include <Eigen/Core>
@@ -8,11 +9,6 @@
 #include <vector>
 
 namespace slipmode::figures {
-
-/// A list as a curve's coordinates.
-[[nodiscard]] inline Eigen::VectorXd to_vector(const std::vector<double>& values) {
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-}
 
 /// A curve or a cloud of points in a panel.
 struct Series {

@@ -1,5 +1,6 @@
 #include "figures/response_diagram.hpp"
 
+#include "core/to_vector.hpp"
 #include "figures/style.hpp"
 
 #include <fmt/format.h>
@@ -20,11 +21,7 @@ struct Pieces {
     y.push_back(py);
   }
   void break_here() { add(std::numeric_limits<double>::quiet_NaN(), 0.0); }
-  [[nodiscard]] std::string data(Figure& figure) const {
-    const auto size = static_cast<Eigen::Index>(x.size());
-    return figure.data(
-        {Eigen::Map<const Eigen::VectorXd>(x.data(), size), Eigen::Map<const Eigen::VectorXd>(y.data(), size)});
-  }
+  [[nodiscard]] std::string data(Figure& figure) const { return figure.data({to_vector(x), to_vector(y)}); }
 };
 
 struct Looks {

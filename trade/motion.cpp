@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "core/none.hpp"
+#include "core/to_vector.hpp"
 #include "diagnostics/model.hpp"
 #include "diagnostics/point_sets.hpp"
 
@@ -84,8 +85,7 @@ class Gathered {
 };
 
 double rms(const std::vector<double>& values) {
-  // A copy: sums over memory that is not aligned take another order from run to run.
-  const Eigen::ArrayXd all = Eigen::Map<const Eigen::ArrayXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+  const Eigen::ArrayXd all = to_vector(values).array();
   return std::sqrt((all - all.mean()).square().mean());
 }
 
