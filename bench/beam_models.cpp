@@ -1,9 +1,9 @@
 #include "bench/beam_models.hpp"
 
-#include "pod/modal_fit.hpp"
-#include "pod/pomf.hpp"
-#include "pod/sensors.hpp"
-#include "rom/reduce.hpp"
+#include <slipmode/pod/modal_fit.hpp>
+#include <slipmode/pod/pomf.hpp>
+#include <slipmode/pod/sensors.hpp>
+#include <slipmode/rom/reduce.hpp>
 
 namespace slipmode::bench {
 namespace {

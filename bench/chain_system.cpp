@@ -1,7 +1,7 @@
 #include "bench/chain_system.hpp"
 
-#include "diagnostics/model.hpp"
-#include "fem/chain.hpp"
+#include <slipmode/diagnostics/attractors/model.hpp>
+#include <slipmode/fem/chain.hpp>
 
 #include <cmath>
 #include <stdexcept>

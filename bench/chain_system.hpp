@@ -1,7 +1,7 @@
 #pragma once
 
+#include <slipmode/dynamics/simulate.hpp>
 #include "bench/chain_problem.hpp"
-#include "dynamics/simulate.hpp"
 
 namespace slipmode::bench {
 

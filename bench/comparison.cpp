@@ -1,9 +1,9 @@
 #include "bench/comparison.hpp"
 
+#include <slipmode/core/errors.hpp>
 #include "bench/chain_system.hpp"
 #include "bench/clock.hpp"
 #include "bench/methods.hpp"
-#include "core/errors.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #include "bench/extras_cases.hpp"
 
+#include <slipmode/scene/scene.hpp>
 #include "bench/chain_system.hpp"
 #include "bench/clock.hpp"
-#include "scene/scene.hpp"
 
 #include <fmt/format.h>
 

@@ -1,12 +1,12 @@
 #include "bench/library_cases.hpp"
 
+#include <slipmode/diagnostics/attractors/model.hpp>
+#include <slipmode/diagnostics/attractors/sweep.hpp>
+#include <slipmode/pod/pod.hpp>
 #include "bench/chain_system.hpp"
 #include "bench/clock.hpp"
 #include "bench/machine.hpp"
-#include "diagnostics/model.hpp"
-#include "diagnostics/sweep.hpp"
-#include "pod/accumulator.hpp"
-#include "pod/pod.hpp"
+#include "pod/internal/accumulator.hpp"
 
 #include <fmt/format.h>
 #include <sys/resource.h>

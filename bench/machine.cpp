@@ -1,8 +1,8 @@
 #include "bench/machine.hpp"
 
+#include <slipmode/dynamics/kernels/kernels.hpp>
+#include <slipmode/results/provenance.hpp>
 #include "bench/clock.hpp"
-#include "dynamics/kernels/kernels.hpp"
-#include "results/provenance.hpp"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <slipmode/dynamics/simulate.hpp>
 #include "bench/comparison.hpp"
-#include "dynamics/simulate.hpp"
 
 #include <functional>
 #include <vector>

@@ -1,8 +1,8 @@
 #include "bench/orbit_cases.hpp"
 
+#include <slipmode/orbits/shooting.hpp>
 #include "bench/clock.hpp"
 #include "bench/orbit_peer.hpp"
-#include "orbits/shooting.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

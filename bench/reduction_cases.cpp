@@ -1,9 +1,9 @@
 #include "bench/reduction_cases.hpp"
 
+#include <slipmode/pod/pod.hpp>
+#include <slipmode/rom/reduce.hpp>
 #include "bench/chain_system.hpp"
 #include "bench/clock.hpp"
-#include "pod/pod.hpp"
-#include "rom/reduce.hpp"
 
 #include <fmt/format.h>
 #include <string>

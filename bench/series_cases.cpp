@@ -1,9 +1,9 @@
 #include "bench/series_cases.hpp"
 
+#include <slipmode/diagnostics/series/correlation_dimension.hpp>
+#include <slipmode/diagnostics/series/false_neighbours.hpp>
+#include <slipmode/diagnostics/series/series.hpp>
 #include "bench/clock.hpp"
-#include "diagnostics/correlation_dimension.hpp"
-#include "diagnostics/false_neighbours.hpp"
-#include "diagnostics/series.hpp"
 #include "fixtures/test_series.hpp"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include "bench/shaken_problem.hpp"
 
-#include "core/errors.hpp"
-#include "fem/modes.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/fem/modes.hpp>
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "dynamics/simulate.hpp"
+#include <slipmode/dynamics/simulate.hpp>
 
 #include <vector>
 

@@ -1,11 +1,11 @@
+#include <slipmode/results/provenance.hpp>
+#include <slipmode/scene/own_times.hpp>
+#include <slipmode/trade/effects.hpp>
+#include <slipmode/trade/variants.hpp>
 #include "cli/text_table.hpp"
 #include "cli/trade_report.hpp"
 #include "cli/trade_request.hpp"
 #include "cli/verbs.hpp"
-#include "results/provenance.hpp"
-#include "scene/own_times.hpp"
-#include "trade/effects.hpp"
-#include "trade/variants.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,12 +1,12 @@
 #include "cli/diagnose.hpp"
 
+#include <slipmode/figures/gnuplot.hpp>
+#include <slipmode/results/series_input.hpp>
 #include "cli/diagnose_model.hpp"
 #include "cli/series_figures.hpp"
 #include "cli/series_findings.hpp"
 #include "cli/series_store.hpp"
 #include "cli/verbs.hpp"
-#include "figures/gnuplot.hpp"
-#include "results/series_input.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,15 +1,15 @@
 #include "cli/diagnose_model.hpp"
 #include "cli/exponents_report.hpp"
 
+#include <slipmode/figures/exponents_figures.hpp>
+#include <slipmode/results/exponents_store.hpp>
+#include <slipmode/results/provenance.hpp>
+#include <slipmode/rom/reduce.hpp>
+#include <slipmode/scene/own_times.hpp>
 #include "cli/diagnose_subjects.hpp"
 #include "cli/diagnose_sweep.hpp"
 #include "cli/validation_setup.hpp"
-#include "diagnostics/shared_starts.hpp"
-#include "figures/exponents_figures.hpp"
-#include "results/exponents_store.hpp"
-#include "results/provenance.hpp"
-#include "rom/reduce.hpp"
-#include "scene/own_times.hpp"
+#include "diagnostics/validation/internal/shared_starts.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

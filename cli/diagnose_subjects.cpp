@@ -1,10 +1,10 @@
 #include "cli/diagnose_subjects.hpp"
 
+#include <slipmode/results/records.hpp>
 #include "cli/shaken_bases.hpp"
 #include "cli/shaken_model.hpp"
 #include "cli/steps.hpp"
 #include "cli/validation_setup.hpp"
-#include "results/records.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

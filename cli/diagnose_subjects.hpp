@@ -1,8 +1,8 @@
 #pragma once
 
+#include <slipmode/diagnostics/exponents/lyapunov_spectrum.hpp>
+#include <slipmode/diagnostics/validation/verdict.hpp>
 #include "cli/session.hpp"
-#include "diagnostics/lyapunov_spectrum.hpp"
-#include "diagnostics/verdict.hpp"
 
 #include <Eigen/Core>
 #include <optional>

@@ -1,15 +1,15 @@
 #include "cli/diagnose_sweep.hpp"
 
+#include <slipmode/core/none.hpp>
+#include <slipmode/results/journal.hpp>
+#include <slipmode/results/provenance.hpp>
+#include <slipmode/results/sweep_store.hpp>
 #include "cli/json_values.hpp"
 #include "cli/sweep_report.hpp"
 #include "cli/sweep_request.hpp"
 #include "cli/swept_model.hpp"
 #include "cli/validation_setup.hpp"
-#include "core/none.hpp"
-#include "diagnostics/shared_starts.hpp"
-#include "results/journal.hpp"
-#include "results/provenance.hpp"
-#include "results/sweep_store.hpp"
+#include "diagnostics/validation/internal/shared_starts.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,6 +1,6 @@
+#include <slipmode/results/table.hpp>
 #include "cli/exponents_report.hpp"
 #include "cli/json_values.hpp"
-#include "results/table.hpp"
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <slipmode/results/exponents_store.hpp>
 #include "cli/session.hpp"
-#include "results/exponents_store.hpp"
 
 #include <string>
 #include <vector>

@@ -1,6 +1,6 @@
+#include <slipmode/results/table.hpp>
 #include "cli/exponents_report.hpp"
 #include "cli/text_table.hpp"
-#include "results/table.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "results/info.hpp"
+#include <slipmode/results/info.hpp>
 #include "cli/verbs.hpp"
 
 namespace slipmode::cli {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/parallel.hpp"
+#include <slipmode/core/parallel.hpp>
 
 namespace slipmode::cli {
 

@@ -1,8 +1,8 @@
+#include <slipmode/core/errors.hpp>
+#include <slipmode/dynamics/kernels/kernels.hpp>
+#include <slipmode/results/provenance.hpp>
 #include "cli/interrupt.hpp"
 #include "cli/verbs.hpp"
-#include "core/errors.hpp"
-#include "dynamics/kernels/kernels.hpp"
-#include "results/provenance.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

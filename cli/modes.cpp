@@ -1,12 +1,12 @@
-#include "fem/modes.hpp"
+#include <slipmode/fem/modes.hpp>
 
+#include <slipmode/core/errors.hpp>
+#include <slipmode/fem/beam_modes.hpp>
+#include <slipmode/results/provenance.hpp>
+#include <slipmode/results/units.hpp>
 #include "cli/steps.hpp"
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
-#include "core/errors.hpp"
-#include "fem/beam_modes.hpp"
-#include "results/provenance.hpp"
-#include "results/units.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

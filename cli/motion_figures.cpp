@@ -1,14 +1,14 @@
 #include "cli/motion_figures.hpp"
 
+#include <slipmode/diagnostics/attractors/model.hpp>
+#include <slipmode/diagnostics/series/spectrum.hpp>
+#include <slipmode/dynamics/simulate.hpp>
+#include <slipmode/figures/panels.hpp>
+#include <slipmode/figures/style.hpp>
+#include <slipmode/results/provenance.hpp>
+#include <slipmode/results/records.hpp>
+#include <slipmode/results/units.hpp>
 #include "cli/shaken_model.hpp"
-#include "diagnostics/model.hpp"
-#include "diagnostics/spectrum.hpp"
-#include "dynamics/simulate.hpp"
-#include "figures/panels.hpp"
-#include "figures/style.hpp"
-#include "results/provenance.hpp"
-#include "results/records.hpp"
-#include "results/units.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,10 +1,10 @@
+#include <slipmode/results/branch_store.hpp>
+#include <slipmode/results/provenance.hpp>
 #include "cli/orbit_family.hpp"
 #include "cli/orbit_report.hpp"
 #include "cli/orbit_search.hpp"
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
-#include "results/branch_store.hpp"
-#include "results/provenance.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

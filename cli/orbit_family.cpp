@@ -1,6 +1,6 @@
 #include "cli/orbit_family.hpp"
 
-#include "rom/reduce.hpp"
+#include <slipmode/rom/reduce.hpp>
 
 #include <fmt/format.h>
 #include <charconv>

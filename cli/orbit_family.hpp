@@ -1,8 +1,8 @@
 #pragma once
 
+#include <slipmode/orbits/continuation.hpp>
+#include <slipmode/pod/basis.hpp>
 #include "cli/session.hpp"
-#include "orbits/continuation.hpp"
-#include "pod/basis.hpp"
 
 #include <optional>
 #include <string>

@@ -1,9 +1,9 @@
+#include <slipmode/results/orbit_records.hpp>
+#include <slipmode/results/provenance.hpp>
+#include <slipmode/results/records.hpp>
 #include "cli/orbit_report.hpp"
 #include "cli/orbit_search.hpp"
 #include "cli/verbs.hpp"
-#include "results/orbit_records.hpp"
-#include "results/provenance.hpp"
-#include "results/records.hpp"
 
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
-#include "orbits/orbit_map.hpp"
+#include <slipmode/orbits/orbit_map.hpp>
 
+#include <slipmode/results/map_store.hpp>
+#include <slipmode/results/provenance.hpp>
 #include "cli/sweep_request.hpp"
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
-#include "results/map_store.hpp"
-#include "results/provenance.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,8 +1,8 @@
 #include "cli/orbit_report.hpp"
 
+#include <slipmode/results/table.hpp>
 #include "cli/json_values.hpp"
 #include "cli/text_table.hpp"
-#include "results/table.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

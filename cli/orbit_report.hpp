@@ -1,7 +1,7 @@
 #pragma once
 
+#include <slipmode/orbits/shooting.hpp>
 #include "cli/session.hpp"
-#include "orbits/shooting.hpp"
 
 #include <string>
 #include <vector>

@@ -1,8 +1,8 @@
+#include <slipmode/orbits/close_returns.hpp>
+#include <slipmode/results/store.hpp>
+#include <slipmode/results/table.hpp>
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
-#include "orbits/close_returns.hpp"
-#include "results/store.hpp"
-#include "results/table.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,8 +1,8 @@
 #include "cli/orbit_search.hpp"
 
-#include "results/records.hpp"
-#include "results/reduced_file.hpp"
-#include "rom/reduce.hpp"
+#include <slipmode/results/records.hpp>
+#include <slipmode/results/reduced_file.hpp>
+#include <slipmode/rom/reduce.hpp>
 
 #include <fmt/format.h>
 #include <charconv>

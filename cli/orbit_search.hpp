@@ -1,8 +1,8 @@
 #pragma once
 
+#include <slipmode/orbits/shooting.hpp>
+#include <slipmode/pod/basis.hpp>
 #include "cli/session.hpp"
-#include "orbits/shooting.hpp"
-#include "pod/basis.hpp"
 
 #include <CLI/CLI.hpp>
 #include <optional>

@@ -1,10 +1,10 @@
+#include <slipmode/results/provenance.hpp>
+#include <slipmode/results/records.hpp>
+#include <slipmode/results/reduced_file.hpp>
+#include <slipmode/results/skeleton_store.hpp>
+#include <slipmode/rom/reduce.hpp>
 #include "cli/skeleton_report.hpp"
 #include "cli/verbs.hpp"
-#include "results/provenance.hpp"
-#include "results/records.hpp"
-#include "results/reduced_file.hpp"
-#include "results/skeleton_store.hpp"
-#include "rom/reduce.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

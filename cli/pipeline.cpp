@@ -1,11 +1,11 @@
 #include "cli/pipeline.hpp"
 
+#include <slipmode/fem/modes.hpp>
+#include <slipmode/results/records.hpp>
+#include <slipmode/rom/reduce.hpp>
 #include "cli/pipeline_figures.hpp"
 #include "cli/validate_run.hpp"
 #include "cli/validation_setup.hpp"
-#include "fem/modes.hpp"
-#include "results/records.hpp"
-#include "rom/reduce.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,9 +1,9 @@
 #pragma once
 
+#include <slipmode/diagnostics/validation/validate.hpp>
 #include "cli/session.hpp"
 #include "cli/steps.hpp"
 #include "cli/validation_report.hpp"
-#include "diagnostics/validate.hpp"
 
 #include <filesystem>
 #include <optional>

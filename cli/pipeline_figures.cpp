@@ -1,7 +1,7 @@
 #include "cli/pipeline_figures.hpp"
 
+#include <slipmode/core/parallel.hpp>
 #include "cli/file_figures.hpp"
-#include "core/parallel.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -1,9 +1,9 @@
+#include <slipmode/results/table.hpp>
+#include <slipmode/results/validation_store.hpp>
 #include "cli/json_values.hpp"
 #include "cli/pipeline.hpp"
 #include "cli/text_table.hpp"
 #include "cli/validation_report.hpp"
-#include "results/table.hpp"
-#include "results/validation_store.hpp"
 
 #include <fmt/format.h>
 #include <cmath>

@@ -1,11 +1,11 @@
-#include "pod/pod.hpp"
+#include <slipmode/pod/pod.hpp>
 
+#include <slipmode/results/records.hpp>
 #include "cli/shaken_bases.hpp"
 #include "cli/shaken_model.hpp"
 #include "cli/steps.hpp"
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
-#include "results/records.hpp"
 
 #include <fmt/format.h>
 

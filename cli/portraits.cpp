@@ -1,8 +1,8 @@
 #include "cli/portraits.hpp"
 
-#include "core/errors.hpp"
-#include "results/sweep_store.hpp"
-#include "rom/reduce.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/results/sweep_store.hpp>
+#include <slipmode/rom/reduce.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "diagnostics/validate.hpp"
-#include "results/store.hpp"
-#include "results/units.hpp"
-#include "scene/scene.hpp"
+#include <slipmode/diagnostics/validation/validate.hpp>
+#include <slipmode/results/store.hpp>
+#include <slipmode/results/units.hpp>
+#include <slipmode/scene/scene.hpp>
 
 #include <string>
 #include <vector>

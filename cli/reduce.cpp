@@ -1,12 +1,12 @@
-#include "rom/reduce.hpp"
+#include <slipmode/rom/reduce.hpp>
 
+#include <slipmode/fem/modes.hpp>
+#include <slipmode/results/records.hpp>
 #include "cli/shaken_bases.hpp"
 #include "cli/shaken_model.hpp"
 #include "cli/steps.hpp"
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
-#include "fem/modes.hpp"
-#include "results/records.hpp"
 
 #include <fmt/format.h>
 

@@ -1,11 +1,11 @@
+#include <slipmode/figures/gnuplot.hpp>
+#include <slipmode/scene/own_times.hpp>
 #include "cli/pipeline.hpp"
 #include "cli/shaken_model.hpp"
 #include "cli/shaken_pipeline.hpp"
 #include "cli/validation_report.hpp"
 #include "cli/verbs.hpp"
 #include "cli/work_folder.hpp"
-#include "figures/gnuplot.hpp"
-#include "scene/own_times.hpp"
 
 #include <fmt/format.h>
 #include <fstream>

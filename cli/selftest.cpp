@@ -1,8 +1,8 @@
 #include "cli/json_values.hpp"
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
-#include "extremes/cases.hpp"
-#include "extremes/scene_properties.hpp"
+#include "selftest/cases.hpp"
+#include "selftest/scene_properties.hpp"
 
 #include <fmt/format.h>
 #include <cmath>
@@ -20,7 +20,7 @@ constexpr std::uint64_t kBlock = 300;
 /// Without options: a short look.
 constexpr std::uint64_t kDefaultScenes = 300;
 
-Json result_json(const extremes::ExtremeResult& result) {
+Json result_json(const selftest::ExtremeResult& result) {
   Json row = {{"case", result.name},
               {"law", result.law},
               {"measured", json_number(result.measured)},
@@ -32,7 +32,7 @@ Json result_json(const extremes::ExtremeResult& result) {
 
 /// Adds the table of extremes. @return how many do not hold
 int add_extremes(const Session& session, const Request& request, Report& out) {
-  const auto cases = extremes::extreme_cases();
+  const auto cases = selftest::extreme_cases();
   ProgressLine line("extremes", session.progress_mode());
   TextTable table({"case", "measured", "limit", "ok", "law"});
   Json rows = Json::array();
@@ -41,7 +41,7 @@ int add_extremes(const Session& session, const Request& request, Report& out) {
     session.check_interrupt();
     line.update(i, cases.size());
     if (cases[i].is_long && !request.with_long) continue;
-    const extremes::ExtremeResult result = extremes::run_case(cases[i]);
+    const selftest::ExtremeResult result = selftest::run_case(cases[i]);
     failed += result.holds ? 0 : 1;
     table.add({result.name, fmt::format("{:.2g}", result.measured), fmt::format("{:.2g}", result.limit),
                result.holds ? "yes" : "NO", result.note.empty() ? result.law : result.law + ": " + result.note});
@@ -57,16 +57,16 @@ int add_extremes(const Session& session, const Request& request, Report& out) {
 int add_scenes(const Session& session, const Request& request, Report& out) {
   const std::uint64_t seed = session.seed.value_or(1);
   ProgressLine line("random scenes", session.progress_mode());
-  extremes::SceneSurvey all;
+  selftest::SceneSurvey all;
   for (std::uint64_t done = 0; done < request.scenes; done += kBlock) {
     line.update(done, request.scenes);
-    all.merge(extremes::survey_random_scenes(seed, request.first + done, std::min(kBlock, request.scenes - done),
+    all.merge(selftest::survey_random_scenes(seed, request.first + done, std::min(kBlock, request.scenes - done),
                                              {.threads = session.threads, .stop = session.stop}));
   }
   line.update(request.scenes, request.scenes);
   Json failed = Json::array();
-  for (const extremes::SceneCheck& check : all.failed) {
-    for (const extremes::Violation& violation : check.violations) {
+  for (const selftest::SceneCheck& check : all.failed) {
+    for (const selftest::Violation& violation : check.violations) {
       failed.push_back({{"scene", check.index}, {"property", violation.property}, {"what", violation.what}});
       out.text += fmt::format("scene {}: {}: {}\n", check.index, violation.property, violation.what);
     }

@@ -1,11 +1,11 @@
 #include "cli/series_figures.hpp"
 
+#include <slipmode/figures/delay_map.hpp>
+#include <slipmode/figures/panels.hpp>
+#include <slipmode/figures/recurrence_plot.hpp>
+#include <slipmode/figures/style.hpp>
+#include <slipmode/results/table.hpp>
 #include "cli/series_store.hpp"
-#include "figures/delay_map.hpp"
-#include "figures/panels.hpp"
-#include "figures/recurrence_plot.hpp"
-#include "figures/style.hpp"
-#include "results/table.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

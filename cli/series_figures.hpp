@@ -1,7 +1,7 @@
 #pragma once
 
+#include <slipmode/results/store.hpp>
 #include "cli/file_figures.hpp"
-#include "results/store.hpp"
 
 #include <vector>
 

@@ -1,9 +1,9 @@
 #include "cli/series_findings.hpp"
 
+#include <slipmode/core/none.hpp>
+#include <slipmode/diagnostics/series/kaplan_yorke.hpp>
 #include "cli/json_values.hpp"
 #include "cli/text_table.hpp"
-#include "core/none.hpp"
-#include "diagnostics/kaplan_yorke.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <slipmode/diagnostics/series/series_study.hpp>
 #include "cli/session.hpp"
-#include "diagnostics/series_study.hpp"
 
 #include <string>
 #include <vector>

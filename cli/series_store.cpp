@@ -1,8 +1,8 @@
 #include "cli/series_store.hpp"
 
+#include <slipmode/results/provenance.hpp>
+#include <slipmode/results/table.hpp>
 #include "cli/json_values.hpp"
-#include "results/provenance.hpp"
-#include "results/table.hpp"
 
 #include <fmt/format.h>
 #include <cmath>

@@ -1,8 +1,8 @@
 #pragma once
 
+#include <slipmode/results/series_input.hpp>
+#include <slipmode/results/store.hpp>
 #include "cli/series_findings.hpp"
-#include "results/series_input.hpp"
-#include "results/store.hpp"
 
 #include <string>
 #include <vector>

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "core/errors.hpp"
-#include "core/parallel.hpp"
-#include "core/progress.hpp"
-#include "scene/scene.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/core/parallel.hpp>
+#include <slipmode/core/progress.hpp>
+#include <slipmode/scene/scene.hpp>
 
 #include <cstdint>
 #include <filesystem>

@@ -1,13 +1,13 @@
 #include "cli/shaken_bases.hpp"
 
+#include <slipmode/fem/modes.hpp>
+#include <slipmode/pod/mode_shares.hpp>
+#include <slipmode/results/records.hpp>
+#include <slipmode/results/table.hpp>
+#include <slipmode/rom/reduce.hpp>
 #include "cli/json_values.hpp"
 #include "cli/steps.hpp"
 #include "cli/text_table.hpp"
-#include "fem/modes.hpp"
-#include "pod/mode_shares.hpp"
-#include "results/records.hpp"
-#include "results/table.hpp"
-#include "rom/reduce.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,9 +1,9 @@
 #pragma once
 
+#include <slipmode/diagnostics/validation/driven_validation.hpp>
+#include <slipmode/pod/pomf.hpp>
+#include <slipmode/results/store.hpp>
 #include "cli/session.hpp"
-#include "diagnostics/driven_validation.hpp"
-#include "pod/pomf.hpp"
-#include "results/store.hpp"
 
 #include <functional>
 #include <optional>

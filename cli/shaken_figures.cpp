@@ -1,16 +1,16 @@
 #include "cli/shaken_figures.hpp"
 
+#include <slipmode/fem/beam_modes.hpp>
+#include <slipmode/fem/modes.hpp>
+#include <slipmode/figures/panels.hpp>
+#include <slipmode/figures/style.hpp>
+#include <slipmode/results/provenance.hpp>
+#include <slipmode/results/records.hpp>
+#include <slipmode/results/table.hpp>
 #include "cli/motion_figures.hpp"
 #include "cli/shaken_bases.hpp"
 #include "cli/shaken_model.hpp"
 #include "cli/shaken_validation.hpp"
-#include "fem/beam_modes.hpp"
-#include "fem/modes.hpp"
-#include "figures/panels.hpp"
-#include "figures/style.hpp"
-#include "results/provenance.hpp"
-#include "results/records.hpp"
-#include "results/table.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "cli/shaken_model.hpp"
 
-#include "results/units.hpp"
+#include <slipmode/results/units.hpp>
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "diagnostics/driven_sweep.hpp"
-#include "scene/scene.hpp"
+#include <slipmode/diagnostics/attractors/driven_sweep.hpp>
+#include <slipmode/scene/scene.hpp>
 
 #include <string>
 

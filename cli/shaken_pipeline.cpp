@@ -1,6 +1,9 @@
 #include "cli/shaken_pipeline.hpp"
 #include "cli/validation_report.hpp"
 
+#include <slipmode/fem/modes.hpp>
+#include <slipmode/results/records.hpp>
+#include <slipmode/rom/reduce.hpp>
 #include "cli/file_figures.hpp"
 #include "cli/pipeline.hpp"
 #include "cli/pipeline_figures.hpp"
@@ -8,9 +11,6 @@
 #include "cli/shaken_model.hpp"
 #include "cli/shaken_validation.hpp"
 #include "cli/steps.hpp"
-#include "fem/modes.hpp"
-#include "results/records.hpp"
-#include "rom/reduce.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <slipmode/scene/scene.hpp>
 #include "cli/session.hpp"
-#include "scene/scene.hpp"
 
 #include <filesystem>
 

@@ -1,14 +1,14 @@
+#include <slipmode/results/driven_store.hpp>
+#include <slipmode/results/journal.hpp>
+#include <slipmode/results/provenance.hpp>
+#include <slipmode/results/records.hpp>
+#include <slipmode/results/reduced_file.hpp>
+#include <slipmode/rom/reduce.hpp>
 #include "cli/shaken_bases.hpp"
 #include "cli/shaken_model.hpp"
 #include "cli/steps.hpp"
 #include "cli/sweep_report.hpp"
 #include "cli/sweep_request.hpp"
-#include "results/driven_store.hpp"
-#include "results/journal.hpp"
-#include "results/provenance.hpp"
-#include "results/records.hpp"
-#include "results/reduced_file.hpp"
-#include "rom/reduce.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

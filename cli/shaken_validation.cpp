@@ -1,12 +1,12 @@
 #include "cli/shaken_validation.hpp"
 #include "cli/validation_report.hpp"
 
+#include <slipmode/results/driven_store.hpp>
+#include <slipmode/results/journal.hpp>
+#include <slipmode/results/provenance.hpp>
+#include <slipmode/results/table.hpp>
 #include "cli/shaken_model.hpp"
 #include "cli/text_table.hpp"
-#include "results/driven_store.hpp"
-#include "results/journal.hpp"
-#include "results/provenance.hpp"
-#include "results/table.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

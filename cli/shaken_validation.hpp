@@ -1,9 +1,9 @@
 #pragma once
 
+#include <slipmode/diagnostics/validation/driven_validation.hpp>
+#include <slipmode/results/store.hpp>
 #include "cli/session.hpp"
 #include "cli/validation_report.hpp"
-#include "diagnostics/driven_validation.hpp"
-#include "results/store.hpp"
 
 #include <filesystem>
 #include <string>

@@ -1,8 +1,8 @@
+#include <slipmode/results/records.hpp>
 #include "cli/shaken_bases.hpp"
 #include "cli/steps.hpp"
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
-#include "results/records.hpp"
 
 #include <fmt/format.h>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <slipmode/results/skeleton_store.hpp>
 #include "cli/session.hpp"
-#include "results/skeleton_store.hpp"
 
 #include <string>
 

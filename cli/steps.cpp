@@ -1,10 +1,10 @@
 #include "cli/steps.hpp"
 
+#include <slipmode/results/records.hpp>
+#include <slipmode/results/table.hpp>
+#include <slipmode/results/units.hpp>
+#include <slipmode/rom/reduce.hpp>
 #include "cli/shaken_bases.hpp"
-#include "results/records.hpp"
-#include "results/table.hpp"
-#include "results/units.hpp"
-#include "rom/reduce.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

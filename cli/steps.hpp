@@ -1,9 +1,9 @@
 #pragma once
 
+#include <slipmode/diagnostics/attractors/ensemble_run.hpp>
+#include <slipmode/pod/pod.hpp>
+#include <slipmode/results/provenance.hpp>
 #include "cli/session.hpp"
-#include "diagnostics/ensemble_run.hpp"
-#include "pod/pod.hpp"
-#include "results/provenance.hpp"
 
 #include <filesystem>
 

@@ -1,5 +1,11 @@
-#include "diagnostics/sweep.hpp"
+#include <slipmode/diagnostics/attractors/sweep.hpp>
 
+#include <slipmode/results/journal.hpp>
+#include <slipmode/results/records.hpp>
+#include <slipmode/results/reduced_file.hpp>
+#include <slipmode/results/sweep_store.hpp>
+#include <slipmode/rom/reduce.hpp>
+#include <slipmode/scene/own_times.hpp>
 #include "cli/shaken_model.hpp"
 #include "cli/steps.hpp"
 #include "cli/sweep_report.hpp"
@@ -7,12 +13,6 @@
 #include "cli/swept_model.hpp"
 #include "cli/validation_setup.hpp"
 #include "cli/verbs.hpp"
-#include "results/journal.hpp"
-#include "results/records.hpp"
-#include "results/reduced_file.hpp"
-#include "results/sweep_store.hpp"
-#include "rom/reduce.hpp"
-#include "scene/own_times.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,8 +1,8 @@
 #pragma once
 
+#include <slipmode/results/sweep_store.hpp>
 #include "cli/session.hpp"
 #include "cli/text_table.hpp"
-#include "results/sweep_store.hpp"
 
 #include <vector>
 

@@ -1,7 +1,7 @@
 #include "cli/sweep_request.hpp"
 
-#include "diagnostics/sweep.hpp"
-#include "results/journal.hpp"
+#include <slipmode/diagnostics/attractors/sweep.hpp>
+#include <slipmode/results/journal.hpp>
 
 #include <fmt/format.h>
 #include <charconv>

@@ -1,6 +1,6 @@
 #include "cli/swept_model.hpp"
 
-#include "rom/reduce.hpp"
+#include <slipmode/rom/reduce.hpp>
 
 namespace slipmode::cli {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "diagnostics/model.hpp"
-#include "scene/scene.hpp"
+#include <slipmode/diagnostics/attractors/model.hpp>
+#include <slipmode/scene/scene.hpp>
 
 #include <optional>
 #include <string>

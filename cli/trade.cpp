@@ -1,13 +1,13 @@
+#include <slipmode/figures/gnuplot.hpp>
+#include <slipmode/results/provenance.hpp>
+#include <slipmode/scene/own_times.hpp>
+#include <slipmode/trade/variants.hpp>
 #include "cli/steps.hpp"
 #include "cli/trade_bases.hpp"
 #include "cli/trade_figures.hpp"
 #include "cli/trade_report.hpp"
 #include "cli/trade_request.hpp"
 #include "cli/verbs.hpp"
-#include "figures/gnuplot.hpp"
-#include "results/provenance.hpp"
-#include "scene/own_times.hpp"
-#include "trade/variants.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

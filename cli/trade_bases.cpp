@@ -1,11 +1,11 @@
 #include "cli/trade_bases.hpp"
 
+#include <slipmode/pod/pod.hpp>
+#include <slipmode/rom/reduce.hpp>
 #include "cli/shaken_bases.hpp"
 #include "cli/shaken_model.hpp"
 #include "cli/steps.hpp"
 #include "cli/validation_setup.hpp"
-#include "pod/pod.hpp"
-#include "rom/reduce.hpp"
 
 #include <ctime>
 #include <optional>

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <slipmode/trade/variant.hpp>
 #include "cli/session.hpp"
-#include "trade/variant.hpp"
 
 #include <vector>
 

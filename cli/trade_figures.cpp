@@ -1,10 +1,10 @@
 #include "cli/trade_figures.hpp"
 
+#include <slipmode/figures/pareto.hpp>
+#include <slipmode/figures/style.hpp>
+#include <slipmode/results/provenance.hpp>
+#include <slipmode/results/table.hpp>
 #include "cli/trade_report.hpp"
-#include "figures/pareto.hpp"
-#include "figures/style.hpp"
-#include "results/provenance.hpp"
-#include "results/table.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <slipmode/trade/study.hpp>
 #include "cli/file_figures.hpp"
-#include "trade/study.hpp"
 
 #include <filesystem>
 #include <string>

@@ -1,9 +1,9 @@
 #include "cli/trade_report.hpp"
 
+#include <slipmode/results/table.hpp>
+#include <slipmode/results/units.hpp>
 #include "cli/json_values.hpp"
 #include "cli/text_table.hpp"
-#include "results/table.hpp"
-#include "results/units.hpp"
 
 #include <fmt/format.h>
 #include <cmath>

@@ -1,10 +1,10 @@
 #pragma once
 
+#include <slipmode/results/store.hpp>
+#include <slipmode/trade/advice.hpp>
+#include <slipmode/trade/effects.hpp>
+#include <slipmode/trade/study.hpp>
 #include "cli/session.hpp"
-#include "results/store.hpp"
-#include "trade/advice.hpp"
-#include "trade/effects.hpp"
-#include "trade/study.hpp"
 
 #include <string>
 #include <vector>

@@ -1,7 +1,7 @@
 #include "cli/trade_request.hpp"
 
-#include "core/progress.hpp"
-#include "results/journal.hpp"
+#include <slipmode/core/progress.hpp>
+#include <slipmode/results/journal.hpp>
 
 #include <unistd.h>
 

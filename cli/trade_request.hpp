@@ -1,9 +1,9 @@
 #pragma once
 
+#include <slipmode/scene/scene.hpp>
+#include <slipmode/trade/measures.hpp>
+#include <slipmode/trade/study.hpp>
 #include "cli/session.hpp"
-#include "scene/scene.hpp"
-#include "trade/measures.hpp"
-#include "trade/study.hpp"
 
 #include <filesystem>
 #include <functional>

@@ -1,6 +1,9 @@
-#include "diagnostics/validate.hpp"
+#include <slipmode/diagnostics/validation/validate.hpp>
 #include "cli/validation_report.hpp"
 
+#include <slipmode/results/records.hpp>
+#include <slipmode/results/validation_store.hpp>
+#include <slipmode/scene/own_times.hpp>
 #include "cli/shaken_bases.hpp"
 #include "cli/shaken_model.hpp"
 #include "cli/shaken_validation.hpp"
@@ -8,9 +11,6 @@
 #include "cli/validate_run.hpp"
 #include "cli/validation_setup.hpp"
 #include "cli/verbs.hpp"
-#include "results/records.hpp"
-#include "results/validation_store.hpp"
-#include "scene/own_times.hpp"
 
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
 #include "cli/validate_run.hpp"
 
+#include <slipmode/results/journal.hpp>
+#include <slipmode/results/provenance.hpp>
+#include <slipmode/results/sweep_store.hpp>
+#include <slipmode/results/validation_store.hpp>
 #include "cli/portraits.hpp"
-#include "results/journal.hpp"
-#include "results/provenance.hpp"
-#include "results/sweep_store.hpp"
-#include "results/validation_store.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
+#include <slipmode/results/sweep_store.hpp>
 #include "cli/exponents_report.hpp"
 #include "cli/validation_report.hpp"
-#include "results/sweep_store.hpp"
 
 namespace slipmode::cli {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <slipmode/diagnostics/validation/validate.hpp>
 #include "cli/session.hpp"
-#include "diagnostics/validate.hpp"
 
 #include <string>
 

@@ -1,9 +1,9 @@
 #include "cli/validation_setup.hpp"
 
+#include <slipmode/core/none.hpp>
+#include <slipmode/results/records.hpp>
+#include <slipmode/rom/reduce.hpp>
 #include "cli/steps.hpp"
-#include "core/none.hpp"
-#include "results/records.hpp"
-#include "rom/reduce.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

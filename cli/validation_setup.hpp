@@ -1,9 +1,9 @@
 #pragma once
 
+#include <slipmode/diagnostics/validation/validate.hpp>
+#include <slipmode/pod/pod.hpp>
+#include <slipmode/results/store.hpp>
 #include "cli/session.hpp"
-#include "diagnostics/validate.hpp"
-#include "pod/pod.hpp"
-#include "results/store.hpp"
 
 #include <vector>
 

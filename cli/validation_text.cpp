@@ -1,8 +1,8 @@
+#include <slipmode/core/none.hpp>
+#include <slipmode/results/sweep_store.hpp>
 #include "cli/exponents_report.hpp"
 #include "cli/text_table.hpp"
 #include "cli/validation_report.hpp"
-#include "core/none.hpp"
-#include "results/sweep_store.hpp"
 
 #include <fmt/format.h>
 #include <cmath>

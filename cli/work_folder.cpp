@@ -1,6 +1,6 @@
 #include "cli/work_folder.hpp"
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 
 #include <unistd.h>
 

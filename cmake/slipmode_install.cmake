@@ -1,4 +1,4 @@
-# `cmake --install`: the library, its headers under include/slipmode/<folder>/, the executable (from cli/), and the
+# `cmake --install`: the library, its public headers under include/slipmode/<folder>/, the executable (from cli/), and the
 # package files behind find_package(slipmode).
 
 include(CMakePackageConfigHelpers)
@@ -9,7 +9,7 @@ set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/slipmode)
 install(TARGETS slipmode EXPORT slipmodeTargets ARCHIVE)
 foreach(module ${SLIPMODE_MODULES})
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${module} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/slipmode
-    FILES_MATCHING PATTERN "*.hpp")
+    FILES_MATCHING PATTERN "*.hpp" PATTERN internal EXCLUDE)
 endforeach()
 install(EXPORT slipmodeTargets NAMESPACE slipmode:: DESTINATION ${package_dir})
 

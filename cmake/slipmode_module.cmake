@@ -33,19 +33,23 @@ endif()
 # What only reads, writes and reports is compiled faster: -O1 in release builds.
 add_library(slipmode_light INTERFACE)
 target_compile_options(slipmode_light INTERFACE $<$<CONFIG:Release>:-O1>)
-set(SLIPMODE_LIGHT_MODULES scene results figures extremes trade)
+set(SLIPMODE_LIGHT_MODULES scene results figures trade)
 
 # Eigen's alignment, of what is on the heap and of arrays of fixed size, must be the same in the library and in whoever
 # links it, whatever -march each uses.
 set(SLIPMODE_PUBLIC_DEFINITIONS EIGEN_MAX_ALIGN_BYTES=64 EIGEN_MAX_STATIC_ALIGN_BYTES=16)
 
+# Headers are included as they are installed, <slipmode/fem/structure.hpp>; those in internal/ folders, which are not,
+# as "fem/internal/eigensolvers.hpp".
+set(SLIPMODE_BUILD_INCLUDE ${PROJECT_BINARY_DIR}/include)
+file(MAKE_DIRECTORY ${SLIPMODE_BUILD_INCLUDE})
+file(CREATE_LINK ${PROJECT_SOURCE_DIR} ${SLIPMODE_BUILD_INCLUDE}/slipmode SYMBOLIC)
+
 function(slipmode_module name)
-  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${name}/*.cpp)
-  if(NOT sources)
-    return()
-  endif()
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${name}/*.cpp)
+  list(FILTER sources EXCLUDE REGEX /kernels/)
   add_library(slipmode_${name} OBJECT ${sources})
-  target_include_directories(slipmode_${name} PUBLIC ${PROJECT_SOURCE_DIR})
+  target_include_directories(slipmode_${name} PUBLIC ${SLIPMODE_BUILD_INCLUDE} PRIVATE ${PROJECT_SOURCE_DIR})
   target_compile_definitions(slipmode_${name} PUBLIC ${SLIPMODE_PUBLIC_DEFINITIONS})
   target_link_libraries(slipmode_${name} PUBLIC Eigen3::Eigen PRIVATE slipmode_flags Spectra::Spectra fmt::fmt
     tomlplusplus::tomlplusplus nlohmann_json::nlohmann_json slipmode::arpack slipmode::fftw3 slipmode::hdf5
@@ -57,8 +61,8 @@ function(slipmode_module name)
 endfunction()
 
 function(slipmode_configure_library)
-  target_include_directories(slipmode PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
-    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/slipmode>)
+  target_include_directories(slipmode PUBLIC $<BUILD_INTERFACE:${SLIPMODE_BUILD_INCLUDE}>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_definitions(slipmode PUBLIC ${SLIPMODE_PUBLIC_DEFINITIONS})
   target_link_libraries(slipmode PUBLIC Eigen3::Eigen PRIVATE fmt::fmt tomlplusplus::tomlplusplus LAPACK::LAPACK
     slipmode::arpack slipmode::fftw3 slipmode::hdf5 Threads::Threads)
@@ -70,6 +74,7 @@ endfunction()
 # the linker keeps the first it meets: the library comes first, whole and its numerical folders ahead, so that its hot loops
 # never call a copy made at -O1.
 function(slipmode_light_executable name)
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(${name} PRIVATE slipmode slipmode_flags slipmode_light)
   target_link_options(${name} PRIVATE -Wl,--whole-archive $<TARGET_FILE:slipmode> -Wl,--no-whole-archive)
 endfunction()

@@ -1,4 +1,4 @@
-#include "core/decompositions.hpp"
+#include <slipmode/core/decompositions.hpp>
 
 namespace Eigen {
 template class JacobiSVD<MatrixXd>;

@@ -1,6 +1,6 @@
-#include "core/parallel.hpp"
+#include <slipmode/core/parallel.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 
 #include <condition_variable>
 #include <functional>

@@ -1,4 +1,4 @@
-#include "core/random.hpp"
+#include <slipmode/core/random.hpp>
 
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,4 @@
-#include "dynamics/bristle.hpp"
+#include <slipmode/dynamics/bristle.hpp>
 
 #include <Eigen/Dense>
 #include <cmath>

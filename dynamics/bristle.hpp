@@ -1,7 +1,7 @@
 #pragma once
 
-#include "dynamics/nodes.hpp"
-#include "friction/contact.hpp"
+#include <slipmode/dynamics/nodes.hpp>
+#include <slipmode/friction/contact.hpp>
 
 namespace slipmode::dynamics {
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "dynamics/modal_model.hpp"
-#include "dynamics/regime.hpp"
-#include "dynamics/step_tables.hpp"
-#include "dynamics/system.hpp"
+#include <slipmode/dynamics/modal_model.hpp>
+#include <slipmode/dynamics/regime.hpp>
+#include <slipmode/dynamics/step_tables.hpp>
+#include <slipmode/dynamics/system.hpp>
 
 #include <map>
 #include <memory>

@@ -1,8 +1,8 @@
-#include "dynamics/consistency.hpp"
+#include <slipmode/dynamics/consistency.hpp>
 
-#include "core/decompositions.hpp"
-#include "core/errors.hpp"
-#include "dynamics/load_form.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/errors.hpp>
+#include <slipmode/dynamics/load_form.hpp>
 
 #include <algorithm>
 #include <cmath>

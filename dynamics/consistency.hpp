@@ -1,7 +1,7 @@
 #pragma once
 
-#include "dynamics/bristle.hpp"
-#include "dynamics/modal_model.hpp"
+#include <slipmode/dynamics/bristle.hpp>
+#include <slipmode/dynamics/modal_model.hpp>
 
 #include <Eigen/Core>
 #include <array>

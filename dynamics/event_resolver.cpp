@@ -1,8 +1,8 @@
-#include "dynamics/event_resolver.hpp"
+#include <slipmode/dynamics/event_resolver.hpp>
 
-#include "core/decompositions.hpp"
-#include "core/errors.hpp"
-#include "dynamics/kernels/kernels.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/errors.hpp>
+#include <slipmode/dynamics/kernels/kernels.hpp>
 
 #include <cmath>
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "dynamics/consistency.hpp"
-#include "dynamics/load_form.hpp"
-#include "dynamics/regime.hpp"
-#include "dynamics/simulate.hpp"
+#include <slipmode/dynamics/consistency.hpp>
+#include <slipmode/dynamics/load_form.hpp>
+#include <slipmode/dynamics/regime.hpp>
+#include <slipmode/dynamics/simulate.hpp>
 
 #include <Eigen/Core>
 #include <vector>

@@ -1,6 +1,6 @@
-#include "core/errors.hpp"
-#include "dynamics/event_resolver.hpp"
-#include "dynamics/kernels/kernels.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/dynamics/event_resolver.hpp>
+#include <slipmode/dynamics/kernels/kernels.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "friction/contact.hpp"
+#include <slipmode/friction/contact.hpp>
 
 #include <Eigen/Core>
 

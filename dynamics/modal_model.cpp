@@ -1,8 +1,8 @@
-#include "dynamics/modal_model.hpp"
+#include <slipmode/dynamics/modal_model.hpp>
 
-#include "core/decompositions.hpp"
-#include "dynamics/pair_form.hpp"
-#include "fem/modes.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/fem/modes.hpp>
+#include "dynamics/internal/pair_form.hpp"
 
 #include <cmath>
 #include <vector>

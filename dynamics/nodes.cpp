@@ -1,6 +1,6 @@
-#include "dynamics/nodes.hpp"
+#include <slipmode/dynamics/nodes.hpp>
 
-#include "core/decompositions.hpp"
+#include <slipmode/core/decompositions.hpp>
 
 #include <cmath>
 #include <numbers>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "dynamics/kernels/kernels.hpp"
+#include <slipmode/dynamics/kernels/kernels.hpp>
 
 #include <Eigen/Core>
 #include <array>

@@ -1,6 +1,6 @@
-#include "dynamics/pair_motion.hpp"
+#include <slipmode/dynamics/pair_motion.hpp>
 
-#include "dynamics/kernels/kernels.hpp"
+#include <slipmode/dynamics/kernels/kernels.hpp>
 
 #include <cmath>
 

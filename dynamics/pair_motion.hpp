@@ -1,6 +1,6 @@
 #pragma once
 
-#include "dynamics/modal_model.hpp"
+#include <slipmode/dynamics/modal_model.hpp>
 
 #include <Eigen/Core>
 

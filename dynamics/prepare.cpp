@@ -1,7 +1,7 @@
-#include "dynamics/prepare.hpp"
+#include <slipmode/dynamics/prepare.hpp>
 
-#include "core/errors.hpp"
-#include "dynamics/load_form.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/dynamics/load_form.hpp>
 
 #include <Eigen/Dense>
 #include <algorithm>

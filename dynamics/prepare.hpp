@@ -1,9 +1,9 @@
 #pragma once
 
-#include "core/errors.hpp"
-#include "dynamics/cache.hpp"
-#include "dynamics/event_resolver.hpp"
-#include "dynamics/simulate.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/dynamics/cache.hpp>
+#include <slipmode/dynamics/event_resolver.hpp>
+#include <slipmode/dynamics/simulate.hpp>
 
 #include <utility>
 

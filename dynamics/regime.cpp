@@ -1,8 +1,8 @@
-#include "dynamics/regime.hpp"
+#include <slipmode/dynamics/regime.hpp>
 
-#include "core/decompositions.hpp"
-#include "dynamics/kernels/kernels.hpp"
-#include "dynamics/regime_build.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/dynamics/kernels/kernels.hpp>
+#include "dynamics/internal/regime_build.hpp"
 
 #include <algorithm>
 #include <cmath>

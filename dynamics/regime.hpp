@@ -1,10 +1,10 @@
 #pragma once
 
-#include "dynamics/lazy_levels.hpp"
-#include "dynamics/load_form.hpp"
-#include "dynamics/modal_model.hpp"
-#include "dynamics/nodes.hpp"
-#include "dynamics/pair_motion.hpp"
+#include <slipmode/dynamics/lazy_levels.hpp>
+#include <slipmode/dynamics/load_form.hpp>
+#include <slipmode/dynamics/modal_model.hpp>
+#include <slipmode/dynamics/nodes.hpp>
+#include <slipmode/dynamics/pair_motion.hpp>
 
 #include <Eigen/Core>
 #include <array>

@@ -1,4 +1,4 @@
-#include "dynamics/regime_build.hpp"
+#include "dynamics/internal/regime_build.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>

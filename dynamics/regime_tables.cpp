@@ -1,7 +1,7 @@
-#include "core/decompositions.hpp"
-#include "dynamics/kernels/kernels.hpp"
-#include "dynamics/lobatto.hpp"
-#include "dynamics/regime.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/dynamics/kernels/kernels.hpp>
+#include <slipmode/dynamics/regime.hpp>
+#include "dynamics/internal/lobatto.hpp"
 
 #include <algorithm>
 #include <array>

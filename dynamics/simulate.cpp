@@ -1,10 +1,10 @@
-#include "dynamics/simulate.hpp"
+#include <slipmode/dynamics/simulate.hpp>
 
-#include "core/errors.hpp"
-#include "dynamics/cache.hpp"
-#include "dynamics/closed_form_flow.hpp"
-#include "dynamics/collocation_flow.hpp"
-#include "dynamics/prepare.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/dynamics/cache.hpp>
+#include <slipmode/dynamics/prepare.hpp>
+#include "dynamics/internal/closed_form_flow.hpp"
+#include "dynamics/internal/collocation_flow.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "dynamics/system.hpp"
+#include <slipmode/dynamics/system.hpp>
 
 #include <Eigen/Core>
 #include <functional>

@@ -1,6 +1,6 @@
-#include "dynamics/step_tables.hpp"
+#include <slipmode/dynamics/step_tables.hpp>
 
-#include "core/decompositions.hpp"
+#include <slipmode/core/decompositions.hpp>
 
 #include <algorithm>
 #include <cmath>

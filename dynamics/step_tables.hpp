@@ -1,9 +1,9 @@
 #pragma once
 
-#include "dynamics/kernels/kernels.hpp"
-#include "dynamics/lazy_levels.hpp"
-#include "dynamics/modal_model.hpp"
-#include "dynamics/nodes.hpp"
+#include <slipmode/dynamics/kernels/kernels.hpp>
+#include <slipmode/dynamics/lazy_levels.hpp>
+#include <slipmode/dynamics/modal_model.hpp>
+#include <slipmode/dynamics/nodes.hpp>
 
 #include <Eigen/Core>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "dynamics/step_tables.hpp"
+#include <slipmode/dynamics/step_tables.hpp>
 
 #include <cmath>
 

@@ -1,8 +1,8 @@
-#include "dynamics/system.hpp"
+#include <slipmode/dynamics/system.hpp>
 
-#include "core/decompositions.hpp"
-#include "core/errors.hpp"
-#include "dynamics/cache.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/errors.hpp>
+#include <slipmode/dynamics/cache.hpp>
 
 #include <string>
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "fem/structure.hpp"
-#include "friction/contact.hpp"
-#include "friction/drive.hpp"
+#include <slipmode/fem/structure.hpp>
+#include <slipmode/friction/contact.hpp>
+#include <slipmode/friction/drive.hpp>
 
 #include <Eigen/Core>
 #include <cstdint>

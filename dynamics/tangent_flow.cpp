@@ -1,7 +1,7 @@
-#include "core/errors.hpp"
-#include "dynamics/closed_form_flow.hpp"
-#include "dynamics/collocation_flow.hpp"
-#include "dynamics/prepare.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/dynamics/prepare.hpp>
+#include "dynamics/internal/closed_form_flow.hpp"
+#include "dynamics/internal/collocation_flow.hpp"
 
 #include <Eigen/Dense>
 #include <cmath>

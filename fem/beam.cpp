@@ -1,7 +1,7 @@
-#include "fem/beam.hpp"
+#include <slipmode/fem/beam.hpp>
 
-#include "core/errors.hpp"
-#include "fem/beam_damping.hpp"
+#include <slipmode/core/errors.hpp>
+#include "fem/internal/beam_damping.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

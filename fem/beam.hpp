@@ -1,8 +1,8 @@
 #pragma once
 
-#include "fem/beam_elements.hpp"
-#include "fem/beam_options.hpp"
-#include "fem/structure.hpp"
+#include <slipmode/fem/beam_elements.hpp>
+#include <slipmode/fem/beam_options.hpp>
+#include <slipmode/fem/structure.hpp>
 
 #include <Eigen/Core>
 #include <vector>

@@ -1,5 +1,5 @@
-#include "core/errors.hpp"
-#include "fem/beam_elements.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/fem/beam_elements.hpp>
 
 #include <fmt/format.h>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "fem/beam_elements.hpp"
+#include <slipmode/fem/beam_elements.hpp>
 
 #include <array>
 #include <cmath>

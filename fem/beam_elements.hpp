@@ -1,7 +1,7 @@
 #pragma once
 
-#include "fem/beam_options.hpp"
-#include "fem/structure.hpp"
+#include <slipmode/fem/beam_options.hpp>
+#include <slipmode/fem/structure.hpp>
 
 #include <Eigen/Core>
 #include <limits>

@@ -1,7 +1,7 @@
-#include "fem/beam_modes.hpp"
+#include <slipmode/fem/beam_modes.hpp>
 
-#include "core/errors.hpp"
-#include "fem/beam_elements.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/fem/beam_elements.hpp>
 
 #include <fmt/format.h>
 #include <numbers>

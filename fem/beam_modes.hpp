@@ -1,7 +1,7 @@
 #pragma once
 
-#include "fem/beam.hpp"
-#include "fem/modes.hpp"
+#include <slipmode/fem/beam.hpp>
+#include <slipmode/fem/modes.hpp>
 
 #include <Eigen/Core>
 #include <vector>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fem/structure.hpp"
+#include <slipmode/fem/structure.hpp>
 
 #include <variant>
 #include <vector>

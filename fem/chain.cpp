@@ -1,6 +1,6 @@
-#include "fem/chain.hpp"
+#include <slipmode/fem/chain.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 
 #include <fmt/format.h>
 #include <cmath>

@@ -1,7 +1,7 @@
-#include "core/errors.hpp"
-#include "fem/eigensolvers.hpp"
-#include "fem/mode_conventions.hpp"
-#include "fem/modes.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/fem/modes.hpp>
+#include "fem/internal/eigensolvers.hpp"
+#include "fem/internal/mode_conventions.hpp"
 
 #include <fmt/format.h>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "fem/masses.hpp"
+#include <slipmode/fem/masses.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 
 #include <fmt/format.h>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "core/errors.hpp"
-#include "fem/eigensolvers.hpp"
-#include "fem/modes.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/fem/modes.hpp>
+#include "fem/internal/eigensolvers.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

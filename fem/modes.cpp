@@ -1,8 +1,8 @@
-#include "fem/modes.hpp"
+#include <slipmode/fem/modes.hpp>
 
-#include "core/errors.hpp"
-#include "fem/eigensolvers.hpp"
-#include "fem/mode_conventions.hpp"
+#include <slipmode/core/errors.hpp>
+#include "fem/internal/eigensolvers.hpp"
+#include "fem/internal/mode_conventions.hpp"
 
 #include <fmt/format.h>
 

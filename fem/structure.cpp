@@ -1,7 +1,7 @@
-#include "fem/structure.hpp"
+#include <slipmode/fem/structure.hpp>
 
-#include "core/decompositions.hpp"
-#include "core/errors.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/errors.hpp>
 
 #include <fmt/format.h>
 #include <Eigen/SparseCholesky>

@@ -1,6 +1,6 @@
-#include "figures/delay_map.hpp"
+#include <slipmode/figures/delay_map.hpp>
 
-#include "figures/style.hpp"
+#include <slipmode/figures/style.hpp>
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
-#include "figures/deviation.hpp"
+#include <slipmode/figures/deviation.hpp>
 
-#include "figures/style.hpp"
+#include <slipmode/figures/style.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,6 +1,6 @@
-#include "figures/energy_shares.hpp"
+#include <slipmode/figures/energy_shares.hpp>
 
-#include "figures/style.hpp"
+#include <slipmode/figures/style.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>

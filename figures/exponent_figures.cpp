@@ -1,6 +1,6 @@
-#include "figures/exponent_figures.hpp"
+#include <slipmode/figures/exponent_figures.hpp>
 
-#include "figures/style.hpp"
+#include <slipmode/figures/style.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,10 +1,10 @@
-#include "figures/exponents_figures.hpp"
+#include <slipmode/figures/exponents_figures.hpp>
 
-#include "figures/exponent_figures.hpp"
-#include "figures/panels.hpp"
-#include "figures/style.hpp"
-#include "results/exponents_store.hpp"
-#include "results/table.hpp"
+#include <slipmode/figures/exponent_figures.hpp>
+#include <slipmode/figures/panels.hpp>
+#include <slipmode/figures/style.hpp>
+#include <slipmode/results/exponents_store.hpp>
+#include <slipmode/results/table.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "figures/file_figure.hpp"
-#include "results/store.hpp"
+#include <slipmode/figures/file_figure.hpp>
+#include <slipmode/results/store.hpp>
 
 #include <vector>
 

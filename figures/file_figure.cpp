@@ -1,4 +1,4 @@
-#include "figures/file_figure.hpp"
+#include <slipmode/figures/file_figure.hpp>
 
 namespace slipmode::figures {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "figures/gnuplot.hpp"
-#include "results/store.hpp"
+#include <slipmode/figures/gnuplot.hpp>
+#include <slipmode/results/store.hpp>
 
 #include <filesystem>
 #include <functional>

@@ -1,6 +1,6 @@
-#include "figures/gnuplot.hpp"
+#include <slipmode/figures/gnuplot.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 
 #include <fcntl.h>
 #include <spawn.h>

@@ -1,12 +1,12 @@
-#include "figures/map_figures.hpp"
+#include <slipmode/figures/map_figures.hpp>
 
-#include "core/none.hpp"
-#include "figures/bifurcation.hpp"
-#include "figures/heat_map.hpp"
-#include "figures/panels.hpp"
-#include "figures/style.hpp"
-#include "results/map_store.hpp"
-#include "results/table.hpp"
+#include <slipmode/core/none.hpp>
+#include <slipmode/figures/bifurcation.hpp>
+#include <slipmode/figures/panels.hpp>
+#include <slipmode/figures/style.hpp>
+#include <slipmode/results/map_store.hpp>
+#include <slipmode/results/table.hpp>
+#include "figures/internal/heat_map.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

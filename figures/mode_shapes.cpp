@@ -1,6 +1,6 @@
-#include "figures/mode_shapes.hpp"
+#include <slipmode/figures/mode_shapes.hpp>
 
-#include "figures/style.hpp"
+#include <slipmode/figures/style.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>

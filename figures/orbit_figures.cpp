@@ -1,14 +1,14 @@
-#include "figures/orbit_figures.hpp"
+#include <slipmode/figures/orbit_figures.hpp>
 
-#include "figures/panels.hpp"
-#include "figures/response_diagram.hpp"
-#include "figures/style.hpp"
-#include "results/branch_store.hpp"
-#include "results/orbit_records.hpp"
-#include "results/provenance.hpp"
-#include "results/records.hpp"
-#include "results/sweep_store.hpp"
-#include "results/units.hpp"
+#include <slipmode/figures/panels.hpp>
+#include <slipmode/figures/style.hpp>
+#include <slipmode/results/branch_store.hpp>
+#include <slipmode/results/orbit_records.hpp>
+#include <slipmode/results/provenance.hpp>
+#include <slipmode/results/records.hpp>
+#include <slipmode/results/sweep_store.hpp>
+#include <slipmode/results/units.hpp>
+#include "figures/internal/response_diagram.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,7 +1,7 @@
-#include "figures/panels.hpp"
+#include <slipmode/figures/panels.hpp>
 
-#include "figures/raster.hpp"
-#include "figures/style.hpp"
+#include <slipmode/figures/style.hpp>
+#include "figures/internal/raster.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

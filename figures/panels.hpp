@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/to_vector.hpp"
-#include "figures/gnuplot.hpp"
+#include <slipmode/core/to_vector.hpp>
+#include <slipmode/figures/gnuplot.hpp>
 
 #include <Eigen/Core>
 #include <string>

@@ -1,7 +1,7 @@
-#include "figures/pareto.hpp"
+#include <slipmode/figures/pareto.hpp>
 
-#include "figures/panels.hpp"
-#include "figures/style.hpp"
+#include <slipmode/figures/panels.hpp>
+#include <slipmode/figures/style.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>

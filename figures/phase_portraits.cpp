@@ -1,6 +1,6 @@
-#include "figures/phase_portraits.hpp"
+#include <slipmode/figures/phase_portraits.hpp>
 
-#include "figures/style.hpp"
+#include <slipmode/figures/style.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>

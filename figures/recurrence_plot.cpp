@@ -1,6 +1,6 @@
-#include "figures/recurrence_plot.hpp"
+#include <slipmode/figures/recurrence_plot.hpp>
 
-#include "figures/style.hpp"
+#include <slipmode/figures/style.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>

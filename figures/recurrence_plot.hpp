@@ -1,6 +1,6 @@
 #pragma once
 
-#include "figures/gnuplot.hpp"
+#include <slipmode/figures/gnuplot.hpp>
 
 #include <cstdint>
 #include <string>

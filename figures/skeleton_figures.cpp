@@ -1,12 +1,12 @@
-#include "figures/skeleton_figures.hpp"
+#include <slipmode/figures/skeleton_figures.hpp>
 
-#include "figures/panels.hpp"
-#include "figures/phase_portraits.hpp"
-#include "figures/style.hpp"
-#include "results/provenance.hpp"
-#include "results/skeleton_store.hpp"
-#include "results/table.hpp"
-#include "scene/scene.hpp"
+#include <slipmode/figures/panels.hpp>
+#include <slipmode/figures/phase_portraits.hpp>
+#include <slipmode/figures/style.hpp>
+#include <slipmode/results/provenance.hpp>
+#include <slipmode/results/skeleton_store.hpp>
+#include <slipmode/results/table.hpp>
+#include <slipmode/scene/scene.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>

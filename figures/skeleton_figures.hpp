@@ -1,6 +1,6 @@
 #pragma once
 
-#include "figures/file_figure.hpp"
+#include <slipmode/figures/file_figure.hpp>
 
 #include <vector>
 

@@ -1,4 +1,4 @@
-#include "figures/style.hpp"
+#include <slipmode/figures/style.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,6 +1,6 @@
-#include "figures/time_history.hpp"
+#include <slipmode/figures/time_history.hpp>
 
-#include "figures/style.hpp"
+#include <slipmode/figures/style.hpp>
 
 #include <fmt/format.h>
 #include <array>

@@ -1,6 +1,6 @@
-#include "friction/amplitude_curve.hpp"
+#include <slipmode/friction/amplitude_curve.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,7 +1,7 @@
-#include "friction/contact.hpp"
+#include <slipmode/friction/contact.hpp>
 
-#include "core/errors.hpp"
-#include "core/overloaded.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/core/overloaded.hpp>
 
 #include <fmt/format.h>
 #include <cmath>

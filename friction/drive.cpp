@@ -1,6 +1,6 @@
-#include "friction/drive.hpp"
+#include <slipmode/friction/drive.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,6 +1,6 @@
 // Any file is either a table of columns or refused with InvalidInput.
-#include "core/errors.hpp"
-#include "results/csv_series.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/results/csv_series.hpp>
 #include "scratch_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,7 +1,7 @@
 // Any text is either a scene or refused with InvalidInput; a scene written and read again is the same scene, and small
 // ones build or are refused.
-#include "core/errors.hpp"
-#include "scene/scene.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/scene/scene.hpp>
 
 #include <cstddef>
 #include <cstdint>

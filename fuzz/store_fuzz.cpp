@@ -1,11 +1,11 @@
 // Whatever a valid HDF5 file holds, it is a result of ours or refused with InvalidInput. The input says which datasets
 // of a real result are left out, or replaced by others of other types, shapes and values. (Bytes that are not HDF5's
 // are libhdf5's own affair.)
-#include "core/errors.hpp"
-#include "results/hdf5_handle.hpp"
-#include "results/info.hpp"
-#include "results/provenance.hpp"
-#include "results/records.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/results/info.hpp>
+#include <slipmode/results/provenance.hpp>
+#include <slipmode/results/records.hpp>
+#include "results/internal/hdf5_handle.hpp"
 #include "scratch_file.hpp"
 
 #include <array>

@@ -1,6 +1,6 @@
-#include "core/decompositions.hpp"
-#include "core/errors.hpp"
-#include "orbits/periodic_orbit.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/errors.hpp>
+#include <slipmode/orbits/periodic_orbit.hpp>
 
 #include <algorithm>
 #include <array>

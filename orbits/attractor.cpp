@@ -1,6 +1,6 @@
-#include "orbits/attractor.hpp"
+#include <slipmode/orbits/attractor.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 
 #include <fmt/format.h>
 

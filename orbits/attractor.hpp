@@ -1,8 +1,8 @@
 #pragma once
 
-#include "core/parallel.hpp"
-#include "dynamics/simulate.hpp"
-#include "pod/basis.hpp"
+#include <slipmode/core/parallel.hpp>
+#include <slipmode/dynamics/simulate.hpp>
+#include <slipmode/pod/basis.hpp>
 
 #include <Eigen/Core>
 #include <optional>

@@ -1,5 +1,5 @@
-#include "core/decompositions.hpp"
-#include "orbits/shooting_problem.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include "orbits/internal/shooting_problem.hpp"
 
 #include <cmath>
 

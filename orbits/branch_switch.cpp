@@ -1,6 +1,6 @@
-#include "core/errors.hpp"
-#include "orbits/branch_solver.hpp"
-#include "orbits/continuation.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/orbits/continuation.hpp>
+#include "orbits/internal/branch_solver.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,6 +1,6 @@
-#include "orbits/close_returns.hpp"
+#include <slipmode/orbits/close_returns.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 
 #include <fmt/format.h>
 

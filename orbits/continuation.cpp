@@ -1,8 +1,8 @@
-#include "orbits/continuation.hpp"
+#include <slipmode/orbits/continuation.hpp>
 
-#include "core/errors.hpp"
-#include "orbits/branch_solver.hpp"
-#include "orbits/branch_walk.hpp"
+#include <slipmode/core/errors.hpp>
+#include "orbits/internal/branch_solver.hpp"
+#include "orbits/internal/branch_walk.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

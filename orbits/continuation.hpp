@@ -1,6 +1,6 @@
 #pragma once
 
-#include "orbits/shooting.hpp"
+#include <slipmode/orbits/shooting.hpp>
 
 #include <Eigen/Core>
 #include <complex>

@@ -1,7 +1,7 @@
-#include "orbits/floquet.hpp"
+#include <slipmode/orbits/floquet.hpp>
 
-#include "core/decompositions.hpp"
-#include "core/errors.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/errors.hpp>
 
 #include <algorithm>
 #include <cmath>

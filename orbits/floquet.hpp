@@ -1,6 +1,6 @@
 #pragma once
 
-#include "orbits/periodic_orbit.hpp"
+#include <slipmode/orbits/periodic_orbit.hpp>
 
 #include <Eigen/Core>
 #include <complex>

@@ -1,5 +1,5 @@
-#include "core/errors.hpp"
-#include "orbits/shooting.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/orbits/shooting.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,9 +1,9 @@
-#include "orbits/orbit_map.hpp"
+#include <slipmode/orbits/orbit_map.hpp>
 
-#include "core/decompositions.hpp"
-#include "core/errors.hpp"
-#include "orbits/map_waveform.hpp"
-#include "orbits/motion_scale.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/errors.hpp>
+#include "orbits/internal/map_waveform.hpp"
+#include "orbits/internal/motion_scale.hpp"
 
 #include <fmt/format.h>
 

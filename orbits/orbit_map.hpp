@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/parallel.hpp"
-#include "orbits/shooting.hpp"
+#include <slipmode/core/parallel.hpp>
+#include <slipmode/orbits/shooting.hpp>
 
 #include <Eigen/Core>
 #include <cstddef>

@@ -1,6 +1,6 @@
-#include "orbits/periodic_orbit.hpp"
+#include <slipmode/orbits/periodic_orbit.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 
 #include <string>
 

@@ -1,4 +1,4 @@
-#include "orbits/periodic_orbit.hpp"
+#include <slipmode/orbits/periodic_orbit.hpp>
 
 #include <algorithm>
 

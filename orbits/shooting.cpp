@@ -1,8 +1,8 @@
-#include "orbits/shooting.hpp"
+#include <slipmode/orbits/shooting.hpp>
 
-#include "core/errors.hpp"
-#include "orbits/describe_orbit.hpp"
-#include "orbits/shooting_problem.hpp"
+#include <slipmode/core/errors.hpp>
+#include "orbits/internal/describe_orbit.hpp"
+#include "orbits/internal/shooting_problem.hpp"
 
 #include <fmt/format.h>
 #include <cmath>

@@ -1,7 +1,7 @@
-#include "orbits/skeleton.hpp"
+#include <slipmode/orbits/skeleton.hpp>
 
-#include "core/errors.hpp"
-#include "orbits/skeleton_orbit.hpp"
+#include <slipmode/core/errors.hpp>
+#include "orbits/internal/skeleton_orbit.hpp"
 
 #include <fmt/format.h>
 

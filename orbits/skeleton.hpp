@@ -1,9 +1,9 @@
 #pragma once
 
-#include "core/parallel.hpp"
-#include "orbits/attractor.hpp"
-#include "orbits/close_returns.hpp"
-#include "orbits/shooting.hpp"
+#include <slipmode/core/parallel.hpp>
+#include <slipmode/orbits/attractor.hpp>
+#include <slipmode/orbits/close_returns.hpp>
+#include <slipmode/orbits/shooting.hpp>
 
 #include <cstdint>
 #include <string>

@@ -1,6 +1,6 @@
-#include "orbits/skeleton_compare.hpp"
+#include <slipmode/orbits/skeleton_compare.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "orbits/skeleton.hpp"
+#include <slipmode/orbits/skeleton.hpp>
 
 #include <cstddef>
 #include <functional>

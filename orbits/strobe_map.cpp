@@ -1,8 +1,8 @@
-#include "orbits/strobe_map.hpp"
+#include <slipmode/orbits/strobe_map.hpp>
 
-#include "core/errors.hpp"
-#include "orbits/map_waveform.hpp"
-#include "orbits/motion_scale.hpp"
+#include <slipmode/core/errors.hpp>
+#include "orbits/internal/map_waveform.hpp"
+#include "orbits/internal/motion_scale.hpp"
 
 #include <fmt/format.h>
 

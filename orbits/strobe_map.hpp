@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/parallel.hpp"
-#include "dynamics/simulate.hpp"
+#include <slipmode/core/parallel.hpp>
+#include <slipmode/dynamics/simulate.hpp>
 
 #include <Eigen/Core>
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "orbits/shooting.hpp"
+#include <slipmode/orbits/shooting.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
-#include "core/decompositions.hpp"
-#include "core/errors.hpp"
-#include "pod/mass_metric.hpp"
-#include "pod/pod.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/errors.hpp>
+#include <slipmode/pod/pod.hpp>
+#include "pod/internal/mass_metric.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

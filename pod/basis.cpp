@@ -1,6 +1,6 @@
-#include "pod/basis.hpp"
+#include <slipmode/pod/basis.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
-#include "core/decompositions.hpp"
-#include "core/errors.hpp"
-#include "pod/assemble.hpp"
-#include "pod/centred.hpp"
-#include "pod/mass_metric.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/errors.hpp>
+#include "pod/internal/assemble.hpp"
+#include "pod/internal/centred.hpp"
+#include "pod/internal/mass_metric.hpp"
 
 #include <fmt/format.h>
 #include <cmath>

@@ -1,8 +1,8 @@
-#include "core/decompositions.hpp"
-#include "core/errors.hpp"
-#include "core/none.hpp"
-#include "pod/assemble.hpp"
-#include "pod/centred.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/errors.hpp>
+#include <slipmode/core/none.hpp>
+#include "pod/internal/assemble.hpp"
+#include "pod/internal/centred.hpp"
 
 #include <fmt/format.h>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "pod/ensemble.hpp"
+#include <slipmode/pod/ensemble.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 
 #include <fmt/format.h>
 #include <cmath>

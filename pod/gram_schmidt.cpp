@@ -1,7 +1,7 @@
-#include "pod/gram_schmidt.hpp"
+#include <slipmode/pod/gram_schmidt.hpp>
 
-#include "core/decompositions.hpp"
-#include "core/errors.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/errors.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>

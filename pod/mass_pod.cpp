@@ -1,8 +1,8 @@
-#include "core/errors.hpp"
-#include "pod/centred.hpp"
-#include "pod/gram_schmidt.hpp"
-#include "pod/mass_metric.hpp"
-#include "pod/pod.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/pod/gram_schmidt.hpp>
+#include <slipmode/pod/pod.hpp>
+#include "pod/internal/centred.hpp"
+#include "pod/internal/mass_metric.hpp"
 
 namespace slipmode::pod {
 

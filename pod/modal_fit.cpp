@@ -1,8 +1,8 @@
-#include "pod/modal_fit.hpp"
+#include <slipmode/pod/modal_fit.hpp>
 
-#include "core/decompositions.hpp"
-#include "core/errors.hpp"
-#include "fem/modes.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/errors.hpp>
+#include <slipmode/fem/modes.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "pod/ensemble.hpp"
-#include "pod/sensors.hpp"
+#include <slipmode/pod/ensemble.hpp>
+#include <slipmode/pod/sensors.hpp>
 
 #include <string>
 

@@ -1,6 +1,6 @@
-#include "pod/mode_shares.hpp"
+#include <slipmode/pod/mode_shares.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "fem/modes.hpp"
-#include "pod/basis.hpp"
+#include <slipmode/fem/modes.hpp>
+#include <slipmode/pod/basis.hpp>
 
 namespace slipmode::pod {
 

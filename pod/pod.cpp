@@ -1,9 +1,9 @@
-#include "pod/pod.hpp"
+#include <slipmode/pod/pod.hpp>
 
-#include "core/decompositions.hpp"
-#include "pod/accumulator.hpp"
-#include "pod/assemble.hpp"
-#include "pod/right_svd.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include "pod/internal/accumulator.hpp"
+#include "pod/internal/assemble.hpp"
+#include "pod/internal/right_svd.hpp"
 
 #include <algorithm>
 #include <limits>

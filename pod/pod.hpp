@@ -1,7 +1,7 @@
 #pragma once
 
-#include "pod/basis.hpp"
-#include "pod/ensemble.hpp"
+#include <slipmode/pod/basis.hpp>
+#include <slipmode/pod/ensemble.hpp>
 
 namespace slipmode::pod {
 

@@ -1,7 +1,7 @@
-#include "pod/pomf.hpp"
+#include <slipmode/pod/pomf.hpp>
 
-#include "core/errors.hpp"
-#include "pod/gram_schmidt.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/pod/gram_schmidt.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>

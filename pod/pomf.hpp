@@ -1,7 +1,7 @@
 #pragma once
 
-#include "pod/modal_fit.hpp"
-#include "pod/pod.hpp"
+#include <slipmode/pod/modal_fit.hpp>
+#include <slipmode/pod/pod.hpp>
 
 namespace slipmode::pod {
 

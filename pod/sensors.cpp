@@ -1,7 +1,7 @@
-#include "pod/sensors.hpp"
+#include <slipmode/pod/sensors.hpp>
 
-#include "core/errors.hpp"
-#include "core/random.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/core/random.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>

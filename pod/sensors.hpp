@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fem/beam.hpp"
+#include <slipmode/fem/beam.hpp>
 
 #include <cstdint>
 #include <span>

@@ -1,4 +1,4 @@
-#include "pod/pod.hpp"
+#include <slipmode/pod/pod.hpp>
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "results/branch_store.hpp"
+#include <slipmode/results/branch_store.hpp>
 
 #include <fmt/format.h>
 #include <array>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "orbits/continuation.hpp"
-#include "results/table.hpp"
+#include <slipmode/orbits/continuation.hpp>
+#include <slipmode/results/table.hpp>
 
 #include <string>
 #include <vector>

@@ -1,6 +1,6 @@
-#include "results/csv_series.hpp"
+#include <slipmode/results/csv_series.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "results/contact_record.hpp"
+#include "results/internal/contact_record.hpp"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
-#include "results/driven_store.hpp"
+#include <slipmode/results/driven_store.hpp>
 
-#include "core/none.hpp"
-#include "results/journal_cursor.hpp"
-#include "results/table.hpp"
+#include <slipmode/core/none.hpp>
+#include <slipmode/results/table.hpp>
+#include "results/internal/journal_cursor.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "diagnostics/driven_compare.hpp"
-#include "diagnostics/driven_sweep.hpp"
-#include "results/journal.hpp"
-#include "results/store.hpp"
-#include "results/sweep_store.hpp"
+#include <slipmode/diagnostics/attractors/driven_sweep.hpp>
+#include <slipmode/diagnostics/validation/driven_compare.hpp>
+#include <slipmode/results/journal.hpp>
+#include <slipmode/results/store.hpp>
+#include <slipmode/results/sweep_store.hpp>
 
 #include <string>
 #include <vector>

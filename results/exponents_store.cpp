@@ -1,6 +1,6 @@
-#include "results/exponents_store.hpp"
+#include <slipmode/results/exponents_store.hpp>
 
-#include "results/table.hpp"
+#include <slipmode/results/table.hpp>
 
 #include <fmt/format.h>
 #include <cmath>

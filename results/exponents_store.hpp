@@ -1,8 +1,8 @@
 #pragma once
 
-#include "diagnostics/verdict.hpp"
-#include "results/store.hpp"
-#include "results/units.hpp"
+#include <slipmode/diagnostics/validation/verdict.hpp>
+#include <slipmode/results/store.hpp>
+#include <slipmode/results/units.hpp>
 
 #include <string>
 #include <vector>

@@ -1,6 +1,6 @@
-#include "results/info.hpp"
+#include <slipmode/results/info.hpp>
 
-#include "results/store.hpp"
+#include <slipmode/results/store.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,6 +1,6 @@
-#include "results/journal.hpp"
+#include <slipmode/results/journal.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "orbits/orbit_map.hpp"
-#include "orbits/strobe_map.hpp"
-#include "results/journal.hpp"
-#include "results/store.hpp"
-#include "results/sweep_store.hpp"
+#include <slipmode/orbits/orbit_map.hpp>
+#include <slipmode/orbits/strobe_map.hpp>
+#include <slipmode/results/journal.hpp>
+#include <slipmode/results/store.hpp>
+#include <slipmode/results/sweep_store.hpp>
 
 #include <string>
 #include <vector>

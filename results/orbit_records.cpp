@@ -1,8 +1,8 @@
-#include "results/orbit_records.hpp"
+#include <slipmode/results/orbit_records.hpp>
 
-#include "results/checked_read.hpp"
-#include "results/event_record.hpp"
-#include "results/records.hpp"
+#include <slipmode/results/records.hpp>
+#include "results/internal/checked_read.hpp"
+#include "results/internal/event_record.hpp"
 
 #include <fmt/format.h>
 #include <limits>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "orbits/periodic_orbit.hpp"
-#include "results/store.hpp"
+#include <slipmode/orbits/periodic_orbit.hpp>
+#include <slipmode/results/store.hpp>
 
 #include <string>
 

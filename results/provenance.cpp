@@ -1,6 +1,6 @@
-#include "results/provenance.hpp"
+#include <slipmode/results/provenance.hpp>
 
-#include "results/records.hpp"
+#include <slipmode/results/records.hpp>
 
 #include <charconv>
 #include <utility>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "dynamics/simulate.hpp"
-#include "results/store.hpp"
-#include "scene/scene.hpp"
+#include <slipmode/dynamics/simulate.hpp>
+#include <slipmode/results/store.hpp>
+#include <slipmode/scene/scene.hpp>
 
 #include <cstdint>
 #include <optional>

@@ -1,7 +1,7 @@
-#include "results/records.hpp"
+#include <slipmode/results/records.hpp>
 
-#include "results/checked_read.hpp"
-#include "results/event_record.hpp"
+#include "results/internal/checked_read.hpp"
+#include "results/internal/event_record.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,11 +1,11 @@
 #pragma once
 
-#include "dynamics/simulate.hpp"
-#include "dynamics/system.hpp"
-#include "pod/basis.hpp"
-#include "pod/ensemble.hpp"
-#include "pod/pod.hpp"
-#include "results/store.hpp"
+#include <slipmode/dynamics/simulate.hpp>
+#include <slipmode/dynamics/system.hpp>
+#include <slipmode/pod/basis.hpp>
+#include <slipmode/pod/ensemble.hpp>
+#include <slipmode/pod/pod.hpp>
+#include <slipmode/results/store.hpp>
 
 #include <string>
 

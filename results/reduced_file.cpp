@@ -1,6 +1,6 @@
-#include "results/reduced_file.hpp"
+#include <slipmode/results/reduced_file.hpp>
 
-#include "results/records.hpp"
+#include <slipmode/results/records.hpp>
 
 #include <string_view>
 

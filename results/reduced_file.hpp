@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pod/basis.hpp"
+#include <slipmode/pod/basis.hpp>
 
 #include <Eigen/Core>
 #include <optional>

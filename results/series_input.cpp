@@ -1,12 +1,12 @@
-#include "results/series_input.hpp"
+#include <slipmode/results/series_input.hpp>
 
-#include "core/errors.hpp"
-#include "diagnostics/farthest_dof.hpp"
-#include "results/csv_series.hpp"
-#include "results/provenance.hpp"
-#include "results/records.hpp"
-#include "results/units.hpp"
-#include "scene/scene.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/diagnostics/attractors/farthest_dof.hpp>
+#include <slipmode/results/csv_series.hpp>
+#include <slipmode/results/provenance.hpp>
+#include <slipmode/results/records.hpp>
+#include <slipmode/results/units.hpp>
+#include <slipmode/scene/scene.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "diagnostics/series.hpp"
+#include <slipmode/diagnostics/series/series.hpp>
 
 #include <optional>
 #include <string>

@@ -1,7 +1,7 @@
-#include "results/skeleton_store.hpp"
+#include <slipmode/results/skeleton_store.hpp>
 
-#include "results/orbit_records.hpp"
-#include "results/table.hpp"
+#include <slipmode/results/orbit_records.hpp>
+#include <slipmode/results/table.hpp>
 
 #include <fmt/format.h>
 

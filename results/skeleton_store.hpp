@@ -1,8 +1,8 @@
 #pragma once
 
-#include "orbits/skeleton_compare.hpp"
-#include "results/store.hpp"
-#include "results/units.hpp"
+#include <slipmode/orbits/skeleton_compare.hpp>
+#include <slipmode/results/store.hpp>
+#include <slipmode/results/units.hpp>
 
 #include <Eigen/Core>
 #include <cstdint>

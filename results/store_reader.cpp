@@ -1,6 +1,6 @@
-#include "core/errors.hpp"
-#include "results/hdf5_handle.hpp"
-#include "results/store.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/results/store.hpp>
+#include "results/internal/hdf5_handle.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,7 +1,7 @@
-#include "results/sweep_store.hpp"
+#include <slipmode/results/sweep_store.hpp>
 
-#include "core/none.hpp"
-#include "results/journal_cursor.hpp"
+#include <slipmode/core/none.hpp>
+#include "results/internal/journal_cursor.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

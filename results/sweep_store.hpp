@@ -1,11 +1,11 @@
 #pragma once
 
-#include "diagnostics/sweep.hpp"
-#include "results/journal.hpp"
-#include "results/store.hpp"
-#include "results/table.hpp"
-#include "results/units.hpp"
-#include "scene/scene.hpp"
+#include <slipmode/diagnostics/attractors/sweep.hpp>
+#include <slipmode/results/journal.hpp>
+#include <slipmode/results/store.hpp>
+#include <slipmode/results/table.hpp>
+#include <slipmode/results/units.hpp>
+#include <slipmode/scene/scene.hpp>
 
 #include <string>
 #include <vector>

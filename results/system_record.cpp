@@ -1,6 +1,6 @@
-#include "core/errors.hpp"
-#include "results/contact_record.hpp"
-#include "results/records.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/results/records.hpp>
+#include "results/internal/contact_record.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
-#include "results/table.hpp"
+#include <slipmode/results/table.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "results/store.hpp"
+#include <slipmode/results/store.hpp>
 
 #include <string>
 #include <variant>

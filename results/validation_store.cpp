@@ -1,9 +1,9 @@
-#include "results/validation_store.hpp"
+#include <slipmode/results/validation_store.hpp>
 
-#include "core/none.hpp"
-#include "results/exponents_store.hpp"
-#include "results/sweep_store.hpp"
-#include "results/table.hpp"
+#include <slipmode/core/none.hpp>
+#include <slipmode/results/exponents_store.hpp>
+#include <slipmode/results/sweep_store.hpp>
+#include <slipmode/results/table.hpp>
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "diagnostics/validate.hpp"
-#include "results/store.hpp"
-#include "scene/scene.hpp"
+#include <slipmode/diagnostics/validation/validate.hpp>
+#include <slipmode/results/store.hpp>
+#include <slipmode/scene/scene.hpp>
 
 #include <string>
 

@@ -1,4 +1,4 @@
-#include "results/provenance.hpp"
+#include <slipmode/results/provenance.hpp>
 
 #ifdef SLIPMODE_HAS_VERSION_HEADER
 #include "results/version.hpp"

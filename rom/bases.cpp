@@ -1,7 +1,7 @@
-#include "core/errors.hpp"
-#include "fem/modes.hpp"
-#include "rom/check.hpp"
-#include "rom/reduce.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/fem/modes.hpp>
+#include <slipmode/rom/reduce.hpp>
+#include "rom/internal/check.hpp"
 
 #include <fmt/format.h>
 #include <utility>

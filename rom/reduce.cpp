@@ -1,8 +1,8 @@
-#include "rom/reduce.hpp"
+#include <slipmode/rom/reduce.hpp>
 
-#include "core/decompositions.hpp"
-#include "core/errors.hpp"
-#include "rom/check.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/errors.hpp>
+#include "rom/internal/check.hpp"
 
 #include <fmt/format.h>
 #include <string>

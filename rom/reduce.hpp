@@ -1,7 +1,7 @@
 #pragma once
 
-#include "dynamics/system.hpp"
-#include "pod/basis.hpp"
+#include <slipmode/dynamics/system.hpp>
+#include <slipmode/pod/basis.hpp>
 
 namespace slipmode::rom {
 

@@ -1,7 +1,7 @@
-#include "core/decompositions.hpp"
-#include "core/errors.hpp"
-#include "rom/check.hpp"
-#include "rom/reduce.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/errors.hpp>
+#include <slipmode/rom/reduce.hpp>
+#include "rom/internal/check.hpp"
 
 #include <fmt/format.h>
 #include <string_view>

@@ -1,8 +1,8 @@
-#include "core/decompositions.hpp"
-#include "core/errors.hpp"
-#include "fem/modes.hpp"
-#include "pod/gram_schmidt.hpp"
-#include "rom/reduce.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/errors.hpp>
+#include <slipmode/fem/modes.hpp>
+#include <slipmode/pod/gram_schmidt.hpp>
+#include <slipmode/rom/reduce.hpp>
 
 #include <fmt/format.h>
 #include <Eigen/SparseCholesky>

@@ -1,7 +1,7 @@
-#include "scene/own_times.hpp"
+#include <slipmode/scene/own_times.hpp>
 
-#include "fem/modes.hpp"
-#include "scene/toml_reader.hpp"
+#include <slipmode/fem/modes.hpp>
+#include "scene/internal/toml_reader.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "scene/scene.hpp"
+#include <slipmode/scene/scene.hpp>
 
 namespace slipmode::scene {
 

@@ -1,5 +1,5 @@
-#include "core/errors.hpp"
-#include "scene/scene_parts.hpp"
+#include <slipmode/core/errors.hpp>
+#include "scene/internal/scene_parts.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "scene/scene_parts.hpp"
+#include "scene/internal/scene_parts.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,13 +1,13 @@
 #pragma once
 
-#include "dynamics/simulate.hpp"
-#include "dynamics/system.hpp"
-#include "fem/beam.hpp"
-#include "fem/chain.hpp"
-#include "fem/masses.hpp"
-#include "friction/amplitude_curve.hpp"
-#include "friction/drive.hpp"
-#include "scene/specs.hpp"
+#include <slipmode/dynamics/simulate.hpp>
+#include <slipmode/dynamics/system.hpp>
+#include <slipmode/fem/beam.hpp>
+#include <slipmode/fem/chain.hpp>
+#include <slipmode/fem/masses.hpp>
+#include <slipmode/friction/amplitude_curve.hpp>
+#include <slipmode/friction/drive.hpp>
+#include <slipmode/scene/specs.hpp>
 
 #include <Eigen/Core>
 #include <cstdint>

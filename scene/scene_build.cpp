@@ -1,7 +1,7 @@
-#include "core/errors.hpp"
-#include "core/overloaded.hpp"
-#include "scene/scene_parts.hpp"
-#include "scene/scene_words.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/core/overloaded.hpp>
+#include "scene/internal/scene_parts.hpp"
+#include "scene/internal/scene_words.hpp"
 
 #include <fmt/format.h>
 #include <numbers>

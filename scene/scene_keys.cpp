@@ -1,6 +1,6 @@
-#include "core/errors.hpp"
-#include "scene/scene.hpp"
-#include "scene/toml_reader.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/scene/scene.hpp>
+#include "scene/internal/toml_reader.hpp"
 
 #include <fmt/format.h>
 #include <sstream>

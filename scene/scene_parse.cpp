@@ -1,6 +1,6 @@
-#include "core/errors.hpp"
-#include "scene/scene_parts.hpp"
-#include "scene/scene_words.hpp"
+#include <slipmode/core/errors.hpp>
+#include "scene/internal/scene_parts.hpp"
+#include "scene/internal/scene_words.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,8 +1,8 @@
-#include "core/decompositions.hpp"
-#include "core/errors.hpp"
-#include "core/random.hpp"
-#include "fem/modes.hpp"
-#include "scene/scene.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/errors.hpp>
+#include <slipmode/core/random.hpp>
+#include <slipmode/fem/modes.hpp>
+#include <slipmode/scene/scene.hpp>
 
 #include <fmt/format.h>
 #include <Eigen/SparseCholesky>

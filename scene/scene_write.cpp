@@ -1,5 +1,5 @@
-#include "scene/scene_words.hpp"
-#include "scene/toml_text.hpp"
+#include "scene/internal/scene_words.hpp"
+#include "scene/internal/toml_text.hpp"
 
 #include <toml++/toml.h>
 

@@ -1,7 +1,7 @@
-#include "scene/specs.hpp"
+#include <slipmode/scene/specs.hpp>
 
-#include "diagnostics/sweep.hpp"
-#include "scene/scene_words.hpp"
+#include <slipmode/diagnostics/attractors/sweep.hpp>
+#include "scene/internal/scene_words.hpp"
 
 #include <fmt/format.h>
 

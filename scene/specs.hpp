@@ -1,8 +1,8 @@
 #pragma once
 
-#include "friction/contact.hpp"
-#include "pod/pomf.hpp"
-#include "pod/sensors.hpp"
+#include <slipmode/friction/contact.hpp>
+#include <slipmode/pod/pomf.hpp>
+#include <slipmode/pod/sensors.hpp>
 
 #include <Eigen/Core>
 #include <cstdint>

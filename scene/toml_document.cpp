@@ -1,5 +1,5 @@
-#include "core/errors.hpp"
-#include "scene/toml_reader.hpp"
+#include <slipmode/core/errors.hpp>
+#include "scene/internal/toml_reader.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,5 +1,5 @@
-#include "core/overloaded.hpp"
-#include "scene/toml_text.hpp"
+#include <slipmode/core/overloaded.hpp>
+#include "scene/internal/toml_text.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,6 +1,6 @@
-#include "core/overloaded.hpp"
-#include "scene/scene_words.hpp"
-#include "scene/toml_text.hpp"
+#include <slipmode/core/overloaded.hpp>
+#include "scene/internal/scene_words.hpp"
+#include "scene/internal/toml_text.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

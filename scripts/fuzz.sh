@@ -16,16 +16,16 @@ mkdir -p "$out"
 
 compiler=(clang++)
 command -v ccache >/dev/null && compiler=(ccache clang++)
-flags=(-std=c++20 -O1 -g1 -DEIGEN_MAX_ALIGN_BYTES=64 -DEIGEN_MAX_STATIC_ALIGN_BYTES=16 -I. -Ifuzz -isystem /usr/include/eigen3
+flags=(-std=c++20 -O1 -g1 -DEIGEN_MAX_ALIGN_BYTES=64 -DEIGEN_MAX_STATIC_ALIGN_BYTES=16 -I. -I"$release/include" -Ifuzz -isystem /usr/include/eigen3
   -isystem /usr/include/hdf5/serial -DFMT_SHARED -DTOML_HEADER_ONLY=0 -DTOML_SHARED_LIB=1
   -fsanitize=address,undefined -fno-sanitize-recover=undefined)
 libraries=("$release/libslipmode.a" -lfmt -ltomlplusplus -llapack -lblas -larpack -lfftw3 -lhdf5_serial -lpthread)
 
 sources_of() {
   case $1 in
-    scene) ls scene/toml_*.cpp scene/scene_parse.cpp scene/parse_*.cpp scene/scene_write.cpp scene/write_*.cpp ;;
+    scene) ls scene/internal/*.cpp scene/scene_parse.cpp scene/parse_*.cpp scene/scene_write.cpp scene/write_*.cpp ;;
     csv) ls results/csv_series.cpp ;;
-    store) ls results/{store_reader,info,checked_read,records}.cpp results/*_record*.cpp ;;
+    store) ls results/{store_reader,info,records}.cpp results/*_record*.cpp results/internal/*.cpp ;;
     *) echo "no such target: $1 (scene, csv, store)" >&2; exit 2 ;;
   esac | sort -u
 }

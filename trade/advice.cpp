@@ -1,8 +1,8 @@
-#include "trade/advice.hpp"
+#include <slipmode/trade/advice.hpp>
 
-#include "core/errors.hpp"
-#include "core/none.hpp"
-#include "trade/variants.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/core/none.hpp>
+#include <slipmode/trade/variants.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>

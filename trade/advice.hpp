@@ -1,6 +1,6 @@
 #pragma once
 
-#include "trade/study.hpp"
+#include <slipmode/trade/study.hpp>
 
 #include <cstddef>
 #include <optional>

@@ -1,6 +1,6 @@
-#include "trade/case.hpp"
+#include <slipmode/trade/case.hpp>
 
-#include "rom/reduce.hpp"
+#include <slipmode/rom/reduce.hpp>
 
 namespace slipmode::trade {
 

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "diagnostics/driven_sweep.hpp"
-#include "dynamics/simulate.hpp"
-#include "fem/beam.hpp"
-#include "pod/basis.hpp"
-#include "trade/variant.hpp"
+#include <slipmode/diagnostics/attractors/driven_sweep.hpp>
+#include <slipmode/dynamics/simulate.hpp>
+#include <slipmode/fem/beam.hpp>
+#include <slipmode/pod/basis.hpp>
+#include <slipmode/trade/variant.hpp>
 
 #include <memory>
 #include <optional>

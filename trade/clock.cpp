@@ -1,7 +1,7 @@
-#include "trade/clock.hpp"
+#include <slipmode/trade/clock.hpp>
 
-#include "core/errors.hpp"
-#include "diagnostics/timing.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/diagnostics/validation/timing.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/parallel.hpp"
-#include "trade/case.hpp"
+#include <slipmode/core/parallel.hpp>
+#include <slipmode/trade/case.hpp>
 
 #include <functional>
 #include <limits>

@@ -1,10 +1,10 @@
-#include "trade/effects.hpp"
+#include <slipmode/trade/effects.hpp>
 
-#include "core/errors.hpp"
-#include "diagnostics/model.hpp"
-#include "rom/reduce.hpp"
-#include "trade/advice.hpp"
-#include "trade/laws.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/diagnostics/attractors/model.hpp>
+#include <slipmode/rom/reduce.hpp>
+#include <slipmode/trade/advice.hpp>
+#include "trade/internal/laws.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

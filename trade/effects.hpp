@@ -1,7 +1,7 @@
 #pragma once
 
-#include "trade/study.hpp"
-#include "trade/variant.hpp"
+#include <slipmode/trade/study.hpp>
+#include <slipmode/trade/variant.hpp>
 
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "trade/measures.hpp"
+#include <slipmode/trade/measures.hpp>
 
 namespace slipmode::trade {
 

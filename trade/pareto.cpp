@@ -1,4 +1,4 @@
-#include "trade/pareto.hpp"
+#include <slipmode/trade/pareto.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "trade/schedule.hpp"
+#include <slipmode/trade/schedule.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>

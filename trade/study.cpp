@@ -1,11 +1,11 @@
-#include "trade/study.hpp"
+#include <slipmode/trade/study.hpp>
 
-#include "core/errors.hpp"
-#include "core/none.hpp"
-#include "diagnostics/driven.hpp"
-#include "trade/horizon.hpp"
-#include "trade/motion.hpp"
-#include "trade/variants.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/core/none.hpp>
+#include <slipmode/diagnostics/attractors/driven.hpp>
+#include <slipmode/trade/variants.hpp>
+#include "trade/internal/horizon.hpp"
+#include "trade/internal/motion.hpp"
 
 #include <algorithm>
 #include <mutex>

@@ -1,11 +1,11 @@
 #pragma once
 
-#include "core/parallel.hpp"
-#include "trade/clock.hpp"
-#include "trade/measures.hpp"
-#include "trade/pareto.hpp"
-#include "trade/schedule.hpp"
-#include "trade/variant.hpp"
+#include <slipmode/core/parallel.hpp>
+#include <slipmode/trade/clock.hpp>
+#include <slipmode/trade/measures.hpp>
+#include <slipmode/trade/pareto.hpp>
+#include <slipmode/trade/schedule.hpp>
+#include <slipmode/trade/variant.hpp>
 
 #include <functional>
 #include <optional>

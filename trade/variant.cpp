@@ -1,6 +1,6 @@
-#include "trade/variant.hpp"
+#include <slipmode/trade/variant.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 
 #include <fmt/format.h>
 #include <toml++/toml.h>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "pod/basis.hpp"
-#include "scene/scene.hpp"
+#include <slipmode/pod/basis.hpp>
+#include <slipmode/scene/scene.hpp>
 
 #include <Eigen/Core>
 #include <cstdint>

@@ -1,8 +1,8 @@
-#include "trade/variants.hpp"
+#include <slipmode/trade/variants.hpp>
 
-#include "core/errors.hpp"
-#include "dynamics/prepare.hpp"
-#include "trade/laws.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/dynamics/prepare.hpp>
+#include "trade/internal/laws.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

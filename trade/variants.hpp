@@ -1,6 +1,6 @@
 #pragma once
 
-#include "trade/variant.hpp"
+#include <slipmode/trade/variant.hpp>
 
 #include <string>
 #include <vector>

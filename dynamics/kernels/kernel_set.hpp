@@ -1,6 +1,6 @@
 #pragma once
 
-#include "dynamics/kernels/kernels.hpp"
+#include <slipmode/dynamics/kernels/kernels.hpp>
 
 // The kernels of one width, in a namespace of its name: what every source here defines, and what kernel_set.cpp
 // gathers.

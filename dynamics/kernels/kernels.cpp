@@ -1,7 +1,7 @@
-#include "dynamics/kernels/kernels.hpp"
+#include <slipmode/dynamics/kernels/kernels.hpp>
 
-#include "core/errors.hpp"
-#include "dynamics/kernels/processor.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/dynamics/kernels/processor.hpp>
 
 #include <cstdlib>
 #include <string>

@@ -1,6 +1,6 @@
+#include <slipmode/results/store.hpp>
 #include "cli/slipmode_process.hpp"
 #include "cli/small_scenes.hpp"
-#include "results/store.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
 // slipmode diagnose SCENE, through the executable, on scenes of milliseconds.
 
+#include <slipmode/results/store.hpp>
+#include <slipmode/results/table.hpp>
 #include "cli/slipmode_process.hpp"
 #include "cli/small_scenes.hpp"
-#include "results/store.hpp"
-#include "results/table.hpp"
 
 #include <gtest/gtest.h>
 #include <csignal>

@@ -1,7 +1,7 @@
+#include <slipmode/results/store.hpp>
+#include <slipmode/results/table.hpp>
 #include "cli/slipmode_process.hpp"
 #include "fixtures/test_series.hpp"
-#include "results/store.hpp"
-#include "results/table.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

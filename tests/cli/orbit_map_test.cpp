@@ -1,5 +1,5 @@
+#include <slipmode/results/table.hpp>
 #include "cli/slipmode_process.hpp"
-#include "results/table.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

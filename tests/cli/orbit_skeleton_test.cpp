@@ -1,6 +1,6 @@
+#include <slipmode/results/orbit_records.hpp>
+#include <slipmode/results/table.hpp>
 #include "cli/slipmode_process.hpp"
-#include "results/orbit_records.hpp"
-#include "results/table.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

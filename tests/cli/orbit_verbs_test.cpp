@@ -1,8 +1,8 @@
 // slipmode orbit find and continue: what they say, store and draw, and what they refuse.
 
+#include <slipmode/results/orbit_records.hpp>
+#include <slipmode/results/store.hpp>
 #include "cli/slipmode_process.hpp"
-#include "results/orbit_records.hpp"
-#include "results/store.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

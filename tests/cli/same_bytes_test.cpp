@@ -1,9 +1,9 @@
 // The same scene, version and seed give the same bytes on every vector width and for any number of threads: the
 // executable under each kernel set that has fused multiply-add.
 
+#include <slipmode/dynamics/kernels/kernels.hpp>
 #include "cli/slipmode_process.hpp"
 #include "cli/small_scenes.hpp"
-#include "dynamics/kernels/kernels.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

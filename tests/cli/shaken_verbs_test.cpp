@@ -1,6 +1,6 @@
 // Verbs on a small beam under a shaker, through the executable.
+#include <slipmode/results/table.hpp>
 #include "cli/slipmode_process.hpp"
-#include "results/table.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
+#include <slipmode/results/table.hpp>
 #include "cli/slipmode_process.hpp"
 #include "cli/small_scenes.hpp"
-#include "results/table.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,10 +1,10 @@
 // slipmode trade and slipmode advise, through the executable, on scenes of milliseconds.
 
+#include <slipmode/results/store.hpp>
+#include <slipmode/results/table.hpp>
+#include <slipmode/scene/scene.hpp>
 #include "cli/slipmode_process.hpp"
 #include "cli/small_scenes.hpp"
-#include "results/store.hpp"
-#include "results/table.hpp"
-#include "scene/scene.hpp"
 
 #include <gtest/gtest.h>
 #include <algorithm>

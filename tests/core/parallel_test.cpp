@@ -1,7 +1,7 @@
-#include "core/parallel.hpp"
+#include <slipmode/core/parallel.hpp>
 
-#include "core/errors.hpp"
-#include "core/random.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/core/random.hpp>
 
 #include <gtest/gtest.h>
 

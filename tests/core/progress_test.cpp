@@ -1,4 +1,4 @@
-#include "core/progress.hpp"
+#include <slipmode/core/progress.hpp>
 
 #include <gtest/gtest.h>
 

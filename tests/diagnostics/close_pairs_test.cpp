@@ -1,9 +1,9 @@
-#include "diagnostics/close_pairs.hpp"
+#include "diagnostics/series/internal/close_pairs.hpp"
 
-#include "core/errors.hpp"
-#include "core/random.hpp"
-#include "diagnostics/embedding.hpp"
-#include "diagnostics/shells.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/core/random.hpp>
+#include <slipmode/diagnostics/series/embedding.hpp>
+#include <slipmode/diagnostics/series/shells.hpp>
 #include "fixtures/test_series.hpp"
 
 #include <gmock/gmock.h>

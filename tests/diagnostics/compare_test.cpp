@@ -1,9 +1,9 @@
-#include "diagnostics/compare.hpp"
+#include <slipmode/diagnostics/validation/compare.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/pod/pod.hpp>
+#include <slipmode/rom/reduce.hpp>
 #include "models.hpp"
-#include "pod/pod.hpp"
-#include "rom/reduce.hpp"
 
 #include <gtest/gtest.h>
 

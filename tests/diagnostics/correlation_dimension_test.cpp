@@ -1,6 +1,6 @@
-#include "diagnostics/correlation_dimension.hpp"
+#include <slipmode/diagnostics/series/correlation_dimension.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 #include "fixtures/test_series.hpp"
 
 #include <gmock/gmock.h>

@@ -1,11 +1,11 @@
 // Shaken oscillators with closed forms: stuck behind a contact spring (linear), sliding all the time (half-period
 // antisymmetric), and manufactured section points.
-#include "diagnostics/driven.hpp"
+#include <slipmode/diagnostics/attractors/driven.hpp>
 
-#include "core/errors.hpp"
-#include "diagnostics/driven_validation.hpp"
-#include "diagnostics/spectrum.hpp"
-#include "rom/reduce.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/diagnostics/series/spectrum.hpp>
+#include <slipmode/diagnostics/validation/driven_validation.hpp>
+#include <slipmode/rom/reduce.hpp>
 
 #include <gtest/gtest.h>
 

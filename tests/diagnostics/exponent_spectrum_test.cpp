@@ -1,7 +1,7 @@
-#include "diagnostics/exponent_spectrum.hpp"
+#include <slipmode/diagnostics/series/exponent_spectrum.hpp>
 
-#include "core/errors.hpp"
-#include "diagnostics/kaplan_yorke.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/diagnostics/series/kaplan_yorke.hpp>
 #include "fixtures/test_series.hpp"
 
 #include <gtest/gtest.h>

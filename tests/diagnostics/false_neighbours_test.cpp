@@ -1,6 +1,6 @@
-#include "diagnostics/false_neighbours.hpp"
+#include <slipmode/diagnostics/series/false_neighbours.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 #include "fixtures/test_series.hpp"
 
 #include <gmock/gmock.h>

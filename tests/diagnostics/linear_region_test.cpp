@@ -1,7 +1,7 @@
-#include "diagnostics/linear_region.hpp"
+#include <slipmode/diagnostics/series/linear_region.hpp>
 
-#include "core/errors.hpp"
-#include "core/random.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/core/random.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,14 +1,14 @@
-#include "diagnostics/lyapunov_spectrum.hpp"
+#include <slipmode/diagnostics/exponents/lyapunov_spectrum.hpp>
 
-#include "core/decompositions.hpp"
-#include "core/errors.hpp"
-#include "diagnostics/lyapunov.hpp"
-#include "diagnostics/tangent_frame.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/errors.hpp>
+#include <slipmode/diagnostics/exponents/lyapunov.hpp>
+#include <slipmode/orbits/shooting.hpp>
+#include <slipmode/rom/reduce.hpp>
+#include "diagnostics/exponents/internal/tangent_frame.hpp"
 #include "fixtures/clearance_scenes.hpp"
 #include "fixtures/shaken_scenes.hpp"
 #include "models.hpp"
-#include "orbits/shooting.hpp"
-#include "rom/reduce.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
-#include "diagnostics/lyapunov.hpp"
+#include <slipmode/diagnostics/exponents/lyapunov.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 #include "models.hpp"
 
 #include <gtest/gtest.h>

@@ -1,11 +1,11 @@
-#include "diagnostics/model.hpp"
+#include <slipmode/diagnostics/attractors/model.hpp>
 
-#include "core/errors.hpp"
-#include "diagnostics/cost.hpp"
-#include "diagnostics/ensemble_run.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/diagnostics/attractors/ensemble_run.hpp>
+#include <slipmode/diagnostics/validation/cost.hpp>
+#include <slipmode/pod/pod.hpp>
+#include <slipmode/rom/reduce.hpp>
 #include "models.hpp"
-#include "pod/pod.hpp"
-#include "rom/reduce.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
-#include "diagnostics/mutual_information.hpp"
+#include <slipmode/diagnostics/series/mutual_information.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 #include "fixtures/test_series.hpp"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
-#include "diagnostics/neighbours.hpp"
+#include <slipmode/diagnostics/series/neighbours.hpp>
 
-#include "core/errors.hpp"
-#include "core/random.hpp"
-#include "diagnostics/embedding.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/core/random.hpp>
+#include <slipmode/diagnostics/series/embedding.hpp>
 #include "fixtures/test_series.hpp"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
-#include "diagnostics/periodicity.hpp"
+#include <slipmode/diagnostics/attractors/periodicity.hpp>
 
-#include "core/errors.hpp"
-#include "core/random.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/core/random.hpp>
 
 #include <gtest/gtest.h>
 

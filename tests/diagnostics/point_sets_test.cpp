@@ -1,7 +1,7 @@
-#include "diagnostics/point_sets.hpp"
+#include <slipmode/diagnostics/series/point_sets.hpp>
 
-#include "core/errors.hpp"
-#include "core/random.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/core/random.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
-#include "diagnostics/series_study.hpp"
+#include <slipmode/diagnostics/series/series_study.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 #include "fixtures/test_series.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
-#include "diagnostics/series.hpp"
+#include <slipmode/diagnostics/series/series.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 #include "fixtures/test_series.hpp"
 
 #include <gmock/gmock.h>

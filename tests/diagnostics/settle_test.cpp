@@ -1,6 +1,6 @@
-#include "diagnostics/settle.hpp"
+#include <slipmode/diagnostics/attractors/settle.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 #include "models.hpp"
 
 #include <gtest/gtest.h>

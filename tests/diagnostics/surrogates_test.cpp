@@ -1,7 +1,7 @@
-#include "diagnostics/surrogates.hpp"
+#include <slipmode/diagnostics/series/surrogates.hpp>
 
-#include "core/errors.hpp"
-#include "diagnostics/fourier.hpp"
+#include <slipmode/core/errors.hpp>
+#include "diagnostics/series/internal/fourier.hpp"
 #include "fixtures/test_series.hpp"
 
 #include <gtest/gtest.h>

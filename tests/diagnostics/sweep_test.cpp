@@ -1,9 +1,9 @@
-#include "diagnostics/sweep.hpp"
+#include <slipmode/diagnostics/attractors/sweep.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/pod/pod.hpp>
+#include <slipmode/rom/reduce.hpp>
 #include "models.hpp"
-#include "pod/pod.hpp"
-#include "rom/reduce.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-#include "diagnostics/validate.hpp"
+#include <slipmode/diagnostics/validation/validate.hpp>
 
-#include "core/errors.hpp"
-#include "diagnostics/ensemble_run.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/diagnostics/attractors/ensemble_run.hpp>
+#include <slipmode/pod/pod.hpp>
+#include <slipmode/rom/reduce.hpp>
 #include "models.hpp"
-#include "pod/pod.hpp"
-#include "rom/reduce.hpp"
 
 #include <gtest/gtest.h>
 

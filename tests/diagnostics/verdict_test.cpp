@@ -1,10 +1,10 @@
-#include "diagnostics/verdict.hpp"
+#include <slipmode/diagnostics/validation/verdict.hpp>
 
-#include "core/errors.hpp"
-#include "diagnostics/farthest_dof.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/diagnostics/attractors/farthest_dof.hpp>
+#include <slipmode/rom/reduce.hpp>
 #include "fixtures/clearance_scenes.hpp"
 #include "models.hpp"
-#include "rom/reduce.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
-#include "diagnostics/wolf.hpp"
+#include <slipmode/diagnostics/series/wolf.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 #include "fixtures/test_series.hpp"
 
 #include <gtest/gtest.h>

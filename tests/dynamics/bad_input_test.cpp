@@ -1,5 +1,5 @@
 // What is refused, at the boundary and by name.
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 #include "fixtures/clearance_scenes.hpp"
 #include "fixtures/scenes.hpp"
 

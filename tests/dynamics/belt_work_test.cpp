@@ -1,5 +1,5 @@
 // The energy audit under a belt of constant speed, in closed form.
-#include "dynamics/simulate.hpp"
+#include <slipmode/dynamics/simulate.hpp>
 #include "fixtures/scenes.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Dahl's and the LuGre law on the collocation flow.
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 #include "fixtures/against_reference.hpp"
 #include "fixtures/bristle_scenes.hpp"
 #include "fixtures/scenes.hpp"

@@ -1,5 +1,5 @@
 // The tangent flow of the closed form: saltation at stops, contact springs, lost contact, stick and their mixtures.
-#include "dynamics/simulate.hpp"
+#include <slipmode/dynamics/simulate.hpp>
 #include "fixtures/clearance_scenes.hpp"
 #include "fixtures/shaken_scenes.hpp"
 

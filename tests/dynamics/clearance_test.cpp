@@ -1,6 +1,6 @@
 // Clearances and force drives: against an independent Runge-Kutta, closed forms, and the energy balance.
-#include "core/errors.hpp"
-#include "dynamics/simulate.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/dynamics/simulate.hpp>
 #include "fixtures/clearance_reference.hpp"
 #include "fixtures/clearance_scenes.hpp"
 

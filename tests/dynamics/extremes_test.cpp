@@ -1,6 +1,6 @@
 // The ends of every range: belt speeds 0, 1e-9 and huge, no friction, one and two masses, rigid-body modes, critical
 // and heavy damping, simultaneous events, event storms.
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 #include "fixtures/against_reference.hpp"
 #include "fixtures/uniform_chain.hpp"
 

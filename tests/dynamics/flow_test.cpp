@@ -1,5 +1,5 @@
 // What a run promises whatever the scene: sampling, restarts, guards, repeatability, accuracy that follows tolerance.
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 #include "fixtures/against_reference.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Contacts that stick and contacts with bristles in one system; contacts that change together under a shaker.
-#include "dynamics/consistency.hpp"
+#include <slipmode/dynamics/consistency.hpp>
 #include "fixtures/against_reference.hpp"
 #include "fixtures/bristle_scenes.hpp"
 

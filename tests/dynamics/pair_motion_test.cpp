@@ -1,5 +1,5 @@
 // e^{Gt} of oscillating pairs. Expected: the elementary formula in long double.
-#include "dynamics/pair_motion.hpp"
+#include <slipmode/dynamics/pair_motion.hpp>
 #include "fixtures/scenes.hpp"
 
 #include <gtest/gtest.h>

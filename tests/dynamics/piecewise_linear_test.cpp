@@ -1,5 +1,5 @@
-#include "core/errors.hpp"
-#include "dynamics/simulate.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/dynamics/simulate.hpp>
 #include "fixtures/runge_kutta_reference.hpp"
 #include "fixtures/shaken_scenes.hpp"
 

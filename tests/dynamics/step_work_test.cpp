@@ -1,7 +1,7 @@
 // Work of a step by its nodes and by forms of its state and forces, beside the same work summed over its pieces.
 
-#include "dynamics/cache.hpp"
-#include "dynamics/within_step.hpp"
+#include <slipmode/dynamics/cache.hpp>
+#include "dynamics/internal/within_step.hpp"
 #include "fixtures/bristle_scenes.hpp"
 #include "fixtures/scenes.hpp"
 

@@ -1,9 +1,9 @@
 // A contact that sticks on a shaker for many cycles: what goes in by the contact is what damping takes, however much
 // stiffer than the structure the contact is. Expected: the closed form of the steady motion, written here in long
 // double.
-#include "dynamics/simulate.hpp"
-#include "fem/chain.hpp"
-#include "fem/modes.hpp"
+#include <slipmode/dynamics/simulate.hpp>
+#include <slipmode/fem/chain.hpp>
+#include <slipmode/fem/modes.hpp>
 #include "fixtures/cantilever_beam.hpp"
 #include "fixtures/scenes.hpp"
 

@@ -1,4 +1,4 @@
-#include "fem/beam_modes.hpp"
+#include <slipmode/fem/beam_modes.hpp>
 #include "fixtures/cantilever_beam.hpp"
 #include "fixtures/cantilever_transfer.hpp"
 

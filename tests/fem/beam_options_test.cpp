@@ -1,5 +1,5 @@
-#include "core/errors.hpp"
-#include "fem/beam_modes.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/fem/beam_modes.hpp>
 #include "fixtures/cantilever_beam.hpp"
 
 #include <gmock/gmock.h>

@@ -1,6 +1,6 @@
-#include "core/errors.hpp"
-#include "fem/beam_modes.hpp"
-#include "fem/chain.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/fem/beam_modes.hpp>
+#include <slipmode/fem/chain.hpp>
 #include "fixtures/cantilever_beam.hpp"
 
 #include <gmock/gmock.h>

@@ -1,7 +1,7 @@
-#include "core/decompositions.hpp"
-#include "core/errors.hpp"
-#include "fem/chain.hpp"
-#include "fem/modes.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/errors.hpp>
+#include <slipmode/fem/chain.hpp>
+#include <slipmode/fem/modes.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

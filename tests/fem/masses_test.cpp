@@ -1,6 +1,6 @@
-#include "fem/masses.hpp"
+#include <slipmode/fem/masses.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

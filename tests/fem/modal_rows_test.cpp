@@ -1,6 +1,6 @@
-#include "core/errors.hpp"
-#include "fem/chain.hpp"
-#include "fem/modes.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/fem/chain.hpp>
+#include <slipmode/fem/modes.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
-#include "fem/structure.hpp"
-#include "core/decompositions.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/fem/structure.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // What a clearance and a force accept, say and reject.
-#include "core/errors.hpp"
-#include "friction/contact.hpp"
-#include "friction/drive.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/friction/contact.hpp>
+#include <slipmode/friction/drive.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

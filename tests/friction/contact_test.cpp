@@ -1,6 +1,6 @@
-#include "friction/contact.hpp"
+#include <slipmode/friction/contact.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-#include "dynamics/simulate.hpp"
-#include "fem/chain.hpp"
+#include <slipmode/dynamics/simulate.hpp>
+#include <slipmode/fem/chain.hpp>
 
 #include <cmath>
 #include <cstdio>

@@ -1,10 +1,10 @@
-#include "orbits/attractor.hpp"
+#include <slipmode/orbits/attractor.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/rom/reduce.hpp>
 #include "fixtures/belt_oscillator.hpp"
 #include "fixtures/scenes.hpp"
 #include "fixtures/shaken_scenes.hpp"
-#include "rom/reduce.hpp"
 
 #include <gtest/gtest.h>
 

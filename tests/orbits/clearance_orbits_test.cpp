@@ -1,8 +1,8 @@
 // Orbits of systems with clearances: S0 (one and four masses), S2, closed forms, and an independent integrator.
+#include <slipmode/core/errors.hpp>
+#include <slipmode/orbits/floquet.hpp>
 #include "backlash_reference.hpp"
 #include "clearance_systems.hpp"
-#include "core/errors.hpp"
-#include "orbits/floquet.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "dynamics/simulate.hpp"
-#include "fem/masses.hpp"
-#include "orbits/continuation.hpp"
+#include <slipmode/dynamics/simulate.hpp>
+#include <slipmode/fem/masses.hpp>
+#include <slipmode/orbits/continuation.hpp>
 
 #include <Eigen/Core>
 #include <numbers>

@@ -1,10 +1,10 @@
 // Branches and their special points against closed forms, against orbits found one by one, and against S0 and S1.
+#include <slipmode/core/errors.hpp>
+#include <slipmode/orbits/floquet.hpp>
 #include "clearance_systems.hpp"
-#include "core/errors.hpp"
 #include "fixtures/belt_oscillator.hpp"
 #include "fixtures/den_hartog.hpp"
 #include "fixtures/scenes.hpp"
-#include "orbits/floquet.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,10 +1,10 @@
 // Orbits with stick and slip against closed forms and against figures of an independent program.
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/orbits/floquet.hpp>
+#include <slipmode/orbits/shooting.hpp>
 #include "fixtures/belt_oscillator.hpp"
 #include "fixtures/den_hartog.hpp"
 #include "fixtures/scenes.hpp"
-#include "orbits/floquet.hpp"
-#include "orbits/shooting.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

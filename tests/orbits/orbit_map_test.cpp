@@ -1,6 +1,6 @@
-#include "orbits/orbit_map.hpp"
+#include <slipmode/orbits/orbit_map.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 #include "fixtures/clearance_scenes.hpp"
 #include "fixtures/scenes.hpp"
 #include "fixtures/shaken_scenes.hpp"

@@ -1,8 +1,8 @@
 // Words, crossings, symmetry, Floquet modes, guesses: the parts orbits are described by.
+#include <slipmode/core/errors.hpp>
+#include <slipmode/orbits/floquet.hpp>
 #include "clearance_systems.hpp"
-#include "core/errors.hpp"
 #include "fixtures/scenes.hpp"
-#include "orbits/floquet.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

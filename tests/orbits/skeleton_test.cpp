@@ -1,10 +1,10 @@
-#include "orbits/skeleton.hpp"
+#include <slipmode/orbits/skeleton.hpp>
 
-#include "core/errors.hpp"
-#include "diagnostics/models.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/diagnostics/models.hpp>
 #include "fixtures/clearance_scenes.hpp"
 #include "fixtures/shaken_scenes.hpp"
-#include "orbits/skeleton_orbit.hpp"
+#include "orbits/internal/skeleton_orbit.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

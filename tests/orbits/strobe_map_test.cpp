@@ -1,10 +1,10 @@
-#include "orbits/strobe_map.hpp"
+#include <slipmode/orbits/strobe_map.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/orbits/orbit_map.hpp>
 #include "fixtures/clearance_scenes.hpp"
 #include "fixtures/scenes.hpp"
 #include "fixtures/shaken_scenes.hpp"
-#include "orbits/orbit_map.hpp"
 
 #include <gtest/gtest.h>
 

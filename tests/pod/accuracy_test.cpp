@@ -1,10 +1,10 @@
-#include "core/decompositions.hpp"
-#include "core/errors.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/errors.hpp>
+#include <slipmode/pod/pod.hpp>
 #include "known.hpp"
-#include "pod/accumulator.hpp"
-#include "pod/pod.hpp"
-#include "pod/right_svd.hpp"
-#include "pod/triangle.hpp"
+#include "pod/internal/accumulator.hpp"
+#include "pod/internal/right_svd.hpp"
+#include "pod/internal/triangle.hpp"
 
 #include <gtest/gtest.h>
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "fem/beam.hpp"
-#include "pod/sensors.hpp"
+#include <slipmode/fem/beam.hpp>
+#include <slipmode/pod/sensors.hpp>
 
 #include <array>
 #include <cmath>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "core/decompositions.hpp"
-#include "core/random.hpp"
-#include "pod/ensemble.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/random.hpp>
+#include <slipmode/pod/ensemble.hpp>
 
 #include <cmath>
 #include <cstdint>

@@ -1,9 +1,9 @@
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/errors.hpp>
+#include <slipmode/fem/modes.hpp>
+#include <slipmode/pod/pod.hpp>
 #include "cantilever.hpp"
-#include "core/decompositions.hpp"
-#include "core/errors.hpp"
-#include "fem/modes.hpp"
 #include "known.hpp"
-#include "pod/pod.hpp"
 
 #include <gtest/gtest.h>
 

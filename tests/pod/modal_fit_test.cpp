@@ -1,8 +1,8 @@
-#include "pod/modal_fit.hpp"
-#include "core/decompositions.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/pod/modal_fit.hpp>
 
+#include <slipmode/core/errors.hpp>
 #include "cantilever.hpp"
-#include "core/errors.hpp"
 #include "known.hpp"
 
 #include <gmock/gmock.h>

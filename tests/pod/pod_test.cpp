@@ -1,7 +1,7 @@
-#include "pod/pod.hpp"
-#include "core/decompositions.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/pod/pod.hpp>
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
 #include "known.hpp"
 
 #include <gtest/gtest.h>

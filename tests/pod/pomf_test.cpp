@@ -1,11 +1,11 @@
-#include "pod/pomf.hpp"
-#include "core/decompositions.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/pod/pomf.hpp>
 
+#include <slipmode/core/errors.hpp>
+#include <slipmode/pod/gram_schmidt.hpp>
+#include <slipmode/pod/mode_shares.hpp>
 #include "cantilever.hpp"
-#include "core/errors.hpp"
 #include "known.hpp"
-#include "pod/gram_schmidt.hpp"
-#include "pod/mode_shares.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

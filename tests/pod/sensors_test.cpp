@@ -1,7 +1,7 @@
-#include "pod/sensors.hpp"
+#include <slipmode/pod/sensors.hpp>
 
+#include <slipmode/core/errors.hpp>
 #include "cantilever.hpp"
-#include "core/errors.hpp"
 #include "known.hpp"
 
 #include <gmock/gmock.h>

@@ -1,9 +1,9 @@
-#include "core/decompositions.hpp"
-#include "core/errors.hpp"
-#include "fem/chain.hpp"
-#include "fem/modes.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/errors.hpp>
+#include <slipmode/fem/chain.hpp>
+#include <slipmode/fem/modes.hpp>
+#include <slipmode/pod/pod.hpp>
 #include "known.hpp"
-#include "pod/pod.hpp"
 
 #include <gtest/gtest.h>
 #include <numbers>

@@ -1,10 +1,10 @@
 // Stored models of shaken beams: every law, load and drive, full and reduced, to the last bit.
 
-#include "results/records.hpp"
-#include "rom/reduce.hpp"
-#include "scene/beam_scene.hpp"
-#include "scene/scene.hpp"
-#include "scene/temporary_folder.hpp"
+#include <slipmode/results/records.hpp>
+#include <slipmode/rom/reduce.hpp>
+#include <slipmode/scene/beam_scene.hpp>
+#include <slipmode/scene/scene.hpp>
+#include <slipmode/scene/temporary_folder.hpp>
 
 #include <gtest/gtest.h>
 #include <bit>

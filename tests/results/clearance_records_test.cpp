@@ -1,10 +1,10 @@
 // Stored systems with clearances under forces: every number comes back to the last bit.
 
-#include "core/decompositions.hpp"
-#include "results/records.hpp"
-#include "rom/reduce.hpp"
-#include "scene/scene.hpp"
-#include "scene/temporary_folder.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/results/records.hpp>
+#include <slipmode/rom/reduce.hpp>
+#include <slipmode/scene/scene.hpp>
+#include <slipmode/scene/temporary_folder.hpp>
 
 #include <gtest/gtest.h>
 #include <filesystem>

@@ -1,11 +1,11 @@
 // Stored periodic orbits come back to the last bit; damaged ones are refused.
 
-#include "results/orbit_records.hpp"
-#include "core/decompositions.hpp"
-#include "core/errors.hpp"
-#include "orbits/shooting.hpp"
-#include "scene/scene.hpp"
-#include "scene/temporary_folder.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/errors.hpp>
+#include <slipmode/orbits/shooting.hpp>
+#include <slipmode/results/orbit_records.hpp>
+#include <slipmode/scene/scene.hpp>
+#include <slipmode/scene/temporary_folder.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,11 +1,11 @@
-#include "results/store.hpp"
-#include "core/errors.hpp"
-#include "results/info.hpp"
-#include "results/provenance.hpp"
-#include "results/records.hpp"
-#include "results/table.hpp"
-#include "scene/messages.hpp"
-#include "scene/temporary_folder.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/results/info.hpp>
+#include <slipmode/results/provenance.hpp>
+#include <slipmode/results/records.hpp>
+#include <slipmode/results/store.hpp>
+#include <slipmode/results/table.hpp>
+#include <slipmode/scene/messages.hpp>
+#include <slipmode/scene/temporary_folder.hpp>
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -1,9 +1,9 @@
-#include "fem/beam.hpp"
-#include "core/decompositions.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/fem/beam.hpp>
 
-#include "fem/modes.hpp"
+#include <slipmode/fem/modes.hpp>
+#include <slipmode/rom/reduce.hpp>
 #include "random_model.hpp"
-#include "rom/reduce.hpp"
 
 #include <gtest/gtest.h>
 #include <complex>

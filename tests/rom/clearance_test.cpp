@@ -1,7 +1,7 @@
 // Reduced models of structures with clearances and forces.
-#include "rom/reduce.hpp"
+#include <slipmode/rom/reduce.hpp>
 
-#include "dynamics/simulate.hpp"
+#include <slipmode/dynamics/simulate.hpp>
 #include "fixtures/clearance_scenes.hpp"
 #include "random_model.hpp"
 

@@ -1,10 +1,10 @@
-#include "dynamics/simulate.hpp"
+#include <slipmode/dynamics/simulate.hpp>
 
-#include "core/random.hpp"
-#include "fem/chain.hpp"
-#include "pod/pod.hpp"
+#include <slipmode/core/random.hpp>
+#include <slipmode/fem/chain.hpp>
+#include <slipmode/pod/pod.hpp>
+#include <slipmode/rom/reduce.hpp>
 #include "random_model.hpp"
-#include "rom/reduce.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "core/decompositions.hpp"
-#include "core/random.hpp"
-#include "dynamics/system.hpp"
-#include "pod/basis.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/random.hpp>
+#include <slipmode/dynamics/system.hpp>
+#include <slipmode/pod/basis.hpp>
 
 namespace slipmode::tests {
 

@@ -1,9 +1,9 @@
-#include "rom/reduce.hpp"
-#include "core/decompositions.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/rom/reduce.hpp>
 
-#include "core/errors.hpp"
-#include "fem/chain.hpp"
-#include "fem/modes.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/fem/chain.hpp>
+#include <slipmode/fem/modes.hpp>
 #include "random_model.hpp"
 
 #include <gtest/gtest.h>

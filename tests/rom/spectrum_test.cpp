@@ -1,6 +1,6 @@
-#include "core/decompositions.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/rom/reduce.hpp>
 #include "random_model.hpp"
-#include "rom/reduce.hpp"
 
 #include <gtest/gtest.h>
 #include <algorithm>

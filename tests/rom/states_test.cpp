@@ -1,7 +1,7 @@
-#include "core/decompositions.hpp"
-#include "core/errors.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/errors.hpp>
+#include <slipmode/rom/reduce.hpp>
 #include "random_model.hpp"
-#include "rom/reduce.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-#include "core/decompositions.hpp"
-#include "core/errors.hpp"
-#include "fem/beam.hpp"
-#include "fem/chain.hpp"
-#include "fem/modes.hpp"
-#include "pod/pod.hpp"
-#include "rom/reduce.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/errors.hpp>
+#include <slipmode/fem/beam.hpp>
+#include <slipmode/fem/chain.hpp>
+#include <slipmode/fem/modes.hpp>
+#include <slipmode/pod/pod.hpp>
+#include <slipmode/rom/reduce.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,12 +1,12 @@
 // Reruns the shipped beam and compares with its expected.toml.
 
-#include "diagnostics/driven.hpp"
-#include "dynamics/simulate.hpp"
-#include "fem/modes.hpp"
-#include "pod/modal_fit.hpp"
-#include "pod/pod.hpp"
-#include "scene/scene.hpp"
-#include "scene/toml_reader.hpp"
+#include <slipmode/diagnostics/attractors/driven.hpp>
+#include <slipmode/dynamics/simulate.hpp>
+#include <slipmode/fem/modes.hpp>
+#include <slipmode/pod/modal_fit.hpp>
+#include <slipmode/pod/pod.hpp>
+#include <slipmode/scene/scene.hpp>
+#include "scene/internal/toml_reader.hpp"
 
 #include <gtest/gtest.h>
 #include <filesystem>

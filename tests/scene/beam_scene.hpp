@@ -1,6 +1,6 @@
 #pragma once
 
-#include "scene/messages.hpp"
+#include <slipmode/scene/messages.hpp>
 
 #include <string>
 

@@ -1,11 +1,11 @@
 // Scenes of shaken beams: what is read, written, built. Their error messages: beam_scene_errors_test.cpp.
 
-#include "scene/beam_scene.hpp"
-#include "core/decompositions.hpp"
-#include "core/errors.hpp"
-#include "fem/modes.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/errors.hpp>
+#include <slipmode/fem/modes.hpp>
+#include <slipmode/scene/beam_scene.hpp>
+#include <slipmode/scene/scene.hpp>
 #include "fixtures/test_names.hpp"
-#include "scene/scene.hpp"
 
 #include <gtest/gtest.h>
 #include <algorithm>

@@ -1,10 +1,10 @@
 // Scenes of masses and matrices with clearances under a force: what they say, and what they may not say.
 
-#include "core/decompositions.hpp"
-#include "core/errors.hpp"
-#include "scene/beam_scene.hpp"
-#include "scene/messages.hpp"
-#include "scene/scene.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/errors.hpp>
+#include <slipmode/scene/beam_scene.hpp>
+#include <slipmode/scene/messages.hpp>
+#include <slipmode/scene/scene.hpp>
 
 #include <gtest/gtest.h>
 #include <cmath>

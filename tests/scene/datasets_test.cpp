@@ -1,14 +1,14 @@
 // Reruns every dataset that ships and compares with its expected.toml.
 
-#include "core/parallel.hpp"
-#include "diagnostics/ensemble_run.hpp"
-#include "diagnostics/lyapunov.hpp"
-#include "diagnostics/settle.hpp"
-#include "dynamics/simulate.hpp"
+#include <slipmode/core/parallel.hpp>
+#include <slipmode/diagnostics/attractors/ensemble_run.hpp>
+#include <slipmode/diagnostics/attractors/settle.hpp>
+#include <slipmode/diagnostics/exponents/lyapunov.hpp>
+#include <slipmode/dynamics/simulate.hpp>
+#include <slipmode/pod/pod.hpp>
+#include <slipmode/scene/scene.hpp>
 #include "fixtures/test_names.hpp"
-#include "pod/pod.hpp"
-#include "scene/scene.hpp"
-#include "scene/toml_reader.hpp"
+#include "scene/internal/toml_reader.hpp"
 
 #include <gtest/gtest.h>
 #include <algorithm>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "core/errors.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/scene/scene.hpp>
 #include "fixtures/test_names.hpp"
-#include "scene/scene.hpp"
 
 #include <gtest/gtest.h>
 #include <filesystem>

@@ -1,9 +1,9 @@
 // Finds the orbits of every dataset with a force and compares with its expected.toml.
 
-#include "core/decompositions.hpp"
-#include "orbits/shooting.hpp"
-#include "scene/scene.hpp"
-#include "scene/toml_reader.hpp"
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/orbits/shooting.hpp>
+#include <slipmode/scene/scene.hpp>
+#include "scene/internal/toml_reader.hpp"
 
 #include <gtest/gtest.h>
 #include <cmath>

@@ -1,11 +1,11 @@
 // Fronts, choices and sentences: pure arithmetic, on made-up offers.
 
-#include "core/errors.hpp"
-#include "core/none.hpp"
-#include "core/random.hpp"
-#include "trade/advice.hpp"
-#include "trade/effects.hpp"
-#include "trade/pareto.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/core/none.hpp>
+#include <slipmode/core/random.hpp>
+#include <slipmode/trade/advice.hpp>
+#include <slipmode/trade/effects.hpp>
+#include <slipmode/trade/pareto.hpp>
 
 #include <gtest/gtest.h>
 #include <algorithm>

@@ -1,17 +1,17 @@
 // Configurations of small scenes, measured.
 
-#include "trade/study.hpp"
+#include <slipmode/core/errors.hpp>
+#include <slipmode/diagnostics/validation/compare.hpp>
+#include <slipmode/dynamics/simulate.hpp>
+#include <slipmode/fem/modes.hpp>
+#include <slipmode/rom/reduce.hpp>
+#include <slipmode/trade/case.hpp>
+#include <slipmode/trade/effects.hpp>
+#include <slipmode/trade/study.hpp>
+#include <slipmode/trade/variants.hpp>
 #include "cli/small_scenes.hpp"
-#include "core/errors.hpp"
-#include "diagnostics/compare.hpp"
-#include "dynamics/simulate.hpp"
-#include "fem/modes.hpp"
-#include "rom/reduce.hpp"
-#include "trade/case.hpp"
-#include "trade/effects.hpp"
-#include "trade/horizon.hpp"
-#include "trade/motion.hpp"
-#include "trade/variants.hpp"
+#include "trade/internal/horizon.hpp"
+#include "trade/internal/motion.hpp"
 
 #include <gtest/gtest.h>
 #include <algorithm>

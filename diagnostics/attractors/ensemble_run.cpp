@@ -1,0 +1,100 @@
+#include <slipmode/diagnostics/attractors/ensemble_run.hpp>
+
+#include <slipmode/core/errors.hpp>
+#include <slipmode/core/random.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace slipmode::diagnostics {
+
+namespace {
+
+void check(const std::vector<double>& parameters, const std::vector<dynamics::State>& starts,
+           const EnsembleOptions& options) {
+  if (parameters.empty() || starts.empty()) {
+    throw InvalidInput(
+        fmt::format("ensemble: expected at least one parameter value and one initial state, found {} "
+                    "and {}",
+                    parameters.size(), starts.size()));
+  }
+  if (!(options.sample > 0.0) || !(options.transient >= 0.0) || !(options.transient < options.duration)) {
+    throw InvalidInput(fmt::format("ensemble: expected sample > 0 and 0 <= transient < duration, found {}, {}, {}",
+                                   options.sample, options.transient, options.duration));
+  }
+}
+
+/// One member: fills `member` and returns its snapshots.
+Eigen::MatrixXd run_member(const Model& model, const dynamics::State& start, const EnsembleOptions& options,
+                           EnsembleMember& member) {
+  try {
+    dynamics::Trajectory run = dynamics::simulate(model.system(member.parameter), restarted(start),
+                                                  {.duration = options.duration,
+                                                   .transient = options.transient,
+                                                   .sample = options.sample,
+                                                   .keep_events = false,
+                                                   .flow = options.flow});
+    member.columns = run.q.cols();
+    member.audit = run.audit;
+    member.statistics = std::move(run.statistics);
+    member.final_state = std::move(run.final_state);
+    return std::move(run.q);
+  } catch (const NumericalFailure& failure) {
+    member.failure = failure.what();
+    return {};
+  }
+}
+
+}  // namespace
+
+std::vector<dynamics::State> random_states(const dynamics::HybridSystem& system, const RandomStateOptions& options) {
+  if (options.count < 1 || !(options.spread >= 0.0) || !std::isfinite(options.spread)) {
+    throw InvalidInput(fmt::format("initial states: expected count >= 1 and a finite spread >= 0, found {} and {}",
+                                   options.count, options.spread));
+  }
+  const bool about_rest = options.centre == RandomStateOptions::Centre::kRest;
+  const dynamics::State centre = restarted(about_rest ? system.rest() : sliding_equilibrium(system));
+  std::vector<dynamics::State> states(static_cast<std::size_t>(options.count), centre);
+  for (std::size_t k = 0; k < states.size(); ++k) {
+    Random random = Random::stream(options.seed, k);
+    for (double& x : states[k].q) x += options.spread * random.normal();
+    for (double& x : states[k].v) x += options.spread * random.normal();
+  }
+  return states;
+}
+
+EnsembleRun run_ensemble(const Model& model, const std::vector<double>& parameters,
+                         const std::vector<dynamics::State>& starts, const EnsembleOptions& options) {
+  check(parameters, starts, options);
+  EnsembleRun result;
+  for (const double parameter : parameters) {
+    for (std::size_t s = 0; s < starts.size(); ++s) {
+      result.members.push_back({.parameter = parameter, .start = static_cast<Eigen::Index>(s)});
+    }
+  }
+  std::vector<Eigen::MatrixXd> snapshots(result.members.size());
+  rethrow_first(parallel_for(snapshots.size(), options.parallel, [&](std::size_t i) {
+    snapshots[i] = run_member(model, starts[i % starts.size()], options, result.members[i]);
+  }));
+
+  Eigen::Index columns = 0;
+  for (const EnsembleMember& member : result.members) columns += member.columns;
+  if (columns == 0) {
+    throw NumericalFailure("ensemble: every member failed; the first with: " + result.members.front().failure,
+                           std::nan(""), {}, std::nan(""));
+  }
+  Eigen::MatrixXd& all = result.ensemble.snapshots;
+  Eigen::Index begin = 0;
+  for (Eigen::MatrixXd& part : snapshots) {
+    if (part.cols() == 0) continue;
+    if (all.size() == 0) all.resize(part.rows(), columns);
+    all.middleCols(begin, part.cols()) = part;
+    result.ensemble.run_begin.push_back(begin);
+    begin += part.cols();
+    part.resize(0, 0);
+  }
+  return result;
+}
+
+}  // namespace slipmode::diagnostics

@@ -1,0 +1,122 @@
+#include <slipmode/diagnostics/attractors/model.hpp>
+
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/errors.hpp>
+#include <slipmode/rom/reduce.hpp>
+
+#include <fmt/format.h>
+#include <Eigen/SparseCholesky>
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+#include <vector>
+
+namespace slipmode::diagnostics {
+
+namespace {
+
+/// Friction coefficient in steady sliding; for the smooth law its own formula, which kinetic_coefficient does not
+/// serve.
+double sliding_coefficient(const friction::Law& law, double speed) {
+  const auto* smooth = std::get_if<friction::TanhRegularised>(&law);
+  if (smooth == nullptr) return friction::kinetic_coefficient(law, speed);
+  const double sign = std::tanh(speed / smooth->epsilon);
+  const friction::Stribeck curve{.mu_s = smooth->mu_s, .mu_k = smooth->mu_k, .alpha = smooth->alpha};
+  return sign * friction::kinetic_coefficient(curve, speed * sign);
+}
+
+}  // namespace
+
+Model belt_model(const dynamics::HybridSystem& full) {
+  return {.system = [full](double speed) { return full.with_drive(friction::Belt::constant(speed)); }};
+}
+
+double projection_energy(const dynamics::HybridSystem& full, const pod::Basis& basis) {
+  const Eigen::VectorXd& mean = basis.mean;
+  if (mean.size() == 0) return 0.0;
+  const double energy = 0.5 * mean.dot(fem::multiply(full.structure().K(), mean).col(0));
+  return full.load().size() > 0 ? energy - full.load().dot(mean) : energy;
+}
+
+Model reduced_belt_model(const dynamics::HybridSystem& full, const pod::Basis& basis) {
+  const dynamics::HybridSystem reduced = rom::reduce(full, basis);
+  return {.system = [reduced](double speed) { return reduced.with_drive(friction::Belt::constant(speed)); },
+          .basis = basis,
+          .energy_offset = [offset = projection_energy(full, basis)](double) { return offset; }};
+}
+
+double energy_offset_at(const Model& model, double parameter) {
+  return model.energy_offset ? model.energy_offset(parameter) : 0.0;
+}
+
+dynamics::State lifted(const Model& model, const dynamics::State& state) {
+  return model.basis ? rom::lift(*model.basis, state) : state;
+}
+
+dynamics::State restarted(const dynamics::State& state) {
+  return {.time = 0.0, .q = state.q, .v = state.v, .internal = state.internal};
+}
+
+dynamics::State continued(const dynamics::HybridSystem& system, const dynamics::State& state) {
+  constexpr double kLargestRepair = 1e-6;
+  const double belt = system.drive().velocity(state.time);
+  std::vector<Eigen::Index> held;
+  for (std::size_t c = 0; c < state.modes.size(); ++c) {
+    const Eigen::VectorXd& w = system.contacts()[c].direction;
+    const double sliding = belt - w.dot(state.v);
+    const double scale = std::abs(belt) + w.cwiseAbs().dot(state.v.cwiseAbs());
+    const auto sign = static_cast<double>(state.modes[c]);
+    const bool sticks = state.modes[c] == dynamics::ContactMode::kStick;
+    const bool slips = std::abs(sign) == 1.0;
+    const bool rigid = !std::holds_alternative<friction::CompliantCoulomb>(system.contacts()[c].law);
+    const bool off_guard = rigid && (sticks || (slips && sliding * sign < 0.0));
+    if (off_guard && std::abs(sliding) <= kLargestRepair * std::max(1.0, scale)) {
+      held.push_back(static_cast<Eigen::Index>(c));
+    }
+  }
+  if (held.empty()) return state;
+  Eigen::MatrixXd W(system.size(), static_cast<Eigen::Index>(held.size()));
+  for (std::size_t k = 0; k < held.size(); ++k) {
+    W.col(static_cast<Eigen::Index>(k)) = system.contacts()[static_cast<std::size_t>(held[k])].direction;
+  }
+  dynamics::State repaired = state;
+  const Eigen::MatrixXd gram = W.transpose() * W;
+  const Eigen::VectorXd sliding = Eigen::VectorXd::Constant(W.cols(), belt) - W.transpose() * state.v;
+  repaired.v += W * gram.ldlt().solve(sliding);
+  return repaired;
+}
+
+double mean_energy(const dynamics::HybridSystem& system, const Eigen::Ref<const Eigen::MatrixXd>& q,
+                   const Eigen::Ref<const Eigen::MatrixXd>& v) {
+  const fem::Structure& structure = system.structure();
+  double sum = 0.5 * v.cwiseProduct(fem::multiply(structure.M(), v)).sum() +
+               0.5 * q.cwiseProduct(fem::multiply(structure.K(), q)).sum();
+  if (system.load().size() > 0) sum -= (system.load().transpose() * q).sum();
+  return sum / static_cast<double>(q.cols());
+}
+
+dynamics::State sliding_equilibrium(const dynamics::HybridSystem& system) {
+  const double speed = system.drive().velocity(0.0);
+  Eigen::VectorXd force = system.load().size() > 0 ? system.load() : Eigen::VectorXd::Zero(system.size());
+  for (const friction::Contact& contact : system.contacts()) {
+    if (speed == 0.0) continue;
+    const double lambda = contact.normal_load.constant * sliding_coefficient(contact.law, std::abs(speed));
+    force += contact.direction * std::copysign(lambda, speed);
+  }
+  dynamics::State state = system.rest();
+  state.modes = {};
+  const Eigen::SimplicialLDLT<fem::SparseMatrix> factor(fem::to_sparse(system.structure().K()));
+  const Eigen::VectorXd pivots = factor.vectorD();
+  const bool singular = factor.info() != Eigen::Success || !(pivots.minCoeff() > 1e-14 * pivots.cwiseAbs().maxCoeff());
+  if (singular) {
+    throw InvalidInput(
+        fmt::format("static equilibrium: expected a positive definite stiffness, found one singular to rounding "
+                    "({} dofs; the structure can move as a rigid body). Fix an end, or start from rest",
+                    system.size()));
+  }
+  state.q = factor.solve(force);
+  return state;
+}
+
+}  // namespace slipmode::diagnostics

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <slipmode/dynamics/simulate.hpp>
+#include <slipmode/dynamics/system.hpp>
+#include <slipmode/pod/basis.hpp>
+
+#include <Eigen/Core>
+#include <functional>
+#include <optional>
+
+namespace slipmode::diagnostics {
+
+/// A system for a value of the swept parameter. Called from several threads at once: must not change anything.
+using SystemFactory = std::function<dynamics::HybridSystem(double parameter)>;
+
+/// A model under study: full, or reduced by a basis.
+struct Model {
+  SystemFactory system;
+  std::optional<pod::Basis> basis = {};  ///< set for a reduced model: how its states lift to the full ones
+  /// Added to HybridSystem::energy so that a reduced model's energy is that of its lifted state [J]; it moves with the
+  /// stiffness and the load. Empty: zero.
+  std::function<double(double parameter)> energy_offset = {};
+};
+
+/// The full model with belt speed as the parameter; modal data are shared by all speeds.
+[[nodiscard]] Model belt_model(const dynamics::HybridSystem& full);
+
+/// ½ q̄ᵀK q̄ − pᵀq̄: what projection on an affine basis leaves out of the energy [J].
+[[nodiscard]] double projection_energy(const dynamics::HybridSystem& full, const pod::Basis& basis);
+
+/// The model reduced to `basis`, belt speed as the parameter; energy_offset is projection_energy.
+/// @throws InvalidInput  as rom::reduce
+[[nodiscard]] Model reduced_belt_model(const dynamics::HybridSystem& full, const pod::Basis& basis);
+
+/// Model::energy_offset at a value, zero where there is none [J].
+[[nodiscard]] double energy_offset_at(const Model& model, double parameter);
+
+/// A state in full coordinates: lifted for a reduced model, unchanged for a full one.
+[[nodiscard]] dynamics::State lifted(const Model& model, const dynamics::State& state);
+
+/// A state to start another run from: same q, v and contacts' own states, time 0, contact modes to be derived anew.
+/// What a sweep carries from one belt speed to the next, where the old modes need not hold.
+[[nodiscard]] dynamics::State restarted(const dynamics::State& state);
+
+/// A state to go on from within a run: rigid contacts that stick, or whose mode and sliding speed disagree in sign, are
+/// put on the belt's speed exactly (smallest change of v). A run holds that speed to its tolerance only, and a start
+/// must be consistent with its modes to rounding. Speeds off by more than 10⁻⁶ of the largest are left for simulate to
+/// refuse. Contacts behind a spring need no repair: they stick at any speed.
+[[nodiscard]] dynamics::State continued(const dynamics::HybridSystem& system, const dynamics::State& state);
+
+/// Mean of HybridSystem::energy over samples, one column per instant [J].
+/// @param q, v  n x T, T ≥ 1
+[[nodiscard]] double mean_energy(const dynamics::HybridSystem& system, const Eigen::Ref<const Eigen::MatrixXd>& q,
+                                 const Eigen::Ref<const Eigen::MatrixXd>& v);
+
+/// Steady sliding at the drive's speed at time 0: K q = p + Σ w λ with λ at its kinetic value for that speed (zero for
+/// a belt at rest), v = 0. A static equilibrium that need not be stable.
+/// @throws InvalidInput  if K is singular to rounding (a structure free to move as a rigid body)
+[[nodiscard]] dynamics::State sliding_equilibrium(const dynamics::HybridSystem& system);
+
+}  // namespace slipmode::diagnostics

@@ -1,0 +1,21 @@
+#include <slipmode/diagnostics/series/embedding.hpp>
+
+#include <slipmode/core/errors.hpp>
+#include <slipmode/orbits/close_returns.hpp>
+
+#include <fmt/format.h>
+
+namespace slipmode::diagnostics {
+
+Eigen::MatrixXd delay_vectors(const Series& series, const Embedding& embedding) {
+  if (embedding.dimension < 1 || embedding.lag < 1) {
+    throw InvalidInput(fmt::format("embedding of {}: expected a dimension and a lag of at least 1, found {} and {}",
+                                   series.name, embedding.dimension, embedding.lag));
+  }
+  const Eigen::Index span = embedding.span();
+  check_series(series, span + 2,
+               fmt::format("embedding in dimension {} at lag {}", embedding.dimension, embedding.lag));
+  return orbits::delay_coordinates(series.values, embedding.lag, embedding.dimension);
+}
+
+}  // namespace slipmode::diagnostics

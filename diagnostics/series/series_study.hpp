@@ -1,0 +1,139 @@
+#pragma once
+
+#include <slipmode/diagnostics/series/correlation_dimension.hpp>
+#include <slipmode/diagnostics/series/divergence.hpp>
+#include <slipmode/diagnostics/series/exponent_spectrum.hpp>
+#include <slipmode/diagnostics/series/false_neighbours.hpp>
+#include <slipmode/diagnostics/series/mutual_information.hpp>
+#include <slipmode/diagnostics/series/recurrence.hpp>
+#include <slipmode/diagnostics/series/section.hpp>
+#include <slipmode/diagnostics/series/series.hpp>
+#include <slipmode/diagnostics/series/series_verdict.hpp>
+#include <slipmode/diagnostics/series/spectrum.hpp>
+#include <slipmode/diagnostics/series/wolf.hpp>
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace slipmode::diagnostics {
+
+/// The tools of a study, in the order they run.
+enum class SeriesTool {
+  kAutocorrelation,
+  kInformation,
+  kFalseNeighbours,
+  kVerdict,
+  kWolf,
+  kDivergence,
+  kKantz,
+  kJacobians,
+  kDimension,
+  kSpectrum,
+  kSection,
+  kRecurrence,
+  kSurrogates,
+};
+
+inline constexpr std::array kSeriesTools = {
+    SeriesTool::kAutocorrelation, SeriesTool::kInformation, SeriesTool::kFalseNeighbours,
+    SeriesTool::kVerdict,         SeriesTool::kWolf,        SeriesTool::kDivergence,
+    SeriesTool::kKantz,           SeriesTool::kJacobians,   SeriesTool::kDimension,
+    SeriesTool::kSpectrum,        SeriesTool::kSection,     SeriesTool::kRecurrence,
+    SeriesTool::kSurrogates};
+
+/// "autocorrelation", "information", "false-neighbours", "verdict", "wolf", "divergence", "kantz", "jacobians",
+/// "dimension", "spectrum", "section", "recurrence", "surrogates".
+[[nodiscard]] const char* to_string(SeriesTool tool);
+
+struct StudyOptions {
+  std::vector<SeriesTool> tools = {};  ///< empty: all that the record allows and that mean something for it
+  Eigen::Index delay = 0;              ///< [samples]; 0: by mutual information
+  int dimension = 0;                   ///< of the embedding; 0: by false neighbours
+  Eigen::Index window = 0;             ///< of Theiler [samples]; 0: theiler_window(series)
+  std::vector<int> bins = {};  ///< of equal width, a curve of mutual information each; empty: 5, 10, 20, 40, 80 as S4
+  int max_dimension = 10;      ///< for false neighbours
+  double ratio = 15.0, size = 2.0, accepted = 0.01;  ///< as FalseNeighbourOptions
+  Eigen::Index evolution = 0;  ///< of Wolf [samples]; 0: a mean period, at most four delays; 1 for a map
+  double angle = 0.2;          ///< of Wolf [rad]
+  double rate = 0.05;          ///< of recurrence
+  double strobe = 0.0;         ///< > 0: the section is taken once per this time [time unit]; 0: upward through the mean
+  Eigen::Index references = 5000;  ///< points examined by each tool, evenly spaced
+  int surrogates = 19;
+  std::uint64_t seed = 1;    ///< of the surrogates
+  ParallelOptions run = {};  ///< progress counts thousandths of all tools
+};
+
+/// The delay and how far the estimators agree on it.
+struct Delay {
+  Eigen::Index samples = 1;
+  Eigen::Index lowest = 1, highest = 1;  ///< first minima over all curves and both halves of the record
+  std::string origin;                    ///< "given", "not looked for", "first minimum of mutual information", …
+};
+
+/// The dimension and how far its share of false neighbours pins it down.
+struct EmbeddingDimension {
+  int value = 1;
+  int lowest = 1, highest = 1;  ///< at the share less, and plus, its error
+  std::string origin;
+};
+
+/// Wolf's exponent depends on how long a pair is followed: at half, once and twice the chosen evolution, as far as the
+/// record allows.
+struct WolfStudy {
+  WolfExponent chosen;
+  std::vector<WolfExponent> others;
+  double error = 0.0;  ///< root sum of squares of the scatter and half the spread over evolutions [nat per time unit]
+};
+
+/// A tool that gave nothing, and why.
+struct ToolFailure {
+  SeriesTool tool;
+  std::string reason;
+};
+
+/// All that was asked about one record. What did not run is empty.
+struct SeriesStudy {
+  Series series;  ///< as examined
+  double mean = 0.0, deviation = 0.0, root_mean_square = 0.0;
+  double loop = 0.0;               ///< mean period [samples]
+  bool sampled_map = false;        ///< fewer than 6 samples per loop
+  Eigen::Index decorrelation = 0;  ///< [samples]
+  Eigen::Index window = 0;         ///< of Theiler [samples]
+  Delay delay;
+  EmbeddingDimension dimension;
+  std::optional<Smoothness> smoothness;
+  std::optional<Eigen::VectorXd> autocorrelation;
+  std::vector<MutualInformation> information;  ///< equal numbers per bin first, then none (a part), then equal widths
+  std::optional<FalseNeighbours> false_neighbours;
+  std::optional<CaoAverages> cao;
+  std::optional<SeriesVerdict> verdict;
+  std::optional<WolfStudy> wolf;
+  std::optional<Divergence> divergence;  ///< across the flow; of a map Rosenstein's
+  std::optional<Divergence> kantz;
+  std::optional<ExponentSpectrum> jacobians;
+  std::optional<CorrelationDimension> correlation;
+  std::optional<AmplitudeSpectrum> spectrum;
+  double peak = 0.0, peak_error = 0.0;  ///< of the spectrum, half its resolution [1/time unit]
+  std::optional<Section> section;
+  std::optional<Recurrence> recurrence;
+  std::optional<SurrogateTest> surrogates;
+  std::vector<ToolFailure> failures;
+  StudyOptions settings;
+
+  [[nodiscard]] Embedding embedding() const { return {.dimension = dimension.value, .lag = delay.samples}; }
+};
+
+/// Runs the tools on one record, each with the delay, dimension and window found or given. A tool that was not asked
+/// for by name and cannot run (too few samples, no scaling region) leaves a line in `failures`; for a record that
+/// repeats itself the tools for exponents are left out in the same way.
+///
+/// Same result for any number of threads.
+/// @throws InvalidInput  for fewer than 100 samples, options out of range, too few samples for a dimension or delay
+///                       that was given, or a tool named in `tools` that cannot run
+/// @throws NumericalFailure  of the only tool named in `tools`
+/// @throws Interrupted       when run.stop is set
+[[nodiscard]] SeriesStudy study_series(const Series& series, const StudyOptions& options = {});
+
+}  // namespace slipmode::diagnostics

@@ -1,0 +1,318 @@
+#include "dynamics/internal/audit_forms.hpp"
+
+#include <slipmode/dynamics/kernels/kernels.hpp>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <complex>
+
+namespace slipmode::dynamics {
+namespace {
+
+/// Sums of two decay rates below this share of the drive's frequency leave too few digits in a form.
+constexpr double kSlowest = 1e-5;
+/// To this share the viscous form and minus the energy are the same form.
+constexpr double kSameForm = 1e-10;
+/// From this many pairs on. With fewer the form costs little more, and takes x_f from the pairs as the other sums do:
+/// where x_f and what the inputs hold are each far larger than their sum, that is a few digits better.
+constexpr Eigen::Index kManyPairs = 32;
+
+Eigen::Matrix2d block(const ModalModel& pairs, Eigen::Index i) {
+  return (Eigen::Matrix2d() << pairs.g11(i), pairs.g12(i), pairs.g21(i), pairs.g22(i)).finished();
+}
+
+/// Factors of a pair's components that make its block's entries of one size.
+Eigen::Vector2d scales(const ModalModel& pairs, Eigen::Index i) {
+  const double up = std::abs(pairs.g12(i)), down = std::abs(pairs.g21(i));
+  return {up > 0.0 && down > 0.0 ? std::sqrt(down / up) : 1.0, 1.0};
+}
+
+/// Slowest decay of a pair: the smallest −Re of its eigenvalues.
+double decay(const Eigen::Matrix2d& G) {
+  const double half = G.trace() / 2.0, gap = half * half - G.determinant();
+  return gap <= 0.0 ? -half : -half > 0.0 ? G.determinant() / (-half + std::sqrt(gap)) : -half - std::sqrt(gap);
+}
+
+/// q̇ᵀCq̇ = xᵀ(this)x.
+Eigen::MatrixXd viscous_square(const ModalModel& pairs) {
+  const Eigen::MatrixXd& L = pairs.dissipation_root;
+  if (L.size() > 0) return L.transpose() * L;
+  Eigen::MatrixXd square = Eigen::MatrixXd::Zero(2 * pairs.np, 2 * pairs.np);
+  if (pairs.n > 0) square.bottomRightCorner(pairs.np, pairs.np).diagonal() = pairs.damping;
+  return square;
+}
+
+/// GᵀY + YG = Q, as RegimeForms keeps Y; left as it is where Q is zero. False without a finite solution.
+bool solve_quadratic(const ModalModel& pairs, const Eigen::MatrixXd& Q, Eigen::MatrixXd& out_Y) {
+  if (Q.isZero(0.0)) return true;
+  const auto np = pairs.np;
+  out_Y = Eigen::MatrixXd::Zero(2 * np, 2 * np);
+  for (Eigen::Index i = 0; i < pairs.n; ++i)
+    for (Eigen::Index j = i; j < pairs.n; ++j) {
+      // In scaled displacements, ω η, the blocks' entries are of one size, so that a slow decay is not lost beside ω².
+      const Eigen::Vector2d si = scales(pairs, i), sj = scales(pairs, j);
+      Eigen::Matrix2d q;
+      q << Q(i, j), Q(i, np + j), Q(np + i, j), Q(np + i, np + j);
+      if (q.isZero(0.0)) continue;
+      q = (si.cwiseInverse().asDiagonal() * q * sj.cwiseInverse().asDiagonal()).eval();
+      // (I ⊗ G_iᵀ + G_jᵀ ⊗ I) vec Y = vec Q, columns stacked.
+      const Eigen::Matrix2d Gi = si.asDiagonal() * block(pairs, i) * si.cwiseInverse().asDiagonal();
+      const Eigen::Matrix2d Gj = sj.asDiagonal() * block(pairs, j) * sj.cwiseInverse().asDiagonal();
+      Eigen::Matrix4d A = Eigen::Matrix4d::Zero();
+      A.topLeftCorner<2, 2>() = A.bottomRightCorner<2, 2>() = Gi.transpose();
+      A.topLeftCorner<2, 2>().diagonal().array() += Gj(0, 0);
+      A.bottomRightCorner<2, 2>().diagonal().array() += Gj(1, 1);
+      A.topRightCorner<2, 2>().diagonal().array() += Gj(1, 0);
+      A.bottomLeftCorner<2, 2>().diagonal().array() += Gj(0, 1);
+      const Eigen::Vector4d y = A.partialPivLu().solve(Eigen::Map<const Eigen::Vector4d>(q.data()));
+      if (!y.allFinite()) return false;
+      const Eigen::Matrix2d Y = si.asDiagonal() * Eigen::Map<const Eigen::Matrix2d>(y.data()) * sj.asDiagonal();
+      const double both = i == j ? 1.0 : 2.0;
+      out_Y(j, i) = both * Y(0, 0);
+      out_Y(np + j, np + i) = both * Y(1, 1);
+      out_Y(np + i, j) += both * Y(1, 0);
+      out_Y(np + j, i) += both * Y(0, 1);
+    }
+  return true;
+}
+
+/// Whether Y is minus the energy of free motion, contact springs included, each entry by the energies of its two
+/// coordinates.
+bool is_energy(const Regime& r, const ModalModel& slipping, const Eigen::MatrixXd& Y) {
+  if (r.pairs.n < kManyPairs || Y.size() == 0 || !slipping.proportional || r.to_oscillators.rows() > 0) return false;
+  const auto n = slipping.np;
+  Eigen::MatrixXd energy = r.to_slipping.bottomRows(n).transpose() * r.to_slipping.bottomRows(n);
+  const Eigen::MatrixXd stretched = slipping.omega.asDiagonal() * r.to_slipping.topRows(n);
+  energy += stretched.transpose() * stretched;
+  for (Eigen::Index c = 0; c < r.speed_input(); ++c)
+    energy += r.answers[static_cast<std::size_t>(c)].stiffness * r.displacement_row.col(c) *
+              r.displacement_row.col(c).transpose();
+  // Half of it, and half of the doubled triangle with its mirror image.
+  const Eigen::MatrixXd gap = (Y + Y.transpose() + energy).cwiseAbs() / 2.0;
+  const Eigen::VectorXd size = energy.diagonal().cwiseMax(0.0).cwiseSqrt();
+  return (gap.array() <= kSameForm * (size * size.transpose()).array()).all();
+}
+
+/// The forms that no drive enters.
+void make_forms(const Regime& r, const ModalModel& slipping, RegimeForms& out) {
+  const ModalModel& pairs = r.pairs;
+  const auto np = pairs.np;
+  Eigen::MatrixXd contact = Eigen::MatrixXd::Zero(2 * np, 2 * np);
+  for (Eigen::Index c = 0; c < r.speed_input(); ++c) {
+    if (r.spring(c) > 0.0 || r.slope(c) != 0.0) continue;
+    const Eigen::VectorXd f = r.force_row.col(c), v = r.velocity_row.col(c);
+    contact += (f * v.transpose() + v * f.transpose()) / 2.0;
+  }
+  out.found =
+      solve_quadratic(pairs, contact, out.contact) && solve_quadratic(pairs, viscous_square(pairs), out.viscous);
+  out.viscous_is_energy = out.found && is_energy(r, slipping, out.viscous);
+}
+
+/// q̇ᵀCq̇ of the steady motion as a form of its cosines and sines, the last two of nu. Constant inputs move nothing.
+Eigen::MatrixXd viscous_powers(const ModalModel& slipping, const DriveOverlay& overlay, Eigen::Index nu) {
+  const Eigen::VectorXd c = overlay.slipping.c.col(0), s = overlay.slipping.s.col(0);
+  Eigen::MatrixXd P = Eigen::MatrixXd::Zero(nu, nu);
+  P.bottomRightCorner<2, 2>() << slipping.viscous_power(c, c), slipping.viscous_power(c, s),
+      slipping.viscous_power(s, c), slipping.viscous_power(s, s);
+  return P;
+}
+
+}  // namespace
+
+AuditForms::AuditForms(const Regime& r, const RegimeForms& forms, const ModalModel& slipping,
+                       const DriveOverlay& overlay)
+    : regime_(r), forms_(forms), slipping_(slipping), overlay_(overlay) {
+  for (Eigen::Index c = 0; c < r.speed_input(); ++c) acting_.push_back(c);
+  acting_.push_back(r.speed_input() + 2);
+  harmonic_ = Eigen::MatrixXd::Zero(kLanes, 2 * r.pairs.np);
+  constant_.assign((acting_.size() + 1) / 2, harmonic_);
+  held_ = r.to_slipping * r.particular + r.inputs_slipping;
+}
+
+std::unique_ptr<AuditForms> AuditForms::make(const RegimeTables& tables, const ModalModel& slipping,
+                                             const DriveOverlay& overlay) {
+  const Regime& r = tables.regime();
+  const ModalModel& pairs = r.pairs;
+  const auto np = pairs.np, ni = r.inputs(), nu = ni + 2, nc = r.speed_input();
+  if (overlay.orders() > 1) return nullptr;
+  for (Eigen::Index i = 0; i < pairs.n; ++i)
+    if (!(2.0 * decay(block(pairs, i)) > kSlowest * overlay.omega())) return nullptr;
+  const RegimeForms& quadratic_forms =
+      tables.forms([&](const Regime& regime, RegimeForms& out) { make_forms(regime, slipping, out); });
+  if (!quadratic_forms.found) return nullptr;
+  std::unique_ptr<AuditForms> forms(new AuditForms(r, quadratic_forms, slipping, overlay));
+
+  // x = x_f + S u, ι = E u.
+  Eigen::MatrixXd S(2 * np, nu), E = Eigen::MatrixXd::Zero(ni, nu);
+  S << r.particular, overlay.state.c, overlay.state.s;
+  E.leftCols(ni).setIdentity();
+  E.col(ni) = overlay.inputs.c;
+  E.col(ni + 1) = overlay.inputs.s;
+  const auto steady = [&](const auto& row, const auto& coefficient) -> Eigen::VectorXd {
+    return S.transpose() * row + E.transpose() * coefficient;
+  };
+  const Eigen::VectorXd speed = E.row(r.speed_input()).transpose();
+  const Power none{Eigen::MatrixXd::Zero(2 * np, nu), Eigen::MatrixXd::Zero(nu, nu)};
+  Power contact = none, drive = none, viscous = none, force = none;
+  for (Eigen::Index c = 0; c < nc; ++c) {
+    const Eigen::VectorXd f = r.force_row.col(c), v = r.velocity_row.col(c);
+    Eigen::VectorXd f_steady = steady(f, r.force_coefficient.col(c));
+    // Not by the row: behind a stiff contact spring that is a small difference too.
+    f_steady.tail<2>() << overlay.force.c(c, 0), overlay.force.s(c, 0);
+    const Eigen::VectorXd v_steady = steady(v, r.velocity_coefficient.col(c));
+    if (r.spring(c) > 0.0) {  // ∫ λ wᵀq̇ dt = ∫ λ v_drive dt − [½ λ²/K_c]
+      contact.R += f * speed.transpose();
+      contact.P += f_steady * speed.transpose();
+    } else if (r.slope(c) == 0.0) {
+      contact.R += f * v_steady.transpose() + v * f_steady.transpose();
+      contact.P += f_steady * v_steady.transpose();
+    }
+    drive.R += f * speed.transpose();
+    drive.P += f_steady * speed.transpose();
+  }
+  for (Eigen::Index k = 0; k < r.forces; ++k) {
+    const Eigen::VectorXd v = r.drive_row.col(k), u = E.row(r.force_input(k)).transpose();
+    force.R += v * u.transpose();
+    force.P += steady(v, r.drive_coefficient.col(k)) * u.transpose();
+  }
+  const Eigen::MatrixXd& L = pairs.dissipation_root;
+  if (pairs.n > 0 && L.size() == 0)
+    viscous.R.bottomRows(np) = 2.0 * pairs.damping.asDiagonal() * S.bottomRows(np);
+  else if (pairs.n > 0)
+    viscous.R = 2.0 * (L.transpose() * (L * S));
+  viscous.R += 2.0 * r.viscous_cross * speed.transpose();
+  viscous.P = viscous_powers(slipping, overlay, nu);
+  if (!forms->integrate(kContact, contact) || !forms->integrate(kDrive, drive) ||
+      !forms->integrate(kViscous, viscous) || !forms->integrate(kForce, force))
+    return nullptr;
+  return forms;
+}
+
+bool AuditForms::integrate(Kind kind, const Power& power) {
+  const ModalModel& pairs = regime_.pairs;
+  const auto np = pairs.np, ni = regime_.inputs();
+  using Complex = std::complex<double>;
+  for (Eigen::Index i = 0; i < pairs.n; ++i) {
+    const Eigen::Matrix2d Gt = block(pairs, i).transpose();
+    const Eigen::Matrix2d inverse = Gt.inverse();
+    for (std::size_t k = 0; k < acting_.size(); ++k) {
+      const auto input = acting_[k];
+      const Eigen::Vector2d y = inverse * Eigen::Vector2d(power.R(i, input), power.R(np + i, input));
+      const Eigen::Index lane = kind + (k % 2 == 0 ? 0 : kKinds);
+      constant_[k / 2](lane, i) = y(0);
+      constant_[k / 2](lane, np + i) = y(1);
+    }
+    Eigen::Matrix2cd A = Gt.cast<Complex>();
+    A.diagonal().array() += Complex(0.0, overlay_.omega());
+    const Eigen::Vector2cd r(Complex(power.R(i, ni), -power.R(i, ni + 1)),
+                             Complex(power.R(np + i, ni), -power.R(np + i, ni + 1)));
+    const Eigen::Vector2cd y = A.inverse() * r;
+    for (const Eigen::Index row : {Eigen::Index{0}, Eigen::Index{1}}) {
+      harmonic_(kind, row * np + i) = y(row).real();
+      harmonic_(kKinds + kind, row * np + i) = -y(row).imag();
+    }
+  }
+  const Eigen::MatrixXd& P = power.P;
+  steady_[kind] = {.along_cosine = P.col(ni).head(ni) + P.row(ni).head(ni).transpose(),
+                   .along_sine = P.col(ni + 1).head(ni) + P.row(ni + 1).head(ni).transpose(),
+                   .cosine = P(ni, ni),
+                   .sine = P(ni + 1, ni + 1),
+                   .both = P(ni, ni + 1) + P(ni + 1, ni)};
+  bool finite = harmonic_.allFinite();
+  for (const Eigen::MatrixXd& of_inputs : constant_) finite &= of_inputs.allFinite();
+  return finite;
+}
+
+double AuditForms::quadratic(const Eigen::MatrixXd& Y, const Eigen::VectorXd& free) {
+  double sum = 0.0;
+  for (Eigen::Index j = 0; j < Y.cols(); j += kLanes) {
+    const Eigen::Index below = free.size() - j;
+    const Eigen::Matrix<double, kLanes, 1> columns =
+        Y.block<Eigen::Dynamic, kLanes>(j, j, below, kLanes).transpose() * free.tail(below);
+    sum += columns.dot(free.segment<kLanes>(j));
+  }
+  return sum;
+}
+
+double AuditForms::steady(Kind kind, double stay, DrivePhase p) const {
+  // With the integrals of cos θ, sin θ, cos² θ, cos θ sin θ and sin² θ over the stay.
+  const Steady& s = steady_[kind];
+  const double w = overlay_.omega(), both = p.sine * p.cosine / (2.0 * w);
+  return (s.with_inputs_cosine * p.sine - s.with_inputs_sine * p.cosine) / w + s.cosine * (stay / 2.0 + both) +
+         s.sine * (stay / 2.0 - both) + s.both * p.sine * p.sine / (2.0 * w);
+}
+
+double AuditForms::free_energy(const Place& at, DrivePhase p) {
+  const Regime& r = regime_;
+  const auto n = slipping_.np;
+  lifted_ = at.slipping - resting_;
+  overlay_.slipping.add(p, -1.0, lifted_);
+  double twice = lifted_.tail(n).squaredNorm() + slipping_.omega.cwiseProduct(lifted_.head(n)).squaredNorm();
+  for (Eigen::Index c = 0; c < r.speed_input(); ++c) {
+    const double stiffness = r.answers[static_cast<std::size_t>(c)].stiffness;
+    if (stiffness == 0.0) continue;
+    const double force =
+        r.spring(c) > 0.0 ? r.force_row.col(c).dot(at.free) : stiffness * r.displacement_row.col(c).dot(at.free);
+    twice += force * force / stiffness;
+  }
+  return twice / 2.0;
+}
+
+double AuditForms::contact_potential(DrivePhase p, const Eigen::VectorXd& x) const {
+  const Regime& r = regime_;
+  double sum = 0.0;
+  for (Eigen::Index c = 0; c < r.speed_input(); ++c) {
+    if (r.spring(c) > 0.0) {
+      const double force =
+          r.force_row.col(c).dot(x) + r.force_coefficient.col(c).dot(inputs_) + overlay_.force.at(c, p);
+      sum -= force * force / (2.0 * r.spring(c));
+    } else if (r.slope(c) != 0.0) {
+      const double at = r.displacement_row.col(c).dot(x) + r.displacement_coefficient.col(c).dot(inputs_) +
+                        overlay_.displacement.at(c, p);
+      sum += inputs_(c) * at + r.slope(c) * at * at / 2.0;
+    }
+  }
+  return sum;
+}
+
+AuditForms::Values AuditForms::values(const Place& at) {
+  const DrivePhase p = overlay_.phase(at.time);
+  const auto& vector = kernels::kernels();
+  alignas(64) std::array<double, 2 * kKinds> sums{};
+  Values out{};
+  const auto add = [&](const Eigen::MatrixXd& rows, double first, double second) {
+    vector.node_sums(rows.data(), at.free.data(), at.free.size(), nullptr, sums.data());
+    for (std::size_t kind = 0; kind < kKinds; ++kind) out[kind] += first * sums[kind] + second * sums[kKinds + kind];
+  };
+  add(harmonic_, p.cosine, p.sine);
+  for (std::size_t k = 0; k < constant_.size(); ++k)
+    add(constant_[k], inputs_(acting_[2 * k]), 2 * k + 1 < acting_.size() ? inputs_(acting_[2 * k + 1]) : 0.0);
+  for (const Kind kind : {kContact, kDrive, kViscous, kForce}) out[kind] += steady(kind, at.time - begin_, p);
+  out[kContact] += quadratic(forms_.contact, at.free) + contact_potential(p, at.x);
+  out[kViscous] += forms_.viscous_is_energy ? -free_energy(at, p) : quadratic(forms_.viscous, at.free);
+  return out;
+}
+
+void AuditForms::begin(const Place& at, const Eigen::VectorXd& inputs) {
+  begin_ = at.time;
+  inputs_ = inputs;
+  for (Steady& s : steady_) {
+    s.with_inputs_cosine = s.along_cosine.dot(inputs);
+    s.with_inputs_sine = s.along_sine.dot(inputs);
+  }
+  if (forms_.viscous_is_energy) {
+    resting_.setZero(held_.rows());
+    kernels::kernels().product(held_.data(), held_.rows(), held_.cols(), inputs.data(), resting_.data());
+  }
+  at_begin_ = values(at);
+}
+
+StayWork AuditForms::until(const Place& at) {
+  const Values now = values(at);
+  const StayWork work{now[kContact] - at_begin_[kContact], now[kDrive] - at_begin_[kDrive],
+                      now[kViscous] - at_begin_[kViscous], now[kForce] - at_begin_[kForce]};
+  at_begin_ = now;
+  return work;
+}
+
+}  // namespace slipmode::dynamics

@@ -1,0 +1,284 @@
+#include "dynamics/internal/closed_form_flow.hpp"
+
+#include <slipmode/core/errors.hpp>
+#include <slipmode/dynamics/kernels/kernels.hpp>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace slipmode::dynamics {
+namespace {
+
+/// A guard that may vanish after more than this share of a window is approached before the window is refined.
+constexpr double kWorthwhile = 0.05;
+/// The part of a proved interval that is used, to leave room for the rounding of its end.
+constexpr double kUsed = 1.0 - 1e-5;
+/// The next window is longer when the least value of every guard is this many times what was left out.
+constexpr double kSpareToGrow = 32.0;
+constexpr int kLargestGrowth = 4;
+
+}  // namespace
+
+ClosedFormFlow::ClosedFormFlow(const HybridSystem& system, HybridPoint start, const FlowOptions& options)
+    : system_(system),
+      slipping_(system.cache().tables(system, false).model),
+      resolver_(system, slipping_, options),
+      options_(options),
+      nc_(slipping_.contacts),
+      point_(std::move(start)) {
+  statistics_.stick_time.assign(static_cast<std::size_t>(nc_), 0.0);
+  for (int c = 0; c < nc_; ++c) {
+    const friction::Contact& contact = system.contacts()[static_cast<std::size_t>(c)];
+    if (resolver_.laws()[static_cast<std::size_t>(c)].stiffness > 0.0) compliant_.push_back(c);
+    if (contact.normal_load.oscillator) {
+      const Eigen::Index end = system.internal_begin(c) + friction::internal_states(contact);
+      oscillator_states_.insert(oscillator_states_.end(), {end - 2, end - 1});
+    }
+  }
+  resolver_.start(point_);
+  enter_regime();
+}
+
+void ClosedFormFlow::restart(HybridPoint start) {
+  point_ = std::move(start);
+  resolver_.forget();
+  carries_ = false;
+  work_ = {};
+  statistics_ = {};
+  statistics_.stick_time.assign(static_cast<std::size_t>(nc_), 0.0);
+  level_ = 0;
+  resolver_.start(point_);
+  enter_regime();
+}
+
+void ClosedFormFlow::enter_regime() {
+  const std::vector<ContactRole> roles = resolver_.roles(point_.modes);
+  const auto known = std::find_if(visited_.begin(), visited_.end(), [&](const auto& v) { return v.roles == roles; });
+  if (known == visited_.end()) {
+    const RegimeTables& tables = system_.cache().regime(system_, roles);
+    visited_.push_back({roles, &tables, nullptr, nullptr, nullptr, nullptr});
+    Visited& now = visited_.back();
+    if (resolver_.drive().belt() == nullptr) {
+      now.overlay = std::make_unique<DriveOverlay>(tables.regime(), slipping_, resolver_.drive());
+      if (options_.audit) now.forms = AuditForms::make(tables, slipping_, *now.overlay);
+    } else if (options_.audit && resolver_.drive().is_constant()) {
+      now.belt = BeltWork::make(tables.regime());
+    }
+    regime_ = &now;
+    ++statistics_.regimes_built;
+  } else {
+    regime_ = &*known;
+  }
+  tables_ = regime_->tables;
+  const Regime& r = tables_->regime();
+  const DriveOverlay* overlay = regime_->overlay.get();
+  const DrivePhase phase = overlay ? phase_at(point_.time) : DrivePhase{};
+
+  inputs_ = Eigen::VectorXd::Zero(r.inputs());
+  for (int c = 0; c < nc_; ++c) inputs_(c) = resolver_.regime_input(point_, c);
+  if (!overlay) {
+    inputs_(r.speed_input()) = resolver_.drive().velocity(point_.time);
+    inputs_(r.speed_input() + 1) = resolver_.drive().acceleration(point_.time);
+  }
+  inputs_(r.speed_input() + 2) = 1.0;
+  const kernels::Kernels& vector = kernels::kernels();
+  x_.setZero(r.from_slipping.rows());
+  vector.product(r.from_slipping.data(), x_.size(), point_.x.size(), point_.x.data(), x_.data());
+  if (!oscillator_states_.empty())
+    x_.noalias() += r.from_oscillators * Eigen::VectorXd(point_.internal(oscillator_states_));
+  if (overlay) {
+    for (Eigen::Index c = 0; c < nc_; ++c) inputs_(c) -= overlay->inputs.at(c, phase);
+    overlay->state.add(phase, -1.0, x_);
+  }
+  amplitude_.resize(r.pairs.np);
+  if (overlay) {
+    resting_.setZero(x_.size());
+    vector.product(r.particular.data(), x_.size(), inputs_.size(), inputs_.data(), resting_.data());
+  }
+  measure_amplitudes();
+  if (regime_->forms) regime_->forms->begin({point_.time, x_, free_, point_.x}, inputs_);
+  if (regime_->belt) regime_->belt->begin(point_.time, x_, inputs_);
+  set_guards();
+  drop_idle_guards();
+  foresee_starts();
+}
+
+double ClosedFormFlow::drive_velocity(double t, const Eigen::VectorXd& inputs) const {
+  return regime_->overlay ? resolver_.drive().velocity(t) : inputs(tables_->regime().speed_input());
+}
+
+void ClosedFormFlow::measure_amplitudes() {
+  const Regime& r = tables_->regime();
+  const auto np = r.pairs.np;
+  if (regime_->overlay) {
+    free_ = x_ - resting_;
+  } else {
+    free_ = x_;
+    free_.noalias() -= r.particular * inputs_;
+  }
+  amplitude_.array() =
+      r.scale1.array() * free_.head(np).array().abs() + r.scale2.array() * free_.tail(np).array().abs();
+  measured_ = true;
+}
+
+void ClosedFormFlow::move(double tau) {
+  const Regime& r = tables_->regime();
+  measured_ = false;
+  if (!r.motion.available()) return advance(*tables_, tau, x_, inputs_);
+  r.motion.add(tau, free_.data(), x_.data());
+  if (regime_->overlay) return;  // then all inputs are constant
+  r.advance_inputs(inputs_, tau);
+  for (Eigen::Index k = 0; k <= r.speed_input(); ++k)
+    if (const double change = inputs_(k) - inputs_begin_(k); change != 0.0) x_ += change * r.particular.col(k);
+}
+
+void ClosedFormFlow::pass_window() {
+  const Regime& r = tables_->regime();
+  if (!regime_->overlay || !r.motion.available()) return move(tables_->length(level_));
+  const RegimeChange& d = tables_->change(level_);
+  kernels::kernels().pass(
+      {r.pairs.np, d.d11.data(), d.d12.data(), d.d21.data(), d.d22.data(), r.scale1.data(), r.scale2.data()}, x_.data(),
+      free_.data(), amplitude_.data());
+}
+
+bool ClosedFormFlow::step(double t_limit) {
+  resolver_.clear();
+  begin_ = point_.time;
+  step_regime_ = regime_;
+  if (regime_->overlay) phase_ = phase_at(begin_);
+  double limit = t_limit;
+  bool corner = false;
+  if (!resolver_.drive().is_constant()) {
+    if (const auto t = resolver_.drive().next_corner(begin_); t && *t <= limit) {
+      limit = *t;
+      corner = true;
+    }
+  }
+  double end = limit;
+  for (const Guard& guard : guards_)
+    if (guard.exempt_until > begin_) end = std::min(end, guard.exempt_until);
+  const double remaining = end - begin_;
+
+  if (!measured_) measure_amplitudes();
+  Search found;
+  double h = 0.0, tau = 0.0;
+  bool finest = false;
+  for (;;) {
+    h = tables_->length(level_);
+    found = search(level_);
+    finest = level_ + 1 >= RegimeTables::kLevels || !(begin_ + h > begin_);
+    if (found.guard < 0 || found.at * h >= remaining) {
+      found.guard = -1;
+      tau = std::min(h, remaining);
+      break;
+    }
+    tau = found.at * h;
+    found.resolved |= finest;
+    if (found.resolved || found.at > kWorthwhile) break;
+    level_ = std::min(level_ + found.refinement, RegimeTables::kLevels - 1);
+    ++statistics_.rejected;
+  }
+  x_begin_ = x_;
+  inputs_begin_ = inputs_;
+  if (found.guard >= 0 && !found.touching) {
+    // Up to the part that is proved clear; beyond it Newton, which may prove itself.
+    if (!found.resolved) tau *= kUsed;
+    double root = (found.guess > 0.0 ? found.guess : found.at) * h;
+    const bool proved =
+        (found.resolved || found.guess > 0.0) && approach(guards_[static_cast<std::size_t>(found.guard)], tau, root);
+    const bool first = found.resolved || root <= found.others * h;
+    // Where windows are finer than the clock, a root beyond the window is now, or the guard is clear until shortly
+    // before.
+    const double clear = begin_ + kUsed * root;
+    const bool now = finest && !(clear > begin_);
+    if (proved ? now || (root <= std::min(h, remaining) && first) : found.resolved) {
+      tau = root;
+    } else {
+      x_ = x_begin_;
+      inputs_ = inputs_begin_;
+      move(tau);
+      if (proved && finest) guards_[static_cast<std::size_t>(found.guard)].exempt_until = clear;
+      found.guard = -1;
+      level_ = std::min(level_ + found.refinement, RegimeTables::kLevels - 1);
+    }
+  } else if (tau == h) {
+    pass_window();
+  } else {
+    move(tau);
+  }
+  point_.time = tau == remaining ? end : begin_ + tau;
+  ++statistics_.steps;
+  if ((x_.size() > 0 && !std::isfinite(x_(0))) || !std::isfinite(point_.time)) {
+    lift(*regime_, begin_, x_begin_, inputs_begin_, point_.x, point_.force);
+    throw NumericalFailure("the state is no longer finite at t = " + std::to_string(begin_), begin_, point_.x,
+                           std::numeric_limits<double>::quiet_NaN());
+  }
+  for (std::size_t c = 0; c < point_.modes.size(); ++c)
+    if (point_.modes[c] == ContactMode::kStick) statistics_.stick_time[c] += tau;
+  const bool ends = found.guard >= 0 || point_.time >= limit;
+  if (ends) lift_point();
+  if (options_.audit) account(tau, ends);
+  if (found.guard >= 0) return settle(found.guard, found.touching);
+  if (found.spare > kSpareToGrow) {
+    const int growth = std::clamp(std::ilogb(found.spare) / 8, 1, kLargestGrowth);
+    level_ = std::max(0, level_ - growth);
+  }
+  if (!ends) return false;
+  if (corner) return settle(-1, false);
+  if (carries_) push_tangents();
+  return false;
+}
+
+bool ClosedFormFlow::settle(int guard, bool touching) {
+  const double window_end = begin_ + tables_->length(level_);
+  const Guard* reached = guard >= 0 ? &guards_[static_cast<std::size_t>(guard)] : nullptr;
+  const bool salts = carries_ && !touching;
+  if (salts) leave_tangents(reached);
+  resolver_.settle(point_, reached ? Reached{reached->contact, touching, reached->kind, reached->next} : Reached{});
+  statistics_.events += static_cast<std::int64_t>(resolver_.events().size());
+  if (touching)
+    guards_[static_cast<std::size_t>(guard)].exempt_until = std::max(window_end, std::nextafter(point_.time, 1e300));
+  else
+    enter_regime();
+  if (salts) salt_tangents();
+  return true;
+}
+
+void ClosedFormFlow::lift(const Visited& in, double t, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs,
+                          Eigen::VectorXd& out_x, Eigen::VectorXd& out_force) const {
+  const Regime& r = in.tables->regime();
+  r.lift(x, inputs, out_x);
+  out_force.resize(nc_);
+  for (int c = 0; c < nc_; ++c)
+    out_force(c) = r.roles[static_cast<std::size_t>(c)] == ContactRole::kSliding
+                       ? inputs(c)
+                       : r.force_row.col(c).dot(x) + r.force_coefficient.col(c).dot(inputs);
+  if (!in.overlay) return;
+  const DrivePhase phase = phase_at(t);
+  in.overlay->slipping.add(phase, 1.0, out_x);
+  for (int c = 0; c < nc_; ++c) out_force(c) += in.overlay->force.at(c, phase);
+}
+
+void ClosedFormFlow::lift_point() {
+  lift(*regime_, point_.time, x_, inputs_, point_.x, point_.force);
+  for (const int c : compliant_)
+    point_.internal(system_.internal_begin(c)) =
+        point_.force(c) / resolver_.laws()[static_cast<std::size_t>(c)].stiffness;
+  if (oscillator_states_.empty()) return;
+  const Regime& r = tables_->regime();
+  Eigen::VectorXd x = x_;
+  if (const DriveOverlay* overlay = regime_->overlay.get()) {
+    overlay->state.add(phase_at(point_.time), 1.0, x);
+  }
+  point_.internal(oscillator_states_) = r.to_oscillators * x;
+}
+
+void ClosedFormFlow::evaluate(double t, Eigen::VectorXd& out_x, Eigen::VectorXd& out_force) const {
+  Eigen::VectorXd x = x_begin_, inputs = inputs_begin_;
+  advance(*step_regime_->tables, std::max(0.0, t - begin_), x, inputs);
+  lift(*step_regime_, t, x, inputs, out_x, out_force);
+}
+
+}  // namespace slipmode::dynamics

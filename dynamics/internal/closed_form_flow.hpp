@@ -1,0 +1,183 @@
+#pragma once
+
+#include <slipmode/dynamics/cache.hpp>
+#include <slipmode/dynamics/event_resolver.hpp>
+#include "dynamics/internal/audit_forms.hpp"
+#include "dynamics/internal/belt_work.hpp"
+#include "dynamics/internal/bernstein.hpp"
+#include "dynamics/internal/drive_overlay.hpp"
+
+#include <Eigen/Core>
+#include <deque>
+#include <limits>
+#include <memory>
+#include <vector>
+
+namespace slipmode::dynamics {
+
+/// The flow of a piecewise-linear system in closed form: within a regime every state is an exact modal solution, and a
+/// window is passed only when its guards are proved positive on all of it. The proof: the guard's interpolant of degree
+/// 7 in Bernstein form (convex hull), less a bound on what interpolation leaves out, from the amplitudes of the pairs.
+/// Theory: docs/theory/flow.md.
+///
+/// A step ends at the time asked, at the end of a window, or at an event. The last step stays readable (`evaluate`)
+/// until the next one.
+class ClosedFormFlow {
+ public:
+  /// @param start  its modes may be undecided where a contact is at rest on the belt; laws must be piecewise linear
+  ClosedFormFlow(const HybridSystem& system, HybridPoint start, const FlowOptions& options);
+
+  /// Starts anew from another point; regimes met so far stay prepared. Drops the tangents.
+  void restart(HybridPoint start);
+
+  /// Carries tangents along from here, saltation included. Coordinates: the slipping model's state without padding
+  /// (first components, then second ones), then the contacts' own states. @param tangents  [2n + internal_size x k]
+  void set_tangents(Eigen::MatrixXd tangents);
+  /// They, at `point().time` (brought up to date at events and at the time asked).
+  [[nodiscard]] const Eigen::MatrixXd& tangents();
+  /// d/dt of the point in the same coordinates, right limit [2n + internal_size].
+  [[nodiscard]] const Eigen::VectorXd& point_rate();
+
+  /// Advances by one step, not beyond t_limit (> time). True if it ended at an event.
+  bool step(double t_limit);
+
+  /// `x` and `force` are brought up to date at events and at the time asked, `time` and `modes` always.
+  [[nodiscard]] const HybridPoint& point() const { return point_; }
+  [[nodiscard]] const std::vector<Event>& events() const { return resolver_.events(); }
+  [[nodiscard]] const WorkSums& work() const { return work_; }
+  [[nodiscard]] const FlowStatistics& statistics() const { return statistics_; }
+
+  /// State and contact forces at a time within the last step.
+  void evaluate(double t, Eigen::VectorXd& out_x, Eigen::VectorXd& out_force) const;
+
+ private:
+  /// constant + sign · output ≥ 0 as long as the regime lasts.
+  struct Guard {
+    Eigen::Index output = 0;
+    int contact = 0;
+    double sign = 1.0, constant = 0.0;
+    GuardKind kind = GuardKind::kFriction;
+    ContactMode next = ContactMode::kStick;  ///< of a clearance, once the guard is crossed
+    double exempt_until = -1e300;            ///< known to be clear up to this time
+  };
+  /// What tangents need of a regime, without padding.
+  struct TangentMaps {
+    std::vector<int> follows;              ///< contacts that follow the drive
+    Eigen::MatrixXd enter, enter_follows;  ///< tangents → of x [2m x N], of the inputs of those contacts [nf x N]
+    Eigen::MatrixXd leave, leave_inputs;   ///< back: of x [N x 2m], of all inputs [N x ni]
+    Eigen::MatrixXd row;                   ///< of the outputs [2m x no]
+    Eigen::MatrixXd B;                     ///< [2m x ni]
+  };
+  /// A regime met in this run.
+  struct Visited {
+    std::vector<ContactRole> roles;
+    const RegimeTables* tables;
+    std::unique_ptr<DriveOverlay> overlay;  ///< null for a belt
+    std::unique_ptr<TangentMaps> maps;      ///< null until tangents are carried
+    std::unique_ptr<AuditForms> forms;      ///< for a shaker or a force; null where the audit integrates by quadrature
+    std::unique_ptr<BeltWork> belt;         ///< for a belt of constant speed; the same
+  };
+  /// What a search of one window found.
+  struct Search {
+    int guard = -1;         ///< which may vanish first; −1: none in this window
+    double at = 1.0;        ///< fraction of the window before which no guard vanishes
+    bool resolved = false;  ///< nothing is left out that matters: `at` is the event
+    bool touching = false;  ///< resolved: the guard comes within tolerance of zero and goes back
+    double others = 2.0;    ///< no other guard vanishes before this
+    double guess = 0.0;     ///< where the guard vanishes in all likelihood; 0: not in this window
+    int refinement = 1;     ///< not resolved: levels to go down until it is
+    double spare = 1e300;   ///< smallest ratio of a guard's least value to its remainder
+  };
+  /// A guard's value and derivatives.
+  struct GuardValue {
+    double value = 0.0, rate = 0.0;
+  };
+
+  void enter_regime();
+  void set_guards();
+  void add_clearance_guards(const Guard& guard, RegimeOutput::Kind kind);
+  /// What moves freely, and bounds on it.
+  void measure_amplitudes();
+  /// Drops guards that cannot vanish in this stay.
+  void drop_idle_guards();
+  /// Takes the state, which is that of the step's begin, on by tau.
+  void move(double tau);
+  /// The same over a whole window of the level.
+  void pass_window();
+  void foresee_starts();
+  /// The size of an output's values, which its rounding error is measured by.
+  [[nodiscard]] double scale(const Guard& guard) const;
+  [[nodiscard]] GuardValue evaluate(const Guard& guard, double t) const;
+  [[nodiscard]] double second_derivative(const Guard& guard, double t) const;
+  [[nodiscard]] Search search(int level) const;
+  void judge(const BernsteinPolynomial& polynomial, double remainder, double tolerance, int guard, Search& found) const;
+  /// Takes the state on to where the guard vanishes, near tau, which follows. True if that is proved to be the first
+  /// time after `from`.
+  [[nodiscard]] bool approach(const Guard& guard, double from, double& tau);
+  /// Bound on the second derivative of an output over the window.
+  [[nodiscard]] double curvature(Eigen::Index output) const;
+  /// Adds the work of a step of this length; where forms integrate whole stays, once a stay or the run `ends`.
+  void account(double tau, bool ends);
+  void integrate(double tau);
+  /// State of the slipping model and contact forces at t, from the regime's.
+  void lift(const Visited& in, double t, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs,
+            Eigen::VectorXd& out_x, Eigen::VectorXd& out_force) const;
+  /// The same into `point_`, contacts' own states included.
+  void lift_point();
+  [[nodiscard]] bool settle(int guard, bool touching);
+  /// Makes the maps of the regime entered, if tangents are carried.
+  void enter_tangents();
+  /// Brings the tangents up to the point's time, within a stay.
+  void push_tangents();
+  /// δ⁺ = R δ⁻ + (f⁺ − R f⁻) δg/ġ: before and after the event is settled. No guard: a corner of the drive, whose time
+  /// is nobody's.
+  void leave_tangents(const Guard* guard);
+  void salt_tangents();
+  /// The phase of a periodic drive, remembered: several are asked at an event.
+  [[nodiscard]] DrivePhase phase_at(double t) const {
+    if (t != phase_time_) {
+      phase_then_ = regime_->overlay->phase(t);
+      phase_time_ = t;
+    }
+    return phase_then_;
+  }
+  [[nodiscard]] double drive_velocity(double t, const Eigen::VectorXd& inputs) const;
+
+  const HybridSystem& system_;
+  const ModalModel& slipping_;
+  EventResolver resolver_;
+  FlowOptions options_;
+  int nc_;
+  HybridPoint point_;
+
+  Visited* regime_ = nullptr;
+  const RegimeTables* tables_ = nullptr;  ///< its tables
+  const Visited* step_regime_ = nullptr;  ///< that of the last step
+  std::vector<Guard> guards_;
+  std::vector<Eigen::Index> oscillator_states_;  ///< in HybridPoint::internal
+  std::vector<int> compliant_;                   ///< contacts behind a contact spring
+  Eigen::VectorXd x_, inputs_, x_begin_, inputs_begin_;
+  Eigen::VectorXd free_, amplitude_;  ///< at the step's begin: x less what follows the inputs, and its pairs' sizes
+  Eigen::VectorXd resting_;           ///< what follows the inputs, where those are constant: under a periodic drive
+  bool measured_ = false;             ///< these two belong to x_
+  double begin_ = 0.0;
+  DrivePhase phase_;  ///< at begin_, of a periodic drive
+  mutable double phase_time_ = std::numeric_limits<double>::quiet_NaN();
+  mutable DrivePhase phase_then_;
+  int level_ = 0;
+
+  /// At `point_.time` between stays; within a stay, of x and of the inputs that follow.
+  Eigen::MatrixXd tangents_, x_tangents_, follow_tangents_, follow_response_;
+  bool carries_ = false;           ///< tangents are carried, be they none
+  bool tangents_current_ = false;  ///< tangents_ belongs to point_
+  Eigen::VectorXd rate_, rate_before_, x_rate_, input_rate_;
+  Eigen::RowVectorXd delay_;  ///< δg/ġ
+  std::vector<ContactMode> modes_before_;
+  double tangent_time_ = 0.0;
+
+  WorkSums work_;
+  FlowStatistics statistics_;
+  std::deque<Visited> visited_;
+};
+
+}  // namespace slipmode::dynamics

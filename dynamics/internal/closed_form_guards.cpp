@@ -1,0 +1,305 @@
+#include <slipmode/dynamics/kernels/kernels.hpp>
+#include "dynamics/internal/closed_form_flow.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace slipmode::dynamics {
+namespace {
+
+/// A guard that cannot be told from zero beyond this share of its scale touches it.
+constexpr double kTouching = 1e-12;
+/// A guard below this share of its scale when a regime begins starts at zero …
+constexpr double kStarting = 1e-9;
+/// … and with zero slope, if that is below this share of its scale times the fastest rate.
+constexpr double kSimpleStart = 1e-9;
+constexpr int kNewtonSteps = 20;
+/// Newton steps of less than this phase of the fastest pair go on from where the last one led.
+constexpr double kClose = 0.25;
+constexpr int kHalvings = 3;
+
+}  // namespace
+
+void ClosedFormFlow::set_guards() {
+  guards_.clear();
+  const std::vector<RegimeOutput>& outputs = tables_->regime().outputs;
+  for (std::size_t k = 0; k < outputs.size(); ++k) {
+    const int c = outputs[k].contact;
+    const auto i = static_cast<std::size_t>(c);
+    const ContactForces& law = resolver_.laws()[i];
+    Guard guard{static_cast<Eigen::Index>(k), c};
+    switch (outputs[k].kind) {
+      case RegimeOutput::Kind::kSpeed:
+        guard.sign = sign_of(point_.modes[i]);
+        break;
+      case RegimeOutput::Kind::kForce:
+        guard.constant = law.limit(-1.0);
+        guards_.push_back(guard);
+        guard.constant = law.limit(1.0);
+        guard.sign = -1.0;
+        break;
+      case RegimeOutput::Kind::kLoad:
+        guard.kind = GuardKind::kLoad;
+        guard.sign = point_.modes[i] == ContactMode::kSeparated ? -1.0 : 1.0;
+        break;
+      case RegimeOutput::Kind::kExcess:
+      case RegimeOutput::Kind::kReserve:
+        break;
+      case RegimeOutput::Kind::kDisplacement:
+      case RegimeOutput::Kind::kPress:
+        add_clearance_guards(guard, outputs[k].kind);
+        continue;
+    }
+    guards_.push_back(guard);
+  }
+}
+
+void ClosedFormFlow::add_clearance_guards(const Guard& of_output, RegimeOutput::Kind kind) {
+  const auto i = static_cast<std::size_t>(of_output.contact);
+  const friction::Clearance& law = resolver_.laws()[i].clearance;
+  const ContactMode mode = point_.modes[i];
+  const auto add = [&](double sign, double constant, ContactMode next) {
+    Guard guard = of_output;
+    guard.kind = GuardKind::kStop;
+    guard.sign = sign;
+    guard.constant = constant;
+    guard.next = next;
+    guards_.push_back(guard);
+  };
+  const bool left = mode == ContactMode::kLeftStop || mode == ContactMode::kLeftFlight;
+  if (mode == ContactMode::kGap) {
+    if (law.right) add(-1.0, law.right->gap, ContactMode::kRightStop);
+    if (law.left) add(1.0, law.left->gap, ContactMode::kLeftStop);
+  } else if (kind == RegimeOutput::Kind::kDisplacement) {
+    if (left)
+      add(-1.0, -law.left->gap, ContactMode::kGap);
+    else
+      add(1.0, -law.right->gap, ContactMode::kGap);
+  } else if (mode == ContactMode::kLeftFlight || mode == ContactMode::kRightFlight) {
+    add(-1.0, 0.0, left ? ContactMode::kLeftStop : ContactMode::kRightStop);
+  } else {
+    // Without damping the force vanishes where the gap begins: there is no flight beyond it.
+    const bool damped = (left ? law.left : law.right)->damping > 0.0;
+    add(1.0, 0.0, !damped ? ContactMode::kGap : left ? ContactMode::kLeftFlight : ContactMode::kRightFlight);
+  }
+}
+
+double ClosedFormFlow::scale(const Guard& guard) const {
+  const Regime& r = tables_->regime();
+  const RegimeOutput& output = r.outputs[static_cast<std::size_t>(guard.output)];
+  const ContactForces& law = resolver_.laws()[static_cast<std::size_t>(guard.contact)];
+  if (output.kind == RegimeOutput::Kind::kForce) return law.static_limit;
+  if (guard.kind == GuardKind::kStop) {
+    // Not by amplitudes: a slow drift through the gap has a large one.
+    double size = std::abs(guard.constant) + r.row.col(guard.output).cwiseAbs().dot(x_.cwiseAbs()) +
+                  r.coefficient.col(guard.output).cwiseAbs().dot(inputs_.cwiseAbs());
+    if (regime_->overlay) size += regime_->overlay->outputs.size(guard.output);
+    return size;
+  }
+  double size = r.weight.col(guard.output).dot(amplitude_);
+  if (regime_->overlay) size += regime_->overlay->outputs.size(guard.output);
+  if (output.kind == RegimeOutput::Kind::kSpeed)
+    return size + std::abs(inputs_(r.speed_input())) +
+           slipping_.mobility(guard.contact, guard.contact) * law.static_limit / r.rate;
+  return size + (guard.kind == GuardKind::kLoad ? law.load : law.static_limit);
+}
+
+ClosedFormFlow::GuardValue ClosedFormFlow::evaluate(const Guard& guard, double t) const {
+  const Regime& r = tables_->regime();
+  const auto k = guard.output;
+  double value = r.output(k, x_, inputs_);
+  double rate = kernels::kernels().dot(r.row1.col(k).data(), x_.data(), x_.size()) + r.coefficient1.col(k).dot(inputs_);
+  if (const DriveOverlay* overlay = regime_->overlay.get()) {
+    const DrivePhase phase = phase_at(t);
+    value += overlay->outputs.at(k, phase);
+    rate += overlay->omega() * overlay->outputs.rate(k, phase);
+  }
+  return {guard.constant + guard.sign * value, guard.sign * rate};
+}
+
+double ClosedFormFlow::second_derivative(const Guard& guard, double t) const {
+  const Regime& r = tables_->regime();
+  double second = r.row2.col(guard.output).dot(x_) + r.coefficient2.col(guard.output).dot(inputs_);
+  if (const DriveOverlay* overlay = regime_->overlay.get())
+    second += overlay->omega() * overlay->omega() * overlay->outputs.bend(guard.output, phase_at(t));
+  return guard.sign * second;
+}
+
+void ClosedFormFlow::drop_idle_guards() {
+  // A load that varies by a hundredth of its mean need not be looked at: under constant inputs, with free motion that
+  // does not grow, an output stays within its amplitudes of where the inputs hold it for as long as the stay lasts.
+  const Regime& r = tables_->regime();
+  const DriveOverlay* overlay = regime_->overlay.get();
+  if (overlay == nullptr || !r.motion.available() || r.growth > 0.0) return;
+  std::erase_if(guards_, [&](const Guard& guard) {
+    const auto k = guard.output;
+    const double held =
+        r.output(k, x_, inputs_) - kernels::kernels().dot(r.row.col(k).data(), free_.data(), free_.size());
+    const double reach =
+        kernels::kernels().dot(r.weight.col(k).data(), amplitude_.data(), amplitude_.size()) + overlay->outputs.size(k);
+    return guard.constant + guard.sign * held - reach > kStarting * (std::abs(guard.constant) + std::abs(held) + reach);
+  });
+}
+
+void ClosedFormFlow::foresee_starts() {
+  // A guard that starts at zero. Taylor's theorem says for how long it is sure to stay positive: g ≥ g′t − M₂t²/2 (or
+  // g″t²/2 − M₃t³/6 when g′ vanishes); half of that time is used.
+  const Regime& r = tables_->regime();
+  const DriveOverlay* overlay = regime_->overlay.get();
+  const double tiny = 1e-9 / r.rate, room = std::exp(r.growth / r.rate);
+  double shortest = std::numeric_limits<double>::infinity();
+  for (Guard& guard : guards_) {
+    const auto i = static_cast<std::size_t>(guard.contact), k = static_cast<std::size_t>(guard.output);
+    const ContactForces& law = resolver_.laws()[i];
+    const bool rigid_speed =
+        r.outputs[k].kind == RegimeOutput::Kind::kSpeed && law.kind == ContactForces::Kind::kConstant && !law.varies;
+    const auto [g0, g1] = evaluate(guard, point_.time);
+    const double size = scale(guard);
+    if (rigid_speed ? point_.multiplicity[i] == 0 : g0 > kStarting * size) continue;
+    const double w = overlay ? overlay->omega() : 0.0;
+    const double harmonic2 = overlay ? w * w * overlay->outputs.size(guard.output, 2) : 0.0;
+    const double harmonic3 = overlay ? w * w * w * overlay->outputs.size(guard.output, 3) : 0.0;
+    const double g2 = second_derivative(guard, point_.time);
+    const double third = std::abs(r.polynomial3.col(guard.output).dot(inputs_));
+    const double m3 = room * r.weight3.col(guard.output).dot(amplitude_) + third + harmonic3;
+    const double m2 = room * r.weight2.col(guard.output).dot(amplitude_) +
+                      std::abs(r.polynomial2.col(guard.output).dot(inputs_)) + third / r.rate + harmonic2;
+    const bool simple = rigid_speed ? point_.multiplicity[i] == 1 : g1 > kSimpleStart * r.rate * size;
+    const bool flat = rigid_speed ? point_.multiplicity[i] == 2 : std::abs(g1) <= kSimpleStart * r.rate * size;
+    double clear = 0.0;
+    if (simple && g1 > 0) clear = std::min(g1 / m2, 1.0 / r.rate);
+    if (flat && g2 > 0) clear = std::min(1.5 * g2 / m3, 1.0 / r.rate);
+    if (!rigid_speed && clear == 0.0) continue;  // falling through zero: an event at once
+    clear = std::max(clear, tiny);
+    guard.exempt_until = point_.time + clear;
+    shortest = std::min(shortest, clear);
+  }
+  if (shortest < std::numeric_limits<double>::infinity())
+    level_ = tables_->level_covering(shortest);
+  else
+    level_ = std::min(std::max(level_, tables_->level_covering(4.0 / r.rate)), RegimeTables::kLevels - 1);
+}
+
+void ClosedFormFlow::judge(const BernsteinPolynomial& polynomial, double remainder, double tolerance, int guard,
+                           Search& found) const {
+  found.spare = std::min(found.spare, 1.0);
+  Search here;
+  here.guard = guard;
+  here.spare = found.spare;
+  here.resolved = remainder <= tolerance;
+  std::optional<FirstRoot> root;
+  if (here.resolved) root = first_root(polynomial);
+  if (!root || root->touching) {
+    BernsteinPolynomial low = polynomial;
+    for (int k = 0; k < kNodes; ++k) low.coefficient[static_cast<std::size_t>(k)] -= remainder;
+    root = first_root(low);
+    if (!root) return;
+    here.touching = here.resolved;
+  }
+  here.at = here.guess = root->at;
+  if (!here.resolved) {
+    here.refinement = 1 + std::min(8, std::ilogb(remainder / tolerance) / 8);
+    // Up to `at` the polynomial is positive.
+    BernsteinPolynomial before, after;
+    polynomial.split(here.at, before, after);
+    const std::optional<FirstRoot> likely = first_root(after);
+    here.guess = likely && !likely->touching ? here.at + (1.0 - here.at) * likely->at : 0.0;
+  }
+  if (found.guard < 0 || here.at < found.at) {
+    here.others = found.guard < 0 ? found.others : found.at;
+    found = here;
+  } else {
+    found.others = std::min(found.others, here.at);
+  }
+}
+
+ClosedFormFlow::Search ClosedFormFlow::search(int level) const {
+  const Regime& r = tables_->regime();
+  const RegimeWindow& w = tables_->window(level);
+  const DriveOverlay* overlay = regime_->overlay.get();
+  const auto np = r.pairs.np, ni = r.inputs();
+  const kernels::Kernels& vector = kernels::kernels();
+  Search found;
+  Eigen::Index computed = -1;
+  alignas(64) std::array<double, kNodes> output{}, values;
+  double remainder = 0.0;
+  for (std::size_t g = 0; g < guards_.size(); ++g) {
+    const Guard& guard = guards_[g];
+    if (guard.exempt_until > begin_) continue;
+    const auto k = guard.output;
+    if (k != computed) {
+      computed = k;
+      vector.node_sums(w.from_inputs.data() + kNodes * ni * k, inputs_.data(), ni, nullptr, output.data());
+      vector.node_sums(w.from_state.data() + kNodes * 2 * np * k, x_.data(), 2 * np, output.data(), output.data());
+      remainder = kernels::kernels().dot(w.remainder.col(k).data(), amplitude_.data(), np);
+      if (overlay) {
+        // c cos j(θ₀ + ωτ) + s sin j(θ₀ + ωτ) by the window's cos jωτ and sin jωτ.
+        DrivePhase p;
+        Eigen::Index j = 0;
+        for (const DriveOverlay::Window& harmonic : overlay->window(level, tables_->length(level))) {
+          p = p.times(phase_);
+          const double c = overlay->outputs.c(k, j), s = overlay->outputs.s(k, j);
+          vector.add_scaled(c * p.cosine + s * p.sine, harmonic.cosine.data(), output.data(), kNodes);
+          vector.add_scaled(s * p.cosine - c * p.sine, harmonic.sine.data(), output.data(), kNodes);
+          remainder += harmonic.remainder * overlay->outputs.magnitude(k, j);
+          ++j;
+        }
+      }
+    }
+    for (std::size_t j = 0; j < kNodes; ++j) values[j] = guard.constant + guard.sign * output[j];
+    const double least = *std::min_element(values.begin(), values.end());
+    if (least > remainder || stays_above(values, remainder, kHalvings)) {
+      found.spare = std::min(found.spare, std::max(least, 0.0) / std::max(remainder, 1e-300));
+      continue;
+    }
+    BernsteinPolynomial polynomial;
+    polynomial.degree = kNodes - 1;
+    std::copy_n(values.begin(), kNodes, polynomial.coefficient.begin());
+    judge(polynomial, remainder, kTouching * scale(guard), static_cast<int>(g), found);
+  }
+  return found;
+}
+
+bool ClosedFormFlow::approach(const Guard& guard, double from, double& tau) {
+  // Newton on the exact guard.
+  const double rate = tables_->regime().rate, bend = curvature(guard.output);
+  const double rounding = std::numeric_limits<double>::epsilon() / 2.0 * scale(guard);
+  double slope = 0.0;
+  move(tau);
+  for (int k = 0; k < kNewtonSteps; ++k) {
+    const GuardValue now = evaluate(guard, begin_ + tau);
+    slope = now.rate;
+    const double shift = -now.value / slope;
+    if (!(slope < 0.0) || !(std::abs(shift) * rate < 2.0) || tau + shift < 0.0) return false;
+    tau += shift;
+    if (!tables_->regime().motion.available() && std::abs(shift) * rate < kClose) {
+      advance(*tables_, shift, x_, inputs_);
+    } else {
+      x_ = x_begin_;
+      inputs_ = inputs_begin_;
+      move(tau);
+    }
+    // Newton squares its error, with a factor of about the guard's curvature by its slope. It is done where that is
+    // beyond the clock, or leaves of the guard no more than its rounding.
+    if (std::abs(shift) * rate < 1e-15 || shift * shift * bend < std::max(1e-15 / rate * std::abs(slope), rounding))
+      break;
+  }
+  // The guard falls all the way from `from`: it vanishes here for the first time.
+  return tau <= from || (tau - from) * bend < std::abs(slope);
+}
+
+double ClosedFormFlow::curvature(Eigen::Index output) const {
+  const Regime& r = tables_->regime();
+  const double h = tables_->length(level_);
+  double bend = std::exp(std::min(r.growth * h, 200.0)) * r.weight2.col(output).dot(amplitude_) +
+                std::abs(r.polynomial2.col(output).dot(inputs_begin_)) +
+                std::abs(r.polynomial3.col(output).dot(inputs_begin_)) * h;
+  if (const DriveOverlay* overlay = regime_->overlay.get())
+    bend += overlay->omega() * overlay->omega() * overlay->outputs.size(output, 2);
+  return bend;
+}
+
+}  // namespace slipmode::dynamics

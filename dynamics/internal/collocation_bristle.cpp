@@ -1,0 +1,116 @@
+#include "dynamics/internal/collocation_flow.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace slipmode::dynamics {
+
+void CollocationFlow::start_bristles() {
+  for (int c = 0; c < nc_; ++c) {
+    const auto i = static_cast<std::size_t>(c);
+    if (!bristled(c)) continue;
+    const double s = drive().velocity(begin_) - resolver_.contact_velocity(c, point_.x.data());
+    point_.modes[i] = s < 0.0 ? ContactMode::kSlipNegative : ContactMode::kSlipPositive;
+  }
+  // What they pull with, the resolver takes for given.
+  bristle_force_at(begin_, point_.modes, point_.x.data(), point_.internal, point_.force);
+}
+
+void CollocationFlow::refresh_bristles() {
+  for (int c = 0; c < nc_; ++c) {
+    if (!bristled(c)) continue;
+    const double s = drive().velocity(point_.time) - resolver_.contact_velocity(c, point_.x.data());
+    if (std::abs(s) <= kUnmoved * velocity_scale(c, point_.x)) point_.multiplicity[static_cast<std::size_t>(c)] = 2;
+  }
+  bristle_force_at(point_.time, point_.modes, point_.x.data(), point_.internal, point_.force);
+}
+
+Eigen::VectorXd CollocationFlow::internal_within(double share) const {
+  Eigen::VectorXd internal = internal_begin_;
+  for (int c = 0; c < nc_; ++c) {
+    if (!bristled(c)) continue;
+    double& z = internal(bristle_at_[static_cast<std::size_t>(c)]);
+    z = share < 1.0 ? bristle_within(z, bristle_nodes_.segment<kNodes>(kNodes * c), share)
+                    : bristle_nodes_(kNodes * c + kNodes - 1);
+  }
+  return internal;
+}
+
+void CollocationFlow::bristle_force_at(double t, const std::vector<ContactMode>& modes, const double* x,
+                                       const Eigen::VectorXd& internal, Eigen::VectorXd& out_force) const {
+  std::vector<bool> stuck(modes.size());
+  for (int c = 0; c < nc_; ++c) {
+    const auto i = static_cast<std::size_t>(c);
+    stuck[i] = modes[i] == ContactMode::kStick;
+    const double s = drive().velocity(t) - resolver_.contact_velocity(c, x);
+    if (bristled(c))
+      out_force(c) = laws()[i].bristle.force(sign_of(modes[i]), s, internal(bristle_at_[i]));
+    else if (!stuck[i])
+      out_force(c) = laws()[i].sliding(modes[i], s);
+  }
+  stick_forces(resolver_.instant(t, x), stuck, out_force);
+}
+
+void CollocationFlow::collocate_bristles(double h) {
+  for (int c = 0; c < nc_; ++c) {
+    if (!bristled(c)) continue;
+    const auto i = static_cast<std::size_t>(c);
+    bristle_nodes_.segment<kNodes>(kNodes * c) =
+        solve_bristle(laws()[i].bristle, sign_of(point_.modes[i]), internal_begin_(bristle_at_[i]), h,
+                      drive_nodes_.segment<kNodes>(kNodes * c) - velocity_.segment<kNodes>(kNodes * c))
+            .z;
+  }
+}
+
+bool CollocationFlow::turn_resting_bristles() {
+  bool turned = false;
+  for (int c = 0; c < nc_; ++c) {
+    const auto i = static_cast<std::size_t>(c);
+    if (!bristled(c) || point_.multiplicity[i] < 2) continue;
+    const double rounding = kUnmoved * velocity_scale(c, x_begin_), sign = sign_of(point_.modes[i]);
+    for (int j = 0; j < kNodes; ++j) {
+      const double speed = sign * (drive_nodes_(kNodes * c + j) - velocity_(kNodes * c + j));
+      if (std::abs(speed) <= rounding) continue;
+      if (speed < 0.0) {
+        point_.modes[i] = sign > 0.0 ? ContactMode::kSlipNegative : ContactMode::kSlipPositive;
+        turned = true;
+      }
+      break;
+    }
+  }
+  if (turned) step_modes_ = point_.modes;
+  return turned;
+}
+
+void CollocationFlow::settle_bristle(int c, bool touching) {
+  // The force is continuous at v_rel = 0: nothing to decide but the direction.
+  const auto i = static_cast<std::size_t>(c);
+  const ContactMode before = point_.modes[i];
+  if (!touching) {
+    std::vector<ContactMode> held = point_.modes;
+    held[i] = ContactMode::kStick;
+    resolver_.hold(point_.time, held, point_.x.data());
+    const ContactMode after =
+        before == ContactMode::kSlipPositive ? ContactMode::kSlipNegative : ContactMode::kSlipPositive;
+    const int order = start_multiplicity(resolver_.instant(point_.time, point_.x.data()), c, after, point_.force);
+    point_.modes[i] = order < 0 ? before : after;
+    point_.multiplicity[i] = order == 1 || order < 0 ? 1 : 2;
+    bristle_force_at(point_.time, point_.modes, point_.x.data(), point_.internal, point_.force);
+  } else {
+    point_.multiplicity[i] = 2;
+  }
+  const double displacement = model_.displacement_row.col(c).dot(point_.x) + model_.contact_offset(c);
+  events_.push_back({point_.time, c, point_.modes[i] == before ? EventKind::kGrazing : EventKind::kReversal, before,
+                     point_.modes[i], displacement, resolver_.contact_velocity(c, point_.x.data()), point_.force(c)});
+}
+
+double CollocationFlow::bristle_error(int c) const {
+  // z is a state: what its polynomial of degree 8 leaves out stays. The first coefficient left out, by the last two.
+  const auto z = bristle_nodes_.segment<kNodes>(kNodes * c);
+  const ContactForces& law = laws()[static_cast<std::size_t>(c)];
+  const double sixth = std::abs(nodes_.legendre6.dot(z)), seventh = std::abs(nodes_.legendre7.dot(z));
+  const double ratio = std::min(1.0, seventh / std::max(sixth, 1e-300));
+  return seventh * ratio * ratio * law.bristle.stiffness / law.static_limit;
+}
+
+}  // namespace slipmode::dynamics

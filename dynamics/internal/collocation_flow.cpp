@@ -1,0 +1,260 @@
+#include "dynamics/internal/collocation_flow.hpp"
+
+#include <slipmode/core/errors.hpp>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace slipmode::dynamics {
+namespace {
+
+/// A step that ends at its last node gains from the Radau nodes' superconvergence; one that ends inside does not.
+constexpr double kEndNodeGain = 3e-2;
+/// The step is doubled when the error of the doubled one, eighth order, is foreseen to pass with this margin.
+constexpr double kGrowth = 1.0 / (256.0 * 8.0);
+/// Largest product of the law's slope, the mobility and the step that is tried.
+constexpr double kGrowthPerStep = 1.2;
+/// The same product at the start of a slip, where Newton has to tell the slow start, which grows by e to this power,
+/// from sliding that has left it behind.
+constexpr double kGrowthAtStart = 10.0;
+/// A step spans at most this phase of a shaker, so that all quadratures resolve it.
+constexpr double kLargestDrivePhase = 2.0;
+
+/// How many times to halve a step whose eighth-order error is too large by this factor: at least once.
+int halvings(double excess) {
+  int exponent = 0;
+  std::frexp(excess, &exponent);
+  return std::clamp(1 + exponent / kNodes, 1, 4);
+}
+
+/// Level of the largest step over which the polynomial of degree 7 through the nodes follows the drive's velocity to
+/// within `tolerance` of its amplitude: |V − p| ≤ (ωh/2)⁸ / (2⁷ 8!).
+int coarsest_level(const friction::Drive& drive, const StepTables& tables, double tolerance) {
+  if (drive.shaker() == nullptr) return 0;
+  const double phase = std::min(kLargestDrivePhase, 2.0 * std::pow(tolerance * 128.0 * 40320.0, 1.0 / kNodes));
+  int level = 0;
+  while (level + 1 < StepTables::kLevels && tables.step(level) * drive.shaker()->omega() > phase) ++level;
+  return level;
+}
+
+}  // namespace
+
+CollocationFlow::CollocationFlow(const HybridSystem& system, const StepTables& tables, HybridPoint start,
+                                 const FlowOptions& options)
+    : tables_(tables),
+      model_(tables.model()),
+      resolver_(system, model_, options),
+      options_(options),
+      within_(tables, options.audit),
+      nc_(model_.contacts),
+      over_top_(1.0 / tables.step(0)),
+      begin_(start.time),
+      point_(std::move(start)),
+      x_begin_(point_.x),
+      coarsest_(coarsest_level(system.drive(), tables, options.tolerance)),
+      newton_change_(std::min(1e-3, std::sqrt(kNewtonShare * options.tolerance))),
+      start_level_(static_cast<std::size_t>(nc_) + 1, std::max(3, coarsest_)) {
+  for (auto* v : {&free_, &velocity_, &forces_, &drive_nodes_, &bristle_nodes_})
+    *v = Eigen::VectorXd::Zero(kNodes * nc_);
+  statistics_.stick_time.assign(static_cast<std::size_t>(nc_), 0.0);
+  for (std::size_t c = 0; c < laws().size(); ++c) {
+    const auto i = static_cast<Eigen::Index>(c);
+    steep_speed_.push_back(
+        std::log(laws()[c].alpha * laws()[c].drop * model_.mobility(i, i) * tables_.step(0) / kGrowthPerStep) /
+        laws()[c].alpha);
+    steep_fall_.push_back(std::numbers::ln2 / laws()[c].alpha);
+    const double growth = laws()[c].alpha * laws()[c].drop * model_.mobility(i, i) * tables_.step(0);
+    slow_start_level_.push_back(growth > kGrowthAtStart ? std::ilogb(growth / kGrowthAtStart) + 1 : 0);
+    over_limit_.push_back(1.0 / laws()[c].static_limit);
+  }
+  for (int c = 0; c < nc_; ++c) {
+    any_bristle_ |= bristled(c);
+    bristle_at_.push_back(system.internal_begin(c));
+  }
+  if (any_bristle_ && point_.internal.size() == 0) point_.internal = Eigen::VectorXd::Zero(system.internal_size());
+  internal_begin_ = point_.internal;
+  if (any_bristle_) start_bristles();
+  resolver_.start(point_);
+  if (any_bristle_) refresh_bristles();
+  single_ = nc_ == 1 && !any_bristle_;
+  restart_steps();
+}
+
+bool CollocationFlow::step(double t_limit) {
+  resolver_.clear();
+  events_.clear();
+  begin_ = point_.time;
+  x_begin_.swap(point_.x);
+  internal_begin_ = point_.internal;
+  step_modes_ = point_.modes;
+  double limit = t_limit;
+  bool corner = false;
+  if (!drive().is_constant()) {
+    if (const auto t = drive().next_corner(begin_); t && *t <= limit) {
+      limit = *t;
+      corner = true;
+    }
+  }
+  const double remaining = limit - begin_;
+
+  int level = foreseen_level(std::max(level_, coarsest_));
+  for (std::size_t c = 0; c < slow_start_level_.size(); ++c)
+    if (point_.multiplicity[c] > 0) level = std::max(level, slow_start_level_[c]);
+  while (level + 1 < StepTables::kLevels && tables_.step(level + 1) >= remaining) ++level;
+  Guarded guard;
+  double h = 0.0, tau = 0.0, error = 0.0, tolerance = 0.0;
+  for (bool retry = false;; retry = true, ++statistics_.rejected) {
+    if (level >= StepTables::kLevels)
+      throw NumericalFailure(
+          "the contact forces could not be resolved by any step size at t = " + std::to_string(begin_), begin_,
+          x_begin_, error);
+    h = tables_.step(level);
+    const Collocation& table = tables_.collocation(level);
+    guess_forces(level, retry);
+    solved_ = solve_forces(table, h);
+    step_level_ = level;
+    if (any_bristle_ && solved_ && turn_resting_bristles()) solved_ = solve_forces(table, h);
+    if (!solved_) {
+      ++level;
+      continue;
+    }
+    error = force_error() * h * over_top_;
+    const bool smallest = level + 1 == StepTables::kLevels;
+    if (!(error <= options_.tolerance / kEndNodeGain) && !smallest) {
+      level += halvings(error * kEndNodeGain / options_.tolerance);
+      continue;
+    }
+    guard = first_guard();
+    tau = std::min(guard.contact >= 0 ? guard.theta * h : h, remaining);
+    tolerance = options_.tolerance * (tau < h ? 1.0 : 1.0 / kEndNodeGain);
+    if (!(error <= tolerance) && !smallest) {
+      level += halvings(error / tolerance);
+      continue;
+    }
+    if (too_early(guard) && !smallest) {
+      ++level;
+      continue;
+    }
+    if (guard.contact >= 0 && deepest_overshoot() > kLargestOvershoot) {
+      do ++level;
+      while (tables_.step(level + 1) > guard.theta * h);
+      continue;
+    }
+    break;
+  }
+  const bool at_guard = guard.contact >= 0 && guard.theta * h <= remaining;
+  if (at_guard && point_.modes[static_cast<std::size_t>(guard.contact)] != ContactMode::kStick)
+    stop_level_ = error < tolerance * kGrowth ? level - 1 : level;
+
+  if (tau < h) {
+    within_.begin(x_begin_.data(), forces_.data(), level);
+    within_.state(tau, point_.x.data());
+    if (at_guard)
+      refine_event(guard, tau, point_.x);
+    else
+      resolver_.hold(begin_ + tau, point_.modes, point_.x.data());  // between nodes a stick is only nearly held
+  } else {
+    kernels_.propagate(tables_.propagator(level).arrays(tables_.loaded()), x_begin_.data(), forces_.data(),
+                       point_.x.data());
+  }
+  point_.time = tau == remaining ? limit : begin_ + tau;
+  // A shaker's velocity feels the rounding of the time.
+  if (tau == h && drive().shaker() != nullptr) resolver_.hold(point_.time, point_.modes, point_.x.data());
+  ++statistics_.steps;
+  if (!std::isfinite(point_.x(0)) || !std::isfinite(point_.time))
+    throw NumericalFailure("the state is no longer finite at t = " + std::to_string(begin_), begin_, x_begin_, error);
+  for (int c = 0; c < nc_; ++c)
+    if (point_.modes[static_cast<std::size_t>(c)] == ContactMode::kStick)
+      statistics_.stick_time[static_cast<std::size_t>(c)] += tau;
+  if (options_.audit) account(level, tau);
+  if (tangents_.size() > 0) push_tangents(level, tau);
+
+  level_ = error < tolerance * kGrowth && level > coarsest_ ? level - 1 : level;
+  solved_ = tau == h;
+  if (fresh_) {
+    start_level_[stuck_count()] = level_;
+    if (nc_ == 1 && point_.modes[0] != ContactMode::kStick && !bristled(0) && point_.force(0) != 0.0) {
+      first_level_ = level;
+      first_shape_ = forces_ / point_.force(0);
+    }
+  }
+  fresh_ = false;
+  std::fill(point_.multiplicity.begin(), point_.multiplicity.end(), 0);
+  if (tau < h) {
+    const RadauTables::Vector8 last = nodes_.lagrange(tau / h);
+    for (int c = 0; c < nc_; ++c) point_.force(c) = forces_.segment<kNodes>(kNodes * c).dot(last);
+  } else {
+    for (int c = 0; c < nc_; ++c) point_.force(c) = forces_(kNodes * c + kNodes - 1);
+  }
+  if (any_bristle_) {
+    for (int c = 0; c < nc_; ++c)  // as long as its speed is rounding, a bristle's direction means nothing
+      if (bristled(c) && unmoved(c)) point_.multiplicity[static_cast<std::size_t>(c)] = 2;
+    point_.internal = internal_within(tau / h);
+    bristle_force_at(point_.time, point_.modes, point_.x.data(), point_.internal, point_.force);
+  }
+  if (!at_guard && !(corner && point_.time == limit)) return false;
+
+  const int contact = at_guard ? guard.contact : -1;
+  const Eigen::VectorXd force_before = tangents_.size() > 0 ? point_.force : Eigen::VectorXd();
+  if (at_guard && bristled(contact)) {
+    settle_bristle(contact, guard.touching);
+  } else {
+    resolver_.settle(point_, {contact, guard.touching});
+    events_ = resolver_.events();
+    if (any_bristle_) refresh_bristles();
+  }
+  statistics_.events += static_cast<std::int64_t>(events_.size());
+  if (!guard.touching) {
+    restart_steps();
+    if (tangents_.size() > 0) salt_tangents(force_before, contact);
+  }
+  return true;
+}
+
+double CollocationFlow::drive_velocity(double begin, double tau) const {
+  const double V = drive().velocity(begin), a = drive().acceleration(begin);
+  if (drive().shaker() == nullptr) return V + a * tau;
+  // From the phase at the beginning: begin + tau would round the time, and make a staircase of a short step.
+  const double omega = drive().shaker()->omega();
+  return V * std::cos(omega * tau) + a / omega * std::sin(omega * tau);
+}
+
+double CollocationFlow::drive_acceleration(double begin, double tau) const {
+  return drive().acceleration(drive().shaker() != nullptr ? begin + tau : begin);
+}
+
+RadauTables::Vector8 CollocationFlow::drive_velocities(double begin, double h) const {
+  const double V = drive().velocity(begin), a = drive().acceleration(begin);
+  if (drive().shaker() == nullptr) return (V + a * h * nodes_.node.array()).matrix();
+  const double omega = drive().shaker()->omega();
+  const auto phase = (omega * h) * nodes_.node.array();
+  return (V * phase.cos() + a / omega * phase.sin()).matrix();
+}
+
+void CollocationFlow::restart_steps() {
+  level_ = start_level_[stuck_count()];
+  solved_ = false;
+  fresh_ = true;
+}
+
+std::size_t CollocationFlow::stuck_count() const {
+  return static_cast<std::size_t>(std::count(point_.modes.begin(), point_.modes.end(), ContactMode::kStick));
+}
+
+void CollocationFlow::evaluate(double t, Eigen::VectorXd& out_x, Eigen::VectorXd& out_force) {
+  const double h = tables_.step(step_level_), tau = std::clamp(t - begin_, 0.0, h);
+  out_x.resize(2 * model_.np);
+  within_.begin(x_begin_.data(), forces_.data(), step_level_);
+  within_.state(tau, out_x.data());
+  resolver_.hold(t, step_modes_, out_x.data());
+  if (any_bristle_) {
+    out_force.resize(nc_);
+    bristle_force_at(t, step_modes_, out_x.data(), internal_within(tau / h), out_force);
+  } else {
+    out_force = resolver_.forces(t, step_modes_, out_x.data());
+  }
+}
+
+}  // namespace slipmode::dynamics

@@ -1,0 +1,150 @@
+#pragma once
+
+#include <slipmode/dynamics/event_resolver.hpp>
+#include <slipmode/dynamics/step_tables.hpp>
+#include "dynamics/internal/bernstein.hpp"
+#include "dynamics/internal/within_step.hpp"
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace slipmode::dynamics {
+
+/// The flow by scalar Volterra collocation: between events only contact forces are unknown, eight numbers per contact
+/// and step, whatever n is; the linear part is exact. In slip the eight equations λ_i = law(w_i) are solved by Newton;
+/// in stick the eight forces that hold wᵀq̇ = v_drive. Slip and stick share the modal basis, so an event costs no change
+/// of basis. Bristles (Dahl, LuGre) are collocated at the same nodes and eliminated from the eight equations; their one
+/// event is the reversal of the sliding speed. Theory: docs/theory/flow.md, docs/theory/bristle-laws.md.
+///
+/// A step ends at the time asked, at the end of a tabulated step, or at an event, whichever comes first. The last step
+/// stays readable (`evaluate`) until the next one.
+class CollocationFlow {
+ public:
+  /// @param start  its modes may be undecided where a contact is at rest on its counterpart
+  CollocationFlow(const HybridSystem& system, const StepTables& tables, HybridPoint start, const FlowOptions& options);
+
+  /// Advances by one step, not beyond t_limit (> time()). True if it ended at an event.
+  bool step(double t_limit);
+
+  [[nodiscard]] const HybridPoint& point() const { return point_; }
+  /// Events that ended the last step (simultaneous ones together).
+  [[nodiscard]] const std::vector<Event>& events() const { return events_; }
+  [[nodiscard]] const WorkSums& work() const { return work_; }
+  [[nodiscard]] const FlowStatistics& statistics() const { return statistics_; }
+
+  /// State and contact forces at a time within the last step.
+  void evaluate(double t, Eigen::VectorXd& out_x, Eigen::VectorXd& out_force);
+
+  /// Carries these tangent vectors along, with saltation at events [2np x k].
+  /// A direction that would break a stick is projected along the contact's force: the friction impulse of re-sticking.
+  /// @throws InvalidInput  with a bristle law: its state is not part of the tangent space
+  void set_tangents(Eigen::MatrixXd tangents);
+  [[nodiscard]] const Eigen::MatrixXd& tangents() const { return tangents_; }
+
+ private:
+  /// Newton's next change is about the square of this one (in units of the law's velocity scale), and is left out when
+  /// that is below this share of the tolerance.
+  static constexpr double kNewtonShare = 0.03;
+  /// A trial step may follow the law past zero relative velocity this far (in units of 1/α): beyond, e^{−αv} runs away.
+  static constexpr double kLargestOvershoot = 0.7;
+  /// Speeds below this share of the velocities at play are rounding.
+  static constexpr double kUnmoved = 1e-14;
+
+  struct Guarded {
+    double theta = 1.0;  ///< fraction of the step at which the first guard is reached
+    int contact = -1;
+    bool touching = false;
+  };
+
+  void guess_forces(int level, bool retry);
+  [[nodiscard]] int foreseen_level(int level) const;
+  bool solve_forces(const Collocation& table, double h);
+  /// One rigid contact, without bristles.
+  bool solve_single(const Collocation& table);
+  bool solve_single_smooth(const Collocation& table);
+  bool solve_coupled(const Collocation& table, double h);
+  [[nodiscard]] double force_error() const;
+  [[nodiscard]] Guarded first_guard() const;
+  [[nodiscard]] bool unmoved(int c) const;
+  [[nodiscard]] double velocity_scale(int c, const Eigen::VectorXd& x) const;
+  [[nodiscard]] bool too_early(const Guarded& guard) const;
+  [[nodiscard]] double deepest_overshoot() const;
+  void refine_event(const Guarded& guard, double& tau, Eigen::VectorXd& x);
+  [[nodiscard]] double stick_force(int c, const Eigen::VectorXd& x, double tau,
+                                   const RadauTables::Vector8& basis) const;
+  void account(int level, double tau);
+  /// ∫ Σ λ v_drive dt over [0, tau] of the step.
+  [[nodiscard]] double driven_work(double h, double tau) const;
+  void restart_steps();
+
+  [[nodiscard]] bool bristled(int c) const {
+    return laws()[static_cast<std::size_t>(c)].kind == ContactForces::Kind::kBristle;
+  }
+  void start_bristles();
+  /// Forces of bristle contacts, and which of them are at rest, after the resolver has decided about the others.
+  void refresh_bristles();
+  /// z at the nodes, for the speeds there.
+  void collocate_bristles(double h);
+  /// z of every bristle at a share of the last step (other contact states unchanged).
+  [[nodiscard]] Eigen::VectorXd internal_within(double share) const;
+  void bristle_force_at(double t, const std::vector<ContactMode>& modes, const double* x,
+                        const Eigen::VectorXd& internal, Eigen::VectorXd& out_force) const;
+  /// Turns bristle contacts that started at zero speed towards where the solved step takes them. True if any turned.
+  bool turn_resting_bristles();
+  void settle_bristle(int c, bool touching);
+  [[nodiscard]] double bristle_error(int c) const;
+  void push_tangents(int level, double tau);
+  void salt_tangents(const Eigen::VectorXd& force_before, int contact);
+  [[nodiscard]] double force_slope(int c, ContactMode mode, double velocity, double drive_velocity) const;
+
+  // The drive at `begin + tau` of a step that began at `begin`; across a belt's corner, what was before it goes on.
+  [[nodiscard]] double drive_velocity(double begin, double tau) const;
+  [[nodiscard]] double drive_acceleration(double begin, double tau) const;
+  [[nodiscard]] RadauTables::Vector8 drive_velocities(double begin, double h) const;
+
+  [[nodiscard]] std::size_t stuck_count() const;
+  [[nodiscard]] const std::vector<ContactForces>& laws() const { return resolver_.laws(); }
+  [[nodiscard]] const friction::Drive& drive() const { return resolver_.drive(); }
+
+  const StepTables& tables_;
+  const RadauTables& nodes_ = radau();
+  const ModalModel& model_;
+  const kernels::Kernels& kernels_ = kernels::kernels();
+  EventResolver resolver_;
+  FlowOptions options_;
+  WithinStep within_;
+  int nc_;
+  bool single_ = false;              ///< one rigid contact, without bristles
+  const double* ahead_ = nullptr;    ///< takes the last step's velocities to this one's nodes, where that is the guess
+  double over_top_;                  ///< 1 / the largest step [1/s]
+  std::vector<double> steep_speed_;  ///< sliding speed at which a law is just resolved by the largest step [m/s]
+  std::vector<double> steep_fall_;   ///< what that speed falls by from level to level [m/s]
+  std::vector<int> slow_start_level_;  ///< of the longest step that follows the start of a slip
+  std::vector<double> over_limit_;     ///< 1 / static limit [1/N]
+
+  double begin_;
+  HybridPoint point_;
+  Eigen::VectorXd x_begin_, internal_begin_;
+  bool any_bristle_ = false;
+  std::vector<Eigen::Index> bristle_at_;  ///< index of each contact's bristle among the contacts' own states
+  std::vector<Event> events_;
+  std::vector<ContactMode> step_modes_;
+  int coarsest_ = 0;  ///< level of the largest step that resolves the drive
+  int level_ = 3, step_level_ = 0;
+  bool solved_ = false;   ///< forces_ hold a solution of the step of step_level_ that began at begin_
+  bool fresh_ = true;     ///< no step taken since the last event
+  double newton_change_;  ///< see kNewtonShare
+  int first_level_ = 0;   ///< of the last first step of a slip (one contact), with its
+  RadauTables::Vector8 first_shape_ = RadauTables::Vector8::Ones();  ///< forces by the force at its start
+  int stop_level_ = 0;  ///< at which the last slip was followed to its end: a step that ends inside gets no credit
+  std::vector<int> start_level_;  ///< remembered first step size after an event, by number of sticking contacts
+
+  // One step's scalars, contact after contact, eight nodes each.
+  Eigen::VectorXd free_, velocity_, forces_, drive_nodes_, bristle_nodes_;
+
+  WorkSums work_;
+  FlowStatistics statistics_;
+  Eigen::MatrixXd tangents_;
+};
+
+}  // namespace slipmode::dynamics

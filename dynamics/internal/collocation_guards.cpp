@@ -1,0 +1,160 @@
+#include "dynamics/internal/collocation_flow.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace slipmode::dynamics {
+namespace {
+
+/// An event's time is final when the next correction is below this share of the step.
+constexpr double kNegligibleShift = 1e-15;
+/// A stick force starts at its limit when it is this close (relative).
+constexpr double kAtLimit = 1e-10;
+/// Right after sliding has begun, a guard that vanishes within this share of a step is an error of interpolation.
+constexpr double kEarly = 1.0 / 64.0;
+/// Halvings tried to show that a stick force stays below its limit.
+constexpr int kMarginHalvings = 2;
+constexpr int kRefinements = 20;
+
+}  // namespace
+
+CollocationFlow::Guarded CollocationFlow::first_guard() const {
+  Guarded first{2.0, -1, false};
+  const auto consider = [&](const BernsteinPolynomial& p, int c) {
+    if (const auto root = first_root(p); root && root->at < first.theta) first = {root->at, c, root->touching};
+  };
+  const RadauTables& t = nodes_;
+  alignas(64) std::array<double, kNodes> guard;
+  for (int c = 0; c < nc_; ++c) {
+    const auto i = static_cast<std::size_t>(c);
+    const ContactForces& law = laws()[i];
+    if (!law.sticks() && !bristled(c)) continue;
+    BernsteinPolynomial p;
+    if (point_.modes[i] == ContactMode::kStick) {
+      const double most = kernels_.force_guard(t.bernstein7.data(), forces_.data() + kNodes * c, guard.data());
+      if (most < law.static_limit * (1.0 - kAtLimit)) continue;
+      p.degree = kNodes - 1;
+      for (const double sign : {1.0, -1.0}) {
+        std::array<double, kNodes> margin;
+        for (std::size_t k = 0; k < kNodes; ++k) margin[k] = law.static_limit - sign * guard[k];
+        if (std::abs(margin[0]) <= kAtLimit * law.static_limit) margin[0] = 0.0;  // on the guard: where to, shows next
+        if (stays_above(margin, 0.0, kMarginHalvings)) continue;
+        std::ranges::copy(margin, p.coefficient.begin());
+        consider(p, c);
+      }
+      continue;
+    }
+    const double sign = sign_of(point_.modes[i]);
+    const int multiplicity = point_.multiplicity[i];
+    if ((multiplicity > 0 || bristled(c)) && unmoved(c)) continue;
+    const double start =
+        multiplicity > 0
+            ? 0.0
+            : std::max(0.0, sign * (drive().velocity(begin_) - resolver_.contact_velocity(c, x_begin_.data())));
+    double least = kernels_.speed_guard(t.bernstein8.data(), t.bernstein8_start.data(), start, sign,
+                                        drive_nodes_.data() + kNodes * c, velocity_.data() + kNodes * c, guard.data());
+    if (multiplicity == 2) least = *std::min_element(guard.begin() + 1, guard.end());  // the first is zero: see below
+    if (least > 0.0) continue;
+    p.degree = kNodes;
+    p.coefficient[0] = start;
+    std::ranges::copy(guard, p.coefficient.begin() + 1);
+    // Zero by the order of contact, whatever rounding says.
+    std::fill_n(p.coefficient.begin(), multiplicity, 0.0);
+    consider(p, c);
+  }
+  return first;
+}
+
+bool CollocationFlow::unmoved(int c) const {
+  // So soon after its start that sliding has no speed beyond rounding, and its sign means nothing.
+  const double fastest =
+      (drive_nodes_.segment<kNodes>(kNodes * c) - velocity_.segment<kNodes>(kNodes * c)).cwiseAbs().maxCoeff();
+  return fastest <= kUnmoved * velocity_scale(c, x_begin_);
+}
+
+double CollocationFlow::velocity_scale(int c, const Eigen::VectorXd& x) const {
+  // Rounding of the time changes V; and where a bristle comes to rest, speeds are what forces in balance leave.
+  const double by_time = std::abs(drive().acceleration(begin_) * begin_);
+  const double by_way =
+      bristled(c) ? model_.fastest * model_.displacement_row.col(c).cwiseAbs().dot(x.cwiseAbs()) : 0.0;
+  return std::abs(drive().velocity(begin_)) + by_time + by_way +
+         model_.velocity_row.col(c).cwiseAbs().dot(x.cwiseAbs());
+}
+
+bool CollocationFlow::too_early(const Guarded& guard) const {
+  return guard.contact >= 0 && point_.multiplicity[static_cast<std::size_t>(guard.contact)] > 0 && guard.theta < kEarly;
+}
+
+double CollocationFlow::deepest_overshoot() const {
+  double deepest = 0.0;
+  for (int c = 0; c < nc_; ++c) {
+    const auto i = static_cast<std::size_t>(c);
+    if (laws()[i].kind != ContactForces::Kind::kStribeck || point_.modes[i] == ContactMode::kStick) continue;
+    const double sign = sign_of(point_.modes[i]);
+    for (int j = kNodes * c; j < kNodes * (c + 1); ++j)
+      deepest = std::max(deepest, laws()[i].alpha * sign * (velocity_(j) - drive_nodes_(j)));
+  }
+  return deepest;
+}
+
+void CollocationFlow::refine_event(const Guarded& guard, double& tau, Eigen::VectorXd& x) {
+  // Newton on the guard's exact value; the polynomial that announced it was only close.
+  if (guard.touching) return;
+  const double h = tables_.step(step_level_);
+  const int c = guard.contact;
+  const auto i = static_cast<std::size_t>(c);
+  double previous = 0.0;
+  for (int iteration = 0; iteration < kRefinements; ++iteration) {
+    const double a = drive_acceleration(begin_, tau), V = drive_velocity(begin_, tau);
+    const RadauTables::Vector8 basis = nodes_.lagrange(tau / h);
+    double value, rate, usual_rate;
+    if (point_.modes[i] == ContactMode::kStick) {
+      const double sign = forces_.segment<kNodes>(kNodes * c).dot(basis) > 0 ? 1.0 : -1.0;
+      value = laws()[i].static_limit - sign * stick_force(c, x, tau, basis);
+      rate = -sign * forces_.segment<kNodes>(kNodes * c).dot(nodes_.lagrange_slope(tau / h)) / h;
+      usual_rate = laws()[i].static_limit / h;
+    } else {
+      const double sign = sign_of(point_.modes[i]);
+      value = sign * (V - resolver_.contact_velocity(c, x.data()));
+      double acceleration =
+          kernels_.dot(model_.acceleration_row.col(c).data(), x.data(), 2 * model_.np) + model_.load_acceleration(c);
+      for (int d = 0; d < nc_; ++d)
+        acceleration += model_.mobility(c, d) * forces_.segment<kNodes>(kNodes * d).dot(basis);
+      rate = sign * (a - acceleration);
+      usual_rate = model_.mobility(c, c) * laws()[i].static_limit;
+    }
+    const double shift = -value / rate;
+    if (!(std::abs(shift) < 1e-2 * h) || tau + shift <= 0.0) return;
+    if (std::abs(shift) <= kNegligibleShift * h) {
+      tau += shift;
+      return;
+    }
+    within_.shift(tau, shift, x.data());
+    tau += shift;
+    // Newton squares its error; the factor shows in two shifts, and before that is bounded by a usual curvature.
+    const double factor = previous > 0.0 ? std::abs(shift) / (previous * previous) : std::abs(usual_rate / rate) / h;
+    if (factor * shift * shift <= kNegligibleShift * h) return;
+    previous = std::abs(shift);
+  }
+}
+
+double CollocationFlow::stick_force(int c, const Eigen::VectorXd& x, double tau,
+                                    const RadauTables::Vector8& basis) const {
+  const double a = drive_acceleration(begin_, tau);
+  if (nc_ == 1)
+    return (a - kernels_.dot(model_.acceleration_row.data(), x.data(), 2 * model_.np) - model_.load_acceleration(0)) /
+           model_.mobility(0, 0);
+  Eigen::VectorXd force(nc_);
+  std::vector<bool> stuck(point_.modes.size());
+  for (int d = 0; d < nc_; ++d) {
+    stuck[static_cast<std::size_t>(d)] = point_.modes[static_cast<std::size_t>(d)] == ContactMode::kStick;
+    force(d) = forces_.segment<kNodes>(kNodes * d).dot(basis);
+  }
+  stick_forces({model_, laws(), x.data(), begin_ + tau, drive_velocity(begin_, tau), a}, stuck, force);
+  return force(c);
+}
+
+}  // namespace slipmode::dynamics

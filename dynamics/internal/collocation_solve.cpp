@@ -1,0 +1,245 @@
+#include <slipmode/core/decompositions.hpp>
+#include "dynamics/internal/collocation_flow.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace slipmode::dynamics {
+namespace {
+
+constexpr int kNewtonLimit = 12;
+/// Of a single contact's forces Newton may leave this share of the tolerance wrong, and no more than the other of the
+/// static limit: errors of all steps add up, and where a law's steepness limits the steps they would be all there is.
+constexpr double kForceShare = 5e-3, kLargestForceError = 1e-8;
+
+}  // namespace
+
+void CollocationFlow::guess_forces(int level, bool retry) {
+  // A rejected step's own solution; the last solution continued; the way the last slip began; or the force at the
+  // start.
+  const RadauTables& t = nodes_;
+  const int finer = level - step_level_;
+  ahead_ = nullptr;
+  for (int c = 0; c < nc_; ++c) {
+    double* forces = forces_.data() + kNodes * c;
+    const auto halve = [&](int times) {
+      for (int halving = 0; halving < times; ++halving) kernels_.matrix8(t.left_half.data(), forces, forces);
+    };
+    if (solved_ && retry) {
+      halve(finer);
+    } else if (solved_ && finer >= -1 && finer + 1 < static_cast<int>(t.following.size())) {
+      const double* ahead = t.following[static_cast<std::size_t>(finer + 1)].data();
+      const auto i = static_cast<std::size_t>(c);
+      if (laws()[i].kind == ContactForces::Kind::kStribeck && single_ && point_.modes[i] != ContactMode::kStick)
+        ahead_ = ahead;  // sliding speed is smoother than the force, and continues better
+      else
+        kernels_.matrix8(ahead, forces, forces);
+    } else if (fresh_ && !retry && nc_ == 1) {
+      forces_ = point_.force(0) * first_shape_;
+      halve(level - first_level_);
+    } else {
+      Eigen::Map<RadauTables::Vector8>(forces).setConstant(point_.force(c));
+    }
+  }
+}
+
+int CollocationFlow::foreseen_level(int level) const {
+  // Sliding slows down ever faster where the law rises steeply: look ahead by a parabola through the last step's
+  // velocities and keep α (μ_s − μ_k) N e^{−αv} × mobility × step within what eight nodes resolve. Solved for v once,
+  // so that no exponential is needed here.
+  if (!solved_) return level;
+  const auto& node = nodes_.node;
+  static const double over12 = 1.0 / (node(5) - node(2)), over23 = 1.0 / (node(7) - node(5)),
+                      over13 = 1.0 / (node(7) - node(2));
+  for (int c = 0; c < nc_; ++c) {
+    const auto i = static_cast<std::size_t>(c);
+    const ContactForces& law = laws()[i];
+    if (law.kind != ContactForces::Kind::kStribeck || point_.modes[i] == ContactMode::kStick) continue;
+    const double sign = sign_of(point_.modes[i]);
+    const auto speed = [&](int j) { return sign * (drive_nodes_(kNodes * c + j) - velocity_(kNodes * c + j)); };
+    const double s1 = speed(2), s2 = speed(5), s3 = speed(7);
+    const double d12 = (s2 - s1) * over12, d23 = (s3 - s2) * over23;
+    const double bend = (d23 - d12) * over13, slope = d23 + bend * (node(7) - node(5));
+    double ahead = std::ldexp(1.0, step_level_ - level), enough = steep_speed_[i] - level * steep_fall_[i];
+    for (; level + 1 < StepTables::kLevels; ++level, ahead *= 0.5, enough -= steep_fall_[i])
+      if (std::max(0.0, s3 + ahead * (slope + bend * ahead)) >= enough) break;
+    if (s3 + ahead * (slope + bend * ahead) <= 0.0) level = std::max(level, stop_level_);
+  }
+  return level;
+}
+
+bool CollocationFlow::solve_forces(const Collocation& table, double h) {
+  const RadauTables::Vector8 drive_speed = drive_velocities(begin_, h);
+  for (int c = 0; c < nc_; ++c) drive_nodes_.segment<kNodes>(kNodes * c) = drive_speed;
+  if (single_) return solve_single(table);
+  table.free_velocities(x_begin_.data(), free_.data());
+  return solve_coupled(table, h);
+}
+
+bool CollocationFlow::solve_single(const Collocation& table) {
+  const ContactForces& law = laws()[0];
+  if (law.kind == ContactForces::Kind::kSmooth) return solve_single_smooth(table);
+  const double sign = sign_of(point_.modes[0]);
+  const kernels::Trial trial{model_.n,
+                             model_.np,
+                             table.free.data(),
+                             table.load.data(),
+                             table.kernel.data(),
+                             table.kernel_norm,
+                             x_begin_.data(),
+                             drive_nodes_.data(),
+                             sign,
+                             law.kinetic,
+                             law.drop,
+                             law.alpha,
+                             ahead_,
+                             std::min(kLargestForceError, kForceShare * options_.tolerance),
+                             forces_.data(),
+                             velocity_.data()};
+  if (point_.modes[0] == ContactMode::kStick) {
+    kernels_.solve_stick(trial, table.kernel_inverse.data());
+    return true;
+  }
+  if (!law.is_constant()) return kernels_.solve_stribeck(trial);
+  forces_.setConstant(sign * law.kinetic);
+  kernels_.solve_sliding(trial);
+  return true;
+}
+
+bool CollocationFlow::solve_single_smooth(const Collocation& table) {
+  const ContactForces& law = laws()[0];
+  table.free_velocities(x_begin_.data(), free_.data());
+  RadauTables::Vector8 force, slope, delta, residual, v = free_ + table.kernel * forces_;
+  for (int iteration = 0; iteration < kNewtonLimit; ++iteration) {
+    for (int j = 0; j < kNodes; ++j) {
+      force(j) = law.smooth(drive_nodes_(j) - v(j), slope(j));
+      slope(j) = -slope(j);
+    }
+    residual = free_ + table.kernel * force - v;
+    if (!kernels_.solve_nodes(table.kernel.data(), slope.data(), residual.data(), delta.data())) return false;
+    v += delta;
+    const double change = delta.cwiseAbs().maxCoeff();
+    if (!(change < 1e12)) return false;
+    if (change < newton_change_ * law.epsilon || change < 1e-14) {
+      forces_ = force + slope.cwiseProduct(delta);
+      velocity_ = v;
+      return true;
+    }
+  }
+  return false;
+}
+
+bool CollocationFlow::solve_coupled(const Collocation& table, double h) {
+  const Eigen::Index size = kNodes * nc_;
+  const auto block = [](auto& vector, int c) { return vector.template segment<kNodes>(kNodes * c); };
+  std::vector<bool> stuck(static_cast<std::size_t>(nc_));
+  bool any_stuck = false, all_stuck = true, any_nonlinear = false;
+  for (std::size_t c = 0; c < stuck.size(); ++c) {
+    stuck[c] = point_.modes[c] == ContactMode::kStick;
+    any_stuck |= stuck[c];
+    all_stuck &= stuck[c];
+    any_nonlinear |= !stuck[c] && !laws()[c].is_constant();
+  }
+  if (all_stuck) {
+    forces_.noalias() = table.kernel_inverse * (drive_nodes_ - free_);
+    velocity_ = drive_nodes_;
+    return true;
+  }
+  for (int c = 0; c < nc_; ++c) {
+    const auto i = static_cast<std::size_t>(c);
+    if (bristled(c)) continue;
+    block(forces_, c)
+        .setConstant(laws()[i].is_constant() && !stuck[i] ? sign_of(point_.modes[i]) * laws()[i].kinetic
+                                                          : point_.force(c));
+  }
+  if (!any_stuck && !any_nonlinear) {
+    velocity_.noalias() = free_ + table.kernel * forces_;
+    return true;
+  }
+
+  Eigen::MatrixXd jacobian(size, size);
+  Eigen::VectorXd residual(size);
+  for (int iteration = 0; iteration < kNewtonLimit; ++iteration) {
+    // Sliding contacts: λ − law(v) = 0. Sticking ones: v − v_drive = 0.
+    velocity_.noalias() = free_ + table.kernel * forces_;
+    double curvature = 0.0;
+    for (int c = 0; c < nc_; ++c) {
+      const auto i = static_cast<std::size_t>(c);
+      const ContactForces& law = laws()[i];
+      if (bristled(c)) {
+        const BristleStep step = solve_bristle(law.bristle, sign_of(point_.modes[i]), internal_begin_(bristle_at_[i]),
+                                               h, block(drive_nodes_, c) - block(velocity_, c));
+        block(residual, c) = step.force - block(forces_, c);
+        jacobian.middleRows<kNodes>(kNodes * c).noalias() = step.slope * table.kernel.middleRows<kNodes>(kNodes * c);
+        jacobian.block<kNodes, kNodes>(kNodes * c, kNodes * c) += RadauTables::Matrix8::Identity();
+        block(bristle_nodes_, c) = step.z;
+        continue;
+      }
+      for (int j = 0; j < kNodes; ++j) {
+        const Eigen::Index row = kNodes * c + j;
+        if (stuck[i]) {
+          residual(row) = drive_nodes_(row) - velocity_(row);
+          jacobian.row(row) = table.kernel.row(row);
+          continue;
+        }
+        double lambda, slope;  // dλ/dv
+        const double s = drive_nodes_(row) - velocity_(row);
+        if (!law.sticks()) {
+          lambda = law.smooth(s, slope);
+          slope = -slope;
+        } else {
+          const double sign = sign_of(point_.modes[i]), scaled = law.alpha * sign * s;
+          const bool inside = scaled > -2 * kLargestOvershoot;
+          const double e = law.drop * std::exp(inside ? -scaled : 2 * kLargestOvershoot);
+          lambda = sign * (law.kinetic + e);
+          slope = inside ? law.alpha * e : 0.0;
+        }
+        residual(row) = lambda - forces_(row);
+        jacobian.row(row) = -slope * table.kernel.row(row);
+        jacobian(row, row) += 1.0;
+      }
+    }
+    const Eigen::VectorXd delta = jacobian.partialPivLu().solve(residual);
+    if (!delta.allFinite()) return false;
+    forces_ += delta;
+    const Eigen::VectorXd dv = table.kernel * delta;
+    velocity_ += dv;
+    for (int c = 0; c < nc_; ++c) {
+      const ContactForces& law = laws()[static_cast<std::size_t>(c)];
+      if (law.kind == ContactForces::Kind::kStribeck || law.kind == ContactForces::Kind::kSmooth) {
+        const double rate = law.kind == ContactForces::Kind::kSmooth ? 1.0 / law.epsilon : law.alpha;
+        if (!stuck[static_cast<std::size_t>(c)])
+          curvature = std::max(curvature, rate * block(dv, c).cwiseAbs().maxCoeff());
+      } else if (law.kind == ContactForces::Kind::kBristle) {
+        if (law.bristle.drop > 0.0)
+          curvature = std::max(curvature, block(dv, c).cwiseAbs().maxCoeff() / law.bristle.stribeck_speed);
+        curvature = std::max(curvature, block(delta, c).cwiseAbs().maxCoeff() / law.static_limit);
+      }
+    }
+    if (!any_nonlinear || curvature < newton_change_) {
+      collocate_bristles(h);
+      return true;
+    }
+  }
+  return false;
+}
+
+double CollocationFlow::force_error() const {
+  double worst = 0.0;
+  for (int c = 0; c < nc_; ++c) {
+    const auto i = static_cast<std::size_t>(c);
+    if (laws()[i].kind == ContactForces::Kind::kFree) continue;
+    double sixth, seventh;
+    kernels_.two_dots(nodes_.legendre6.data(), nodes_.legendre7.data(), forces_.data() + kNodes * c, sixth, seventh);
+    sixth = std::abs(sixth);
+    seventh = std::abs(seventh);
+    // The first coefficient left out, if the sequence keeps falling as it does.
+    const double next = seventh < sixth ? seventh * seventh / sixth : seventh;
+    worst = std::max(worst, next * over_limit_[i]);
+    if (bristled(c)) worst = std::max(worst, bristle_error(c) * tables_.step(0) / tables_.step(step_level_));
+  }
+  return worst;
+}
+
+}  // namespace slipmode::dynamics

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <slipmode/dynamics/modal_model.hpp>
+#include <slipmode/dynamics/regime.hpp>
+
+#include <Eigen/Core>
+#include <complex>
+
+namespace slipmode::dynamics {
+
+/// What a regime does under harmonic inputs, as phasors: value = Re(phasor · e^{iωt}).
+struct HarmonicResponse {
+  Eigen::VectorXcd slipping;     ///< state of the slipping model [2np_s]
+  Eigen::VectorXcd force;        ///< λ of each contact [nc]
+  Eigen::VectorXcd oscillators;  ///< ζ, ζ̇ of the normal oscillators, contact after contact [2k]
+};
+
+/// The steady response at one frequency, by the receptances of the slipping structure at its contacts,
+/// H = Uᵀ(iω − G)⁻¹B: with λ_c = Z_c (d_c − y_c),
+///
+///     λ_c / Z_c + Σ_d H_cd λ_d = d_c − (response to the forces)_c.
+///
+/// Where a contact is much stiffer than the structure, d − y is a small difference of large numbers, and what is left
+/// of λ in phase with the velocity, the power, smaller still. Here nothing cancels.
+/// @param way     of the counterpart, d of the contacts that follow it
+/// @param forces  along the directions of a force drive [nk]
+/// Cost O(n nc²). Source: docs/theory/compliant-contacts.md, section 3.
+[[nodiscard]] HarmonicResponse harmonic_response(const Regime& regime, const ModalModel& slipping, double omega,
+                                                 std::complex<double> way, const Eigen::VectorXcd& forces);
+
+}  // namespace slipmode::dynamics

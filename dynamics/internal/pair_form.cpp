@@ -1,0 +1,124 @@
+#include "dynamics/internal/pair_form.hpp"
+
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/errors.hpp>
+#include <slipmode/core/none.hpp>
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+namespace slipmode::dynamics {
+namespace {
+
+/// Above this condition number of its eigenvectors the matrix is treated as defective.
+constexpr double kLargestCondition = 1e10;
+/// Modes slower than this share of the fastest are scaled like it: their displacement needs no finer balance.
+constexpr double kSmallestScale = 1e-8;
+
+/// Largest error of a state that is turned into pairs and back.
+constexpr double kLargestGap = 1e-7;
+
+}  // namespace
+
+PairForm pair_form(const Eigen::MatrixXd& A) {
+  const Eigen::Index n = A.rows() / 2;
+  PairForm form;
+  for (auto* g : {&form.g11, &form.g12, &form.g21, &form.g22}) *g = Eigen::VectorXd::Zero(n);
+  form.T.resize(2 * n, 2 * n);
+  Eigen::Index pair = 0;
+  const auto put = [&](const Eigen::VectorXd& first, const Eigen::VectorXd& second, double a, double b, double c,
+                       double d) {
+    form.T.col(pair) = first;
+    form.T.col(n + pair) = second;
+    form.g11(pair) = a;
+    form.g12(pair) = b;
+    form.g21(pair) = c;
+    form.g22(pair) = d;
+    ++pair;
+  };
+
+  // Pairs of rows from large to small: QR then keeps the digits of the small eigenvalues. Rigid-body displacements are
+  // taken out: rounding would leave their eigenvalues a little off zero.
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(n)), shifted, rest;
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  const Eigen::VectorXd size =
+      A.topRows(n).rowwise().lpNorm<Eigen::Infinity>().cwiseMax(A.bottomRows(n).rowwise().lpNorm<Eigen::Infinity>());
+  std::stable_sort(order.begin(), order.end(), [&](Eigen::Index i, Eigen::Index j) { return size(i) > size(j); });
+  for (const Eigen::Index i : order) {
+    const bool rigid = A.col(i).isZero(0.0);
+    if (rigid && A.row(n + i).isZero(0.0) && A(i, n + i) != 0.0 && A.col(n + i).lpNorm<1>() == std::abs(A(i, n + i))) {
+      put(Eigen::VectorXd::Unit(2 * n, i), Eigen::VectorXd::Unit(2 * n, n + i), 0.0, A(i, n + i), 0.0, 0.0);
+      continue;
+    }
+    if (rigid) shifted.push_back(i);
+    if (!rigid) rest.push_back(i);
+    rest.push_back(n + i);
+  }
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(Eigen::MatrixXd(A(rest, rest)));
+  if (solver.info() != Eigen::Success)
+    throw NumericalFailure("eigenvalues of the damped structure did not converge", kNone, {}, kNone);
+  const Eigen::VectorXcd values = solver.eigenvalues();
+  Eigen::MatrixXcd vectors = Eigen::MatrixXcd::Zero(2 * n, values.size());
+  vectors(rest, Eigen::all) = solver.eigenvectors();
+  if (!shifted.empty())
+    vectors(shifted, Eigen::all) = A(shifted, rest) * solver.eigenvectors() * values.cwiseInverse().asDiagonal();
+
+  struct Real {
+    Eigen::VectorXd vector;
+    double value;
+  };
+  std::vector<Real> reals;
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    const auto mu = values(k);
+    if (mu.imag() > 0)
+      put(vectors.col(k).real(), vectors.col(k).imag(), mu.real(), mu.imag(), -mu.imag(), mu.real());
+    else if (mu.imag() == 0)
+      reals.push_back({vectors.col(k).real(), mu.real()});
+  }
+  for (const Eigen::Index i : shifted) reals.push_back({Eigen::VectorXd::Unit(2 * n, i), 0.0});
+  for (std::size_t k = 0; k + 1 < reals.size(); k += 2)
+    put(reals[k].vector, reals[k + 1].vector, reals[k].value, 0.0, 0.0, reals[k + 1].value);
+
+  const Eigen::VectorXd singular = Eigen::BDCSVD<Eigen::MatrixXd>(form.T).singularValues();
+  const double condition = singular(0) / singular(2 * n - 1);
+  if (!(condition < kLargestCondition))
+    throw NumericalFailure("the damping makes two modes coincide (condition number of the eigenvectors " +
+                               std::to_string(condition) +
+                               ", at most 1e10 is workable): change the damping or a contact's stiffness slightly",
+                           kNone, {}, condition);
+  form.T_inverse = form.T.inverse();
+  return form;
+}
+
+void check_pair_form(const PairForm& form, const Eigen::VectorXd& scale) {
+  const Eigen::Index n = scale.size();
+  const double fastest = scale.maxCoeff();
+  Eigen::MatrixXd gap = form.T * form.T_inverse - Eigen::MatrixXd::Identity(2 * n, 2 * n);
+  gap.topRows(n).array().colwise() *= fastest / scale.array();
+  gap.leftCols(n).array().rowwise() *= scale.transpose().array() / fastest;
+  const double error = gap.cwiseAbs().maxCoeff();
+  if (!(error <= kLargestGap))
+    throw NumericalFailure(
+        fmt::format(
+            "modes of the damped structure give a state back with an error of {:.2g}, at most {:.0g} is workable: "
+            "parts that float and hardly feel their damping; remove what no force reaches, or damp or hold it "
+            "more",
+            error, kLargestGap),
+        kNone, {}, error);
+}
+
+BalancedState balanced_state(const Eigen::VectorXd& omega, const Eigen::MatrixXd& damping,
+                             const Eigen::VectorXd& coupling) {
+  const Eigen::Index n = omega.size();
+  const double fastest = std::max({omega.maxCoeff(), damping.diagonal().maxCoeff(), 1e-300});
+  BalancedState state{omega.cwiseMax(kSmallestScale * fastest), Eigen::MatrixXd::Zero(2 * n, 2 * n)};
+  if (coupling.size() > 0) state.scale = state.scale.cwiseMax(coupling);
+  state.A.topRightCorner(n, n).diagonal() = state.scale;
+  state.A.bottomLeftCorner(n, n).diagonal() = -omega.cwiseAbs2().cwiseQuotient(state.scale);
+  state.A.bottomRightCorner(n, n) = -damping;
+  return state;
+}
+
+}  // namespace slipmode::dynamics

@@ -1,0 +1,289 @@
+#include "dynamics/internal/regime_build.hpp"
+
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/fem/modes.hpp>
+#include "dynamics/internal/pair_form.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace slipmode::dynamics {
+namespace {
+
+/// Natural frequencies below this share of the fastest are rigid-body motion.
+constexpr double kRigid = 1e-8;
+/// Rounding: damping counts as diagonal in the regime's modes when the rest is below this share of it, and a direction
+/// as projected out when no more than this share of it is left.
+constexpr double kRounding = 1e-12;
+
+/// Rows of a [2m x k] matrix spread to padded pairs [2np x k].
+Eigen::MatrixXd spread(const Eigen::MatrixXd& rows, Eigen::Index np) {
+  const Eigen::Index m = rows.rows() / 2;
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(2 * np, rows.cols());
+  out.topRows(m) = rows.topRows(m);
+  out.middleRows(np, m) = rows.bottomRows(m);
+  return out;
+}
+
+Eigen::MatrixXd spread_columns(const Eigen::MatrixXd& columns, Eigen::Index np) {
+  return spread(columns.transpose(), np).transpose();
+}
+
+}  // namespace
+
+RegimeBuilder::RegimeBuilder(const HybridSystem& system, const ModalModel& slipping,
+                             const std::vector<ContactRole>& roles)
+    : slipping_(slipping),
+      modal_(slipping.modal),
+      roles_(roles),
+      rayleigh_(slipping.rayleigh),
+      n_(slipping.n),
+      nc_(static_cast<Eigen::Index>(roles.size())),
+      nk_(modal_.forces.cols()),
+      ni_(nc_ + 3 + nk_),
+      V_(nc_),
+      one_(nc_ + 2),
+      friction_(Eigen::VectorXd::Zero(nc_)),
+      K_(modal_.omega.cwiseAbs2().asDiagonal()),
+      C_(modal_.damping),
+      spring_(Eigen::VectorXd::Zero(nc_)),
+      damper_(Eigen::VectorXd::Zero(nc_)) {
+  for (Eigen::Index c = 0; c < nc_; ++c) {
+    const friction::Contact& contact = system.contacts()[static_cast<std::size_t>(c)];
+    laws_.push_back(contact_forces(contact));
+    loads_.emplace_back(contact);
+    if (role(c) == ContactRole::kHeld) held_.push_back(c);
+    if (load(c).oscillates()) oscillators_.push_back(c);
+  }
+  couple_contacts();
+  eliminate_held();
+}
+
+void RegimeBuilder::couple_contacts() {
+  for (Eigen::Index c = 0; c < nc_; ++c) {
+    const auto w = modal_.directions.col(c);
+    if (role(c) == ContactRole::kSprung) spring_(c) = law(c).stiffness;
+    if (role(c) == ContactRole::kLeftStop || role(c) == ContactRole::kRightStop) {
+      spring_(c) = stop(c)->stiffness;
+      damper_(c) = stop(c)->damping;
+      C_ += damper_(c) * w * w.transpose();
+    }
+    if (role(c) == ContactRole::kSlidingNegative) friction_(c) = -law(c).kinetic_coefficient(-1.0);
+    if (role(c) == ContactRole::kSlidingPositive) friction_(c) = law(c).kinetic_coefficient(1.0);
+    if (friction_(c) != 0.0) {
+      spring_(c) -= friction_(c) * load(c).y;
+      if (load(c).v != 0.0) C_ -= friction_(c) * load(c).v * w * w.transpose();
+      symmetric_ &= load(c).v == 0.0;
+    }
+    symmetric_ &= spring_(c) >= 0.0;
+    if (spring_(c) != 0.0) K_ += spring_(c) * w * w.transpose();
+  }
+  symmetric_ &= oscillators_.empty();
+  bare_ = symmetric_ && held_.empty() && spring_.isZero(0.0) && damper_.isZero(0.0);
+}
+
+const friction::Stop* RegimeBuilder::stop(Eigen::Index c) const {
+  const ContactRole is = role(c);
+  if (is == ContactRole::kLeftStop || is == ContactRole::kLeftFlight) return &*law(c).clearance.left;
+  if (is == ContactRole::kRightStop || is == ContactRole::kRightFlight) return &*law(c).clearance.right;
+  return nullptr;
+}
+
+void RegimeBuilder::eliminate_held() {
+  // η = Z y + P u: Z orthonormal and orthogonal to the held directions, P their pseudo-inverse.
+  const auto s = static_cast<Eigen::Index>(held_.size());
+  Z_ = Eigen::MatrixXd::Identity(n_, n_);
+  P_ = Eigen::MatrixXd::Zero(n_, ni_);
+  if (s > 0) {
+    const Eigen::MatrixXd W = modal_.directions(Eigen::all, held_);
+    const Eigen::MatrixXd Q = Eigen::HouseholderQR<Eigen::MatrixXd>(W).householderQ();
+    Z_ = Q.rightCols(n_ - s).eval();
+    const Eigen::MatrixXd pseudo = W * (W.transpose() * W).inverse();
+    for (Eigen::Index k = 0; k < s; ++k) P_.col(held_[static_cast<std::size_t>(k)]) = pseudo.col(k);
+  }
+  P_all_ = P_.rowwise().sum();
+}
+
+void RegimeBuilder::set_blocks(ModalModel& pairs, const PairForm& form) const {
+  pairs.proportional = false;
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(pairs.np);
+  pairs.g11 = pairs.g12 = pairs.g21 = pairs.g22 = none;
+  pairs.g11.head(pairs.n) = form.g11;
+  pairs.g12.head(pairs.n) = form.g12;
+  pairs.g21.head(pairs.n) = form.g21;
+  pairs.g22.head(pairs.n) = form.g22;
+}
+
+void RegimeBuilder::reuse_slipping_pairs(Regime& out) {
+  ModalModel& pairs = out.pairs;
+  pairs.n = slipping_.n;
+  pairs.np = slipping_.np;
+  pairs.g11 = slipping_.g11;
+  pairs.g12 = slipping_.g12;
+  pairs.g21 = slipping_.g21;
+  pairs.g22 = slipping_.g22;
+  pairs.proportional = slipping_.proportional;
+  pairs.omega = slipping_.omega;
+  pairs.damping = slipping_.damping;
+  pairs.dissipation_root = slipping_.dissipation_root;
+  at_.to_y = modal_.to_eta;
+  at_.to_rate = modal_.to_eta_rate;
+  at_.from_y = modal_.from_eta;
+  at_.from_rate = modal_.from_eta_rate;
+}
+
+fem::Modes RegimeBuilder::base_modes() const {
+  // The square root of the stiffness, not the stiffness, goes into the decomposition: low frequencies keep their
+  // digits.
+  const Eigen::Index m = Z_.cols();
+  if (m == 0) return {Eigen::VectorXd(0), Eigen::MatrixXd(0, 0)};
+  std::vector<Eigen::Index> sprung;
+  for (Eigen::Index c = 0; c < nc_; ++c)
+    if (spring_(c) > 0.0) sprung.push_back(c);
+  Eigen::MatrixXd root(n_ + static_cast<Eigen::Index>(sprung.size()), m);
+  root.topRows(n_) = modal_.omega.asDiagonal() * Z_;
+  for (std::size_t k = 0; k < sprung.size(); ++k)
+    root.row(n_ + static_cast<Eigen::Index>(k)) =
+        std::sqrt(spring_(sprung[k])) * (modal_.directions.col(sprung[k]).transpose() * Z_);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(root, Eigen::ComputeThinV);
+  fem::Modes modes{svd.singularValues().reverse(), svd.matrixV().rowwise().reverse()};
+  const double slowest = kRigid * modes.omega.maxCoeff();
+  for (double& w : modes.omega)
+    if (w <= slowest) w = 0.0;
+  return modes;
+}
+
+void RegimeBuilder::make_symmetric_pairs(Regime& out) {
+  const Eigen::Index m = Z_.cols();
+  auto [omega, shapes] = base_modes();
+  ModalModel& pairs = out.pairs;
+  Eigen::MatrixXd D = shapes.transpose() * (Z_.transpose() * C_ * Z_) * shapes;
+  if ((D - D.transpose()).norm() <= kRounding * D.norm()) D = (D + D.transpose()).eval() / 2.0;
+  separate_rigid_modes(omega, shapes, D);
+  const Eigen::VectorXd diagonal = D.diagonal();
+  const bool kept = rayleigh_ && spring_.isZero(0.0) && damper_.isZero(0.0);
+  const Eigen::MatrixXd no_rate = Eigen::MatrixXd::Zero(m, m);
+  if (kept || (D - Eigen::MatrixXd(diagonal.asDiagonal())).norm() <= kRounding * D.norm()) {
+    pairs.proportional = true;
+    pairs.omega = pairs.damping = pairs.g11 = pairs.g12 = pairs.g21 = pairs.g22 = Eigen::VectorXd::Zero(pairs.np);
+    pairs.omega.head(m) = omega;
+    pairs.damping.head(m) =
+        kept ? Eigen::VectorXd(rayleigh_->mass + rayleigh_->stiffness * omega.array().square()) : diagonal;
+    pairs.g12.head(m).setOnes();
+    pairs.g21 = -pairs.omega.cwiseAbs2();
+    pairs.g22 = -pairs.damping;
+    at_.to_y = spread_columns((Eigen::MatrixXd(m, 2 * m) << shapes, no_rate).finished(), pairs.np);
+    at_.to_rate = spread_columns((Eigen::MatrixXd(m, 2 * m) << no_rate, shapes).finished(), pairs.np);
+    at_.from_y = at_.to_y.transpose();
+    at_.from_rate = at_.to_rate.transpose();
+    return;
+  }
+  const BalancedState balanced = balanced_state(omega, D);
+  const PairForm form = pair_form(balanced.A);
+  check_pair_form(form, balanced.scale);
+  set_blocks(pairs, form);
+  const Eigen::VectorXd inverse_scale = balanced.scale.cwiseInverse();
+  at_.to_y = spread_columns(shapes * inverse_scale.asDiagonal() * form.T.topRows(m), pairs.np);
+  at_.to_rate = spread_columns(shapes * form.T.bottomRows(m), pairs.np);
+  at_.from_y = spread(form.T_inverse.leftCols(m) * balanced.scale.asDiagonal() * shapes.transpose(), pairs.np);
+  at_.from_rate = spread(form.T_inverse.rightCols(m) * shapes.transpose(), pairs.np);
+}
+
+void RegimeBuilder::make_general_pairs(Regime& out) {
+  // First states: scaled displacements of the modes without what is not symmetric or not positive, then scaled ζ;
+  // second states: their rates.
+  const auto m = Z_.cols(), k = static_cast<Eigen::Index>(oscillators_.size()), N = m + k;
+  auto [base_omega, shapes] = base_modes();
+  Eigen::VectorXd omega(N);
+  omega.head(m) = base_omega;
+  for (Eigen::Index j = 0; j < k; ++j)
+    omega(m + j) = std::sqrt(load(oscillators_[static_cast<std::size_t>(j)]).stiffness);
+  Eigen::MatrixXd own_damping = shapes.transpose() * (Z_.transpose() * C_ * Z_) * shapes;
+  Eigen::MatrixXd W = Eigen::MatrixXd::Zero(m, nc_);  // of the contacts that add what is not in the base modes
+  for (Eigen::Index c = 0; c < nc_; ++c) {
+    if (!(spring_(c) < 0.0 || load(c).oscillates())) continue;
+    const auto w = modal_.directions.col(c);
+    const Eigen::VectorXd moved = Z_.transpose() * w;
+    // A held contact does not move. What the projection leaves of it is rounding, which scaled up would couple.
+    if (moved.norm() > kRounding * w.norm()) W.col(c) = shapes.transpose() * moved;
+  }
+  separate_rigid_modes(base_omega, shapes, own_damping, &W);
+  Eigen::MatrixXd damping = Eigen::MatrixXd::Zero(N, N);
+  damping.topLeftCorner(m, m) = own_damping;
+  Eigen::VectorXd coupling = Eigen::VectorXd::Zero(N);  // squared
+  for (Eigen::Index c = 0; c < nc_; ++c) {
+    const Eigen::VectorXd w = W.col(c).cwiseAbs();
+    if (spring_(c) < 0.0) coupling.head(m) = coupling.head(m).cwiseMax(-spring_(c) * w.norm() * w);
+    if (load(c).oscillates()) coupling.head(m) = coupling.head(m).cwiseMax(std::abs(load(c).lift) * w);
+  }
+  BalancedState state = balanced_state(omega, damping, coupling.cwiseSqrt());
+  Eigen::MatrixXd& A = state.A;
+  for (Eigen::Index c = 0; c < nc_; ++c)
+    if (spring_(c) < 0.0)
+      A.block(N, 0, m, m) -= spring_(c) * W.col(c) * W.col(c).cwiseQuotient(state.scale.head(m)).transpose();
+  for (Eigen::Index j = 0; j < k; ++j) {
+    const Eigen::Index c = oscillators_[static_cast<std::size_t>(j)];
+    const LoadForm& own = load(c);
+    const auto w = W.col(c);
+    A(N + m + j, N + m + j) = -own.damping;
+    A.block(N + m + j, 0, 1, m) += own.lift * w.cwiseQuotient(state.scale.head(m)).transpose();
+    A.block(N + m + j, N, 1, m) += own.lift_rate * w.transpose();
+    A.block(N, m + j, m, 1) += friction_(c) * own.z / state.scale(m + j) * w;
+    A.block(N, N + m + j, m, 1) += friction_(c) * own.z_rate * w;
+  }
+  const PairForm form = pair_form(A);
+  check_pair_form(form, state.scale);
+  ModalModel& pairs = out.pairs;
+  set_blocks(pairs, form);
+  const Eigen::VectorXd inverse_scale = state.scale.cwiseInverse();
+  const Eigen::MatrixXd first = inverse_scale.asDiagonal() * form.T.topRows(N), second = form.T.bottomRows(N);
+  const Eigen::MatrixXd from_first = form.T_inverse.leftCols(N) * state.scale.asDiagonal();
+  const Eigen::MatrixXd from_second = form.T_inverse.rightCols(N);
+  at_.to_y = spread_columns(shapes * first.topRows(m), pairs.np);
+  at_.to_rate = spread_columns(shapes * second.topRows(m), pairs.np);
+  at_.to_zeta = spread_columns(first.bottomRows(k), pairs.np);
+  at_.to_zeta_rate = spread_columns(second.bottomRows(k), pairs.np);
+  at_.from_y = spread(from_first.leftCols(m) * shapes.transpose(), pairs.np);
+  at_.from_rate = spread(from_second.leftCols(m) * shapes.transpose(), pairs.np);
+  at_.from_zeta = spread(from_first.rightCols(k), pairs.np);
+  at_.from_zeta_rate = spread(from_second.rightCols(k), pairs.np);
+}
+
+void RegimeBuilder::make_pairs(Regime& out) {
+  ModalModel& pairs = out.pairs;
+  const auto m = Z_.cols(), k = static_cast<Eigen::Index>(oscillators_.size());
+  pairs.n = m + k;
+  pairs.np = padded(pairs.n);
+  at_.to_zeta = at_.to_zeta_rate = Eigen::MatrixXd::Zero(k, 2 * pairs.np);
+  at_.from_zeta = at_.from_zeta_rate = Eigen::MatrixXd::Zero(2 * pairs.np, k);
+  if (pairs.n == 0) {
+    for (auto* g : {&pairs.g11, &pairs.g12, &pairs.g21, &pairs.g22}) *g = Eigen::VectorXd::Zero(pairs.np);
+    at_.to_y = at_.to_rate = Eigen::MatrixXd::Zero(0, 2 * pairs.np);
+    at_.from_y = at_.from_rate = Eigen::MatrixXd::Zero(2 * pairs.np, 0);
+  } else if (bare_) {
+    reuse_slipping_pairs(out);
+  } else if (symmetric_) {
+    make_symmetric_pairs(out);
+  } else {
+    make_general_pairs(out);
+  }
+  pairs.measure_rates();
+  if ((!pairs.proportional || !damper_.isZero(0.0)) && !bare_ && pairs.n > 0)
+    pairs.dissipation_root = square_root(modal_.damping) * (Z_ * at_.to_rate);
+}
+
+void RegimeBuilder::fill(Regime& out) {
+  out.roles = roles_;
+  out.forces = nk_;
+  for (const ContactRole r : roles_) out.follows.push_back(r == ContactRole::kHeld || r == ContactRole::kSprung);
+  for (Eigen::Index c = 0; c < nc_; ++c)
+    out.answers.push_back({spring_(c), damper_(c) - friction_(c) * load(c).v, friction_(c), load(c)});
+  make_pairs(out);
+  make_inputs(out);
+  make_contact_rows(out);
+  refine_stick_rows(out);
+  make_outputs(out);
+  make_changes(out);
+}
+
+}  // namespace slipmode::dynamics

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <slipmode/dynamics/consistency.hpp>
+#include <slipmode/dynamics/load_form.hpp>
+#include <slipmode/dynamics/regime.hpp>
+#include <slipmode/fem/modes.hpp>
+
+#include <functional>
+#include <vector>
+
+namespace slipmode::dynamics {
+
+/// Builds what a regime holds of the structure: its pairs, inputs, outputs and changes of coordinates.
+///
+/// Everything is formed in the undamped modes η of the slipping structure (M = 1, K = diag ω²): in the physical degrees
+/// of freedom of a fine mesh the low frequencies would lose as many digits as the highest has over the lowest, squared.
+class RegimeBuilder {
+ public:
+  RegimeBuilder(const HybridSystem& system, const ModalModel& slipping, const std::vector<ContactRole>& roles);
+
+  void fill(Regime& out);
+
+ private:
+  /// y (what is left of η), ẏ, ζ, ζ̇ from x, and back.
+  struct Coordinates {
+    Eigen::MatrixXd to_y, to_rate, to_zeta, to_zeta_rate;
+    Eigen::MatrixXd from_y, from_rate, from_zeta, from_zeta_rate;
+  };
+
+  void eliminate_held();
+  void couple_contacts();
+  /// Undamped modes of what is held and of springs that are positive.
+  [[nodiscard]] fem::Modes base_modes() const;
+  void make_pairs(Regime& out);
+  void reuse_slipping_pairs(Regime& out);
+  void make_symmetric_pairs(Regime& out);
+  void make_general_pairs(Regime& out);
+  void set_blocks(ModalModel& pairs, const struct PairForm& form) const;
+  void make_inputs(Regime& out) const;
+  void make_contact_rows(Regime& out) const;
+  /// Of contacts that stick, without the cancellation behind a stiff spring or on a fine mesh.
+  void refine_stick_rows(Regime& out) const;
+  void make_outputs(Regime& out) const;
+  using AddOutput = std::function<void(Eigen::Index, RegimeOutput::Kind, Eigen::VectorXd, Eigen::VectorXd)>;
+  void add_clearance_outputs(Eigen::Index c, const Regime& out, const AddOutput& add) const;
+  void make_changes(Regime& out) const;
+
+  [[nodiscard]] ContactRole role(Eigen::Index c) const { return roles_[static_cast<std::size_t>(c)]; }
+  [[nodiscard]] const ContactForces& law(Eigen::Index c) const { return laws_[static_cast<std::size_t>(c)]; }
+  /// The stop that presses, or would in flight; null for any other contact.
+  [[nodiscard]] const friction::Stop* stop(Eigen::Index c) const;
+  [[nodiscard]] const LoadForm& load(Eigen::Index c) const { return loads_[static_cast<std::size_t>(c)]; }
+
+  const ModalModel& slipping_;
+  const ModalCoordinates& modal_;
+  const std::vector<ContactRole>& roles_;
+  std::optional<fem::Rayleigh> rayleigh_;
+  std::vector<ContactForces> laws_;
+  std::vector<LoadForm> loads_;
+  Eigen::Index n_, nc_, nk_, ni_, V_, one_;
+  std::vector<Eigen::Index> held_, oscillators_;  ///< contacts
+  Eigen::VectorXd friction_;                      ///< ±μ_k of contacts that slide under a varying load, else 0
+  Eigen::MatrixXd Z_, P_;                         ///< η = Z y + P ι
+  Eigen::VectorXd P_all_;
+  Eigen::MatrixXd K_, C_;   ///< with what contacts add
+  Eigen::VectorXd spring_;  ///< stiffness added along each contact's direction, of either sign
+  Eigen::VectorXd damper_;  ///< damping that stops add along it
+  bool symmetric_ = true, bare_ = true;
+  Coordinates at_;
+};
+
+}  // namespace slipmode::dynamics

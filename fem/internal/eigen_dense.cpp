@@ -1,0 +1,44 @@
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/errors.hpp>
+#include "fem/internal/eigensolvers.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace slipmode::fem::detail {
+
+namespace {
+
+// Of the lowest to the highest eigenvalue: below it the direct method leaves fewer than ten digits of the lowest.
+constexpr double kWideSpectrum = 1e-6;
+
+}  // namespace
+
+std::optional<EigenPairs> solve_by_factors(const Structure& structure, const Eigen::MatrixXd& springs) {
+  // With K = RᵀR and M = LLᵀ the frequencies are the singular values of [R; S] L⁻ᵀ.
+  const Eigen::LLT<Eigen::MatrixXd> mass(to_dense(structure.M())), stiffness(to_dense(structure.K()));
+  if (mass.info() != Eigen::Success || stiffness.info() != Eigen::Success) return std::nullopt;
+  const Eigen::Index n = structure.size();
+  Eigen::MatrixXd root(springs.rows() + n, n);
+  root << springs, Eigen::MatrixXd(stiffness.matrixU());
+  mass.matrixU().solveInPlace<Eigen::OnTheRight>(root);
+  const Eigen::BDCSVD<Eigen::MatrixXd> svd(root, Eigen::ComputeThinV);
+  if (svd.info() != Eigen::Success) return std::nullopt;
+  const Eigen::MatrixXd shapes = mass.matrixU().solve(svd.matrixV().rowwise().reverse());
+  return EigenPairs{svd.singularValues().reverse().cwiseAbs2(), shapes};
+}
+
+EigenPairs solve_dense(const Structure& structure) {
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(to_dense(structure.K()),
+                                                                         to_dense(structure.M()));
+  if (solver.info() != Eigen::Success) {
+    throw NumericalFailure("natural modes: the dense eigensolver did not converge", std::nan(""), {}, std::nan(""));
+  }
+  const Eigen::VectorXd& values = solver.eigenvalues();
+  if (values(0) < kWideSpectrum * values(values.size() - 1)) {
+    if (auto accurate = solve_by_factors(structure, Eigen::MatrixXd(0, structure.size()))) return *std::move(accurate);
+  }
+  return {values, solver.eigenvectors()};
+}
+
+}  // namespace slipmode::fem::detail

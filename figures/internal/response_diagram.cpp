@@ -1,0 +1,128 @@
+#include "figures/internal/response_diagram.hpp"
+
+#include <slipmode/core/to_vector.hpp>
+#include <slipmode/figures/style.hpp>
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace slipmode::figures {
+namespace {
+
+/// Curves of one look: pieces separated by blank lines.
+struct Pieces {
+  std::vector<double> x, y;
+
+  void add(double px, double py) {
+    x.push_back(px);
+    y.push_back(py);
+  }
+  void break_here() { add(std::numeric_limits<double>::quiet_NaN(), 0.0); }
+  [[nodiscard]] std::string data(Figure& figure) const { return figure.data({to_vector(x), to_vector(y)}); }
+};
+
+struct Looks {
+  Pieces stable, unstable;
+};
+
+/// A piece ends with the first point of the next, so that curves have no holes where stability changes.
+Looks looks_of(const ResponseBranch& branch) {
+  Looks looks;
+  for (Eigen::Index k = 0; k < branch.parameter.size(); ++k) {
+    const bool now = branch.stable[static_cast<std::size_t>(k)];
+    Pieces& own = now ? looks.stable : looks.unstable;
+    const bool changed = k > 0 && branch.stable[static_cast<std::size_t>(k - 1)] != now;
+    if (changed) {
+      own.break_here();
+      own.add(branch.parameter[k - 1], branch.value[k - 1]);
+    }
+    own.add(branch.parameter[k], branch.value[k]);
+  }
+  return looks;
+}
+
+std::vector<std::string> kinds_of(const std::vector<ResponseMark>& marks) {
+  std::vector<std::string> kinds;
+  for (const ResponseMark& mark : marks) {
+    if (std::ranges::find(kinds, mark.kind) == kinds.end()) kinds.push_back(mark.kind);
+  }
+  return kinds;
+}
+
+void add_marks(Figure& figure, const std::vector<ResponseMark>& marks, std::vector<std::string>& plots) {
+  constexpr std::array kSymbols = {7, 5, 9, 13, 6, 4, 8, 12, 2};  // filled, then open ones
+  constexpr std::array<std::string_view, 4> kColours = {kLnmColour, kSecondColour, "#CC79A7", "#E69F00"};
+  std::vector<std::string> kinds = kinds_of(marks);
+  std::ranges::sort(kinds);
+  for (std::size_t k = 0; k < kinds.size(); ++k) {
+    Pieces points;
+    for (const ResponseMark& mark : marks) {
+      if (mark.kind == kinds[k]) points.add(mark.parameter, mark.value);
+    }
+    plots.push_back(fmt::format("{} using 1:2 with points pointtype {} pointsize 1.1 linecolor rgb '{}' title \"{}\"",
+                                points.data(figure), kSymbols[k % kSymbols.size()], kColours[k % kColours.size()],
+                                literal(kinds[k])));
+  }
+}
+
+std::string joined(const std::vector<std::string>& plots) {
+  std::string all;
+  for (const std::string& plot : plots) all += (all.empty() ? "plot " : ", ") + plot;
+  return all.empty() ? "plot NaN notitle" : all;
+}
+
+}  // namespace
+
+Figure response_diagram(const std::vector<ResponseBranch>& branches, const std::vector<ResponseMark>& marks,
+                        const ResponseLabels& labels) {
+  Figure figure(1200, 760);
+  common_style(figure);
+  double low_x = INFINITY, high_x = -INFINITY, low_y = INFINITY, high_y = -INFINITY;
+  std::vector<std::string> plots;
+  for (const ResponseBranch& branch : branches) {
+    if (branch.parameter.size() == 0) continue;
+    low_x = std::min(low_x, branch.parameter.minCoeff());
+    high_x = std::max(high_x, branch.parameter.maxCoeff());
+    low_y = std::min(low_y, branch.value.minCoeff());
+    high_y = std::max(high_y, branch.value.maxCoeff());
+    const Looks looks = looks_of(branch);
+    if (!looks.stable.x.empty()) {
+      plots.push_back(fmt::format(
+          "{} using 1:2 with lines linewidth 1.8 linecolor rgb '{}' {}", looks.stable.data(figure), branch.colour,
+          branch.title.empty() ? "notitle" : fmt::format("title \"{}\"", literal(branch.title))));
+    }
+    if (!looks.unstable.x.empty()) {
+      plots.push_back(fmt::format("{} using 1:2 with lines dashtype 2 linewidth 1.5 linecolor rgb '{}' notitle",
+                                  looks.unstable.data(figure), branch.colour));
+    }
+  }
+  plots.push_back("NaN with lines dashtype 2 linewidth 1.5 linecolor rgb '#222222' title 'unstable'");
+  add_marks(figure, marks, plots);
+  figure.command("set margins screen 0.09, screen 0.98, screen 0.11, screen 0.84");
+  figure.command("set key at screen 0.985,0.985 right top horizontal maxrows 3 width 1");
+  figure.command(fmt::format("set xrange {}; set yrange {}", padded_range(low_x, high_x), padded_range(low_y, high_y)));
+  figure.command(fmt::format("set xlabel \"{}\"; set ylabel \"{}\"", labels.parameter, labels.value));
+  figure.command(joined(plots));
+  return figure;
+}
+
+Figure multiplier_plane(const Eigen::MatrixXd& parts, const std::string& title) {
+  Figure figure(760, 760);
+  common_style(figure);
+  const double reach = std::max(1.1, 1.08 * parts.cwiseAbs().maxCoeff());
+  const std::string data = figure.data({parts.col(0), parts.col(1)});
+  figure.command("set size ratio -1; set parametric; set trange [0:2*pi]; set samples 400");
+  figure.command(fmt::format("set xrange [{:.4g}:{:.4g}]; set yrange [{:.4g}:{:.4g}]", -reach, reach, -reach, reach));
+  figure.command("set xlabel 'real part [–]'; set ylabel 'imaginary part [–]'");
+  figure.command(fmt::format("set title \"{}\"", literal(title)));
+  figure.command(
+      fmt::format("plot cos(t), sin(t) with lines linecolor rgb '#888888' notitle, {} using 1:2 "
+                  "with points pointtype 7 pointsize 1.1 linecolor rgb '{}' notitle",
+                  data, kFullColour));
+  return figure;
+}
+
+}  // namespace slipmode::figures

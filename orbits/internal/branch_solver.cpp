@@ -1,0 +1,231 @@
+#include "orbits/internal/branch_solver.hpp"
+
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/errors.hpp>
+#include "orbits/internal/describe_orbit.hpp"
+
+#include <fmt/format.h>
+#include <cmath>
+
+namespace slipmode::orbits {
+namespace {
+
+constexpr int kMaxCorrections = 20;
+constexpr double kTrustRadius = 0.2;  // in units of the orbit's size
+/// What a pass leaves of a relative error, before Φ stretches it: a residual that stalls below this × ‖Φ‖ is zero.
+constexpr double kRoundingOfPass = 1e-12;
+/// Step of the difference in the parameter, of its range, where Φ stretches nothing. Second derivatives grow like ‖Φ‖²,
+/// what rounding leaves like ‖Φ‖: the step is divided by √‖Φ‖.
+constexpr double kDifferenceStep = 1e-6;
+
+/// time / period without whole periods.
+double share_of(double time, double period) { return time / period - std::floor(time / period); }
+
+}  // namespace
+
+BranchSolver::BranchSolver(SystemFamily family, const PeriodicOrbit& orbit, double parameter,
+                           const ContinuationOptions& options)
+    : family_(std::move(family)), options_(options), kind_(orbit.kind), range_(std::abs(options.to - options.from)) {
+  options_.shooting.order = orbit.order;
+  options_.shooting.segment_guesses.clear();
+  const dynamics::HybridSystem system = family_(parameter);
+  if (orbit.start.q.size() != system.size())
+    throw InvalidInput(fmt::format("the orbit has {} displacements, the family's system {} degrees of freedom",
+                                   orbit.start.q.size(), system.size()));
+  const BranchUnknowns first = unknowns_of(orbit, parameter);
+  ShootingProblem problem(system, options_.shooting, kind_);
+  static_cast<void>(problem.evaluate(first.point));
+  scale_ = problem.scale();
+}
+
+BranchUnknowns BranchSolver::unknowns_of(const PeriodicOrbit& orbit, double parameter) const {
+  BranchUnknowns out{{{orbit.start}, orbit.period}, parameter, 0.0};
+  const dynamics::HybridSystem system = family_(parameter);
+  if (kind_ == OrbitKind::kDriven) out.phase = share_of(orbit.start.time, orbit.period / orbit.order);
+  const double covered = options_.shooting.half_period ? 0.5 : 1.0;
+  const double length = covered * orbit.period / options_.shooting.segments;
+  for (int k = 1; k < options_.shooting.segments; ++k)
+    out.point.nodes.push_back(advanced(system, out.point.nodes.back(), length));
+  set_times(out, system);
+  return out;
+}
+
+void BranchSolver::set_times(BranchUnknowns& at, const dynamics::HybridSystem& system) const {
+  const auto drive_period = system.drive().period();
+  if (!drive_period) return;
+  at.point.period = options_.shooting.order * *drive_period;
+  const double covered = options_.shooting.half_period ? 0.5 : 1.0;
+  const double length = covered * at.point.period / static_cast<double>(at.point.nodes.size());
+  for (std::size_t k = 0; k < at.point.nodes.size(); ++k)
+    at.point.nodes[k].time = at.phase * *drive_period + length * static_cast<double>(k);
+}
+
+BranchEvaluation BranchSolver::evaluate(const BranchUnknowns& at) const {
+  const double slack = 1e-12 * range_;
+  if (at.parameter < std::min(options_.from, options_.to) - slack ||
+      at.parameter > std::max(options_.from, options_.to) + slack)
+    throw NumericalFailure(fmt::format("the parameter {:.9g} is outside the range of the branch", at.parameter),
+                           at.point.nodes[0].time, stacked(at.point.nodes[0]), 0.0);
+  const dynamics::HybridSystem system = family_(at.parameter);
+  BranchEvaluation out{at, {}, std::make_shared<ShootingProblem>(system, options_.shooting, kind_), {}, {}, {}};
+  set_times(out.at, system);
+  out.problem->use_scale(scale_);
+  for (dynamics::State& node : out.at.point.nodes) out.problem->put_on_constraint(node);
+  out.shooting = out.problem->evaluate(out.at.point);
+  out.columns = parameter_columns(out.at, out.shooting);
+  if (period_unknown()) {
+    const std::vector<Eigen::MatrixXd> periods = out.problem->period_columns(out.shooting);
+    for (std::size_t k = 0; k < out.columns.size(); ++k) {
+      Eigen::MatrixXd both(scale_.size(), 2);
+      both << periods[k], out.columns[k];
+      out.columns[k] = std::move(both);
+    }
+  }
+  const CondensedShooting condensed = out.problem->condense(out.shooting, out.columns);
+  const Eigen::Index n = scale_.size(), extra = condensed.columns.cols(), phase = period_unknown() ? 1 : 0;
+  out.J = Eigen::MatrixXd::Zero(n + phase, n + extra);
+  out.J.topLeftCorner(n, n) = condensed.matrix;
+  out.J.topRightCorner(n, extra) = condensed.columns;
+  if (phase > 0) out.J.row(n).head(n) = out.shooting.rate.back().transpose().normalized();
+  out.r = Eigen::VectorXd::Zero(n + phase);
+  out.r.head(n) = condensed.rest;
+  return out;
+}
+
+std::vector<Eigen::MatrixXd> BranchSolver::parameter_columns(const BranchUnknowns& at,
+                                                             const ShootingEvaluation& here) const {
+  double stretch = 1.0;
+  for (const Eigen::MatrixXd& transfer : here.transfer) stretch = std::max(stretch, transfer.norm());
+  const double h = kDifferenceStep * range_ / std::sqrt(stretch);
+  const auto ends_at = [&](double parameter) {
+    BranchUnknowns moved_to{at.point, parameter, at.phase};
+    const dynamics::HybridSystem system = family_(parameter);
+    set_times(moved_to, system);
+    ShootingProblem problem(system, options_.shooting, kind_);
+    problem.use_scale(scale_);
+    return problem.ends_of(moved_to.point);
+  };
+  // At the ends of the range the family need not go further.
+  const double high = std::min(at.parameter + h, std::max(options_.from, options_.to));
+  const double low = std::max(at.parameter - h, std::min(options_.from, options_.to));
+  const bool has_above = high - at.parameter > 0.1 * h, has_below = at.parameter - low > 0.1 * h;
+  const Eigen::MatrixXd above = ends_at(high), below = ends_at(low);
+  std::vector<Eigen::MatrixXd> columns;
+  for (Eigen::Index k = 0; k < above.cols(); ++k) {
+    const Eigen::VectorXd end = stacked(here.ends[static_cast<std::size_t>(k)]).cwiseQuotient(scale_);
+    const Eigen::VectorXd up = (above.col(k) - end) * (range_ / std::max(high - at.parameter, 1e-300));
+    const Eigen::VectorXd down = (end - below.col(k)) * (range_ / std::max(at.parameter - low, 1e-300));
+    // Where an event comes or goes within the step one side jumps: the other is right.
+    const bool jumps = (up - down).norm() > 0.1 * std::max(up.norm(), down.norm());
+    const bool take_up = !has_below || (has_above && jumps && up.norm() < down.norm());
+    const bool take_down = !has_above || (has_below && jumps && !take_up);
+    columns.emplace_back(take_up ? up : take_down ? down : Eigen::VectorXd(0.5 * (up + down)));
+  }
+  return columns;
+}
+
+Eigen::VectorXd BranchSolver::tangent(const BranchEvaluation& at, const Eigen::VectorXd& along) const {
+  // The smallest singular vectors span tangent and, where orbits come in families, the family too. Of these, the one
+  // that changes the parameter is wanted; at a fold, where none does, the last direction decides.
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(at.J, Eigen::ComputeFullV);
+  const Eigen::Index unknowns = at.J.cols(), rows = at.J.rows();
+  const Eigen::VectorXd& sigma = svd.singularValues();
+  Eigen::Index dimension = unknowns - rows;
+  while (dimension < unknowns && sigma[unknowns - 1 - dimension] < 1e-9 * sigma[0]) ++dimension;
+  const Eigen::MatrixXd null_space = svd.matrixV().rightCols(dimension);
+  Eigen::VectorXd direction = null_space.col(dimension - 1);
+  if (dimension > 1) {
+    const Eigen::VectorXd towards = null_space * (null_space.transpose() * parameter_row());
+    direction =
+        towards.norm() > 1e-6 ? towards.normalized() : (null_space * (null_space.transpose() * along)).normalized();
+  }
+  return direction.dot(along) < 0 ? Eigen::VectorXd(-direction) : direction;
+}
+
+BranchUnknowns BranchSolver::moved(const BranchEvaluation& from, const Eigen::VectorXd& step, double share) const {
+  const Eigen::Index n = scale_.size();
+  BranchUnknowns out;
+  out.point = from.problem->moved(from.shooting, step.head(n), from.columns, step.tail(step.size() - n), share);
+  out.parameter = from.at.parameter + range_ * step[step.size() - 1];
+  out.phase = from.at.phase;
+  return out;
+}
+
+Eigen::VectorXd BranchSolver::newton_step(const BranchEvaluation& at, const BranchUnknowns& guess,
+                                          const Eigen::VectorXd& row) const {
+  Eigen::MatrixXd J(at.J.rows() + 1, at.J.cols());
+  J << at.J, row.transpose();
+  Eigen::VectorXd r(J.rows());
+  r << at.r, row.dot(difference(at.at, guess));
+  return bounded_least_squares(J, r, kTrustRadius).step;
+}
+
+BranchEvaluation BranchSolver::polished(BranchEvaluation at, const BranchUnknowns& guess,
+                                        const Eigen::VectorXd& row) const {
+  BranchEvaluation next = evaluate(moved(at, newton_step(at, guess, row), 1.0));
+  return next.shooting.norm < at.shooting.norm ? next : at;
+}
+
+std::optional<BranchEvaluation> BranchSolver::shortened(const BranchEvaluation& from,
+                                                        const Eigen::VectorXd& step) const {
+  for (double share = 1.0; share > 0.05; share *= 0.5) {
+    BranchEvaluation next = evaluate(moved(from, share * step, share));
+    if (next.shooting.norm <= (1.0 - 0.1 * share) * from.shooting.norm) return next;
+    const bool at_rounding = next.shooting.largest <= kRoundingOfPass * std::max(1.0, next.J.norm());
+    if (at_rounding) return next;
+  }
+  return std::nullopt;
+}
+
+std::optional<BranchSolver::Corrected> BranchSolver::correct(const BranchUnknowns& guess,
+                                                             const Eigen::VectorXd& row) const {
+  try {
+    Corrected out{evaluate(guess), 0};
+    while (out.at.shooting.largest > options_.shooting.tolerance) {
+      if (out.iterations++ == kMaxCorrections) return std::nullopt;
+      std::optional<BranchEvaluation> next = shortened(out.at, newton_step(out.at, guess, row));
+      if (!next) return std::nullopt;
+      const bool stalls = next->shooting.norm > 0.3 * out.at.shooting.norm;
+      out.at = std::move(*next);
+      if (stalls && out.at.shooting.largest <= kRoundingOfPass * std::max(1.0, out.at.J.norm())) return out;
+    }
+    return out;
+  } catch (const NumericalFailure&) {
+    return std::nullopt;  // the flow failed on the way: a shorter step may not
+  }
+}
+
+BranchEvaluation BranchSolver::shifted(const BranchEvaluation& at, double share) const {
+  BranchUnknowns later = at.at;
+  const dynamics::HybridSystem system = family_(at.at.parameter);
+  for (dynamics::State& node : later.point.nodes)
+    node = advanced(system, at.problem->runnable(node), share * at.at.point.period);
+  if (kind_ == OrbitKind::kDriven) later.phase = share_of(later.phase + share * options_.shooting.order, 1.0);
+  return evaluate(later);
+}
+
+Eigen::VectorXd BranchSolver::difference(const BranchUnknowns& b, const BranchUnknowns& a) const {
+  const Eigen::Index n = scale_.size();
+  Eigen::VectorXd out(n + (period_unknown() ? 2 : 1));
+  out.head(n) = (stacked(b.point.nodes[0]) - stacked(a.point.nodes[0])).cwiseQuotient(scale_);
+  if (period_unknown()) out[n] = std::log(b.point.period / a.point.period);
+  out[out.size() - 1] = (b.parameter - a.parameter) / range_;
+  return out;
+}
+
+BranchSolver BranchSolver::by_half_periods(const PeriodicOrbit& orbit, double parameter) const {
+  ContinuationOptions halves = options_;
+  halves.shooting.half_period = true;
+  return {family_, orbit, parameter, halves};
+}
+
+PeriodicOrbit BranchSolver::describe(const BranchEvaluation& at) const {
+  return describe_orbit(*at.problem, at.shooting, options_.shooting);
+}
+
+Eigen::VectorXd BranchSolver::parameter_row() const {
+  const Eigen::Index size = scale_.size() + (period_unknown() ? 2 : 1);
+  return Eigen::VectorXd::Unit(size, size - 1);
+}
+
+}  // namespace slipmode::orbits

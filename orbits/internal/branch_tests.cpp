@@ -1,0 +1,264 @@
+#include "orbits/internal/branch_tests.hpp"
+
+#include <slipmode/orbits/floquet.hpp>
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+namespace slipmode::orbits {
+namespace {
+
+using Test = double WatchedPoint::*;
+
+constexpr int kMaxEvaluations = 80;
+
+/// Multipliers without the trivial ones; of the half-period map where the orbit is symmetric.
+std::vector<std::complex<double>> watched_multipliers(const PeriodicOrbit& orbit) {
+  std::vector<std::complex<double>> result;
+  if (orbit.half_multipliers.size() > 0 && orbit.trivial_multipliers == 0) {
+    result.assign(orbit.half_multipliers.begin(), orbit.half_multipliers.end());
+    return result;
+  }
+  const std::vector<Eigen::Index> trivial = trivial_indices(orbit.multipliers, orbit.trivial_multipliers);
+  for (Eigen::Index i = 0; i < orbit.multipliers.size(); ++i)
+    if (std::find(trivial.begin(), trivial.end(), i) == trivial.end()) result.push_back(orbit.multipliers[i]);
+  return result;
+}
+
+/// The multiplier that is critical for a kind, and its distance from criticality.
+struct Critical {
+  std::complex<double> multiplier;
+  double distance = 1.0;
+};
+
+Critical critical_multiplier(const PeriodicOrbit& orbit, SpecialKind kind) {
+  Critical best{{}, 1e300};
+  for (const std::complex<double>& mu : watched_multipliers(orbit)) {
+    double distance = 1e300;
+    if (kind == SpecialKind::kFold) distance = std::abs(mu - 1.0);
+    if (kind == SpecialKind::kSymmetryBreaking || kind == SpecialKind::kPeriodDoubling) distance = std::abs(mu + 1.0);
+    if (kind == SpecialKind::kNeimarkSacker && std::abs(mu.imag()) > 1e-6) distance = std::abs(std::abs(mu) - 1.0);
+    if (distance < best.distance) best = {mu, distance};
+  }
+  return best;
+}
+
+struct Located {
+  WatchedPoint low, high;  ///< on both sides
+  double s = 0.0;          ///< along a's tangent
+};
+
+/// The point a share of the way from the low side to the high one, corrected across a's tangent.
+std::optional<WatchedPoint> between(const BranchSolver& solver, const Eigen::VectorXd& tangent, const Located& sides,
+                                    double share) {
+  const Eigen::VectorXd chord = solver.difference(sides.high.at.at, sides.low.at.at);
+  const BranchUnknowns guess = solver.moved(sides.low.at, share * chord, 0.0);
+  auto corrected = solver.correct(guess, tangent);
+  if (!corrected) return std::nullopt;
+  return watch(solver, solver.polished(std::move(corrected->at), guess, tangent), tangent);
+}
+
+/// Narrows [low at s = 0, high at s] until the sides are the same to rounding or the parameter is known.
+/// `value` must have opposite signs at both; steps by Illinois' rule where it is smooth, else halves.
+Located narrow(const BranchSolver& solver, const WatchedPoint& a, const WatchedPoint& b, double s, double tolerance,
+               const std::function<double(const WatchedPoint&)>& value, bool smooth) {
+  Located found{a, b, s};
+  double low = 0.0, high = s, at_low = value(a), at_high = value(b);
+  for (int k = 0; k < kMaxEvaluations; ++k) {
+    const double apart = std::abs(found.high.at.at.parameter - found.low.at.at.parameter);
+    if ((apart <= tolerance && high - low <= 1e-6) || high - low <= 1e-12) break;
+    double middle = 0.5 * (low + high);
+    if (smooth && k % 4 != 3) {
+      const double secant = low - at_low * (high - low) / (at_high - at_low);
+      const double margin = 1e-3 * (high - low);
+      middle = std::clamp(secant, low + margin, high - margin);
+    }
+    std::optional<WatchedPoint> next;
+    for (const double at : {middle, low + 0.5 * (high - low), low + 0.2 * (high - low), low + 0.8 * (high - low)}) {
+      next = between(solver, a.tangent, found, (at - low) / (high - low));
+      middle = at;
+      if (next) break;
+    }
+    if (!next) break;
+    const double here = value(*next);
+    if ((here < 0) == (at_low < 0)) {
+      low = middle, at_low = here, found.low = std::move(*next);
+      at_high *= 0.5;
+    } else {
+      high = middle, at_high = here, found.high = std::move(*next);
+      at_low *= 0.5;
+    }
+  }
+  found.s = 0.5 * (low + high);
+  return found;
+}
+
+Eigen::VectorXd critical_direction(const WatchedPoint& point, SpecialKind kind, std::complex<double> multiplier) {
+  const bool half = kind == SpecialKind::kSymmetryBreaking && point.half_map.size() > 0;
+  const Eigen::MatrixXd& matrix = half ? point.half_map : point.orbit.monodromy;
+  const std::vector<FloquetMode> modes = floquet_modes(matrix);
+  const auto nearest = std::min_element(modes.begin(), modes.end(), [&](const FloquetMode& x, const FloquetMode& y) {
+    return std::abs(x.multiplier - multiplier) < std::abs(y.multiplier - multiplier);
+  });
+  return nearest->direction.real();
+}
+
+SpecialPoint special_of(const Located& found, SpecialKind kind, double tolerance) {
+  SpecialPoint out;
+  const WatchedPoint& nearest = found.low;
+  out.kind = kind;
+  out.parameter = 0.5 * (found.low.at.at.parameter + found.high.at.at.parameter);
+  out.uncertainty = std::abs(found.high.at.at.parameter - found.low.at.at.parameter);
+  out.orbit = nearest.orbit;
+  if (out.uncertainty > tolerance)
+    out.note = fmt::format("located to {:.1e} only: the branch is not found nearer. ", out.uncertainty);
+  return out;
+}
+
+struct Found {
+  double s;
+  SpecialPoint point;
+};
+
+void add_smooth(const BranchSolver& solver, const WatchedPoint& a, const WatchedPoint& b, double s, double tolerance,
+                SpecialKind kind, Test test, std::vector<Found>& out_found) {
+  if ((a.*test < 0) == (b.*test < 0)) return;
+  const Located at = narrow(
+      solver, a, b, s, tolerance, [&](const WatchedPoint& p) { return p.*test; }, true);
+  Critical critical = critical_multiplier(at.low.orbit, kind);
+  const Critical other = critical_multiplier(at.high.orbit, kind);
+  if (other.distance < critical.distance) critical = other;
+  const bool jumps = at.low.orbit.word != at.high.orbit.word;
+  if (kind == SpecialKind::kNeimarkSacker && critical.distance > 1e-4) return;  // two real ones of product 1
+  SpecialPoint special = special_of(at, kind, tolerance);
+  if (jumps && critical.distance > 1e-3) {
+    if (kind != SpecialKind::kFold) return;  // the multiplier jumps with the word, which is reported as such
+    special.kind = SpecialKind::kNonSmoothFold;
+    special.note += fmt::format("word \"{}\" before, \"{}\" after", at.low.orbit.word, at.high.orbit.word);
+  } else {
+    special.multiplier = critical.multiplier;
+    special.direction = critical_direction(at.low, kind, critical.multiplier);
+  }
+  out_found.push_back({at.s, std::move(special)});
+}
+
+/// True when the branch passed through a symmetric orbit to the mirror images of its own: a pitchfork from its side.
+bool turns_over(const WatchedPoint& a, const WatchedPoint& b) {
+  const bool asymmetric = !a.orbit.symmetric && !b.orbit.symmetric;
+  return asymmetric && a.skew.size() > 0 && b.skew.size() > 0 && a.skew.dot(b.skew) < 0;
+}
+
+/// Where the symmetric orbits beside a nearly symmetric one lose their symmetry, by secants on ∏(1 + μ) of half
+/// periods: regular, where the asymmetric branch is not.
+std::optional<WatchedPoint> breaking_beside(const BranchSolver& solver, const WatchedPoint& near) {
+  const Eigen::VectorXd& scale = solver.scale();
+  PeriodicOrbit middle = near.orbit;
+  middle.start.modes.clear();
+  middle.start = with_coordinates(middle.start, stacked(middle.start) - 0.5 * scale.cwiseProduct(near.skew));
+  const double start = near.at.at.parameter, reach = 1e-2 * solver.range();
+  const BranchSolver halves = solver.by_half_periods(middle, start);
+  const auto orbit_at = [&](double parameter) -> std::optional<WatchedPoint> {
+    const auto corrected = halves.correct(halves.unknowns_of(middle, parameter), halves.parameter_row());
+    if (!corrected) return std::nullopt;
+    return watch(halves, corrected->at, halves.parameter_row());
+  };
+  double last = start, here = start + 1e-3 * reach;
+  std::optional<WatchedPoint> found = orbit_at(last);
+  if (!found) return std::nullopt;
+  double at_last = found->breaking;
+  for (int k = 0; k < 20; ++k) {
+    found = orbit_at(here);
+    if (!found || found->breaking == at_last) return std::nullopt;
+    const double next = here - found->breaking * (here - last) / (found->breaking - at_last);
+    if (std::abs(next - here) <= 1e-12 * solver.range()) return found;
+    if (std::abs(next - start) > reach) return std::nullopt;
+    at_last = found->breaking;
+    last = std::exchange(here, next);
+  }
+  return std::nullopt;
+}
+
+void add_turning_over(const BranchSolver& solver, const WatchedPoint& a, const WatchedPoint& b, double s,
+                      double tolerance, std::vector<Found>& out_found) {
+  const Located at = narrow(
+      solver, a, b, s, tolerance, [&](const WatchedPoint& p) { return p.skew.dot(a.skew); }, true);
+  SpecialPoint special = special_of(at, SpecialKind::kSymmetryBreaking, tolerance);
+  if (const auto exact = breaking_beside(solver, at.low)) {
+    special.parameter = exact->at.at.parameter;
+    special.uncertainty = 1e-12 * solver.range();
+    special.orbit = exact->orbit;
+    special.multiplier = critical_multiplier(exact->orbit, SpecialKind::kSymmetryBreaking).multiplier;
+    special.direction = critical_direction(*exact, SpecialKind::kSymmetryBreaking, special.multiplier);
+    special.note.clear();
+  }
+  special.note += "reached from the asymmetric side";
+  out_found.push_back({at.s, std::move(special)});
+}
+
+}  // namespace
+
+SpecialKind kind_of_word_change(const std::string& before, const std::string& after) {
+  const auto count = [](const std::string& word, char letter) { return std::count(word.begin(), word.end(), letter); };
+  if (count(before, '0') != count(after, '0')) return SpecialKind::kStickChange;
+  for (const char letter : {'l', 'r', 'g', 'x'})
+    if (count(before, letter) != count(after, letter)) return SpecialKind::kGrazing;
+  return SpecialKind::kWordChange;
+}
+
+WatchedPoint watch(const BranchSolver& solver, BranchEvaluation at, const Eigen::VectorXd& along) {
+  WatchedPoint out;
+  out.orbit = solver.describe(at);
+  out.tangent = solver.tangent(at, along);
+  out.at = std::move(at);
+  const Eigen::VectorXd& scale = solver.scale();
+  const Eigen::Index n = scale.size();
+  if (solver.half_period())
+    out.half_map = scale.asDiagonal() * (Eigen::MatrixXd::Identity(n, n) - out.at.J.topLeftCorner(n, n)) *
+                   scale.cwiseInverse().asDiagonal();
+  if (const Eigen::VectorXd& half = out.at.shooting.half_state; half.size() > 0)
+    out.skew = half + out.at.problem->scaled(stacked(out.at.at.point.nodes[0]));
+  out.fold = out.tangent[out.tangent.size() - 1];
+  const std::vector<std::complex<double>> multipliers = watched_multipliers(out.orbit);
+  std::complex<double> plus = 1.0, pairs = 1.0;
+  for (std::size_t i = 0; i < multipliers.size(); ++i) {
+    plus *= 1.0 + multipliers[i];
+    for (std::size_t j = 0; j < i; ++j) pairs *= 1.0 - multipliers[i] * multipliers[j];
+  }
+  const bool halves = out.orbit.half_multipliers.size() > 0 && out.orbit.trivial_multipliers == 0;
+  (halves ? out.breaking : out.doubling) = plus.real();
+  out.torus = pairs.real();
+  return out;
+}
+
+std::vector<SpecialPoint> special_points_between(const BranchSolver& solver, const WatchedPoint& a,
+                                                 const WatchedPoint& b, double s, double tolerance) {
+  std::vector<Found> found;
+  if (turns_over(a, b)) {
+    add_turning_over(solver, a, b, s, tolerance, found);
+  } else {
+    add_smooth(solver, a, b, s, tolerance, SpecialKind::kFold, &WatchedPoint::fold, found);
+  }
+  const bool same_symmetry = a.orbit.symmetric == b.orbit.symmetric;
+  if (same_symmetry) {
+    add_smooth(solver, a, b, s, tolerance, SpecialKind::kSymmetryBreaking, &WatchedPoint::breaking, found);
+    add_smooth(solver, a, b, s, tolerance, SpecialKind::kPeriodDoubling, &WatchedPoint::doubling, found);
+    add_smooth(solver, a, b, s, tolerance, SpecialKind::kNeimarkSacker, &WatchedPoint::torus, found);
+  }
+  if (a.orbit.word != b.orbit.word && !turns_over(a, b)) {
+    const Located at = narrow(
+        solver, a, b, s, tolerance, [&](const WatchedPoint& p) { return p.orbit.word == a.orbit.word ? -1.0 : 1.0; },
+        false);
+    SpecialPoint special = special_of(at, kind_of_word_change(at.low.orbit.word, at.high.orbit.word), tolerance);
+    special.note += fmt::format("word \"{}\" before, \"{}\" after", at.low.orbit.word, at.high.orbit.word);
+    found.push_back({at.s, std::move(special)});
+  }
+  std::stable_sort(found.begin(), found.end(), [](const Found& x, const Found& y) { return x.s < y.s; });
+  std::vector<SpecialPoint> points;
+  for (Found& one : found) points.push_back(std::move(one.point));
+  return points;
+}
+
+}  // namespace slipmode::orbits

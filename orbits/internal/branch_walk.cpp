@@ -1,0 +1,268 @@
+#include "orbits/internal/branch_walk.hpp"
+
+#include <slipmode/core/errors.hpp>
+#include "orbits/internal/branch_tests.hpp"
+#include "orbits/internal/describe_orbit.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+
+namespace slipmode::orbits {
+namespace {
+
+/// Steps are rejected where the tangent turns by more than this (cosine), unless the word changes.
+constexpr double kLeastCosine = 0.9;
+constexpr double kLandingStep = 1e-4;
+/// Points looked back upon, and how near counts as the same place (in steps), when a corner is rounded.
+constexpr std::size_t kRemembered = 40;
+constexpr double kSamePlace = 5.0;
+
+/// One way along a branch.
+class Walk {
+ public:
+  Walk(const BranchSolver& solver, const ContinuationOptions& options)
+      : solver_(solver),
+        options_(options),
+        low_(std::min(options.from, options.to)),
+        high_(std::max(options.from, options.to)) {}
+
+  [[nodiscard]] Branch follow(const PeriodicOrbit& orbit, double parameter, int direction) {
+    const auto first = solver_.correct(solver_.unknowns_of(orbit, parameter), solver_.parameter_row());
+    if (!first) {
+      branch_.end = BranchEnd::kLost;
+      branch_.reason =
+          fmt::format("the orbit handed in does not close at parameter {:.8g}: solve it there first", parameter);
+      return std::move(branch_);
+    }
+    current_ = watch(solver_, first->at, static_cast<double>(direction) * solver_.parameter_row());
+    add(current_, 0.0);
+    step_ = options_.step;
+    try {
+      while (!ended_) advance();
+    } catch (const InvalidInput& refused) {
+      end(BranchEnd::kLost,
+          fmt::format("the family refuses a parameter beyond {:.9g}: {}", current_.at.at.parameter, refused.what()));
+    } catch (const NumericalFailure& failure) {
+      end(BranchEnd::kLost, fmt::format("beyond parameter {:.9g}: {}", current_.at.at.parameter, failure.what()));
+    }
+    return std::move(branch_);
+  }
+
+ private:
+  void add(const WatchedPoint& point, double step) {
+    const double arclength = branch_.points.empty() ? 0.0 : branch_.points.back().arclength + step;
+    branch_.points.push_back({point.at.at.parameter, point.orbit, arclength});
+  }
+
+  void end(BranchEnd how, std::string reason) {
+    ended_ = true;
+    branch_.end = how;
+    branch_.reason = std::move(reason);
+  }
+
+  /// One accepted step, or the end.
+  void advance() {
+    if (static_cast<int>(branch_.points.size()) >= options_.max_points)
+      return end(BranchEnd::kMaxPoints, fmt::format("{} points were asked", options_.max_points));
+    while (true) {
+      if (leaves_range(step_) && finish_at_range()) return;
+      int iterations = 0;
+      std::optional<WatchedPoint> next = attempt(step_, iterations);
+      if (next) {
+        step_ = std::min((iterations <= 4 ? 1.6 : 1.1) * step_, options_.max_step);
+        return accept(std::move(*next));
+      }
+      step_ *= 0.4;
+      if (step_ < options_.min_step) return turn_or_stop();
+    }
+  }
+
+  /// The next point at a length s, if it is one of this branch.
+  [[nodiscard]] std::optional<WatchedPoint> attempt(double s, int& out_iterations) const {
+    const double length = length_of(s);
+    const Eigen::VectorXd row = options_.arclength ? current_.tangent : solver_.parameter_row();
+    const auto corrected = solver_.correct(solver_.moved(current_.at, length * current_.tangent, 0.0), row);
+    if (!corrected) return std::nullopt;
+    out_iterations = corrected->iterations;
+    const Eigen::VectorXd way = solver_.difference(corrected->at.at, current_.at.at);
+    if ((way - length * current_.tangent).norm() > 0.5 * length + 1e-7) return std::nullopt;  // another branch
+    WatchedPoint next = watch(solver_, corrected->at, way);
+    const bool lands = !current_.orbit.symmetric && next.orbit.symmetric;
+    if (lands && length > kLandingStep) return std::nullopt;  // symmetric orbits are joined in small steps
+    const bool kink = next.orbit.word != current_.orbit.word && length < 1e-3;
+    if (next.tangent.dot(current_.tangent) < kLeastCosine && !kink) return std::nullopt;
+    return next;
+  }
+
+  [[nodiscard]] double share() const { return current_.tangent[current_.tangent.size() - 1]; }
+
+  /// The step in the tangent's length.
+  [[nodiscard]] double length_of(double s) const {
+    return options_.arclength ? s : s / std::max(std::abs(share()), 1e-9);
+  }
+
+  [[nodiscard]] bool leaves_range(double s) const {
+    const double ahead = current_.at.at.parameter + solver_.range() * share() * length_of(s);
+    return ahead < low_ || ahead > high_;
+  }
+
+  void accept(WatchedPoint next) {
+    const double taken = current_.tangent.dot(solver_.difference(next.at.at, current_.at.at));
+    const bool lands = !current_.orbit.symmetric && next.orbit.symmetric;
+    if (options_.locate) locate(next, taken);
+    add(next, taken);
+    if (lands || reached_symmetric())
+      return end(BranchEnd::kMerged,
+                 fmt::format("the orbits became symmetric near parameter {:.8g}: the branch joins that "
+                             "of symmetric orbits there",
+                             next.at.at.parameter));
+    current_ = std::move(next);
+    keep_off_guards();
+    if (branch_.points.size() > 10 && back_at_start(taken))
+      end(BranchEnd::kClosed, "the branch is back where it began");
+  }
+
+  [[nodiscard]] bool reached_symmetric() const {
+    return !branch_.special.empty() && branch_.special.back().before + 2 == branch_.points.size() &&
+           branch_.special.back().kind == SpecialKind::kSymmetryBreaking && !current_.orbit.symmetric;
+  }
+
+  void locate(const WatchedPoint& next, double length) {
+    const double tolerance = std::min(options_.locate_tolerance * solver_.range(), 1e-8);
+    for (SpecialPoint& special : special_points_between(solver_, current_, next, length, tolerance)) {
+      special.before = branch_.points.size() - 1;
+      branch_.special.push_back(std::move(special));
+    }
+  }
+
+  /// The orbit on the end of the range ahead, if the tangent leads there.
+  [[nodiscard]] bool finish_at_range() {
+    const double bound = share() < 0 ? low_ : high_;
+    const double length = (bound - current_.at.at.parameter) / (solver_.range() * share());
+    if (length > 1e-12) {
+      BranchUnknowns guess = solver_.moved(current_.at, length * current_.tangent, 0.0);
+      guess.parameter = bound;
+      const auto corrected = solver_.correct(guess, solver_.parameter_row());
+      if (!corrected) return false;
+      const Eigen::VectorXd way = solver_.difference(corrected->at.at, current_.at.at);
+      if ((way - length * current_.tangent).norm() > 0.5 * length + 1e-7) return false;
+      WatchedPoint last = watch(solver_, corrected->at, way);
+      if (options_.locate) locate(last, current_.tangent.dot(way));
+      add(last, way.norm());
+    }
+    end(BranchEnd::kRange, fmt::format("the parameter left its range at {:.8g}", bound));
+    return true;
+  }
+
+  /// No step leads on along the tangent: where the word changes, the branch may have a kink, or turn back.
+  void turn_or_stop() {
+    for (const double s : {1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3}) {
+      if (!options_.arclength) break;
+      for (const double sign : {1.0, -1.0}) {
+        auto next = around_corner(s, sign);
+        if (!next) continue;
+        SpecialPoint corner;
+        const double onward = (next->at.at.parameter - current_.at.at.parameter) * current_.fold;
+        corner.kind =
+            onward < 0 ? SpecialKind::kNonSmoothFold : kind_of_word_change(current_.orbit.word, next->orbit.word);
+        corner.parameter = current_.at.at.parameter;
+        corner.uncertainty = std::abs(next->at.at.parameter - corner.parameter);
+        corner.orbit = current_.orbit;
+        corner.before = branch_.points.size() - 1;
+        corner.note = fmt::format("word \"{}\" before, \"{}\" after", current_.orbit.word, next->orbit.word);
+        branch_.special.push_back(std::move(corner));
+        add(*next, s);
+        current_ = std::move(*next);
+        step_ = std::max(s, options_.min_step);
+        return;
+      }
+    }
+    const PeriodicOrbit& last = branch_.points.back().orbit;
+    std::string seen = fmt::format("no orbit is found beyond parameter {:.9g}, with steps down to {:.1e}",
+                                   current_.at.at.parameter, options_.min_step);
+    if (!options_.arclength && std::abs(current_.fold) < 0.1)
+      seen += "; the branch turns back there (fold): follow it with arclength";
+    else if (last.has_grazing || last.grazing < 0.05)
+      seen += fmt::format("; a stop is met at {:.1e} of the top speed there: a grazing at which the orbit ends",
+                          last.grazing);
+    else
+      seen += "; see whether an event meets the orbit's origin, or the family is not continuous there";
+    end(BranchEnd::kLost, std::move(seen));
+  }
+
+  [[nodiscard]] std::optional<WatchedPoint> around_corner(double s, double sign) const {
+    try {
+      const BranchEvaluation across = solver_.evaluate(solver_.moved(current_.at, s * current_.tangent, 0.0));
+      const Eigen::VectorXd tangent = sign * solver_.tangent(across, current_.tangent);
+      const auto corrected = solver_.correct(solver_.moved(current_.at, s * tangent, 0.0), tangent);
+      if (!corrected) return std::nullopt;
+      WatchedPoint next = watch(solver_, corrected->at, solver_.difference(corrected->at.at, current_.at.at));
+      const bool near = solver_.difference(next.at.at, current_.at.at).norm() < 3.0 * s;
+      const bool goes_on = near && next.orbit.word != current_.orbit.word && !was_here(next, s);
+      return goes_on ? std::optional(std::move(next)) : std::nullopt;
+    } catch (const NumericalFailure&) {
+      return std::nullopt;
+    }
+  }
+
+  /// True when one of the last points is the same orbit within s: the way round a corner led back.
+  [[nodiscard]] bool was_here(const WatchedPoint& next, double s) const {
+    const std::size_t count = branch_.points.size();
+    for (std::size_t k = count > kRemembered ? count - kRemembered : 0; k < count; ++k) {
+      const BranchPoint& old = branch_.points[k];
+      const double modulus = std::max(old.orbit.leading_modulus, next.orbit.leading_modulus);
+      if (old.orbit.word == next.orbit.word &&
+          std::abs(old.parameter - next.at.at.parameter) <= kSamePlace * s * solver_.range() &&
+          std::abs(old.orbit.period - next.orbit.period) <= kSamePlace * s * old.orbit.period &&
+          std::abs(old.orbit.leading_modulus - next.orbit.leading_modulus) <= 0.05 * modulus)
+        return true;
+    }
+    return false;
+  }
+
+  /// An orbit's origin may drift onto an event as the branch goes on, where derivatives jump: it is then set anew.
+  void keep_off_guards() {
+    const PeriodicOrbit& orbit = current_.orbit;
+    const double distance = distance_to_events(orbit.start.time, orbit.period, orbit.events);
+    if (distance > 0.01 * orbit.period) return;
+    const double shift = middle_of_longest_stretch(orbit.start.time, orbit.period, orbit.events);
+    if (distance_to_events(orbit.start.time + shift, orbit.period, orbit.events) < 2.0 * distance) return;
+    try {
+      const double share = shift / orbit.period;
+      const BranchEvaluation later = solver_.shifted(current_.at, share);
+      BranchEvaluation ahead = solver_.evaluate(solver_.moved(current_.at, 1e-4 * current_.tangent, 0.0));
+      ahead = solver_.shifted(ahead, share);
+      current_ = watch(solver_, later, solver_.difference(ahead.at, later.at));
+    } catch (const NumericalFailure&) {
+      return;  // the origin stays where it is
+    }
+  }
+
+  [[nodiscard]] bool back_at_start(double taken) const {
+    const BranchPoint& first = branch_.points.front();
+    if (std::abs(first.parameter - current_.at.at.parameter) > taken * solver_.range()) return false;
+    const BranchUnknowns began = solver_.unknowns_of(first.orbit, first.parameter);
+    double share = (began.phase - current_.at.at.phase) / current_.orbit.order;
+    if (share < 0) share += 1.0 / current_.orbit.order;
+    const BranchEvaluation here = share > 0 ? solver_.shifted(current_.at, share) : current_.at;
+    return solver_.difference(began, here.at).norm() < taken;
+  }
+
+  const BranchSolver& solver_;
+  const ContinuationOptions& options_;
+  double low_, high_;
+  Branch branch_;
+  WatchedPoint current_;
+  double step_ = 0.0;
+  bool ended_ = false;
+};
+
+}  // namespace
+
+Branch walk_branch(const BranchSolver& solver, const ContinuationOptions& options, const PeriodicOrbit& orbit,
+                   double parameter, int direction) {
+  return Walk(solver, options).follow(orbit, parameter, direction);
+}
+
+}  // namespace slipmode::orbits

@@ -1,0 +1,53 @@
+#pragma once
+
+// The readers of a scene's tables. Each throws as TomlReader does.
+
+#include <slipmode/scene/scene.hpp>
+#include "scene/internal/toml_reader.hpp"
+
+#include <limits>
+
+namespace slipmode::scene {
+
+inline constexpr int kMostCount = std::numeric_limits<int>::max();
+/// A position computed by hand may miss an end by rounding; fem::Beam takes as much.
+inline constexpr double kEndSlack = 1e-12;
+
+/// Length of a beam's spans; with its rigid extension [m].
+[[nodiscard]] double beam_length(const fem::BeamOptions& beam);
+[[nodiscard]] double beam_reach(const fem::BeamOptions& beam);
+
+/// [structure] of any kind.
+[[nodiscard]] StructureSpec read_structure(TomlReader in, const std::string& units);
+/// [structure] kind = "masses" and "matrices", the kind read already.
+[[nodiscard]] fem::MassesOptions read_masses(TomlReader& in, const std::string& units);
+[[nodiscard]] MatricesSpec read_matrices(TomlReader& in, const std::string& units);
+/// The structure of matrices that were read.
+[[nodiscard]] fem::Structure structure_of(const MatricesSpec& spec);
+/// `at` or `between` on the structure of `scene`.
+[[nodiscard]] ContactPlace read_place(TomlReader& in, const Scene& scene);
+/// [[contact]] on the structure of `scene`.
+[[nodiscard]] std::vector<ContactSpec> read_contacts(TomlReader& in, const Scene& scene);
+/// The law of one [[contact]] and its keys.
+[[nodiscard]] friction::Law read_law(TomlReader& in);
+/// [drive] into drive and amplitude of `scene`.
+void read_drive(TomlReader in, Scene& scene);
+/// [drive] kind = "force", the kind read already.
+[[nodiscard]] ForceSpec read_force(TomlReader& in, const Scene& scene);
+/// The drive of a force: its harmonics act along force_places, each place once.
+[[nodiscard]] friction::Force force_drive(const ForceSpec& spec);
+[[nodiscard]] std::vector<ForcePlace> force_places(const ForceSpec& spec);
+/// [sensors] on the beam of `scene`.
+[[nodiscard]] SensorSpec read_sensors(TomlReader in, const Scene& scene);
+/// [reduction] with the sensors of `scene`.
+[[nodiscard]] ReductionSpec read_reduction(TomlReader in, const Scene& scene);
+/// [validation] on a belt, and under a shaker.
+[[nodiscard]] ValidationSpec read_validation(TomlReader in, const Scene& scene);
+[[nodiscard]] ShakenValidationSpec read_shaken_validation(TomlReader in, const Scene& scene);
+/// A range { from, to, step }.
+[[nodiscard]] Range read_range(TomlReader in, const Limits& ends);
+
+/// The time in seconds of a time in cycles.
+[[nodiscard]] TimeSpec in_seconds(const TimeSpec::Cycles& cycles, double frequency_hz);
+
+}  // namespace slipmode::scene

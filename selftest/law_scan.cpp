@@ -1,0 +1,368 @@
+#include "selftest/law_scan.hpp"
+
+#include <slipmode/core/decompositions.hpp>
+#include "selftest/contact_guards.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+
+namespace slipmode::selftest {
+namespace {
+
+using dynamics::ContactMode;
+using Eigen::Index;
+
+/// A stretch of samples, apart by a constant interval.
+struct Samples {
+  Eigen::VectorXd times;
+  Eigen::MatrixXd y, v, lambda;  ///< contacts x samples
+  Eigen::MatrixXd acceleration;  ///< wᵀq̈
+};
+
+/// The end of a flight beyond a stop is no event: flights count as the gap.
+ContactMode without_flight(ContactMode mode) {
+  return mode == ContactMode::kLeftFlight || mode == ContactMode::kRightFlight ? ContactMode::kGap : mode;
+}
+
+/// The modes of one contact over time, rebuilt from a run's events.
+class Timeline {
+ public:
+  Timeline(const dynamics::Trajectory& run, int contact) {
+    const ContactMode last = without_flight(run.final_state.modes[static_cast<std::size_t>(contact)]);
+    modes_.push_back(last);
+    bool first = true;
+    for (const dynamics::Event& e : run.events) {
+      if (e.contact != contact || e.before == e.after) continue;
+      const ContactMode before = without_flight(e.before), after = without_flight(e.after);
+      if (first) modes_.front() = before;
+      if (modes_.back() != before) broken_ = true;
+      first = false;
+      times_.push_back(e.time);
+      modes_.push_back(after);
+    }
+    if (modes_.back() != last) broken_ = true;
+  }
+  [[nodiscard]] ContactMode at(double t) const {
+    return modes_[static_cast<std::size_t>(std::ranges::upper_bound(times_, t) - times_.begin())];
+  }
+  [[nodiscard]] bool broken() const { return broken_; }
+  [[nodiscard]] const std::vector<double>& times() const { return times_; }
+
+ private:
+  std::vector<double> times_;
+  std::vector<ContactMode> modes_;
+  bool broken_ = false;
+};
+
+/// N and dN/dt of a contact along samples. The normal oscillator is integrated by the classical Runge-Kutta method with
+/// y between samples from Hermite's cubic.
+class LoadHistory {
+ public:
+  LoadHistory(const friction::NormalLoad& load, double y0) : load_(load) {
+    if (!load.oscillator) return;
+    const auto& o = *load.oscillator;
+    z_ = o.spring_stiffness * o.slope * y0 / (o.spring_stiffness + o.support_stiffness);
+  }
+
+  void advance(double h, double y0, double v0, double y1, double v1) {
+    if (!load_.oscillator || h <= 0.0) return;
+    const double ym = 0.5 * (y0 + y1) + h / 8.0 * (v0 - v1), vm = 1.5 * (y1 - y0) / h - 0.25 * (v0 + v1);
+    const Eigen::Vector2d x(z_, z_rate_), a = rate(x, y0, v0), b = rate(x + 0.5 * h * a, ym, vm),
+                                          c = rate(x + 0.5 * h * b, ym, vm), d = rate(x + h * c, y1, v1);
+    const Eigen::Vector2d end = x + h / 6.0 * (a + 2.0 * b + 2.0 * c + d);
+    z_ = end(0);
+    z_rate_ = end(1);
+  }
+
+  /// @param a  contact's acceleration
+  void read(double y, double v, double a, ContactInstant& out_now) const {
+    out_now.load = load_.constant + load_.slope * y;
+    out_now.load_rate = load_.slope * v;
+    if (!load_.oscillator) return;
+    const auto& o = *load_.oscillator;
+    const Eigen::Vector2d r = rate({z_, z_rate_}, y, v);
+    out_now.load += o.spring_stiffness * (o.slope * y - z_) + o.spring_damping * (o.slope * v - z_rate_);
+    out_now.load_rate += o.spring_stiffness * (o.slope * v - r(0)) + o.spring_damping * (o.slope * a - r(1));
+  }
+
+ private:
+  [[nodiscard]] Eigen::Vector2d rate(const Eigen::Vector2d& x, double y, double v) const {
+    const auto& o = *load_.oscillator;
+    const double force = o.spring_stiffness * o.slope * y + o.spring_damping * o.slope * v -
+                         (o.spring_stiffness + o.support_stiffness) * x(0) -
+                         (o.spring_damping + o.support_damping) * x(1);
+    return {x(1), force / o.mass};
+  }
+
+  friction::NormalLoad load_;
+  double z_ = 0.0, z_rate_ = 0.0;
+};
+
+class Scan {
+ public:
+  Scan(const dynamics::HybridSystem& system, const dynamics::State& start, const dynamics::SimulateOptions& options,
+       const dynamics::Trajectory& run, std::vector<Violation>& violations, const ScanLimits& limits)
+      : system_(system), start_(start), options_(options), run_(run), violations_(violations), limits_(limits) {
+    const auto nc = static_cast<Index>(system.contacts().size());
+    W_.resize(system.size(), nc);
+    for (Index c = 0; c < nc; ++c) W_.col(c) = system.contacts()[static_cast<std::size_t>(c)].direction;
+    const Eigen::MatrixXd M = fem::to_dense(system.structure().M());
+    rows_ = M.llt().solve(W_).transpose();
+    for (int c = 0; c < static_cast<int>(nc); ++c) timelines_.emplace_back(run, c);
+    for (const dynamics::Event& e : run.events) event_times_.push_back(e.time);
+  }
+
+  ScanFigures run() {
+    figures_.samples = run_.times.size();
+    const Eigen::MatrixXd force = forces(run_.times, run_.q, run_.v, run_.lambda);
+    const Samples samples{run_.times, run_.contact_q, run_.contact_v, run_.lambda, rows_ * force};
+    check_motion(force);
+    for (int c = 0; c < static_cast<int>(system_.contacts().size()); ++c) {
+      if (timelines_[static_cast<std::size_t>(c)].broken())
+        violate("sequence", fmt::format("contact {}: an event's `before` is not the mode it was in", c));
+      figures_.events += static_cast<std::int64_t>(timelines_[static_cast<std::size_t>(c)].times().size());
+      if (!is_idle(contact(c))) check_contact(c, samples);
+    }
+    return figures_;
+  }
+
+ private:
+  [[nodiscard]] const friction::Contact& contact(int c) const {
+    return system_.contacts()[static_cast<std::size_t>(c)];
+  }
+
+  void violate(const char* property, const std::string& what) {
+    for (const Violation& known : violations_)
+      if (known.property == property) return;
+    violations_.push_back({property, what});
+  }
+
+  /// p + Σ d u − C q̇ − K q + Σ w λ, and the largest of its terms row by row.
+  Eigen::MatrixXd forces(const Eigen::VectorXd& times, const Eigen::MatrixXd& q, const Eigen::MatrixXd& v,
+                         const Eigen::MatrixXd& lambda) {
+    const Eigen::MatrixXd elastic = fem::multiply(system_.structure().K(), q),
+                          viscous = fem::multiply(system_.structure().C(), v), contact_forces = W_ * lambda;
+    Eigen::MatrixXd total = contact_forces - elastic - viscous;
+    force_scale_ = elastic.cwiseAbs().rowwise().maxCoeff() + viscous.cwiseAbs().rowwise().maxCoeff() +
+                   contact_forces.cwiseAbs().rowwise().maxCoeff();
+    if (system_.load().size() == system_.size()) {
+      total.colwise() += system_.load();
+      force_scale_ += system_.load().cwiseAbs();
+    }
+    if (const friction::Force* drive = system_.drive().force()) {
+      for (Index d = 0; d < system_.force_directions().cols(); ++d) {
+        for (Index k = 0; k < times.size(); ++k)
+          total.col(k) += system_.force_directions().col(d) * drive->value(static_cast<int>(d), times(k));
+        double amplitude = 0.0;
+        for (const auto& harmonic : drive->harmonics) amplitude += harmonic.amplitude;
+        force_scale_ += amplitude * system_.force_directions().col(d).cwiseAbs();
+      }
+    }
+    return total;
+  }
+
+  /// True when no event lies within [from, to].
+  [[nodiscard]] bool quiet(double from, double to) const {
+    const auto next = std::ranges::lower_bound(event_times_, from);
+    return next == event_times_.end() || *next > to;
+  }
+
+  /// Momentum and displacement from sample to sample by Simpson's rule.
+  void check_motion(const Eigen::MatrixXd& force) {
+    const Eigen::MatrixXd momentum = fem::multiply(system_.structure().M(), run_.v);
+    const double h = options_.sample;
+    // Rows have units of their own; one in which nothing happens is measured by the others.
+    const auto floored = [](const Eigen::VectorXd& x) -> Eigen::VectorXd {
+      return x.array() + 1e-6 * x.maxCoeff() + 1e-300;
+    };
+    const Eigen::VectorXd speed_scale = floored(run_.v.cwiseAbs().rowwise().maxCoeff()), scale = floored(force_scale_);
+    for (Index k = 0; k + 2 < run_.times.size(); ++k) {
+      if (!quiet(run_.times(k), run_.times(k + 2)) || !smooth_drive(run_.times(k), run_.times(k + 2))) continue;
+      const Eigen::VectorXd impulse =
+          h / 3.0 * (force.col(k) + 4.0 * force.col(k + 1) + force.col(k + 2)) - momentum.col(k + 2) + momentum.col(k);
+      const Eigen::VectorXd way =
+          h / 3.0 * (run_.v.col(k) + 4.0 * run_.v.col(k + 1) + run_.v.col(k + 2)) - run_.q.col(k + 2) + run_.q.col(k);
+      const double residual = std::max(impulse.cwiseAbs().cwiseQuotient(scale).maxCoeff(),
+                                       way.cwiseAbs().cwiseQuotient(speed_scale).maxCoeff()) /
+                              (2.0 * h);
+      figures_.motion = std::max(figures_.motion, residual);
+      if (residual > limits_.motion)
+        violate("motion", fmt::format("residual {:.2g} of the equations of motion at t = {:.9g}, modes {}", residual,
+                                      run_.times(k + 1), modes_at(run_.times(k + 1))));
+    }
+  }
+
+  [[nodiscard]] std::string modes_at(double t) const {
+    std::string text;
+    for (const Timeline& timeline : timelines_)
+      text += fmt::format("{}{}", text.empty() ? "" : " ", static_cast<int>(timeline.at(t)));
+    return text;
+  }
+
+  [[nodiscard]] bool smooth_drive(double from, double to) const {
+    const auto corner = system_.drive().next_corner(from - 1e-12);
+    return !corner || *corner > to;
+  }
+
+  ContactScales scales_of(int c) const {
+    const friction::Contact& law = contact(c);
+    double drive = 0.0;
+    for (Index k = 0; k < run_.times.size(); ++k)
+      drive = std::max(drive, std::abs(system_.drive().velocity(run_.times(k))));
+    ContactScales scales;
+    scales.way = run_.contact_q.row(c).cwiseAbs().maxCoeff();
+    const Eigen::VectorXd speeds = run_.v.cwiseAbs().rowwise().maxCoeff();
+    scales.speed = W_.col(c).cwiseAbs().dot(speeds) + 1e-3 * speeds.maxCoeff() + drive;
+    const double static_limit = friction::static_coefficient(law.law) * law.normal_load.constant;
+    scales.force = std::max(static_limit, run_.lambda.row(c).cwiseAbs().maxCoeff());
+    if (!law.normal_load.is_constant()) scales.force = std::max(scales.force, law.normal_load.constant);
+    if (const auto* stops = std::get_if<friction::Clearance>(&law.law)) {
+      for (const auto& stop : {stops->left, stops->right}) {
+        if (!stop) continue;
+        scales.way = std::max(scales.way, std::abs(stop->gap));
+        scales.force = std::max(scales.force, stop->stiffness * scales.way + stop->damping * scales.speed);
+      }
+    }
+    for (double* scale : {&scales.way, &scales.speed, &scales.force})
+      if (!(*scale > 0.0)) *scale = 1.0;
+    return scales;
+  }
+
+  [[nodiscard]] ContactInstant instant(int c, const Samples& s, Index k, const LoadHistory& load) const {
+    ContactInstant now{.y = s.y(c, k), .v = s.v(c, k), .lambda = s.lambda(c, k)};
+    now.slip = system_.drive().velocity(s.times(k)) - now.v;
+    load.read(now.y, now.v, s.acceleration(c, k), now);
+    return now;
+  }
+
+  void check_contact(int c, const Samples& s) {
+    const ContactScales scales = scales_of(c);
+    const Timeline& timeline = timelines_[static_cast<std::size_t>(c)];
+    LoadHistory load(contact(c).normal_load, W_.col(c).dot(start_.q) + contact(c).offset);
+    Eigen::VectorXd guards(s.times.size());
+    std::vector<LoadHistory> recent;  // at samples k − 2, k − 1
+    for (Index k = 0; k < s.times.size(); ++k) {
+      if (k > 0) load = carried(c, load, s, k);
+      const double t = s.times(k);
+      if (!quiet(t, t)) {  // the sample may belong to either side
+        guards(k) = 1.0;
+      } else {
+        const LawCheck check = check_law(contact(c), timeline.at(t), instant(c, s, k, load), scales);
+        guards(k) = check.guard;
+        note(c, t, check);
+      }
+      if (k >= 2) look_between(c, s, k, guards, recent.front(), scales);
+      recent.push_back(load);
+      if (recent.size() > 2) recent.erase(recent.begin());
+    }
+    check_event_guards(c, s, guards);
+  }
+
+  void note(int c, double t, const LawCheck& check) {
+    figures_.guard = std::max(figures_.guard, -check.guard);
+    figures_.law = std::max(figures_.law, check.law);
+    if (-check.guard > limits_.guard)
+      violate("missed event",
+              fmt::format("contact {}: a guard is {:.2g} below zero at t = {:.9g}", c, -check.guard, t));
+    if (check.law > limits_.law)
+      violate("law", fmt::format("contact {}: off its law by {:.2g} at t = {:.9g}", c, check.law, t));
+  }
+
+  /// The load carried from sample k − 1 to k, through the events between.
+  LoadHistory carried(int c, LoadHistory load, const Samples& s, Index k) const {
+    if (!contact(c).normal_load.oscillator) return load;
+    double t = s.times(k - 1), y = s.y(c, k - 1), v = s.v(c, k - 1);
+    auto event = std::ranges::upper_bound(event_times_, t);
+    for (; event != event_times_.end() && *event < s.times(k); ++event) {
+      const Index i = event - event_times_.begin();
+      const double ye = W_.col(c).dot(run_.event_q.col(i)) + contact(c).offset, ve = W_.col(c).dot(run_.event_v.col(i));
+      load.advance(*event - t, y, v, ye, ve);
+      t = *event;
+      y = ye;
+      v = ve;
+    }
+    load.advance(s.times(k) - t, y, v, s.y(c, k), s.v(c, k));
+    return load;
+  }
+
+  /// Where samples k − 2 … k show a minimum whose parabola goes below zero: looks 256 times finer.
+  void look_between(int c, const Samples& s, Index k, const Eigen::VectorXd& guards, const LoadHistory& load,
+                    const ContactScales& scales) {
+    const double a = guards(k - 2), b = guards(k - 1), d = guards(k), curvature = a - 2.0 * b + d;
+    if (b > a || b > d || b <= 0.0 || curvature <= 0.0 || b - (a - d) * (a - d) / (8.0 * curvature) > limits_.guard)
+      return;
+    if (!quiet(s.times(k - 2), s.times(k))) return;
+    ++figures_.minima;
+    dynamics::SimulateOptions options = options_;
+    options.transient = s.times(k - 2) - start_.time;
+    options.sample = (s.times(k) - s.times(k - 2)) / 512.0;
+    options.duration = s.times(k) - start_.time;
+    options.flow.audit = false;
+    const dynamics::Trajectory fine = dynamics::simulate(system_, start_, options);
+    const Eigen::MatrixXd force = forces(fine.times, fine.q, fine.v, fine.lambda);
+    const Samples look{fine.times, fine.contact_q, fine.contact_v, fine.lambda, rows_ * force};
+    const ContactMode mode = timelines_[static_cast<std::size_t>(c)].at(s.times(k - 1));
+    LoadHistory here = load;
+    for (Index j = 0; j < look.times.size(); ++j) {
+      if (j > 0)
+        here.advance(look.times(j) - look.times(j - 1), look.y(c, j - 1), look.v(c, j - 1), look.y(c, j), look.v(c, j));
+      note(c, look.times(j), check_law(contact(c), mode, instant(c, look, j, here), scales));
+    }
+  }
+
+  /// The guard of a mode that ends, extrapolated to its end from three samples, against its size before.
+  void check_event_guards(int c, const Samples& s, const Eigen::VectorXd& guards) {
+    const double h = options_.sample;
+    for (const double t : timelines_[static_cast<std::size_t>(c)].times()) {
+      const auto k = static_cast<Index>(std::ceil((t - s.times(0)) / h)) - 1;
+      // One contact's event may set off another's.
+      const auto [first, last] = std::equal_range(event_times_.begin(), event_times_.end(), t);
+      if (last - first > 1 || k < 4 || k >= s.times.size() || !quiet(s.times(k - 4), t - 1e-12 * (1.0 + t)) ||
+          !smooth_drive(s.times(k - 4), t) || t - s.times(k) < 1e-9 * h)
+        continue;
+      const double x = (t - s.times(k)) / h;
+      const double at =
+          guards(k) * (1 + x) * (2 + x) / 2 - guards(k - 1) * x * (2 + x) + guards(k - 2) * x * (1 + x) / 2;
+      const double third = std::abs(guards(k) - 3 * guards(k - 1) + 3 * guards(k - 2) - guards(k - 3));
+      // The least of two guards has a kink where they change places.
+      const double second = std::abs(guards(k) - 2 * guards(k - 1) + guards(k - 2));
+      const double excess = std::max(0.0, std::abs(at) - 4.0 * third - 4.0 * second);
+      figures_.spurious = std::max(figures_.spurious, excess);
+      if (excess > limits_.spurious)
+        violate("spurious event", fmt::format("contact {}: its guard is {:.2g} at the event at t = {:.9g}", c, at, t));
+    }
+  }
+
+  const dynamics::HybridSystem& system_;
+  const dynamics::State& start_;
+  const dynamics::SimulateOptions& options_;
+  const dynamics::Trajectory& run_;
+  std::vector<Violation>& violations_;
+  ScanLimits limits_;
+  ScanFigures figures_;
+  Eigen::MatrixXd W_, rows_;
+  Eigen::VectorXd force_scale_;
+  std::vector<Timeline> timelines_;
+  std::vector<double> event_times_;
+};
+
+}  // namespace
+
+void ScanFigures::merge(const ScanFigures& other) {
+  guard = std::max(guard, other.guard);
+  law = std::max(law, other.law);
+  motion = std::max(motion, other.motion);
+  spurious = std::max(spurious, other.spurious);
+  samples += other.samples;
+  minima += other.minima;
+  events += other.events;
+}
+
+ScanFigures scan_run(const dynamics::HybridSystem& system, const dynamics::State& start,
+                     const dynamics::SimulateOptions& options, const dynamics::Trajectory& run,
+                     std::vector<Violation>& out_violations, const ScanLimits& limits) {
+  return Scan(system, start, options, run, out_violations, limits).run();
+}
+
+}  // namespace slipmode::selftest

@@ -1,0 +1,303 @@
+#include "selftest/scene_properties.hpp"
+
+#include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/errors.hpp>
+#include <slipmode/core/random.hpp>
+#include <slipmode/dynamics/modal_model.hpp>
+#include <slipmode/rom/reduce.hpp>
+#include <slipmode/scene/scene.hpp>
+#include "selftest/random_scene.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <optional>
+
+namespace slipmode::selftest {
+namespace {
+
+using Eigen::Index;
+
+/// Energy gap, of the energy exchanged.
+constexpr double kEnergyLimit = 1e-9;
+/// Two runs of the same motion, of its sizes: rounding and tolerance times what the motion multiplies them by.
+constexpr double kSameMotion = 1e-5;
+
+/// Speeds up to this are rounding: forces that all contacts hold leave nothing that moves, and nothing to measure by.
+constexpr double kStill = 1e-9;
+
+/// Of the flow: what two runs of one scene differ by must be rounding, not steps of different lengths.
+constexpr double kTolerance = 1e-11;
+
+/// FNV-1a over the bits of doubles.
+class Digest {
+ public:
+  void add(std::uint64_t bits) {
+    for (int shift = 0; shift < 64; shift += 8) value_ = (value_ ^ ((bits >> shift) & 0xffU)) * 0x100000001b3ULL;
+  }
+  void add(const Eigen::VectorXd& values) {
+    for (const double v : values) add(std::bit_cast<std::uint64_t>(v));
+  }
+  void add(const dynamics::Trajectory& run) {
+    add(run.final_state.q);
+    add(run.final_state.v);
+    add(run.final_state.internal);
+    for (const dynamics::Event& e : run.events) add(std::bit_cast<std::uint64_t>(e.time));
+  }
+  [[nodiscard]] std::uint64_t value() const { return value_; }
+
+ private:
+  std::uint64_t value_ = 0xcbf29ce484222325ULL;
+};
+
+/// A bound on how fast anything in the system changes once it slides, from its numbers alone.
+double fastest_rate(const dynamics::HybridSystem& system, const dynamics::State& start) {
+  const dynamics::ModalModel model = dynamics::build_modal_model(system, false);
+  double rate = std::max(model.fastest, 1e-3);
+  double speed =
+      start.v.cwiseAbs().maxCoeff() + start.q.cwiseAbs().maxCoeff() * rate + system.drive().velocity_scale(0.0);
+  for (std::size_t c = 0; c < system.contacts().size(); ++c) {
+    const friction::Contact& contact = system.contacts()[c];
+    const auto at = static_cast<Index>(c);
+    const double mobility = model.mobility(at, at), load = contact.normal_load.constant;
+    const auto spring = [&](double k) { return std::sqrt(k * mobility); };
+    if (const auto* law = std::get_if<friction::Stribeck>(&contact.law))
+      rate += law->alpha * ((law->mu_s - law->mu_k) * load * mobility + speed * model.fastest);
+    if (const auto* law = std::get_if<friction::TanhRegularised>(&contact.law))
+      rate += (1.0 / law->epsilon + law->alpha) * (law->mu_s * load * mobility + speed * model.fastest);
+    if (const auto* law = std::get_if<friction::CompliantCoulomb>(&contact.law)) rate += spring(law->stiffness);
+    if (const auto* law = std::get_if<friction::Dahl>(&contact.law))
+      rate += spring(law->stiffness) + law->stiffness * speed / (law->mu * load);
+    if (const auto* law = std::get_if<friction::LuGre>(&contact.law))
+      rate += spring(law->stiffness) + (law->damping + law->viscous) * mobility +
+              law->stiffness * speed / (law->mu_k * load) + speed * model.fastest / law->stribeck_speed;
+    if (const auto* law = std::get_if<friction::Clearance>(&contact.law)) {
+      for (const auto& stop : {law->left, law->right})
+        if (stop) rate += spring(stop->stiffness) + stop->damping * mobility;
+    }
+    rate += std::sqrt(std::abs(contact.normal_load.slope) * mobility);
+    if (const auto& own = contact.normal_load.oscillator)
+      rate += std::sqrt((own->support_stiffness + own->spring_stiffness) / own->mass);
+  }
+  if (const auto* shaker = system.drive().shaker()) rate = std::max(rate, shaker->omega());
+  if (const auto* force = system.drive().force()) {
+    for (const auto& harmonic : force->harmonics) rate = std::max(rate, harmonic.order * force->omega);
+  }
+  return rate;
+}
+
+class SceneChecker {
+ public:
+  SceneChecker(std::uint64_t seed, std::uint64_t index) : random_(Random::stream(seed ^ 0x5eedULL, index)) {
+    result_.index = index;
+    text_ = random_scene_text(seed, index);
+  }
+
+  SceneCheck run() {
+    guarded("scene", [&] { build(); });
+    if (!system_) return result_;
+    guarded("run", [&] { simulate(); });
+    if (!simulated_) return result_;
+    result_.still = size_v_ < kStill;
+    if (result_.still) return result_;
+    guarded("restart", [&] { take_up_again(); });
+    guarded("reduction", [&] { reduce(); });
+    return result_;
+  }
+
+ private:
+  template <class Part>
+  void guarded(const char* what, const Part& part) {
+    try {
+      part();
+    } catch (const NumericalFailure& failure) {
+      // Clear failures, as documented: an undamped mode at resonance, pairs that lose too many digits.
+      const std::string_view message = failure.what();
+      if (message.find("resonan") != std::string_view::npos || message.find("workable") != std::string_view::npos)
+        result_.refused = true;
+      else
+        violate(what, failure.what());
+    } catch (const InvalidInput& error) {
+      violate(what, error.what());
+    }
+  }
+
+  void violate(const char* property, const std::string& what) { result_.violations.push_back({property, what}); }
+
+  void build() {
+    const scene::Scene scene = scene::parse_scene(text_);
+    const std::string written = scene::scene_to_toml(scene);
+    const scene::Scene again = scene::parse_scene(written);
+    if (scene::scene_to_toml(again) != written) violate("round trip", "the scene written twice is not the same text");
+    system_.emplace(scene::build_system(scene));
+    const dynamics::HybridSystem copy = scene::build_system(again);
+    const auto same = [](const fem::Matrix& a, const fem::Matrix& b) { return fem::to_dense(a) == fem::to_dense(b); };
+    bool equal = same(system_->structure().M(), copy.structure().M()) &&
+                 same(system_->structure().C(), copy.structure().C()) &&
+                 same(system_->structure().K(), copy.structure().K());
+    for (std::size_t c = 0; c < copy.contacts().size(); ++c)
+      equal = equal && copy.contacts()[c].direction == system_->contacts()[c].direction;
+    if (!equal) violate("round trip", "the scene written and read again is another system");
+    start_ = scene::initial_state(scene, *system_);
+    options_ = scene::simulate_options(scene);
+    options_.sample = 0.04 / fastest_rate(*system_, start_);
+    options_.duration = std::min(options_.duration, 6000.0 * options_.sample);
+    options_.transient = 0.0;
+    options_.flow.tolerance = kTolerance;
+  }
+
+  void simulate() {
+    options_.event_states = true;
+    options_.on_event = [&](const dynamics::Event&, const dynamics::State& state) {
+      events_.push_back(state);
+      return true;
+    };
+    run_ = dynamics::simulate(*system_, start_, options_);
+    options_.on_event = {};
+    simulated_ = true;
+    Digest digest;
+    digest.add(run_);
+    result_.digest = digest.value();
+    size_q_ = run_.q.cwiseAbs().maxCoeff() + 1e-300;
+    size_v_ = run_.v.cwiseAbs().maxCoeff() + 1e-300;
+    if (size_v_ < kStill) return;
+    result_.energy = std::abs(run_.audit.residual());
+    if (!(result_.energy <= kEnergyLimit)) violate("energy", fmt::format("residual {:.2g}", result_.energy));
+    if (run_.audit.viscous_loss < -1e-12 * run_.audit.exchanged)
+      violate("energy", fmt::format("viscous loss {:.2g} is negative", run_.audit.viscous_loss));
+    result_.scan = scan_run(*system_, start_, options_, run_, result_.violations);
+  }
+
+  /// Distance of two final states, of the run's sizes.
+  [[nodiscard]] double distance(const dynamics::State& a, const dynamics::State& b) const {
+    return std::max((a.q - b.q).cwiseAbs().maxCoeff() / size_q_, (a.v - b.v).cwiseAbs().maxCoeff() / size_v_);
+  }
+
+  /// From one of the run's events, as it left it: on a guard to rounding.
+  void take_up_again() {
+    if (events_.empty()) return;
+    const auto pick = static_cast<std::size_t>(random_.uniform() * static_cast<double>(events_.size()));
+    const dynamics::State& from = events_[pick];
+    // Of simultaneous events the last holds the modes of all.
+    for (std::size_t later = pick + 1; later < events_.size(); ++later)
+      if (events_[later].time == from.time) return;
+    dynamics::SimulateOptions options = plain();
+    options.duration = start_.time + options_.duration - from.time;
+    const dynamics::State end = dynamics::simulate(*system_, from, options).final_state;
+    result_.restart = distance(end, run_.final_state);
+    if (!(result_.restart <= kSameMotion))
+      violate("restart", fmt::format("{:.2g} away after {:.6g} s from the event at t = {:.9g}", result_.restart,
+                                     options.duration, from.time));
+  }
+
+  void reduce() {
+    const Index n = system_->size();
+    if (n > 12) return;
+    Eigen::MatrixXd vectors(n, n);
+    for (double& value : vectors.reshaped()) value = random_.normal();
+    const Eigen::MatrixXd Q = Eigen::HouseholderQR<Eigen::MatrixXd>(vectors).householderQ();
+    Eigen::VectorXd mean(n);
+    for (double& value : mean) value = size_q_ * 0.1 * random_.normal();
+    // Columns of mixed lengths on an orthonormal frame in the metric of sizes: beams mix metres and radians.
+    const Eigen::VectorXd inertia = fem::to_dense(system_->structure().M()).diagonal().cwiseSqrt();
+    for (Index j = 0; j < n; ++j)
+      vectors.col(j) = std::exp(random_.uniform(-2.0, 2.0)) * inertia.cwiseInverse().cwiseProduct(Q.col(j));
+    mean = mean.cwiseProduct(inertia.cwiseInverse() * inertia.minCoeff());
+    const pod::Basis basis = rom::user_basis(vectors, mean);
+    const dynamics::HybridSystem reduced = rom::reduce(*system_, basis);
+    const dynamics::State from = rom::restrict_state(system_->structure(), basis, start_);
+    const dynamics::Trajectory run = dynamics::simulate(reduced, from, plain());
+    result_.reduction = distance(rom::lift(basis, run.final_state), run_.final_state);
+    if (!(result_.reduction <= kSameMotion))
+      violate("all modes", fmt::format("{:.2g} from the full model at the end, {} events against {}", result_.reduction,
+                                       run.events.size(), run_.events.size()));
+  }
+
+  /// The scene's run without samples.
+  [[nodiscard]] dynamics::SimulateOptions plain() const {
+    dynamics::SimulateOptions options = options_;
+    options.sample = 0.0;
+    options.event_states = false;
+    options.flow.audit = false;
+    return options;
+  }
+
+  Random random_;
+  SceneCheck result_;
+  std::string text_;
+  std::optional<dynamics::HybridSystem> system_;
+  dynamics::State start_;
+  dynamics::SimulateOptions options_;
+  dynamics::Trajectory run_;
+  bool simulated_ = false;
+  std::vector<dynamics::State> events_;
+  double size_q_ = 1.0, size_v_ = 1.0;
+};
+
+}  // namespace
+
+SceneCheck check_random_scene(std::uint64_t seed, std::uint64_t index) { return SceneChecker(seed, index).run(); }
+
+SceneSurvey survey_random_scenes(std::uint64_t seed, std::uint64_t first, std::uint64_t count,
+                                 const ParallelOptions& parallel) {
+  std::vector<SceneCheck> checks(count);
+  rethrow_first(parallel_for(count, parallel, [&](std::size_t i) { checks[i] = check_random_scene(seed, first + i); }));
+  SceneSurvey survey;
+  Digest digest;
+  for (SceneCheck& check : checks) {
+    SceneSurvey one{.scenes = 1,
+                    .refused = check.refused ? 1 : 0,
+                    .still = check.still ? 1 : 0,
+                    .scan = check.scan,
+                    .energy = check.energy,
+                    .restart = check.restart,
+                    .reduction = check.reduction,
+                    .digest = 0,
+                    .failed = {}};
+    digest.add(check.digest);
+    if (!check.violations.empty()) one.failed.push_back(std::move(check));
+    survey.merge(std::move(one));
+  }
+  survey.digest = digest.value();
+  return survey;
+}
+
+void SceneSurvey::merge(SceneSurvey next) {
+  scenes += next.scenes;
+  refused += next.refused;
+  still += next.still;
+  scan.merge(next.scan);
+  energy = std::max(energy, next.energy);
+  restart = std::max(restart, next.restart);
+  reduction = std::max(reduction, next.reduction);
+  Digest both;
+  both.add(digest);
+  both.add(next.digest);
+  digest = both.value();
+  failed.insert(failed.end(), next.failed.begin(), next.failed.end());
+}
+
+bool same_bytes_on_threads(std::uint64_t seed, std::uint64_t index, int threads, int starts) {
+  const auto digests = [&](int count) {
+    // A fresh system each time: its modal data and regimes are built by whichever thread comes first.
+    const scene::Scene scene = scene::parse_scene(random_scene_text(seed, index));
+    const dynamics::HybridSystem system = scene::build_system(scene);
+    const dynamics::State start = scene::initial_state(scene, system);
+    dynamics::SimulateOptions options = scene::simulate_options(scene);
+    options.transient = options.sample = 0.0;
+    std::vector<std::uint64_t> result(static_cast<std::size_t>(starts), 0);
+    const BatchResult batch = parallel_for(result.size(), {.threads = count}, [&](std::size_t i) {
+      dynamics::State from = start;
+      from.q *= 1.0 - 0.1 * static_cast<double>(i);
+      Digest digest;
+      digest.add(dynamics::simulate(system, from, options));
+      result[i] = digest.value();
+    });
+    for (const std::exception_ptr& error : batch.errors) static_cast<void>(error);  // a refused run has digest 0
+    return result;
+  };
+  return digests(threads) == digests(1);
+}
+
+}  // namespace slipmode::selftest

@@ -1,0 +1,152 @@
+#include "trade/internal/motion.hpp"
+
+#include <slipmode/core/errors.hpp>
+#include <slipmode/core/none.hpp>
+#include <slipmode/core/to_vector.hpp>
+#include <slipmode/diagnostics/attractors/model.hpp>
+#include <slipmode/diagnostics/series/point_sets.hpp>
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+
+namespace slipmode::trade {
+
+namespace {
+
+/// Numbers a piece of a record may hold.
+constexpr double kPiece = 2e6;
+
+bool tells_stick(const dynamics::HybridSystem& system) {
+  return std::ranges::all_of(system.contacts(), [](const friction::Contact& contact) {
+    return std::holds_alternative<friction::Coulomb>(contact.law) ||
+           std::holds_alternative<friction::Stribeck>(contact.law) ||
+           std::holds_alternative<friction::CompliantCoulomb>(contact.law);
+  });
+}
+
+dynamics::Trajectory run(const Case& model, const dynamics::State& start, dynamics::SimulateOptions options,
+                         const StopFlag* stop) {
+  options.flow = model.flow;
+  if (stop != nullptr) options.on_event = [stop](const auto&, const auto&) { return !stop->load(); };
+  dynamics::Trajectory done = dynamics::simulate(model.model.system, start, options);
+  if (stop != nullptr && stop->load()) throw Interrupted();
+  return done;
+}
+
+/// A record gathered piece by piece.
+class Gathered {
+ public:
+  Gathered(const Case& model, const Schedule& schedule)
+      : model_(model), schedule_(schedule), sum_(Eigen::VectorXd::Zero(model.model.system.size())) {}
+
+  /// @param columns  samples of the piece; one more, at its end, begins the next
+  void add(const dynamics::Trajectory& piece, Eigen::Index columns) {
+    const auto q = piece.q.leftCols(columns), v = piece.v.leftCols(columns);
+    const fem::Structure& structure = model_.model.system.structure();
+    kinetic_ += 0.5 * v.cwiseProduct(fem::multiply(structure.M(), v)).sum();
+    strain_ += 0.5 * q.cwiseProduct(fem::multiply(structure.K(), q)).sum();
+    sum_ += q.rowwise().sum();
+    for (const double time : piece.statistics.stick_time) stuck_ += time;
+    out_.events += piece.statistics.events;
+    add_points(piece, model_.model.readings.of(q));
+    count_ += columns;
+  }
+
+  [[nodiscard]] Motion take(dynamics::State end) {
+    const auto count = static_cast<double>(count_);
+    const Eigen::VectorXd mean = sum_ / count;
+    const double about = 0.5 * mean.dot(fem::multiply(model_.model.system.structure().K(), mean).col(0));
+    out_.energy = (kinetic_ + strain_) / count - about;
+    const auto contacts = static_cast<double>(model_.model.system.contacts().size());
+    out_.stick = tells_stick(model_.model.system) ? stuck_ / (contacts * schedule_.sample * count) : kNone;
+    out_.end = std::move(end);
+    return std::move(out_);
+  }
+
+ private:
+  void add_points(const dynamics::Trajectory& piece, const Eigen::MatrixXd& readings) {
+    out_.readings.insert(out_.readings.end(), readings.data(), readings.data() + readings.size());
+    if (schedule_.per_section > 0) {
+      for (Eigen::Index k = 0; k < readings.cols(); k += schedule_.per_section) out_.points.push_back(readings(0, k));
+      return;
+    }
+    for (const dynamics::Event& event : piece.events) {
+      if (event.kind == dynamics::EventKind::kRelease && event.contact == 0) out_.points.push_back(event.displacement);
+    }
+  }
+
+  const Case& model_;
+  const Schedule& schedule_;
+  Eigen::VectorXd sum_;
+  double kinetic_ = 0.0, strain_ = 0.0, stuck_ = 0.0;
+  Eigen::Index count_ = 0;
+  Motion out_;
+};
+
+double rms(const std::vector<double>& values) {
+  const Eigen::ArrayXd all = to_vector(values).array();
+  return std::sqrt((all - all.mean()).square().mean());
+}
+
+/// Of the reading's rms [%].
+double distance(const std::vector<double>& a, const std::vector<double>& b, double scale) {
+  if (a.empty() || b.empty() || !(scale > 0.0)) return kNone;
+  return 100.0 * diagnostics::wasserstein(a, b) / scale;
+}
+
+}  // namespace
+
+Motion run_motion(const Case& model, const dynamics::State& start, double transient, const Schedule& schedule,
+                  const StopFlag* stop) {
+  const dynamics::HybridSystem& system = model.model.system;
+  dynamics::State state = start;
+  if (transient > 0.0) {
+    state = diagnostics::continued(system,
+                                   run(model, state, {.duration = transient, .keep_events = false}, stop).final_state);
+  }
+  const auto total = static_cast<Eigen::Index>(std::llround(schedule.duration / schedule.sample));
+  const Eigen::Index section = std::max<Eigen::Index>(schedule.per_section, 1);
+  const auto fits = static_cast<Eigen::Index>(kPiece / (2.0 * static_cast<double>(system.size())));
+  const Eigen::Index piece = section * std::max<Eigen::Index>(1, fits / section);
+  Gathered record(model, schedule);
+  for (Eigen::Index done = 0; done < total;) {
+    const Eigen::Index columns = std::min(piece, total - done);
+    const dynamics::Trajectory part = run(
+        model, state, {.duration = static_cast<double>(columns) * schedule.sample, .sample = schedule.sample}, stop);
+    record.add(part, columns);
+    state = diagnostics::continued(system, part.final_state);
+    done += columns;
+  }
+  return record.take(std::move(state));
+}
+
+Values motion_distance(const Motion& reference, const Motion& other) {
+  Values values;
+  values.fill(kNone);
+  const double scale = rms(reference.readings);
+  at(values, Measure::kPoints) = distance(reference.points, other.points, scale);
+  at(values, Measure::kSpread) = distance(reference.readings, other.readings, scale);
+  at(values, Measure::kEnergy) = 100.0 * std::abs(other.energy - reference.energy) / reference.energy;
+  at(values, Measure::kStick) = 100.0 * std::abs(other.stick - reference.stick);
+  return values;
+}
+
+Values motion_scatter(const std::vector<Motion>& motions) {
+  if (motions.size() < 2) {
+    throw InvalidInput(fmt::format("scatter of motions: expected two or more, found {}", motions.size()));
+  }
+  Values sum{};
+  double pairs = 0.0;
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const Values values = motion_distance(motions[i], motions[j]);
+      for (std::size_t m = 0; m < kMeasures; ++m) sum[m] += values[m] * values[m];
+      pairs += 1.0;
+    }
+  }
+  for (double& value : sum) value = std::sqrt(value / pairs);
+  return sum;
+}
+
+}  // namespace slipmode::trade

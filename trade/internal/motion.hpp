@@ -1,0 +1,39 @@
+#pragma once
+
+#include <slipmode/core/parallel.hpp>
+#include <slipmode/trade/case.hpp>
+#include <slipmode/trade/measures.hpp>
+#include <slipmode/trade/schedule.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace slipmode::trade {
+
+/// The motion a case settles to.
+struct Motion {
+  std::vector<double> points;    ///< contact displacement at the first contact's slips; the reading at sections
+  std::vector<double> readings;  ///< the reading at every sample
+  /// Mean of ½ q̇ᵀMq̇ + ½ (q − ⟨q⟩)ᵀK(q − ⟨q⟩) [J]. About the mean, so that reduced models, whose displacements are
+  /// measured from elsewhere, need no correction.
+  double energy = 0.0;
+  double stick = 0.0;  ///< share of the time, mean over contacts; NaN where a law does not tell
+  std::int64_t events = 0;
+  dynamics::State end;  ///< in the case's own coordinates
+};
+
+/// Runs `start` for `transient`, then records `duration`, in pieces that fit into memory.
+/// @param start  under a shaker or a force at a section; so is the end
+/// @throws NumericalFailure  as dynamics::simulate
+/// @throws Interrupted       if the stop flag was set
+[[nodiscard]] Motion run_motion(const Case& model, const dynamics::State& start, double transient,
+                                const Schedule& schedule, const StopFlag* stop = nullptr);
+
+/// kPoints, kSpread, kEnergy and kStick of `other` against `reference`; the other two stay NaN.
+[[nodiscard]] Values motion_distance(const Motion& reference, const Motion& other);
+
+/// Root mean square of kPoints … kStick over all pairs of motions: how far runs of one model are from each other.
+/// @throws InvalidInput  for fewer than two motions
+[[nodiscard]] Values motion_scatter(const std::vector<Motion>& motions);
+
+}  // namespace slipmode::trade
