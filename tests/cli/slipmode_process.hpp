@@ -1,7 +1,7 @@
 #pragma once
 
-#include <slipmode/scene/messages.hpp>
-#include <slipmode/scene/temporary_folder.hpp>
+#include "scene/messages.hpp"
+#include "scene/temporary_folder.hpp"
 
 #include <fcntl.h>
 #include <spawn.h>

@@ -1,8 +1,8 @@
 #include <slipmode/orbits/skeleton_compare.hpp>
 
 #include <slipmode/core/errors.hpp>
-#include <slipmode/diagnostics/models.hpp>
 #include <slipmode/rom/reduce.hpp>
+#include "diagnostics/models.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

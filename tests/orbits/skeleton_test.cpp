@@ -1,7 +1,7 @@
 #include <slipmode/orbits/skeleton.hpp>
 
 #include <slipmode/core/errors.hpp>
-#include <slipmode/diagnostics/models.hpp>
+#include "diagnostics/models.hpp"
 #include "fixtures/clearance_scenes.hpp"
 #include "fixtures/shaken_scenes.hpp"
 #include "orbits/internal/skeleton_orbit.hpp"

@@ -2,9 +2,9 @@
 
 #include <slipmode/results/records.hpp>
 #include <slipmode/rom/reduce.hpp>
-#include <slipmode/scene/beam_scene.hpp>
 #include <slipmode/scene/scene.hpp>
-#include <slipmode/scene/temporary_folder.hpp>
+#include "scene/beam_scene.hpp"
+#include "scene/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 #include <bit>

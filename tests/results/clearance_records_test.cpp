@@ -4,7 +4,7 @@
 #include <slipmode/results/records.hpp>
 #include <slipmode/rom/reduce.hpp>
 #include <slipmode/scene/scene.hpp>
-#include <slipmode/scene/temporary_folder.hpp>
+#include "scene/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 #include <filesystem>

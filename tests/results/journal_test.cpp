@@ -1,7 +1,7 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/results/journal.hpp>
-#include <slipmode/scene/messages.hpp>
-#include <slipmode/scene/temporary_folder.hpp>
+#include "scene/messages.hpp"
+#include "scene/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>

@@ -5,7 +5,7 @@
 #include <slipmode/orbits/shooting.hpp>
 #include <slipmode/results/orbit_records.hpp>
 #include <slipmode/scene/scene.hpp>
-#include <slipmode/scene/temporary_folder.hpp>
+#include "scene/temporary_folder.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

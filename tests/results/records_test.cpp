@@ -1,8 +1,8 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/results/provenance.hpp>
 #include <slipmode/results/records.hpp>
-#include <slipmode/scene/messages.hpp>
-#include <slipmode/scene/temporary_folder.hpp>
+#include "scene/messages.hpp"
+#include "scene/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 #include <functional>

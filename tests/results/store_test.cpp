@@ -4,8 +4,8 @@
 #include <slipmode/results/records.hpp>
 #include <slipmode/results/store.hpp>
 #include <slipmode/results/table.hpp>
-#include <slipmode/scene/messages.hpp>
-#include <slipmode/scene/temporary_folder.hpp>
+#include "scene/messages.hpp"
+#include "scene/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

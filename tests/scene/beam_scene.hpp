@@ -1,6 +1,6 @@
 #pragma once
 
-#include <slipmode/scene/messages.hpp>
+#include "scene/messages.hpp"
 
 #include <string>
 

@@ -1,9 +1,9 @@
 // What a scene of a shaken beam may not say, and the message: file, line, key, value, what is wrong, what is valid.
 
 #include <slipmode/core/errors.hpp>
-#include <slipmode/scene/beam_scene.hpp>
-#include <slipmode/scene/messages.hpp>
 #include <slipmode/scene/scene.hpp>
+#include "scene/beam_scene.hpp"
+#include "scene/messages.hpp"
 
 #include <gtest/gtest.h>
 #include <functional>

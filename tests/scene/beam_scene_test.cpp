@@ -1,9 +1,9 @@
 // Scenes of shaken beams: what is read, written, built. Their error messages: beam_scene_errors_test.cpp.
 
+#include "scene/beam_scene.hpp"
 #include <slipmode/core/decompositions.hpp>
 #include <slipmode/core/errors.hpp>
 #include <slipmode/fem/modes.hpp>
-#include <slipmode/scene/beam_scene.hpp>
 #include <slipmode/scene/scene.hpp>
 #include "fixtures/test_names.hpp"
 

@@ -2,9 +2,9 @@
 
 #include <slipmode/core/decompositions.hpp>
 #include <slipmode/core/errors.hpp>
-#include <slipmode/scene/beam_scene.hpp>
-#include <slipmode/scene/messages.hpp>
 #include <slipmode/scene/scene.hpp>
+#include "scene/beam_scene.hpp"
+#include "scene/messages.hpp"
 
 #include <gtest/gtest.h>
 #include <cmath>

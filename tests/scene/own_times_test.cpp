@@ -1,6 +1,6 @@
 #include <slipmode/scene/own_times.hpp>
 
-#include <slipmode/scene/messages.hpp>
+#include "scene/messages.hpp"
 
 #include <gtest/gtest.h>
 #include <string>

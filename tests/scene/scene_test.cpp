@@ -1,6 +1,6 @@
 #include <slipmode/core/errors.hpp>
-#include <slipmode/scene/messages.hpp>
 #include <slipmode/scene/scene.hpp>
+#include "scene/messages.hpp"
 
 #include <gtest/gtest.h>
 #include <filesystem>
