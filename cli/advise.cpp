@@ -1,5 +1,6 @@
-#include <slipmode/results/provenance.hpp>
+#include <slipmode/results/trade_store.hpp>
 #include <slipmode/scene/own_times.hpp>
+#include <slipmode/studies/result_file.hpp>
 #include <slipmode/trade/effects.hpp>
 #include <slipmode/trade/variants.hpp>
 #include "cli/text_table.hpp"
@@ -9,6 +10,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <optional>
 
 namespace slipmode::cli {
 namespace {
@@ -62,32 +64,28 @@ Report run(const Session& session, const AdviseArguments& arguments) {
   if (!arguments.measure.empty()) only = parse_measure(arguments.measure);
   const trade::Schedule schedule = trade::schedule_of(scene);
   const std::vector<trade::Effect> effects = trade::effects_of(scene);
+  std::optional<studies::ResultFile> file;
+  if (!arguments.output.empty()) file.emplace(arguments.output, scene, "slipmode advise");
+  trade::StudyOptions options{.schedule = schedule};
+  options.parallel = session.run_options().parallel("advise");
+  if (file) results::keep_in(file->journal(), options);
+  const trade::Study done = trade::study(scene, trade::as_it_stands(scene), variants_of(scene, effects), {}, options);
+  if (file) file->finish([&](results::StoreWriter& writer) { results::store_study(writer, done, scene); });
+
   Report report;
-  const auto study = [&](trade::StudyOptions options) {
-    options.schedule = schedule;
-    return trade::study(scene, trade::as_it_stands(scene), variants_of(scene, effects), {}, options);
-  };
-  const auto finish = [&](const trade::Study& done) {
-    std::vector<trade::EffectAdvice> advice;
-    Json list = Json::array();
-    report.text = study_text(done, scene);
-    for (std::size_t i = 0; i < effects.size(); ++i) {
-      advice.push_back(trade::advise(effects[i], done.rows.front(), done.rows[i + 1], limit, only));
-      list.push_back(json_of(effects[i], advice.back()));
-      report.text += advice.back().sentence + '\n';
-    }
-    report.text += summary(effects, advice);
-    report.data = {{"verb", "advise"}, {"limit_percent", limit}, {"effects", list}, {"study", to_json(done, scene)}};
-    if (arguments.output.empty()) return;
-    results::StoreWriter writer(arguments.output, scene.units);
-    results::save(writer, results::provenance_of(scene, "slipmode advise"));
-    store_study(writer, done, scene);
-    writer.commit();
-    report.data["file"] = arguments.output;
-    report.text += fmt::format("Result: {}\n", arguments.output);
-  };
-  run_study(session, arguments.output, fmt::format("{} advise\n{}", results::version(), scene::scene_to_toml(scene)),
-            study, finish);
+  std::vector<trade::EffectAdvice> advice;
+  Json list = Json::array();
+  report.text = study_text(done, scene);
+  for (std::size_t i = 0; i < effects.size(); ++i) {
+    advice.push_back(trade::advise(effects[i], done.rows.front(), done.rows[i + 1], limit, only));
+    list.push_back(json_of(effects[i], advice.back()));
+    report.text += advice.back().sentence + '\n';
+  }
+  report.text += summary(effects, advice);
+  report.data = {{"verb", "advise"}, {"limit_percent", limit}, {"effects", list}, {"study", to_json(done, scene)}};
+  if (!file) return report;
+  report.data["file"] = arguments.output;
+  report.text += fmt::format("Result: {}\n", arguments.output);
   return report;
 }
 

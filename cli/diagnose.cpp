@@ -1,11 +1,11 @@
 #include "cli/diagnose.hpp"
 
 #include <slipmode/figures/gnuplot.hpp>
+#include <slipmode/figures/series_figures.hpp>
 #include <slipmode/results/series_input.hpp>
+#include <slipmode/results/series_store.hpp>
 #include "cli/diagnose_model.hpp"
-#include "cli/series_figures.hpp"
 #include "cli/series_findings.hpp"
-#include "cli/series_store.hpp"
 #include "cli/verbs.hpp"
 
 #include <fmt/format.h>
@@ -63,7 +63,7 @@ std::string diagnosis_file(const DiagnoseRequest& request) {
 
 Report diagnosis_report(const diagnostics::SeriesStudy& study, const results::SeriesInput& input,
                         const DiagnoseArguments& arguments) {
-  const std::vector<Finding> findings = findings_of(study, arguments.request.bits);
+  const std::vector<diagnostics::Finding> findings = diagnostics::findings_of(study, arguments.request.bits);
   const std::vector<std::string> warnings = warnings_of(study, input);
   Report report;
   report.data = {{"verb", "diagnose"}, {"series", study.series.name}, {"what", input.what}};
@@ -92,7 +92,8 @@ Report diagnosis_report(const diagnostics::SeriesStudy& study, const results::Se
   report.data["file"] = file;
   report.text += fmt::format("Numbers and curves: {}\n", file);
   if (arguments.request.figures.empty()) return report;
-  report.data["figures"] = figures::save_all(series_figures_of(results::StoreReader(file)), arguments.request.figures);
+  report.data["figures"] =
+      figures::save_all(figures::series_figures_of(results::StoreReader(file)), arguments.request.figures);
   report.text += fmt::format("Figures: {}\n", arguments.request.figures);
   return report;
 }
@@ -109,8 +110,7 @@ Report diagnose_series(const Session& session, DiagnoseArguments arguments) {
   const results::SeriesInput input = results::read_series(arguments.series);
   arguments.study.strobe = arguments.strobe.value_or(input.drive_period);
   if (session.seed) arguments.study.seed = *session.seed;
-  ProgressLine line("diagnose", session.progress_mode());
-  arguments.study.run = session.parallel(line);
+  arguments.study.run = session.run_options().parallel("diagnose");
   return diagnosis_report(diagnostics::study_series(input.series, arguments.study), input, arguments);
 }
 

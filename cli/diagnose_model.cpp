@@ -6,15 +6,15 @@
 #include <slipmode/results/provenance.hpp>
 #include <slipmode/rom/reduce.hpp>
 #include <slipmode/scene/own_times.hpp>
+#include <slipmode/scene/solver_options.hpp>
 #include "cli/diagnose_subjects.hpp"
 #include "cli/diagnose_sweep.hpp"
-#include "cli/validation_setup.hpp"
-#include "diagnostics/validation/internal/shared_starts.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <memory>
 #include <mutex>
+#include <utility>
 
 namespace slipmode::cli {
 namespace {
@@ -24,7 +24,8 @@ namespace fs = std::filesystem;
 /// Progress over several models that are measured side by side.
 class SharedProgress {
  public:
-  SharedProgress(ProgressLine& line, std::size_t models) : update_(line.callback()), done_(models), total_(models) {}
+  SharedProgress(ProgressCallback update, std::size_t models)
+      : update_(std::move(update)), done_(models), total_(models) {}
 
   [[nodiscard]] ProgressCallback of(std::size_t model) {
     return [this, model](std::size_t done, std::size_t total) {
@@ -48,9 +49,8 @@ std::vector<results::ModelExponents> measure_models(const Session& session, cons
                                                     const diagnostics::TangentOptions& options) {
   const std::size_t count = subjects.candidates.size() + 1;
   std::vector<results::ModelExponents> models(count);
-  ProgressLine line("exponents", session.progress_mode());
-  SharedProgress progress(line, count);
-  const ParallelOptions parallel{.threads = session.threads, .stop = session.stop, .progress = {}};
+  ParallelOptions parallel = session.run_options().parallel("exponents");
+  SharedProgress progress(std::exchange(parallel.progress, {}), count);
   rethrow_first(parallel_for(count, parallel, [&](std::size_t i) {
     results::ModelExponents& model = models[i];
     diagnostics::TangentOptions own = options;
@@ -61,11 +61,10 @@ std::vector<results::ModelExponents> measure_models(const Session& session, cons
         model.spectrum = diagnostics::lyapunov_spectrum(subjects.full, subjects.start, own);
         return;
       }
-      const diagnostics::VerdictCandidate& candidate = subjects.candidates[i - 1];
+      const pod::NamedBasis& candidate = subjects.candidates[i - 1];
       model.name = candidate.name;
       const dynamics::HybridSystem reduced = rom::reduce(subjects.full, candidate.basis);
-      dynamics::State start = diagnostics::on_subspace(subjects.full.structure(), candidate.basis, subjects.start);
-      start.time = subjects.start.time;
+      const dynamics::State start = rom::restrict_state(subjects.full.structure(), candidate.basis, subjects.start);
       own.exponents = std::min(own.exponents, 2 * reduced.size() + reduced.internal_size());
       model.spectrum = diagnostics::lyapunov_spectrum(reduced, start, own);
     } catch (const NumericalFailure& failure) {
@@ -80,11 +79,10 @@ diagnostics::VerdictTable judge_models(const Session& session, const scene::Scen
                                        const DiagnoseSubjects& subjects, const diagnostics::TangentOptions& options) {
   constexpr double kSamplesPerPeriod = 16.0;
   const std::optional<double> period = subjects.full.drive().period();
-  ProgressLine line("verdict", session.progress_mode());
-  diagnostics::ModelVerdictOptions judging = verdict_options(scene);
+  diagnostics::ModelVerdictOptions judging = scene::verdict_options(scene);
   judging.tangent = options;
   if (period) judging.sample = *period / kSamplesPerPeriod;
-  judging.parallel = session.parallel(line);
+  judging.parallel = session.run_options().parallel("verdict");
   return diagnostics::model_verdict(subjects.full, subjects.start, subjects.candidates, judging);
 }
 

@@ -26,7 +26,7 @@ struct ModelRequest {
 struct DiagnoseSubjects {
   dynamics::HybridSystem full;
   dynamics::State start;
-  std::vector<diagnostics::VerdictCandidate> candidates;
+  std::vector<pod::NamedBasis> candidates;
 };
 
 /// @throws InvalidInput  for files without a basis, or more modes than there are

@@ -4,7 +4,6 @@
 #include <slipmode/fem/beam_modes.hpp>
 #include <slipmode/results/provenance.hpp>
 #include <slipmode/results/units.hpp>
-#include "cli/steps.hpp"
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
 

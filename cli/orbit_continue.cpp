@@ -1,6 +1,7 @@
 #include <slipmode/results/branch_store.hpp>
 #include <slipmode/results/provenance.hpp>
-#include "cli/orbit_family.hpp"
+#include <slipmode/studies/bases.hpp>
+#include "cli/orbit_range.hpp"
 #include "cli/orbit_report.hpp"
 #include "cli/orbit_search.hpp"
 #include "cli/text_table.hpp"
@@ -129,9 +130,10 @@ Report run(const Session& session, const OrbitContinueArguments& arguments) {
   const double own = scene::get_continuous_key(scene, range.key);
   const double start = range.holds(own) ? own : range.from;
   if (start != own) scene = scene::set_key(scene, range.key, start);
-  const SearchModel model = search_model(arguments.search, scene);
-  const orbits::SystemFamily family = orbit_family(scene, range, session, model.basis);
-  const SearchStart search = search_start(arguments.search, scene, model);
+  const studies::Family model(scene, {range.key},
+                              studies::model_basis(scene, arguments.search.model, session.run_options()));
+  const orbits::SystemFamily family = systems_over(model, range, session);
+  const SearchStart search = search_start(arguments.search, model);
   const orbits::ShootingResult found = orbits::shoot(family(start), search.guess, search.options);
   if (!found.converged()) return not_found("orbit continue", found);
 

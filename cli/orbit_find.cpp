@@ -1,6 +1,7 @@
 #include <slipmode/results/orbit_records.hpp>
 #include <slipmode/results/provenance.hpp>
 #include <slipmode/results/records.hpp>
+#include <slipmode/studies/bases.hpp>
 #include "cli/orbit_report.hpp"
 #include "cli/orbit_search.hpp"
 #include "cli/verbs.hpp"
@@ -33,9 +34,9 @@ void store(const std::string& path, const scene::Scene& scene, const dynamics::H
 Report run(const Session& session, const OrbitFindArguments& arguments) {
   if (!arguments.output.empty()) require_writable(arguments.output);
   const scene::Scene scene = session.load(arguments.search.scene);
-  const SearchModel model = search_model(arguments.search, scene);
-  const dynamics::HybridSystem system = model.of(model.full);
-  const SearchStart start = search_start(arguments.search, scene, model);
+  const studies::Family model(scene, {}, studies::model_basis(scene, arguments.search.model, session.run_options()));
+  const dynamics::HybridSystem& system = model.own();
+  const SearchStart start = search_start(arguments.search, model);
   session.check_interrupt();
   const orbits::ShootingResult result = orbits::shoot(system, start.guess, start.options);
   if (!result.converged()) return not_found("orbit find", result);

@@ -1,7 +1,8 @@
 #include <slipmode/orbits/orbit_map.hpp>
 
 #include <slipmode/results/map_store.hpp>
-#include <slipmode/results/provenance.hpp>
+#include <slipmode/studies/family.hpp>
+#include <slipmode/studies/result_file.hpp>
 #include "cli/sweep_request.hpp"
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
@@ -30,11 +31,13 @@ struct OrbitMapArguments {
 struct Task {
   const Session& session;
   const OrbitMapArguments& arguments;
-  scene::Scene scene;
-  std::vector<Over> over;
+  const studies::Family& family;
+  const std::vector<Over>& over;
   std::vector<std::string> starts;
-  results::Journal& journal;
-  std::string command;
+  studies::ResultFile& file;
+
+  [[nodiscard]] const scene::Scene& scene() const { return family.scene(); }
+  [[nodiscard]] std::string length_unit() const { return results::Units::of(scene().units).length; }
 };
 
 std::vector<std::string> starts_of(const OrbitMapArguments& arguments) {
@@ -46,56 +49,10 @@ std::vector<std::string> starts_of(const OrbitMapArguments& arguments) {
                   arguments.start));
 }
 
-/// Systems at values of keys. A force's frequency and amplitude leave the structure alone: its modes are then shared.
-class Systems {
- public:
-  Systems(const scene::Scene& scene, const std::vector<Over>& over) : scene_(scene), base_(scene::build_system(scene)) {
-    for (const Over& one : over) keys_.push_back(one.key);
-    shares_structure_ = scene.drive.force() != nullptr && std::ranges::all_of(keys_, [](const std::string& key) {
-                          return key == "drive.omega" || key == "drive.amplitude";
-                        });
-  }
-
-  [[nodiscard]] dynamics::HybridSystem at(const std::vector<double>& values) const {
-    if (!shares_structure_) {
-      scene::Scene changed = scene_;
-      for (std::size_t k = 0; k < keys_.size(); ++k) changed = scene::set_key(changed, keys_[k], values[k]);
-      return scene::build_system(changed);
-    }
-    friction::Force force = *scene_.drive.force();
-    for (std::size_t k = 0; k < keys_.size(); ++k) {
-      (keys_[k] == "drive.omega" ? force.omega : force.harmonics.front().amplitude) = values[k];
-    }
-    return base_.with_drive(force);
-  }
-  [[nodiscard]] const dynamics::HybridSystem& base() const { return base_; }
-
- private:
-  const scene::Scene& scene_;
-  dynamics::HybridSystem base_;
-  std::vector<std::string> keys_;
-  bool shares_structure_ = false;
-};
-
 std::function<dynamics::State(const dynamics::HybridSystem&)> start_of(const scene::Scene& scene,
                                                                        const std::string& kind) {
   if (kind == "centre") return [](const dynamics::HybridSystem& system) { return orbits::linear_response(system); };
   return [&scene](const dynamics::HybridSystem& system) { return scene::initial_state(scene, system); };
-}
-
-Report interrupted(const Task& task) {
-  Report report;
-  report.exit_code = kInterrupted;
-  report.text = fmt::format("interrupted; what is done is kept in {}\nThe same command goes on from there.",
-                            results::Journal::path_for(task.arguments.output).string());
-  report.data = {{"verb", "orbit map"}, {"message", report.text}};
-  return report;
-}
-
-results::StoreWriter writer_of(const Task& task) {
-  results::StoreWriter writer(task.arguments.output, task.scene.units);
-  results::save(writer, results::provenance_of(task.scene, task.command));
-  return writer;
 }
 
 /// How often each order was met; the first entry of `json` is that of motion which is not periodic.
@@ -114,34 +71,30 @@ void add_orders(const std::map<int, std::size_t>& orders, std::size_t failed, co
 
 Report run_map(const Task& task) {
   const orbits::MapGrid grid{.x = task.over[0].values, .y = task.over[1].values};
-  const Systems systems(task.scene, task.over);
   orbits::MapOptions options;
   options.max_order = task.arguments.max_order;
   options.max_periods = task.arguments.periods;
   options.block = std::min(options.block, options.max_periods);
-  options.shooting.flow.method = task.scene.flow.method;
-  if (!systems.base().contacts().empty()) options.row = systems.base().contacts().front().direction;
+  options.shooting.flow.method = task.scene().flow.method;
+  if (!task.family.own().contacts().empty()) options.row = task.family.own().contacts().front().direction;
 
   Report report;
   std::vector<results::StartedMap> maps;
   for (const std::string& start : task.starts) {
-    ProgressLine line("map from " + start, task.session.progress_mode());
     orbits::OrbitMap map = orbits::orbit_map(
         [&](double x, double y) {
-          return systems.at({x, y});
+          return task.family.at({x, y});
         },
-        start_of(task.scene, start), grid, options, task.session.parallel(line),
-        results::map_sink(task.journal, start));
-    if (map.interrupted) return interrupted(task);
+        start_of(task.scene(), start), grid, options, task.session.run_options().parallel("map from " + start),
+        results::map_sink(task.file.journal(), start));
+    if (map.interrupted) return interrupted_at(task.arguments.output);
     maps.push_back({start, std::move(map)});
   }
-  const results::Units units = results::Units::of(task.scene.units);
-  results::StoreWriter writer = writer_of(task);
-  results::store_map(writer, results::sweep_axis(task.scene, task.over[0].key),
-                     results::sweep_axis(task.scene, task.over[1].key), grid, maps, units.length);
-  writer.commit();
+  task.file.finish([&](results::StoreWriter& writer) {
+    results::store_map(writer, task.family.axis(0), task.family.axis(1), grid, maps, task.length_unit());
+  });
 
-  report.text = fmt::format("{}: {} x {} points of {} and {}\n", task.scene.title, grid.x.size(), grid.y.size(),
+  report.text = fmt::format("{}: {} x {} points of {} and {}\n", task.scene().title, grid.x.size(), grid.y.size(),
                             task.over[0].key, task.over[1].key);
   report.data = {{"verb", "orbit map"},
                  {"file", task.arguments.output},
@@ -160,42 +113,37 @@ Report run_map(const Task& task) {
 
 Report run_strobe(const Task& task) {
   const Over& over = task.over.front();
-  const Systems systems(task.scene, task.over);
   orbits::StrobeOptions options{.periods = task.arguments.periods,
                                 .kept = task.arguments.kept,
                                 .tolerance = task.arguments.tolerance,
                                 .max_order = task.arguments.max_order,
                                 .follow = task.arguments.follow};
-  options.flow.method = task.scene.flow.method;
-  const auto& contacts = systems.base().contacts();
-  options.rows.resize(static_cast<Eigen::Index>(contacts.size()), systems.base().size());
+  options.flow.method = task.scene().flow.method;
+  const auto& contacts = task.family.own().contacts();
+  options.rows.resize(static_cast<Eigen::Index>(contacts.size()), task.family.own().size());
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     options.rows.row(static_cast<Eigen::Index>(c)) = contacts[c].direction.transpose();
   }
   Report report;
   std::vector<results::StartedStrobe> runs;
   for (const std::string& start : task.starts) {
-    ProgressLine line("map from " + start, task.session.progress_mode());
-    orbits::StrobeMap map =
-        orbits::strobe_map([&](double value) { return systems.at({value}); }, start_of(task.scene, start), over.values,
-                           options, task.session.parallel(line), results::strobe_sink(task.journal, start));
-    if (map.interrupted) return interrupted(task);
-    results::StartedStrobe run{start, {}};
-    for (auto& point : map.points) run.points.push_back(std::move(*point));
-    runs.push_back(std::move(run));
+    orbits::StrobeMap map = orbits::strobe_map(task.family.systems(), start_of(task.scene(), start), over.values,
+                                               options, task.session.run_options().parallel("map from " + start),
+                                               results::strobe_sink(task.file.journal(), start));
+    if (map.interrupted) return interrupted_at(task.arguments.output);
+    runs.push_back({start, std::move(map.points)});
   }
-  const results::Units units = results::Units::of(task.scene.units);
-  results::StoreWriter writer = writer_of(task);
-  results::store_strobe(writer, results::sweep_axis(task.scene, over.key), runs, units.length);
-  writer.commit();
+  task.file.finish([&](results::StoreWriter& writer) {
+    results::store_strobe(writer, task.family.axis(), runs, task.length_unit());
+  });
 
-  report.text = fmt::format("{}: {} values of {}\n", task.scene.title, over.values.size(), over.key);
+  report.text = fmt::format("{}: {} values of {}\n", task.scene().title, over.values.size(), over.key);
   report.data = {
       {"verb", "orbit map"}, {"file", task.arguments.output}, {"keys", {over.key}}, {"points", over.values.size()}};
   for (const auto& [start, points] : runs) {
     std::map<int, std::size_t> orders;
     std::size_t failed = 0;
-    for (const StrobePoint& point : points) point.failure.empty() ? ++orders[point.order] : ++failed;
+    for (const StrobePoint& point : points) point.failure.empty() ? ++orders[point.settled.order] : ++failed;
     add_orders(orders, failed, start, report);
   }
   return report;
@@ -230,16 +178,17 @@ Report run(const Session& session, const OrbitMapArguments& arguments) {
                   fmt::join(arguments.over, " --over "), arguments.start, arguments.max_order, arguments.periods,
                   arguments.kept, arguments.tolerance, arguments.follow ? " --follow" : "");
   const std::vector<std::string> starts = starts_of(arguments);
-  results::Journal journal(
-      results::Journal::path_for(arguments.output),
-      results::fingerprint(fmt::format("{}\n{}\n{}", results::version(), command, scene::scene_to_toml(scene))));
-  const std::size_t resumed = journal.records().size();
-  const Task task{session, arguments, scene, over, starts, journal, command};
+  std::vector<std::string> keys;
+  for (const Over& one : over) keys.push_back(one.key);
+  const studies::Family family(scene, keys);
+  studies::ResultFile file(arguments.output, scene, command);
+  const Task task{session, arguments, family, over, starts, file};
   Report report = over.size() == 2 ? run_map(task) : run_strobe(task);
+  report.data["verb"] = "orbit map";
   if (report.exit_code != kDone) return report;
-  journal.remove();
-  report.data["resumed"] = resumed;
-  if (resumed > 0) report.text += fmt::format("{} rows were taken over from an interrupted run\n", resumed);
+  report.data["resumed"] = file.resumed();
+  if (file.resumed() > 0)
+    report.text += fmt::format("{} rows were taken over from an interrupted run\n", file.resumed());
   report.text += fmt::format("Map: {}\n", arguments.output);
   return report;
 }

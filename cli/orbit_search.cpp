@@ -1,9 +1,5 @@
 #include "cli/orbit_search.hpp"
 
-#include <slipmode/results/records.hpp>
-#include <slipmode/results/reduced_file.hpp>
-#include <slipmode/rom/reduce.hpp>
-
 #include <fmt/format.h>
 #include <charconv>
 #include <cmath>
@@ -51,30 +47,30 @@ dynamics::State given_state(const std::string& text, Eigen::Index n) {
 }
 
 /// Under a periodic drive the guess settles for whole periods.
-dynamics::State settled(const OrbitSearch& search, const scene::Scene& scene, const dynamics::HybridSystem& system,
-                        const dynamics::State& start, double drive) {
-  const double periods = search.settle > 0.0 ? search.settle : scene.time.transient / drive;
-  return orbits::settle_guess(system, start, std::round(periods));
+dynamics::State settled(const OrbitSearch& search, const studies::Family& model, double drive) {
+  const double periods = search.settle > 0.0 ? search.settle : model.scene().time.transient / drive;
+  return orbits::settle_guess(model.own(), model.start(), std::round(periods));
 }
 
-SearchStart self_excited(const OrbitSearch& search, const scene::Scene& scene, const SearchModel& model,
-                         orbits::ShootingOptions options) {
+SearchStart self_excited(const OrbitSearch& search, const studies::Family& model, orbits::ShootingOptions options) {
   if (search.order != 1) {
     throw InvalidInput(
         fmt::format("--order {}: counts periods of the drive, and this drive has none; valid: --period", search.order));
   }
   options.period = search.period;
-  const dynamics::State start = model.of(scene::initial_state(scene, model.full));
+  const dynamics::State start = model.start();
   if (search.start != "settle") {
     if (search.period <= 0.0) {
       throw InvalidInput(
           fmt::format("--start {}: the drive has no period, so --period is needed with it", search.start));
     }
-    return {search.start == "initial" ? start : model.of(given_state(search.start, model.full.size())), options};
+    return {search.start == "initial" ? start : model.own_state(given_state(search.start, model.scene().size())),
+            options};
   }
-  const double transient = search.settle > 0.0 ? search.settle : scene.time.transient;
-  const double duration = scene.time.duration - scene.time.transient;
-  const orbits::RecurrenceGuess guess = orbits::recurrence_guess(model.of(model.full), start, transient, duration);
+  const scene::TimeSpec& time = model.scene().time;
+  const double transient = search.settle > 0.0 ? search.settle : time.transient;
+  const double duration = time.duration - time.transient;
+  const orbits::RecurrenceGuess guess = orbits::recurrence_guess(model.own(), start, transient, duration);
   if (options.period <= 0.0) options.period = guess.period;
   return {guess.state, options};
 }
@@ -101,40 +97,15 @@ void add_search_options(CLI::App& command, OrbitSearch& search) {
   command.add_flag("--symmetric", search.half, "look for a symmetric orbit by its half period");
 }
 
-dynamics::HybridSystem SearchModel::of(const dynamics::HybridSystem& system) const {
-  return basis ? rom::reduce(system, *basis) : system;
-}
-
-dynamics::State SearchModel::of(const dynamics::State& state) const {
-  return basis ? rom::restrict_state(full.structure(), *basis, state) : state;
-}
-
-std::string SearchModel::title() const {
-  return basis ? fmt::format("reduced model, {} modes", basis->modes())
-               : fmt::format("full model, {} degrees of freedom", full.size());
-}
-
-SearchModel search_model(const OrbitSearch& search, const scene::Scene& scene) {
-  SearchModel model{.full = scene::build_system(scene)};
-  if (search.model == "full") return model;
-  const std::optional<std::string> file = results::reduced_file(search.model);
-  if (!file) {
-    throw InvalidInput(
-        fmt::format("--model {}: expected full, or rom:FILE with a result of 'slipmode reduce'", search.model));
-  }
-  model.basis = results::reduced_basis(*file, model.full.size());
-  return model;
-}
-
-SearchStart search_start(const OrbitSearch& search, const scene::Scene& scene, const SearchModel& model) {
+SearchStart search_start(const OrbitSearch& search, const studies::Family& model) {
   orbits::ShootingOptions options{.order = search.order,
                                   .segments = search.segments,
                                   .tolerance = search.tolerance,
                                   .max_iterations = search.iterations,
                                   .half_period = search.half};
-  options.flow.method = scene.flow.method;
-  const std::optional<double> drive = model.full.drive().period();
-  if (!drive) return self_excited(search, scene, model, options);
+  options.flow.method = model.scene().flow.method;
+  const std::optional<double> drive = model.own().drive().period();
+  if (!drive) return self_excited(search, model, options);
   if (search.period > 0.0) {
     const int order = order_of(search.period, *drive);
     if (search.order != 1 && search.order != order) {
@@ -144,11 +115,10 @@ SearchStart search_start(const OrbitSearch& search, const scene::Scene& scene, c
     options.order = order;
   }
   if (search.start != "settle" && search.start != "initial") {
-    return {model.of(given_state(search.start, model.full.size())), options};
+    return {model.own_state(given_state(search.start, model.scene().size())), options};
   }
-  const dynamics::State start = model.of(scene::initial_state(scene, model.full));
-  if (search.start == "initial") return {start, options};
-  return {settled(search, scene, model.of(model.full), start, *drive), options};
+  if (search.start == "initial") return {model.start(), options};
+  return {settled(search, model, *drive), options};
 }
 
 }  // namespace slipmode::cli

@@ -1,11 +1,10 @@
 #pragma once
 
 #include <slipmode/orbits/shooting.hpp>
-#include <slipmode/pod/basis.hpp>
+#include <slipmode/studies/family.hpp>
 #include "cli/session.hpp"
 
 #include <CLI/CLI.hpp>
-#include <optional>
 #include <string>
 
 namespace slipmode::cli {
@@ -28,22 +27,6 @@ struct OrbitSearch {
 /// SCENE and the options of a search.
 void add_search_options(CLI::App& command, OrbitSearch& search);
 
-/// The model an orbit is looked for in: the scene's own, or its projection on a basis.
-struct SearchModel {
-  dynamics::HybridSystem full;
-  std::optional<pod::Basis> basis = {};
-
-  /// A full model's projection, or the model itself.
-  [[nodiscard]] dynamics::HybridSystem of(const dynamics::HybridSystem& system) const;
-  /// A full model's state as this model has it.
-  [[nodiscard]] dynamics::State of(const dynamics::State& state) const;
-  /// "full model, 4 degrees of freedom", "reduced model, 3 modes".
-  [[nodiscard]] std::string title() const;
-};
-
-/// @throws InvalidInput  for a model that is neither "full" nor "rom:FILE", or a file without a basis for the scene
-[[nodiscard]] SearchModel search_model(const OrbitSearch& search, const scene::Scene& scene);
-
 /// Where Newton's method begins, and with which options.
 struct SearchStart {
   dynamics::State guess;
@@ -52,6 +35,6 @@ struct SearchStart {
 
 /// @throws InvalidInput  for a period that is no multiple of the drive's, a start with a wrong number of values, an
 ///                       order without a periodic drive
-[[nodiscard]] SearchStart search_start(const OrbitSearch& search, const scene::Scene& scene, const SearchModel& model);
+[[nodiscard]] SearchStart search_start(const OrbitSearch& search, const studies::Family& model);
 
 }  // namespace slipmode::cli

@@ -87,9 +87,8 @@ Recorded record(const Session& session, const OrbitSkeletonArguments& arguments,
 template <class Search>
 orbits::Skeleton with_progress(const Session& session, const OrbitSkeletonArguments& arguments, const std::string& what,
                                const Search& search) {
-  ProgressLine line(what, session.progress_mode());
   orbits::SkeletonOptions options = arguments.search;
-  options.parallel = session.parallel(line);
+  options.parallel = session.run_options().parallel(what);
   orbits::Skeleton skeleton = search(options);
   if (skeleton.interrupted) throw Interrupted();
   return skeleton;

@@ -1,4 +1,4 @@
-#include "cli/file_figures.hpp"
+#include <slipmode/figures/file_figures.hpp>
 #include "cli/verbs.hpp"
 
 #include <fmt/format.h>
@@ -33,7 +33,7 @@ Report run(const PlotArguments& arguments) {
   figures::require_figure_extension(arguments.output);
   require_writable(arguments.output);
   const results::StoreReader store(arguments.input);
-  const std::vector<figures::FileFigure> figures = figures_of(store);
+  const std::vector<figures::FileFigure> figures = figures::figures_of(store);
   const figures::FileFigure& figure = select(figures, arguments);
   figures::save(figure.draw(), {arguments.output});
 

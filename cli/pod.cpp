@@ -1,9 +1,11 @@
 #include <slipmode/pod/pod.hpp>
 
+#include <slipmode/results/ensemble_store.hpp>
+#include <slipmode/results/provenance.hpp>
 #include <slipmode/results/records.hpp>
-#include "cli/shaken_bases.hpp"
-#include "cli/shaken_model.hpp"
-#include "cli/steps.hpp"
+#include <slipmode/scene/shaken.hpp>
+#include <slipmode/studies/bases.hpp>
+#include "cli/modes_report.hpp"
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
 
@@ -32,11 +34,11 @@ Report run_shaken(const PodArguments& arguments, const scene::Scene& scene, cons
   if (arguments.modes > 0) {
     throw InvalidInput("--modes: under a shaker all modes are kept, 'slipmode reduce --modes' takes as many as wanted");
   }
-  const ShakenModes modes = shaken_modes(scene, scene::build_system(scene).structure(), ensemble);
+  const results::ShakenModes modes = studies::shaken_modes(scene, scene::build_system(scene).structure(), ensemble);
   provenance.command = "slipmode pod";
   results::StoreWriter writer(arguments.output, scene.units);
   results::save(writer, provenance);
-  save(writer, modes);
+  results::save(writer, modes);
   writer.commit();
   Report report;
   report.text = fmt::format("{} snapshots of {} degrees of freedom\n{}Modes: {}\n", ensemble.snapshots.cols(),
@@ -53,7 +55,7 @@ Report run(const Session& session, const PodArguments& arguments) {
   require_writable(arguments.output);
   const results::StoreReader store(arguments.input);
   results::Provenance provenance = results::load_provenance(store);
-  const pod::Ensemble ensemble = load_snapshots(store);
+  const pod::Ensemble ensemble = results::load_snapshots(store);
   session.check_interrupt();
   const scene::Scene scene = results::load_scene_of(store);
   if (is_shaken(scene)) return run_shaken(arguments, scene, ensemble, std::move(provenance));
@@ -65,7 +67,7 @@ Report run(const Session& session, const PodArguments& arguments) {
   results::save(writer, results::kPodGroup, result);
   writer.commit();
 
-  const Eigen::VectorXd sum = cumulative(result.shares);
+  const Eigen::VectorXd sum = pod::cumulative(result.shares);
   TextTable table({"mode", "energy share [%]", "cumulative [%]"});
   for (Eigen::Index i = 0; i < std::min<Eigen::Index>(result.shares.size(), 20); ++i) {
     table.add({fmt::format("{}", i + 1), fmt::format("{:.4f}", 100.0 * result.shares[i]),

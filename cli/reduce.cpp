@@ -1,10 +1,9 @@
 #include <slipmode/rom/reduce.hpp>
 
 #include <slipmode/fem/modes.hpp>
+#include <slipmode/results/provenance.hpp>
 #include <slipmode/results/records.hpp>
-#include "cli/shaken_bases.hpp"
-#include "cli/shaken_model.hpp"
-#include "cli/steps.hpp"
+#include <slipmode/studies/bases.hpp>
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
 
@@ -18,38 +17,22 @@ struct ReduceArguments {
   Eigen::Index modes = 0;
 };
 
-/// Under a shaker a POD holds several bases: the one that reduction.basis names is taken.
-BasisSource load_shaken_basis(const scene::Scene& scene, const dynamics::HybridSystem& full,
-                              const std::string& source) {
-  const auto no_ensemble = []() -> const ShakenModes& { throw InvalidInput("natural modes need no ensemble"); };
-  for (const auto word : {scene::BasisChoice::kLnm, scene::BasisChoice::kLnmStatic}) {
-    if (source == scene::to_string(word)) return {.basis = shaken_basis(word, scene, full, no_ensemble), .shares = {}};
-  }
-  const results::StoreReader store(source);
-  if (!store.has(results::kPodGroup)) return load_basis_source(source, full.structure());
-  scene::Scene one = scene;
-  one.shaken.bases = {scene.reduction.basis};
-  const pod::Basis basis = load_shaken_candidates(one, full, source).front().basis;
-  return {.basis = basis, .shares = basis.energy};
-}
-
 /// LNMs have no energies of their own: without a count there is nothing to choose by.
-Eigen::Index mode_count(const ReduceArguments& arguments, const scene::Scene& scene, const BasisSource& source) {
+Eigen::Index mode_count(const ReduceArguments& arguments, const scene::Scene& scene, const pod::NamedBasis& source) {
   pod::ModeChoice choice = scene.reduction.choice;
   if (arguments.modes > 0) choice.modes = arguments.modes;
-  if (choice.modes == 0 && source.shares.size() == 0) {
+  if (choice.modes == 0 && source.captured.size() == 0) {
     throw InvalidInput(
         fmt::format("basis '{}' has no energy shares to choose by; give --modes or reduction.modes", arguments.basis));
   }
-  return chosen_modes(choice, source.shares, source.basis.modes(), fmt::format("basis '{}'", arguments.basis));
+  return pod::chosen_modes(choice, source.captured, source.basis.modes(), fmt::format("basis '{}'", arguments.basis));
 }
 
 Report run(const Session& session, const ReduceArguments& arguments) {
   require_writable(arguments.output);
   const scene::Scene scene = session.load(arguments.scene);
   const dynamics::HybridSystem full = scene::build_system(scene);
-  const BasisSource source = is_shaken(scene) ? load_shaken_basis(scene, full, arguments.basis)
-                                              : load_basis_source(arguments.basis, full.structure());
+  const pod::NamedBasis source = studies::load_basis(scene, full, arguments.basis);
   const Eigen::Index modes = mode_count(arguments, scene, source);
   const pod::Basis basis = source.basis.truncated(modes);
   const dynamics::HybridSystem reduced = rom::reduce(full, basis);
@@ -74,8 +57,8 @@ Report run(const Session& session, const ReduceArguments& arguments) {
                  {"omega_full", std::vector<double>(omega_full.begin(), omega_full.end())},
                  {"omega_reduced", std::vector<double>(omega_reduced.begin(), omega_reduced.end())}};
   std::string energy;
-  if (source.shares.size() > 0) {
-    const double kept = source.shares.head(modes).sum();
+  if (source.captured.size() >= modes) {
+    const double kept = source.captured[modes - 1];
     report.data["energy"] = kept;
     energy = fmt::format(", {:.3f} % of the energy", 100.0 * kept);
   }

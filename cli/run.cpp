@@ -1,9 +1,7 @@
 #include <slipmode/figures/gnuplot.hpp>
 #include <slipmode/scene/own_times.hpp>
-#include "cli/pipeline.hpp"
-#include "cli/shaken_model.hpp"
-#include "cli/shaken_pipeline.hpp"
-#include "cli/validation_report.hpp"
+#include <slipmode/studies/pipeline.hpp>
+#include "cli/pipeline_report.hpp"
 #include "cli/verbs.hpp"
 #include "cli/work_folder.hpp"
 
@@ -44,19 +42,14 @@ Report interrupted(const WorkFolder& folder) {
   return report;
 }
 
-Report run_scene(const Session& session, const scene::Scene& scene, const std::filesystem::path& folder) {
-  if (is_shaken(scene)) return run_shaken_pipeline(session, scene, folder);
-  const PipelineResult result = run_pipeline(session, scene, folder);
-  return {.data = to_json(result, scene), .text = summary_text(result, scene)};
-}
-
 Report run(const Session& session, const RunArguments& arguments) {
   const scene::Scene scene = scene::with_own_times(session.load(arguments.scene));
   figures::require_gnuplot();
   WorkFolder folder(arguments.output);
   std::filesystem::remove(folder.path() / "INCOMPLETE.txt");
   try {
-    Report report = run_scene(session, scene, folder.path());
+    const studies::PipelineResult result = studies::pipeline(scene, folder.path(), session.run_options());
+    Report report{.data = to_json(result, scene), .text = summary_text(result, scene)};
     report.data["folder"] = arguments.output;
     write_text(folder.path() / "summary.json", report.data.dump(2) + "\n");
     write_text(folder.path() / "summary.txt", report.text);

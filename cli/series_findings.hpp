@@ -1,6 +1,6 @@
 #pragma once
 
-#include <slipmode/diagnostics/series/series_study.hpp>
+#include <slipmode/diagnostics/series/findings.hpp>
 #include "cli/session.hpp"
 
 #include <string>
@@ -8,25 +8,8 @@
 
 namespace slipmode::cli {
 
-/// One number of a study, with its uncertainty and how it was come by.
-struct Finding {
-  std::string key;       ///< for programs: "delay", "wolf", …
-  std::string quantity;  ///< for people
-  double value = 0.0;
-  double error = 0.0;  ///< NaN: exact, or not known (the settings say which)
-  std::string unit;    ///< "" for counts
-  std::string settings;
-};
-
-/// What a study found, number by number; tools that did not run give none.
-/// @param bits  exponents and information in bits rather than nats
-[[nodiscard]] std::vector<Finding> findings_of(const diagnostics::SeriesStudy& study, bool bits);
-
-/// "0.94 ± 0.03": as many digits as the error allows, two of it.
-[[nodiscard]] std::string with_error(double value, double error);
-
 /// The table of a terminal, and the same numbers as JSON.
-[[nodiscard]] std::string findings_text(const std::vector<Finding>& findings);
-[[nodiscard]] Json findings_json(const std::vector<Finding>& findings);
+[[nodiscard]] std::string findings_text(const std::vector<diagnostics::Finding>& findings);
+[[nodiscard]] Json findings_json(const std::vector<diagnostics::Finding>& findings);
 
 }  // namespace slipmode::cli

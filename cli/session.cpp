@@ -3,17 +3,48 @@
 #include <unistd.h>
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <memory>
+#include <utility>
 
 namespace slipmode::cli {
 
 namespace fs = std::filesystem;
 
-ParallelOptions Session::parallel(ProgressLine& line) const {
-  return {.threads = threads, .stop = stop, .progress = line.callback()};
+namespace {
+
+/// One line per batch of work, each with its own time left.
+class BatchLines {
+ public:
+  BatchLines(std::string label, ProgressMode mode)
+      : label_(std::move(label)), mode_(mode), line_(std::make_unique<ProgressLine>(label_, mode)) {}
+
+  void update(std::size_t done, std::size_t total) {
+    if (total_ != 0 && (total != total_ || done < done_)) {
+      line_.reset();  // ends the line before the next one begins
+      line_ = std::make_unique<ProgressLine>(label_, mode_);
+    }
+    done_ = done;
+    total_ = total;
+    line_->update(done, total);
+  }
+
+ private:
+  std::string label_;
+  ProgressMode mode_;
+  std::unique_ptr<ProgressLine> line_;
+  std::size_t done_ = 0, total_ = 0;
+};
+
+}  // namespace
+
+studies::RunOptions Session::run_options() const {
+  return {.threads = threads, .stop = stop, .progress = [mode = progress_mode()](const std::string& part) {
+            const auto lines = std::make_shared<BatchLines>(part, mode);
+            return [lines](std::size_t done, std::size_t total) { lines->update(done, total); };
+          }};
 }
 
 scene::Scene Session::load(const fs::path& path) const {
@@ -51,16 +82,6 @@ std::string describe(const NumericalFailure& failure) {
   if (failure.state.size() == 0) text += " not known";
   if (failure.state.size() > kShown) text += fmt::format(" ... ({} values)", failure.state.size());
   return text;
-}
-
-bool has_section(const scene::Scene& scene, const std::string& name) {
-  const toml::table written = toml::parse(scene.source.text);
-  if (written.contains(name)) return true;
-  for (const std::string& override : scene.source.overrides) {
-    if (override.starts_with("ensemble.seed=")) continue;
-    if (override.starts_with(name + ".") || override.starts_with(name + "=")) return true;
-  }
-  return false;
 }
 
 }  // namespace slipmode::cli

@@ -4,6 +4,7 @@
 #include <slipmode/core/parallel.hpp>
 #include <slipmode/core/progress.hpp>
 #include <slipmode/scene/scene.hpp>
+#include <slipmode/studies/run_options.hpp>
 
 #include <cstdint>
 #include <filesystem>
@@ -34,8 +35,8 @@ struct Session {
   std::vector<std::string> overrides;  ///< --set, in order
   const StopFlag* stop = nullptr;
 
-  /// Options for the parallel runner, with progress shown on `line`.
-  [[nodiscard]] ParallelOptions parallel(ProgressLine& line) const;
+  /// For studies, with progress on standard error.
+  [[nodiscard]] studies::RunOptions run_options() const;
   [[nodiscard]] ProgressMode progress_mode() const { return quiet ? ProgressMode::kQuiet : ProgressMode::kAutomatic; }
   /// Reads a scene with --set and --seed applied (--seed is an override of ensemble.seed, so provenance holds it).
   [[nodiscard]] scene::Scene load(const std::filesystem::path& path) const;
@@ -56,9 +57,5 @@ void require_writable(const std::filesystem::path& file);
 
 /// What went wrong, when and in which state, for people.
 [[nodiscard]] std::string describe(const NumericalFailure& failure);
-
-/// True when the scene, or an override of it, has that table ("ensemble", "validation", ...). A --seed alone makes
-/// none.
-[[nodiscard]] bool has_section(const scene::Scene& scene, const std::string& name);
 
 }  // namespace slipmode::cli

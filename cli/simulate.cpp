@@ -1,6 +1,7 @@
+#include <slipmode/results/ensemble_store.hpp>
+#include <slipmode/results/provenance.hpp>
 #include <slipmode/results/records.hpp>
-#include "cli/shaken_bases.hpp"
-#include "cli/steps.hpp"
+#include <slipmode/studies/ensemble.hpp>
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
 
@@ -60,7 +61,7 @@ Report run_trajectory(const Session& session, const SimulateArguments& arguments
   provenance.audit = trajectory.audit;
   results::save(writer, provenance);
   results::save(writer, results::kTrajectoryGroup, trajectory);
-  if (scene.sensors) store_sensors(writer, scene, trajectory.q);
+  if (scene.sensors) results::store_sensors(writer, scene, trajectory.q);
   if (run.failure) {
     writer.write("trajectory/incomplete", describe(*run.failure), {"", "the run stopped early: why and where"});
   }
@@ -92,8 +93,8 @@ Report run_trajectory(const Session& session, const SimulateArguments& arguments
 }
 
 Report run_ensemble(const Session& session, const SimulateArguments& arguments, const scene::Scene& scene) {
-  const diagnostics::EnsembleRun run = run_scene_ensemble(session, scene, scene::build_system(scene));
-  store_ensemble(arguments.output, scene, run);
+  const diagnostics::EnsembleRun run = studies::ensemble(scene, session.run_options());
+  results::store_ensemble(arguments.output, scene, run);
 
   Report report;
   Json failures = Json::array();
@@ -105,10 +106,10 @@ Report run_ensemble(const Session& session, const SimulateArguments& arguments, 
                  {"kind", "ensemble"},
                  {"members", run.members.size()},
                  {"snapshots", run.ensemble.snapshots.cols()},
-                 {"audit_residual", worst_audit(run)},
+                 {"audit_residual", run.worst_audit()},
                  {"failures", failures}};
   report.text = fmt::format("{}: {} runs, {} snapshots, largest energy residual {:.2g}\nEnsemble: {}\n", scene.title,
-                            run.members.size(), run.ensemble.snapshots.cols(), worst_audit(run), arguments.output);
+                            run.members.size(), run.ensemble.snapshots.cols(), run.worst_audit(), arguments.output);
   if (!failures.empty()) {
     report.exit_code = kNumericalFailure;
     report.text = fmt::format("{} of {} runs failed; the others are kept in {}\n  first: {}\n", failures.size(),

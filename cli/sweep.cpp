@@ -1,104 +1,114 @@
-#include <slipmode/diagnostics/attractors/sweep.hpp>
+#include <slipmode/studies/sweep.hpp>
 
-#include <slipmode/results/journal.hpp>
-#include <slipmode/results/records.hpp>
+#include <slipmode/diagnostics/validation/driven_compare.hpp>
+#include <slipmode/results/driven_store.hpp>
 #include <slipmode/results/reduced_file.hpp>
-#include <slipmode/results/sweep_store.hpp>
-#include <slipmode/rom/reduce.hpp>
 #include <slipmode/scene/own_times.hpp>
-#include "cli/shaken_model.hpp"
-#include "cli/steps.hpp"
+#include <slipmode/studies/bases.hpp>
+#include <slipmode/studies/result_file.hpp>
 #include "cli/sweep_report.hpp"
 #include "cli/sweep_request.hpp"
-#include "cli/swept_model.hpp"
-#include "cli/validation_setup.hpp"
 #include "cli/verbs.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
+#include <algorithm>
+#include <cmath>
 
 namespace slipmode::cli {
 namespace {
 
-/// The model swept, where it starts, and what identifies it for resuming.
-struct Subject {
-  diagnostics::Model model;
-  dynamics::State start;
-  std::string title, identity;
+struct SweepRequest {
+  std::string scene, over, output;
+  std::string model = "full";
+  studies::SweepOptions options;
 };
 
-Subject full_subject(const scene::Scene& scene, const std::string& key) {
-  const dynamics::HybridSystem system = scene::build_system(scene);
-  return {.model = swept_model(scene, key),
-          .start = scene::initial_state(scene, system),
-          .title = fmt::format("full model, {} degrees of freedom", system.size()),
-          .identity = "full"};
+/// The command with what decides its values.
+std::string command_of(const SweepRequest& request) {
+  const studies::SweepOptions& options = request.options;
+  return fmt::format("slipmode sweep --over {} --model {}{}{}{}{}", request.over, request.model,
+                     options.follow ? fmt::format(" --follow --segments {}", options.segments) : "",
+                     options.reverse ? " --reverse" : "", options.both ? " --both" : "",
+                     options.exponent_cycles > 0.0 ? fmt::format(" --lyapunov {}", options.exponent_cycles) : "");
 }
 
-Subject reduced_subject(const scene::Scene& scene, const std::string& key, const std::string& file) {
-  const dynamics::HybridSystem system = scene::build_system(scene);
-  const pod::Basis basis = results::reduced_basis(file, system.size());
-  return {.model = swept_model(scene, key, basis),
-          .start = rom::restrict_state(system.structure(), basis, scene::initial_state(scene, system)),
-          .title = fmt::format("reduced model, {} modes", basis.modes()),
-          .identity = "rom " + file_fingerprint(file)};
-}
-
-Subject subject(const scene::Scene& scene, const std::string& key, const std::string& model) {
-  if (model == "full") return full_subject(scene, key);
-  if (const auto file = results::reduced_file(model)) return reduced_subject(scene, key, *file);
-  throw InvalidInput(fmt::format("--model {}: expected full, or rom:FILE with a result of 'slipmode reduce'", model));
-}
-
-Report summary(const SweepRequest& request, const Subject& swept, const Over& over,
-               const std::vector<diagnostics::SweepPoint>& points) {
-  Report report;
+template <class Point>
+void say_motions(const std::vector<Point>& points, Report& out_report) {
   const MotionTable motions = motion_table(results::count_motions(points), points.size());
-  const Json failures = failures_of(points);
-  report.data = {{"verb", "sweep"},         {"file", request.output},  {"model", swept.title}, {"key", over.key},
-                 {"values", points.size()}, {"motions", motions.json}, {"failures", failures}};
-  report.text = fmt::format("{}: {} values of {}\n{}{}Sweep: {}\n", swept.title, points.size(), over.key,
-                            motions.text.str(), results::undecided_note(points), request.output);
-  report_failures(report, failures, points.size());
-  return report;
+  out_report.data["motions"] = motions.json;
+  out_report.text += motions.text.str();
 }
 
-Report run(const Session& session, const SweepRequest& request) {
-  require_writable(request.output);
-  const Over over = parse_over(request.over);
-  const scene::Scene scene = scene::with_own_times(session.load(request.scene));
-  refuse_force(scene, "sweep");
-  if (is_shaken(scene)) return run_shaken_sweep(session, request, over, scene);
-  require_belt_request(request);
-  const Subject swept = subject(scene, over.key, request.model);
-  check_values(scene, over);
+void say_shaken(const SweepRequest& request, const studies::Sweep& sweep, Report& out_report) {
+  const auto& points = sweep.up.empty() ? sweep.down : sweep.up;
+  double audit = 0.0;
+  for (const auto& point : points)
+    if (point.ok()) audit = std::max(audit, std::abs(point.settled.audit_residual));
+  out_report.data["largest_audit_residual"] = audit;
+  out_report.text += fmt::format("largest energy residual {:.1e}\n", audit);
+  say_motions(points, out_report);
+  const auto peaks = diagnostics::amplitude_peaks(points);
+  out_report.data["peaks"] = Json::array();
+  for (const auto& peak : peaks)
+    out_report.data["peaks"].push_back({{"value", peak.parameter}, {"amplitude", peak.amplitude}});
+  out_report.text += fmt::format("peaks of the amplitude at {}\n", results::peaks_text(peaks));
+  if (!request.options.both) return;
+  const double share = diagnostics::hysteresis(sweep.up, sweep.down);
+  out_report.data["hysteresis"] = share;
+  out_report.text += fmt::format("up and down differ at {:.1f} % of the values\n", 100.0 * share);
+}
 
-  const std::string manner = request.follow ? fmt::format(" --follow --segments {}", request.segments) : "";
-  const std::string task = fmt::format("slipmode sweep --over {} --model {}{}", request.over, swept.title, manner);
-  const std::string identity = results::fingerprint(
-      fmt::format("{}\n{}\n{}\n{}", results::version(), task, swept.identity, scene::scene_to_toml(scene)));
-  results::Journal journal(results::Journal::path_for(request.output), identity);
-  const std::size_t resumed = journal.records().size();
-  ProgressLine line("sweep", session.progress_mode());
-  const diagnostics::SweepResult result = diagnostics::sweep(
-      swept.model, over.values, swept.start,
-      {.mode = request.follow ? diagnostics::SweepMode::kFollow : diagnostics::SweepMode::kIndependent,
-       .segments = request.segments,
-       .settle = sweep_settle_options(scene),
-       .parallel = session.parallel(line),
-       .sink = results::journal_sink(journal)});
-  if (result.interrupted) return interrupted_sweep(request, over, result.points.size());
-
-  results::StoreWriter writer(request.output, scene.units);
-  results::save(writer, results::provenance_of(scene, task));
-  results::store_sweep(writer, swept.model.basis ? "sweep/reduced" : "sweep/full", swept.title,
-                       results::sweep_axis(scene, over.key), results::Units::of(scene.units), result.points);
-  writer.commit();
-  journal.remove();
-  Report report = summary(request, swept, over, result.points);
+Report summary(const SweepRequest& request, const studies::Family& family, const studies::Sweep& sweep,
+               std::size_t resumed) {
+  const std::size_t values = sweep.values.size();
+  const std::string& key = family.keys().front();
+  Report report;
+  report.data = {
+      {"verb", "sweep"}, {"file", request.output}, {"model", family.title()}, {"key", key}, {"values", values}};
+  report.text = fmt::format("{}: {} values of {}\n", family.title(), values, key);
+  Json failures;
+  if (sweep.belt.empty()) {
+    say_shaken(request, sweep, report);
+    failures = failures_of(sweep.up.empty() ? sweep.down : sweep.up);
+  } else {
+    say_motions(sweep.belt, report);
+    report.text += results::undecided_note(sweep.belt);
+    failures = failures_of(sweep.belt);
+  }
+  report.data["failures"] = failures;
+  report.text += fmt::format("Sweep: {}\n", request.output);
+  report_failures(report, failures, values);
   report.data["resumed"] = resumed;
   if (resumed > 0) report.text += fmt::format("{} values were taken over from an interrupted run\n", resumed);
   return report;
+}
+
+/// How far it got, of both passes where there are two.
+Report interrupted(const SweepRequest& request, std::size_t values, std::size_t finished) {
+  const std::size_t all = values * (request.options.both ? 2 : 1);
+  Report report = interrupted_at(request.output, fmt::format("with {} of {} values done", finished, all));
+  report.data["verb"] = "sweep";
+  report.data["finished"] = finished;
+  report.data["values"] = all;
+  return report;
+}
+
+Report run(const Session& session, SweepRequest request) {
+  require_writable(request.output);
+  const Over over = parse_over(request.over);
+  const scene::Scene scene = scene::with_own_times(session.load(request.scene));
+  studies::check(scene, request.options);
+  const studies::RunOptions run_options = session.run_options();
+  const auto basis = studies::model_basis(scene, request.model, run_options);
+  const studies::Family family(scene, {over.key}, basis);
+  check_values(scene, over);
+  studies::ResultFile file(request.output, scene, command_of(request),
+                           basis ? studies::identity_of(basis->basis) : "full");
+  request.options.journal = &file.journal();
+  const studies::Sweep sweep = studies::sweep(family, over.values, request.options, run_options);
+  if (sweep.interrupted) return interrupted(request, over.values.size(), file.journal().records().size());
+  file.finish([&](results::StoreWriter& writer) { studies::store(writer, family, sweep); });
+  return summary(request, family, sweep, file.resumed());
 }
 
 }  // namespace
@@ -109,16 +119,16 @@ Verb add_sweep(CLI::App& app) {
   command->add_option("SCENE", arguments->scene, "scene file (TOML)")->required();
   command->add_option("--over", arguments->over, "key and range: KEY=FROM:TO:STEP")->required();
   command->add_option("-o,--output", arguments->output, "result file (HDF5)")->required();
-  command->add_flag("--follow", arguments->follow, "start each value where the one before it ended");
-  command->add_option("--segments", arguments->segments, "with --follow: number of chains side by side")
+  command->add_flag("--follow", arguments->options.follow, "start each value where the one before it ended");
+  command->add_option("--segments", arguments->options.segments, "with --follow: number of chains side by side")
       ->check(CLI::PositiveNumber);
   command->add_option("--model", arguments->model,
                       "full, or rom:FILE with a result of 'slipmode reduce'; under a shaker also BASIS:L, e.g. pomf:3, "
                       "lnm:10, lnm+static:4, mass-pom:3");
-  command->add_flag("--reverse", arguments->reverse, "shaker: from the last value to the first");
-  command->add_flag("--both", arguments->both, "shaker, with --follow: up and down, to show hysteresis");
+  command->add_flag("--reverse", arguments->options.reverse, "shaker: from the last value to the first");
+  command->add_flag("--both", arguments->options.both, "shaker, with --follow: up and down, to show hysteresis");
   command
-      ->add_option("--lyapunov", arguments->exponent_cycles,
+      ->add_option("--lyapunov", arguments->options.exponent_cycles,
                    "shaker: measure the largest Lyapunov exponent over so many cycles more")
       ->check(CLI::NonNegativeNumber);
   command->footer(

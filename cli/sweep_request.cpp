@@ -4,9 +4,8 @@
 #include <slipmode/results/journal.hpp>
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <charconv>
-#include <fstream>
-#include <iterator>
 
 namespace slipmode::cli {
 
@@ -32,17 +31,6 @@ Over parse_over(const std::string& text) {
   return {text.substr(0, equals), diagnostics::sweep_values(numbers[0], numbers[1], numbers[2])};
 }
 
-std::string file_fingerprint(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return results::fingerprint({std::istreambuf_iterator<char>(in), {}});
-}
-
-void require_belt_request(const SweepRequest& request) {
-  if (!request.reverse && !request.both && request.exponent_cycles == 0.0) return;
-  throw InvalidInput(
-      "--reverse, --both and --lyapunov are for scenes with a shaker; a belt's sweep runs from FROM to TO");
-}
-
 void check_values(const scene::Scene& scene, const Over& over) {
   for (const double value : over.values) {
     const scene::Scene changed = scene::set_key(scene, over.key, value);
@@ -54,15 +42,12 @@ void check_values(const scene::Scene& scene, const Over& over) {
   }
 }
 
-Report interrupted_sweep(const SweepRequest& request, const Over& over, std::size_t finished) {
-  const std::size_t values = over.values.size() * (request.both ? 2 : 1);
+Report interrupted_at(const std::string& output, const std::string& how_far) {
   Report report;
   report.exit_code = kInterrupted;
-  report.text = fmt::format(
-      "interrupted with {} of {} values done; they are kept in {}\nThe same command goes on from "
-      "there.",
-      finished, values, results::Journal::path_for(request.output).string());
-  report.data = {{"verb", "sweep"}, {"finished", finished}, {"values", values}, {"message", report.text}};
+  report.text = fmt::format("interrupted{}{}; what is done is kept in {}\nThe same command goes on from there.",
+                            how_far.empty() ? "" : " ", how_far, results::Journal::path_for(output).string());
+  report.data = {{"message", report.text}};
   return report;
 }
 

@@ -1,10 +1,11 @@
 #include <slipmode/figures/gnuplot.hpp>
+#include <slipmode/figures/trade_figures.hpp>
 #include <slipmode/results/provenance.hpp>
+#include <slipmode/results/trade_store.hpp>
 #include <slipmode/scene/own_times.hpp>
+#include <slipmode/studies/bases.hpp>
+#include <slipmode/studies/result_file.hpp>
 #include <slipmode/trade/variants.hpp>
-#include "cli/steps.hpp"
-#include "cli/trade_bases.hpp"
-#include "cli/trade_figures.hpp"
 #include "cli/trade_report.hpp"
 #include "cli/trade_request.hpp"
 #include "cli/verbs.hpp"
@@ -61,52 +62,50 @@ Report run(const Session& session, const TradeArguments& arguments) {
       arguments.axes.empty() ? available : trade::parse_axes(arguments.axes, available);
   trade::Schedule schedule = trade::schedule_of(scene);
   const bool reduces = std::ranges::find(axes, trade::Axis::kModes) != axes.end();
-  const auto bases = reduces ? offered_bases(session, scene) : std::vector<trade::OfferedBasis>();
+  const auto bases =
+      reduces ? studies::offered_bases(scene, session.run_options()) : std::vector<trade::OfferedBasis>();
   session.check_interrupt();
   const double limit = wish.limit.value_or(kLimit);
 
-  Report report;
-  const auto study = [&](trade::StudyOptions options) {
-    options.schedule = schedule;
-    if (!arguments.product) {
-      options.more = [&](const std::vector<trade::Row>& rows) { return trade::worth_combining(rows, limit); };
-    }
-    return trade::study(scene, trade::reference_of(scene), variants_of(scene, axes, bases, arguments.product), bases,
-                        options);
-  };
-  const auto finish = [&](const trade::Study& done) {
-    if (!arguments.output.empty()) {
-      results::StoreWriter writer(arguments.output, scene.units);
-      results::save(writer, results::provenance_of(scene, "slipmode trade"));
-      store_study(writer, done, scene);
-      writer.commit();
-    }
-    const std::vector<std::string> advice = recommendations(done, limit);
-    report.data = {{"verb", "trade"}, {"trade", to_json(done, scene)}, {"recommendations", advice}};
-    report.text = study_text(done, scene);
-    for (const std::string& sentence : advice) report.text += sentence + '\n';
-    if (!arguments.output.empty()) {
-      report.data["file"] = arguments.output;
-      report.text += fmt::format("Result: {}\n", arguments.output);
-    }
-    if (!arguments.figures.empty()) {
-      report.data["figures"] = save_trade_figures(done, scene, arguments.figures);
-      report.text += fmt::format("Figures: {}\n", arguments.figures);
-    }
-    if (!wish.limit && !wish.budget) return;
-    const trade::Choice choice = trade::choose(done, wish);
-    const trade::Row& row = done.rows[choice.row];
-    report.data["choice"] = {{"name", row.variant.name}, {"sentence", choice.sentence}};
-    report.text += choice.sentence + '\n';
-    if (arguments.write.empty()) return;
-    write_renamed(arguments.write, trade::scene_text(row.variant));
-    report.data["scene"] = arguments.write;
-    report.text += fmt::format("Scene: {}\n{}", arguments.write, how_to_run(row, arguments.write));
-  };
-  std::string identity =
-      fmt::format("{} trade {}\n{}", results::version(), arguments.product, scene::scene_to_toml(scene));
+  std::string identity;
   for (const trade::Axis axis : axes) identity += trade::to_string(axis);
-  run_study(session, arguments.output, identity, study, finish);
+  std::optional<studies::ResultFile> file;
+  if (!arguments.output.empty()) {
+    file.emplace(arguments.output, scene, fmt::format("slipmode trade{}", arguments.product ? " --product" : ""),
+                 identity);
+  }
+  trade::StudyOptions options{.schedule = schedule};
+  options.parallel = session.run_options().parallel("trade");
+  if (file) results::keep_in(file->journal(), options);
+  if (!arguments.product) {
+    options.more = [&](const std::vector<trade::Row>& rows) { return trade::worth_combining(rows, limit); };
+  }
+  const trade::Study done = trade::study(scene, trade::reference_of(scene),
+                                         variants_of(scene, axes, bases, arguments.product), bases, options);
+  if (file) file->finish([&](results::StoreWriter& writer) { results::store_study(writer, done, scene); });
+
+  Report report;
+  const std::vector<std::string> advice = recommendations(done, limit);
+  report.data = {{"verb", "trade"}, {"trade", to_json(done, scene)}, {"recommendations", advice}};
+  report.text = study_text(done, scene);
+  for (const std::string& sentence : advice) report.text += sentence + '\n';
+  if (!arguments.output.empty()) {
+    report.data["file"] = arguments.output;
+    report.text += fmt::format("Result: {}\n", arguments.output);
+  }
+  if (!arguments.figures.empty()) {
+    report.data["figures"] = figures::save_trade_figures(done, scene, arguments.figures);
+    report.text += fmt::format("Figures: {}\n", arguments.figures);
+  }
+  if (!wish.limit && !wish.budget) return report;
+  const trade::Choice choice = trade::choose(done, wish);
+  const trade::Row& row = done.rows[choice.row];
+  report.data["choice"] = {{"name", row.variant.name}, {"sentence", choice.sentence}};
+  report.text += choice.sentence + '\n';
+  if (arguments.write.empty()) return report;
+  write_renamed(arguments.write, trade::scene_text(row.variant));
+  report.data["scene"] = arguments.write;
+  report.text += fmt::format("Scene: {}\n{}", arguments.write, how_to_run(row, arguments.write));
   return report;
 }
 

@@ -1,7 +1,5 @@
 #include "cli/trade_report.hpp"
 
-#include <slipmode/results/table.hpp>
-#include <slipmode/results/units.hpp>
 #include "cli/json_values.hpp"
 #include "cli/text_table.hpp"
 
@@ -14,63 +12,6 @@ namespace {
 using trade::Measure;
 using trade::Row;
 using trade::Study;
-
-/// The scene's model and the reference first, then all others.
-std::vector<Row> all_rows(const Study& study) {
-  std::vector<Row> rows = {study.reference};
-  rows.insert(rows.end(), study.rows.begin(), study.rows.end());
-  return rows;
-}
-
-template <class Value>
-std::vector<double> numbers(const std::vector<Row>& rows, const Value& value) {
-  std::vector<double> out;
-  for (const Row& row : rows) out.push_back(static_cast<double>(value(row)));
-  return out;
-}
-
-template <class Value>
-std::vector<std::string> texts(const std::vector<Row>& rows, const Value& value) {
-  std::vector<std::string> out;
-  for (const Row& row : rows) out.push_back(std::string(value(row)));
-  return out;
-}
-
-results::Table candidate_table(const Study& study, const scene::Scene& scene) {
-  const std::vector<Row> rows = all_rows(study);
-  results::Table table{.description = "configurations: errors against the first one, the reference, and times",
-                       .columns = {}};
-  auto& columns = table.columns;
-  columns.push_back({"name", {"", "the configuration"}, texts(rows, [](const Row& r) { return r.variant.name; })});
-  columns.push_back({"axis", {"", "in what it differs from the scene"}, texts(rows, [](const Row& r) {
-                       return trade::to_string(r.variant.axis);
-                     })});
-  for (std::size_t m = 0; m < trade::kMeasures; ++m) {
-    const auto measure = static_cast<Measure>(m);
-    const std::string name(trade::to_string(measure));
-    columns.push_back({name, {"%", std::string(trade::describe(measure))}, numbers(rows, [&](const Row& r) {
-                         return trade::at(r.error, measure);
-                       })});
-    columns.push_back({name + "_noise", {"%", "scatter of it"}, numbers(rows, [&](const Row& r) {
-                         return trade::at(r.noise, measure);
-                       })});
-  }
-  const auto add = [&](const std::string& name, const std::string& what, const auto& value) {
-    columns.push_back({name, {"s", what, results::Meaning::Of::kClock}, numbers(rows, value)});
-  };
-  add("time", "processor time of a timed run, median", [](const Row& r) { return r.cost.cpu; });
-  add("time_low", "its least", [](const Row& r) { return r.cost.cpu_low; });
-  add("time_high", "its largest", [](const Row& r) { return r.cost.cpu_high; });
-  add("wall", "time of the clock, median", [](const Row& r) { return r.cost.wall; });
-  add("setup", "building, projection and modal data, once", [](const Row& r) { return r.cost.setup; });
-  add("basis", "making the basis, once", [](const Row& r) { return r.basis_seconds; });
-  columns.push_back({"break_even",
-                     {"1", "runs of [time] after which basis and projection are paid for"},
-                     numbers(rows, [&](const Row& r) { return trade::break_even(study, r, scene.time.duration); })});
-  columns.push_back(
-      {"failure", {"", "why it has no errors; empty: it has"}, texts(rows, [](const Row& r) { return r.failure; })});
-  return table;
-}
 
 /// Values that are not finite have no number in JSON.
 Json json_of(const Study& study, const Row& row, double duration) {
@@ -109,17 +50,6 @@ std::string runs_text(double runs) {
 }
 
 }  // namespace
-
-void store_study(results::StoreWriter& writer, const Study& study, const scene::Scene& scene) {
-  const std::string group = kTradeGroup;
-  const std::string time = results::Units::of(scene.units).time;
-  writer.describe_group(group, "speed against accuracy");
-  results::save(writer, group + "/candidates", candidate_table(study, scene));
-  writer.write(group + "/reference", study.reference.variant.name, {"", "what errors are measured against"});
-  writer.write(group + "/timed", study.schedule.timed, {time, "simulated by a timed run"});
-  writer.write(group + "/recorded", study.schedule.duration, {time, "recorded of a settled motion"});
-  writer.write(group + "/horizon", study.schedule.horizon, {time, "of dX and dE"});
-}
 
 std::vector<std::string> recommendations(const Study& study, double limit) {
   std::vector<std::string> out;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <slipmode/results/store.hpp>
 #include <slipmode/trade/advice.hpp>
 #include <slipmode/trade/effects.hpp>
 #include <slipmode/trade/study.hpp>
@@ -10,11 +9,6 @@
 #include <vector>
 
 namespace slipmode::cli {
-
-inline constexpr const char* kTradeGroup = "trade";
-
-/// Writes the group `trade`: a table `candidates`, the reference, its scatter and how long everything ran.
-void store_study(results::StoreWriter& writer, const trade::Study& study, const scene::Scene& scene);
 
 /// One sentence per measure, for the same limit [%].
 [[nodiscard]] std::vector<std::string> recommendations(const trade::Study& study, double limit);

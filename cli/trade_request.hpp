@@ -2,12 +2,9 @@
 
 #include <slipmode/scene/scene.hpp>
 #include <slipmode/trade/measures.hpp>
-#include <slipmode/trade/study.hpp>
 #include "cli/session.hpp"
 
 #include <filesystem>
-#include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,15 +16,6 @@ namespace slipmode::cli {
 [[nodiscard]] double parse_duration(const std::string& option, const std::string& text);
 /// @throws InvalidInput  for an unknown word, naming the valid ones
 [[nodiscard]] trade::Measure parse_measure(const std::string& word);
-
-/// A study with progress and, beside `output`, a journal of errors found, so that the same command goes on after
-/// Ctrl-C. The journal is removed when `finish` has written the results.
-/// @param output    empty: no journal
-/// @param identity  of everything that decides the errors
-/// @param finish    called with the finished study
-void run_study(const Session& session, const std::filesystem::path& output, const std::string& identity,
-               const std::function<trade::Study(trade::StudyOptions)>& study,
-               const std::function<void(const trade::Study&)>& finish);
 
 /// Writes a text under a temporary name and renames it.
 /// @throws InvalidInput  when it cannot be written

@@ -4,12 +4,10 @@
 #include <slipmode/results/records.hpp>
 #include <slipmode/results/validation_store.hpp>
 #include <slipmode/scene/own_times.hpp>
-#include "cli/shaken_bases.hpp"
-#include "cli/shaken_model.hpp"
-#include "cli/shaken_validation.hpp"
-#include "cli/steps.hpp"
-#include "cli/validate_run.hpp"
-#include "cli/validation_setup.hpp"
+#include <slipmode/scene/shaken.hpp>
+#include <slipmode/scene/solver_options.hpp>
+#include <slipmode/studies/bases.hpp>
+#include <slipmode/studies/validation.hpp>
 #include "cli/verbs.hpp"
 
 #include <fmt/format.h>
@@ -23,13 +21,12 @@ struct ValidateArguments {
 };
 
 Report run_shaken(const Session& session, const ValidateArguments& arguments, scene::Scene scene,
-                  const dynamics::HybridSystem& full) {
+                  const std::vector<pod::NamedBasis>& bases) {
   if (arguments.no_sweep) scene.shaken.frequencies.reset();
-  const auto candidates = load_shaken_candidates(scene, full, arguments.input);
   if (results::StoreReader(arguments.input).has(results::kReducedGroup)) {  // its own size is the one to judge
-    scene.shaken.modes = {static_cast<int>(candidates.front().basis.modes())};
+    scene.shaken.modes = {static_cast<int>(bases.front().basis.modes())};
   }
-  const auto result = validate_shaken_into(session, scene, candidates, arguments.output);
+  const auto result = studies::validate_shaken(scene, bases, arguments.output, session.run_options());
   Report report;
   report.data = {{"verb", "validate"}, {"file", arguments.output}, {"validation", to_json(result)}};
   report.text = fmt::format("{}Validation: {}\n", summary_text(result, scene), arguments.output);
@@ -39,20 +36,19 @@ Report run_shaken(const Session& session, const ValidateArguments& arguments, sc
 Report run(const Session& session, const ValidateArguments& arguments) {
   require_writable(arguments.output);
   const scene::Scene scene = scene::with_own_times(session.load(arguments.scene));
-  refuse_force(scene, "validate");
-  const dynamics::HybridSystem full = scene::build_system(scene);
+  scene::refuse_force(scene, "validate");
+  const std::vector<pod::NamedBasis> bases = studies::load_bases(scene, scene::build_system(scene), arguments.input);
   if (is_shaken(scene)) {
     if (arguments.verdict)
       throw InvalidInput(
           "--verdict: expected a belt, found a shaker; there 'slipmode diagnose SCENE FILE --verdict' does it");
-    return run_shaken(session, arguments, scene, full);
+    return run_shaken(session, arguments, scene, bases);
   }
-  const auto candidates = load_candidates(scene, full.structure(), arguments.input);
-  diagnostics::ValidationOptions options = validation_options(scene, candidates);
+  diagnostics::ValidationOptions options = studies::validation_options(scene, bases);
   if (arguments.no_sweep) options.sweep_values.clear();
-  if (arguments.verdict) options.verdict = verdict_options(scene);
+  if (arguments.verdict) options.verdict = scene::verdict_options(scene);
   const diagnostics::ValidationReport result =
-      validate_into(session, scene, full, candidates, options, arguments.output);
+      studies::validate(scene, bases, options, arguments.output, session.run_options());
 
   Report report;
   report.data = {{"verb", "validate"}, {"file", arguments.output}, {"validation", to_json(result)}};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <slipmode/diagnostics/validation/driven_validation.hpp>
 #include <slipmode/diagnostics/validation/validate.hpp>
 #include "cli/session.hpp"
 
@@ -12,5 +13,9 @@ namespace slipmode::cli {
 
 /// The same numbers as tables for a terminal.
 [[nodiscard]] std::string summary_text(const diagnostics::ValidationReport& report);
+
+// Of a shaken scene.
+[[nodiscard]] Json to_json(const diagnostics::DrivenValidationReport& report);
+[[nodiscard]] std::string summary_text(const diagnostics::DrivenValidationReport& report, const scene::Scene& scene);
 
 }  // namespace slipmode::cli

@@ -4,6 +4,7 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/dynamics/cache.hpp>
 
+#include <algorithm>
 #include <string>
 
 namespace slipmode::dynamics {
@@ -77,6 +78,12 @@ State HybridSystem::rest() const { return {0.0, Eigen::VectorXd::Zero(size()), E
 double HybridSystem::energy(const State& state) const {
   const double energy = structure_.energy(state.q, state.v);
   return load_.size() > 0 ? energy - load_.dot(state.q) : energy;
+}
+
+bool can_stick(const HybridSystem& system) {
+  return std::ranges::none_of(system.contacts(), [](const friction::Contact& contact) {
+    return std::holds_alternative<friction::Clearance>(contact.law);
+  });
 }
 
 const ModelTables& SystemCache::tables(const HybridSystem& system, bool rows_only) {

@@ -86,4 +86,7 @@ class HybridSystem {
   std::shared_ptr<SystemCache> cache_;
 };
 
+/// True when every contact is a frictional one: with clearances there are no sticking modes.
+[[nodiscard]] bool can_stick(const HybridSystem& system);
+
 }  // namespace slipmode::dynamics

@@ -10,8 +10,8 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <mutex>
 #include <utility>
+#include <variant>
 
 namespace slipmode::orbits {
 
@@ -218,16 +218,7 @@ OrbitMap orbit_map(const std::function<dynamics::HybridSystem(double x, double y
                                    grid.x.size(), grid.y.size()));
   }
   check(system(grid.x.front(), grid.y.front()), options);
-  OrbitMap map;
-  map.rows.resize(grid.y.size());
-  std::mutex sink_mutex;
-  const BatchResult batch = parallel_for(grid.y.size(), parallel, [&](std::size_t j) {
-    if (sink.recall) {
-      if (auto earlier = sink.recall(j)) {
-        map.rows[j] = std::move(*earlier);
-        return;
-      }
-    }
+  const auto row_at = [&](std::size_t j, int, const std::monostate&) {
     std::vector<MapPoint> row;
     row.reserve(grid.x.size());
     for (const double x : grid.x) {
@@ -240,16 +231,14 @@ OrbitMap orbit_map(const std::function<dynamics::HybridSystem(double x, double y
       }
       row.push_back(std::move(point));
     }
-    if (sink.store) {
-      const std::lock_guard lock(sink_mutex);
-      sink.store(j, row);
-    }
-    map.rows[j] = std::move(row);
-  });
-  for (const std::exception_ptr& error : batch.errors) {
-    if (error) std::rethrow_exception(error);
-  }
-  map.interrupted = batch.interrupted;
+    return row;
+  };
+  auto finished = SweepRunner<std::vector<MapPoint>, std::monostate>(
+                      {.settle = row_at, .carry = [](const auto&) { return std::monostate(); }}, grid.y, {},
+                      SweepMode::kIndependent, 1, parallel, sink)
+                      .run_alone();
+  OrbitMap map{.rows = std::vector<std::vector<MapPoint>>(grid.y.size()), .interrupted = finished.interrupted};
+  for (MapRow& row : finished.points) map.rows[row.index] = std::move(row.settled);
   return map;
 }
 

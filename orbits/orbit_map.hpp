@@ -1,13 +1,12 @@
 #pragma once
 
-#include <slipmode/core/parallel.hpp>
+#include <slipmode/core/sweep_runner.hpp>
 #include <slipmode/orbits/shooting.hpp>
 
 #include <Eigen/Core>
 #include <cstddef>
 #include <functional>
 #include <limits>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -56,11 +55,9 @@ struct MapGrid {
   std::vector<double> x, y;
 };
 
-/// Where finished rows go at once and where earlier ones come from. Calls of `store` come one at a time.
-struct MapSink {
-  std::function<std::optional<std::vector<MapPoint>>(std::size_t row)> recall = {};
-  std::function<void(std::size_t row, const std::vector<MapPoint>&)> store = {};
-};
+/// A row of a map, at parameter y[index].
+using MapRow = SweptValue<std::vector<MapPoint>>;
+using MapSink = SinkOf<std::vector<MapPoint>>;
 
 struct OrbitMap {
   std::vector<std::vector<MapPoint>> rows;  ///< by y; those not finished when interrupted are empty

@@ -8,10 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <mutex>
 #include <numbers>
-#include <utility>
+#include <optional>
 
 namespace slipmode::orbits {
 
@@ -37,7 +35,7 @@ void check(const dynamics::HybridSystem& system, const StrobeOptions& options) {
 }
 
 void find_order(const Eigen::MatrixXd& section, const detail::MotionScale& scale, const StrobeOptions& options,
-                StrobePoint& out_point) {
+                Strobe& out_point) {
   // Half of the sections at least must be seen to repeat, over the last max(3m, 20) of them.
   for (Eigen::Index m = 1; m <= options.max_order && 2 * m <= section.cols(); ++m) {
     const Eigen::Index stretch = std::min(section.cols() - m, std::max<Eigen::Index>(3 * m, 20));
@@ -59,7 +57,7 @@ Eigen::MatrixXd with_end(const Eigen::MatrixXd& samples, Eigen::Index steps, con
 
 /// @param q, v  samples one step apart, the end of the last step among them
 void measure_amplitudes(const Eigen::MatrixXd& q, const Eigen::MatrixXd& v, double step, const StrobeOptions& options,
-                        StrobePoint& out_point) {
+                        Strobe& out_point) {
   const Eigen::MatrixXd y = options.rows * q;
   const Eigen::MatrixXd slope = options.rows * v;
   const Eigen::Index steps = q.cols() - 1;
@@ -91,14 +89,14 @@ dynamics::State carried(const dynamics::HybridSystem& system, const dynamics::St
 
 }  // namespace
 
-double StrobePoint::sine_gap(Eigen::Index row) const {
+double Strobe::sine_gap(Eigen::Index row) const {
   if (row < 0 || row >= alternating.size()) {
     throw InvalidInput(fmt::format("sine gap: expected a row below {}, found {}", alternating.size(), row));
   }
   return std::abs(std::numbers::sqrt2 * effective(row) - alternating(row)) / alternating(row);
 }
 
-StrobePoint strobe(const dynamics::HybridSystem& system, const dynamics::State& start, const StrobeOptions& options) {
+Strobe strobe(const dynamics::HybridSystem& system, const dynamics::State& start, const StrobeOptions& options) {
   check(system, options);
   const double period = system.drive().period().value();
   const double step = period / options.samples;
@@ -108,7 +106,7 @@ StrobePoint strobe(const dynamics::HybridSystem& system, const dynamics::State& 
                                                        .sample = step,
                                                        .keep_events = false,
                                                        .flow = options.flow});
-  StrobePoint point;
+  Strobe point;
   const Eigen::Index steps = Eigen::Index{options.kept} * options.samples;
   const Eigen::MatrixXd q = with_end(run.q, steps, run.final_state.q), v = with_end(run.v, steps, run.final_state.v);
   const auto section = Eigen::seqN(Eigen::Index{0}, Eigen::Index{options.kept} + 1, Eigen::Index{options.samples});
@@ -127,37 +125,15 @@ StrobeMap strobe_map(const std::function<dynamics::HybridSystem(double)>& system
                      const StrobeSink& sink) {
   if (values.empty()) throw InvalidInput("stroboscopic map: expected at least one value, found none");
   check(system(values.front()), options);
-  StrobeMap map;
-  map.points.resize(values.size());
-  std::mutex sink_mutex;
-  const auto compute = [&](std::size_t k) {
-    if (sink.recall) map.points[k] = sink.recall(k);
-    if (map.points[k]) return;
+  using Begin = std::optional<dynamics::State>;  // where the value before ended; none: the value's own start
+  const auto settle = [&](std::size_t k, int, const Begin& before) {
     const dynamics::HybridSystem here = system(values[k]);
-    const bool first = !options.follow || k == 0;
-    const dynamics::State begin = first ? start(here) : carried(here, map.points[k - 1]->end);
-    StrobePoint point;
-    try {
-      point = strobe(here, begin, options);
-    } catch (const NumericalFailure& failure) {
-      point.failure = failure.what();
-      point.end = begin;
-    }
-    point.parameter = values[k];
-    if (sink.store) {
-      const std::lock_guard lock(sink_mutex);
-      sink.store(k, point);
-    }
-    map.points[k] = std::move(point);
+    return strobe(here, before ? carried(here, *before) : start(here), options);
   };
-  ParallelOptions in_order = parallel;
-  if (options.follow) in_order.threads = 1;
-  const BatchResult batch = parallel_for(values.size(), in_order, compute);
-  for (const std::exception_ptr& error : batch.errors) {
-    if (error) std::rethrow_exception(error);
-  }
-  map.interrupted = batch.interrupted;
-  return map;
+  return SweepRunner<Strobe, Begin>({.settle = settle, .carry = [](const Strobe& point) { return point.end; }}, values,
+                                    std::nullopt, options.follow ? SweepMode::kFollow : SweepMode::kIndependent, 1,
+                                    parallel, sink)
+      .run_alone();
 }
 
 }  // namespace slipmode::orbits

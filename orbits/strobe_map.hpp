@@ -1,20 +1,16 @@
 #pragma once
 
-#include <slipmode/core/parallel.hpp>
+#include <slipmode/core/sweep_runner.hpp>
 #include <slipmode/dynamics/simulate.hpp>
 
 #include <Eigen/Core>
-#include <cstddef>
 #include <functional>
-#include <optional>
-#include <string>
 #include <vector>
 
 namespace slipmode::orbits {
 
 /// A driven motion seen once per period of the drive, at times start + k·T, after its transient.
-struct StrobePoint {
-  double parameter = 0.0;
+struct Strobe {
   Eigen::MatrixXd section = {};  ///< row · q at each section kept [m x kept]
   /// (max − min)/2 of each row's displacement over the periods kept: S1 (17) [m].
   Eigen::VectorXd alternating = {};
@@ -24,7 +20,6 @@ struct StrobePoint {
   int order = 0;          ///< smallest number of periods after which the section repeats; 0: none up to max_order
   double mismatch = 0.0;  ///< largest distance of section states `order` apart, relative to the motion; 0 without order
   dynamics::State end = {};
-  std::string failure = {};  ///< empty, or why the flow failed
 
   [[nodiscard]] bool is_periodic() const { return order > 0; }
   /// |√2 effective − alternating| / alternating of a row: S1 calls a motion periodic where this vanishes. It vanishes
@@ -43,21 +38,14 @@ struct StrobeOptions {
   dynamics::FlowOptions flow = {.audit = false};
 };
 
-/// Where finished values go at once and where earlier ones come from. Calls of `store` come one at a time.
-struct StrobeSink {
-  std::function<std::optional<StrobePoint>(std::size_t index)> recall = {};
-  std::function<void(std::size_t index, const StrobePoint&)> store = {};
-};
-
-struct StrobeMap {
-  std::vector<std::optional<StrobePoint>> points;  ///< by value; empty where the stop flag came first
-  bool interrupted = false;
-};
+using StrobePoint = SweptValue<Strobe>;
+using StrobeSink = SinkOf<Strobe>;
+using StrobeMap = SweepOf<Strobe>;
 
 /// One driven motion. @throws InvalidInput  for options out of range, a drive without period, and as simulate
 /// @throws NumericalFailure  as simulate
-[[nodiscard]] StrobePoint strobe(const dynamics::HybridSystem& system, const dynamics::State& start,
-                                 const StrobeOptions& options);
+[[nodiscard]] Strobe strobe(const dynamics::HybridSystem& system, const dynamics::State& start,
+                            const StrobeOptions& options);
 
 /// Settled motion over one parameter: a stroboscopic bifurcation diagram with amplitudes and verdicts. Without `follow`
 /// values run side by side; the bytes are the same for any number of threads. A NumericalFailure is recorded in its

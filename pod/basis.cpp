@@ -3,6 +3,7 @@
 #include <slipmode/core/errors.hpp>
 
 #include <fmt/format.h>
+#include <algorithm>
 
 namespace slipmode::pod {
 
@@ -15,7 +16,7 @@ std::string_view to_string(BasisKind kind) {
     case BasisKind::kPomf:
       return "pomf";
     case BasisKind::kLnmStatic:
-      return "lnm_static";
+      return "lnm+static";
     case BasisKind::kUser:
       break;
   }
@@ -31,6 +32,25 @@ Basis Basis::truncated(Eigen::Index L) const {
   cut.vectors = vectors.leftCols(L);
   if (energy.size() > L) cut.energy = energy.head(L).eval();
   return cut;
+}
+
+Eigen::VectorXd cumulative(const Eigen::VectorXd& shares) {
+  Eigen::VectorXd sum = shares;
+  for (Eigen::Index i = 1; i < sum.size(); ++i) sum[i] += sum[i - 1];
+  return sum;
+}
+
+Eigen::Index chosen_modes(const ModeChoice& choice, const Eigen::VectorXd& captured, Eigen::Index available,
+                          const std::string& source) {
+  if (choice.modes > available) {
+    throw InvalidInput(fmt::format("modes = {}: {} holds only {}; valid: 1 to {}, set by --modes or reduction.modes",
+                                   choice.modes, source, available, available));
+  }
+  if (choice.modes > 0) return choice.modes;
+  for (Eigen::Index i = 0; i < std::min(available, captured.size()); ++i) {
+    if (captured[i] >= choice.energy) return i + 1;
+  }
+  return available;
 }
 
 }  // namespace slipmode::pod

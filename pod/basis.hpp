@@ -16,7 +16,7 @@ enum class BasisKind {
   kLnmStatic,  ///< one static mode per contact, then linear natural modes (rom/reduce.hpp)
 };
 
-/// "pom", "lnm", "user", "pomf" or "lnm_static": the word for files and tables.
+/// "pom", "lnm", "user", "pomf" or "lnm+static": the word for files and tables.
 [[nodiscard]] std::string_view to_string(BasisKind kind);
 
 /// An affine basis q ≈ mean + Φ a.
@@ -33,10 +33,26 @@ struct Basis {
   [[nodiscard]] Basis truncated(Eigen::Index L) const;
 };
 
+/// A basis to be judged or chosen from, with as many vectors as shall be tried: its first L are the model of L modes.
+struct NamedBasis {
+  std::string name;  ///< "POM", "LNM"; of a shaken scene's words "pomf", "lnm", "lnm+static", "mass-pom"
+  Basis basis;
+  Eigen::VectorXd captured = {};  ///< element L − 1: share of the ensemble's energy in the first L; empty: not known
+};
+
 /// How many modes to keep: a count, or the smallest number whose cumulative energy share reaches `energy`.
 struct ModeChoice {
   Eigen::Index modes = 0;  ///< 0: by energy
   double energy = 0.99;    ///< in (0, 1]; S4 section 3.4.2 uses 0.99
 };
+
+/// The number of modes a choice asks for, given the shares of energy captured (NamedBasis::captured).
+/// @param source  what the modes come from, for the message
+/// @throws InvalidInput  when more modes are asked than there are
+[[nodiscard]] Eigen::Index chosen_modes(const ModeChoice& choice, const Eigen::VectorXd& captured,
+                                        Eigen::Index available, const std::string& source);
+
+/// Element i: the sum of the first i + 1.
+[[nodiscard]] Eigen::VectorXd cumulative(const Eigen::VectorXd& shares);
 
 }  // namespace slipmode::pod

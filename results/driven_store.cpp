@@ -112,23 +112,12 @@ class ValueTable {
   std::vector<Text> texts_;
 };
 
-}  // namespace
-
-JournalRecord to_record(const DrivenPoint& point) {
+std::string write_motion(std::vector<double>& values, const DrivenPoint& point) {
   const DrivenMotion& m = point.settled;
-  std::vector<double> values = {point.parameter,
-                                m.frequency_hz,
-                                static_cast<double>(m.label),
-                                static_cast<double>(m.period.repeat),
-                                static_cast<double>(m.period.period),
-                                m.period.mismatch,
-                                m.stick_fraction,
-                                m.longest_stick,
-                                static_cast<double>(m.separations),
-                                static_cast<double>(m.jumps),
-                                static_cast<double>(m.events),
-                                m.mean_energy,
-                                m.audit_residual};
+  values.insert(values.end(), {m.frequency_hz, static_cast<double>(m.label), static_cast<double>(m.period.repeat),
+                               static_cast<double>(m.period.period), m.period.mismatch, m.stick_fraction,
+                               m.longest_stick, static_cast<double>(m.separations), static_cast<double>(m.jumps),
+                               static_cast<double>(m.events), m.mean_energy, m.audit_residual});
   append(values, m.readings);
   append(values, m.contact_q);
   append(values, m.contact_v);
@@ -136,22 +125,11 @@ JournalRecord to_record(const DrivenPoint& point) {
   append(values, m.rms);
   append_exponent(values, m.exponent);
   append(values, m.end);
-  return {fmt::format("model{}", point.model), static_cast<std::int64_t>(point.index), values, point.failure};
+  return point.failure;
 }
 
-DrivenPoint driven_from_record(const JournalRecord& record) {
-  constexpr std::string_view kTable = "model";
-  if (!record.table.starts_with(kTable)) {
-    throw InvalidInput(fmt::format("journal record {} {}: it belongs to another kind of sweep; remove the journal",
-                                   record.table, record.index));
-  }
-  Cursor cursor(record);
-  DrivenPoint point;
-  point.index = static_cast<std::size_t>(record.index);
-  point.model = std::stoi(record.table.substr(kTable.size()));
-  point.failure = record.note;
-  point.parameter = cursor.next();
-  DrivenMotion& m = point.settled;
+void read_motion(Cursor& cursor, DrivenPoint& out_point) {
+  DrivenMotion& m = out_point.settled;
   m.frequency_hz = cursor.next();
   m.label = static_cast<DrivenLabel>(cursor.next_int());
   m.period.repeat = static_cast<DrivenRepeat>(cursor.next_int());
@@ -171,16 +149,12 @@ DrivenPoint driven_from_record(const JournalRecord& record) {
   m.rms = cursor.next_vector();
   m.exponent = next_exponent(cursor);
   m.end = cursor.next_state();
-  return point;
 }
 
+}  // namespace
+
 diagnostics::DrivenSink driven_journal_sink(Journal& journal) {
-  detail::Kept<DrivenPoint, std::size_t, int> kept;
-  for (const JournalRecord& record : journal.records()) {
-    const DrivenPoint point = driven_from_record(record);
-    kept.keep({point.index, point.model}, point);
-  }
-  return {.recall = kept, .store = [&journal](const DrivenPoint& point) { journal.append(to_record(point)); }};
+  return detail::table_sink<DrivenMotion>(journal, "driven", write_motion, read_motion);
 }
 
 void store_driven(StoreWriter& writer, const std::string& group, const std::string& title, const DrivenAxes& axes,

@@ -11,11 +11,6 @@
 
 namespace slipmode::results {
 
-/// A finished value as a line of the journal, and back to the last bit.
-[[nodiscard]] JournalRecord to_record(const diagnostics::DrivenPoint& point);
-/// @throws InvalidInput  when the record does not hold a point of a driven sweep
-[[nodiscard]] diagnostics::DrivenPoint driven_from_record(const JournalRecord& record);
-
 /// A sink that keeps finished values in a journal and takes over those it already holds. The journal must outlive it.
 [[nodiscard]] diagnostics::DrivenSink driven_journal_sink(Journal& journal);
 

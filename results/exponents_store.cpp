@@ -1,6 +1,8 @@
 #include <slipmode/results/exponents_store.hpp>
 
+#include <slipmode/core/none.hpp>
 #include <slipmode/results/table.hpp>
+#include "results/internal/journal_cursor.hpp"
 
 #include <fmt/format.h>
 #include <cmath>
@@ -70,7 +72,56 @@ Halved in_unit(const Halved& value, double factor) {
   return {.value = factor * value.value, .halves = {factor * value.halves[0], factor * value.halves[1]}};
 }
 
+/// One row per exponent, one column per value.
+Eigen::MatrixXd exponent_columns(const std::vector<ExponentPoint>& points, Eigen::VectorXd LeadingExponents::*part) {
+  Eigen::Index rows = 0;
+  for (const ExponentPoint& point : points) rows = std::max(rows, point.settled.nats.size());
+  Eigen::MatrixXd out = Eigen::MatrixXd::Constant(rows, static_cast<Eigen::Index>(points.size()), kNone);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::VectorXd& values = points[i].settled.*part;
+    out.col(static_cast<Eigen::Index>(i)).head(values.size()) = values;
+  }
+  return out;
+}
+
 }  // namespace
+
+ExponentSink exponent_sink(Journal& journal) {
+  return detail::table_sink<LeadingExponents>(
+      journal, "exponents",
+      [](std::vector<double>& values, const ExponentPoint& point) {
+        detail::append(values, point.settled.nats);
+        detail::append(values, point.settled.error);
+        return point.ok() ? point.settled.ended : point.failure;
+      },
+      [](detail::Cursor& cursor, ExponentPoint& out_point) {
+        out_point.settled.nats = cursor.next_vector();
+        out_point.settled.error = cursor.next_vector();
+        if (out_point.settled.nats.size() > 0) out_point.settled.ended = std::exchange(out_point.failure, {});
+      });
+}
+
+void store_exponent_sweep(StoreWriter& writer, const std::string& group, const std::string& title,
+                          const SweepAxis& axis, const Units& units, const std::vector<ExponentPoint>& points) {
+  std::vector<double> values;
+  std::vector<std::string> failure;
+  for (const ExponentPoint& point : points) {
+    values.push_back(point.parameter);
+    failure.push_back(point.ok() ? point.settled.ended : point.failure);
+  }
+  writer.describe_group(group, "leading Lyapunov exponents over a key: " + title);
+  writer.write(group + "/title", title, {"", "which model"});
+  writer.write(group + "/key", axis.key, {"", "the scene's key that was swept"});
+  writer.write(group + "/label", axis.label, {"", "name of the key for an axis"});
+  save(writer, group + "/values",
+       Table{"one row per value of the key",
+             {{"parameter", {axis.units, axis.key}, values},
+              {"failure", {"", "why the value failed or ended early; empty: it did not"}, failure}}});
+  writer.write_columns(group + "/nats", exponent_columns(points, &LeadingExponents::nats),
+                       {units.rate, "exponents, value x exponent"});
+  writer.write_columns(group + "/error", exponent_columns(points, &LeadingExponents::error),
+                       {units.rate, "standard errors, value x exponent"});
+}
 
 void store_exponents(StoreWriter& writer, const std::vector<ModelExponents>& models, const Units& units) {
   for (std::size_t i = 0; i < models.size(); ++i)

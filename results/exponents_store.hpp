@@ -2,6 +2,7 @@
 
 #include <slipmode/diagnostics/validation/verdict.hpp>
 #include <slipmode/results/store.hpp>
+#include <slipmode/results/sweep_store.hpp>
 #include <slipmode/results/units.hpp>
 
 #include <string>
@@ -25,6 +26,21 @@ void store_exponents(StoreWriter& writer, const std::vector<ModelExponents>& mod
 void store_verdict(StoreWriter& writer, const diagnostics::VerdictTable& verdict, const Units& units);
 /// The exponents of a table's models.
 [[nodiscard]] std::vector<ModelExponents> exponents_of(const diagnostics::VerdictTable& verdict);
+
+/// Leading exponents at one value of a swept key.
+struct LeadingExponents {
+  Eigen::VectorXd nats, error;  ///< [1/s], standard errors of them
+  std::string ended = {};       ///< empty, or why measuring ended early
+};
+using ExponentPoint = SweptValue<LeadingExponents>;
+using ExponentSink = SinkOf<LeadingExponents>;
+
+/// A sink that keeps finished values in a journal and takes over those it already holds. The journal must outlive it.
+[[nodiscard]] ExponentSink exponent_sink(Journal& journal);
+
+/// Writes `group`: exponents and their errors over a key, one row per value. @param title  which model
+void store_exponent_sweep(StoreWriter& writer, const std::string& group, const std::string& title,
+                          const SweepAxis& axis, const Units& units, const std::vector<ExponentPoint>& points);
 
 /// A line of the verdict.
 struct VerdictRow {

@@ -27,21 +27,20 @@ std::string failure_lines(const std::vector<MapPoint>& row) {
   return any ? text : std::string();
 }
 
-JournalRecord to_record(const std::string& table, std::size_t row, const std::vector<MapPoint>& points) {
-  std::vector<double> values{static_cast<double>(points.size())};
-  for (const MapPoint& point : points) {
+std::string write_row(std::vector<double>& values, const orbits::MapRow& row) {
+  values.push_back(static_cast<double>(row.settled.size()));
+  for (const MapPoint& point : row.settled) {
     values.insert(values.end(), {static_cast<double>(point.order), static_cast<double>(point.crossings),
                                  point.multiplier, point.symmetric ? 1.0 : 0.0, point.floating ? 1.0 : 0.0,
                                  point.alternating, point.residual, static_cast<double>(point.periods)});
   }
-  return {table, static_cast<std::int64_t>(row), std::move(values), failure_lines(points)};
+  return failure_lines(row.settled);
 }
 
-std::vector<MapPoint> row_from_record(const JournalRecord& record) {
-  Cursor cursor(record);
-  std::vector<MapPoint> row(static_cast<std::size_t>(cursor.next()));
-  std::istringstream failures(record.note);
-  for (MapPoint& point : row) {
+void read_row(Cursor& cursor, orbits::MapRow& out_row) {
+  out_row.settled.resize(static_cast<std::size_t>(cursor.next()));
+  std::istringstream failures(std::exchange(out_row.failure, {}));
+  for (MapPoint& point : out_row.settled) {
     point.order = cursor.next_int();
     point.crossings = cursor.next_int();
     point.multiplier = cursor.next();
@@ -52,40 +51,26 @@ std::vector<MapPoint> row_from_record(const JournalRecord& record) {
     point.periods = cursor.next_int();
     std::getline(failures, point.failure);
   }
-  return row;
 }
 
-JournalRecord to_record(const std::string& table, std::size_t index, const StrobePoint& point) {
-  std::vector<double> values{point.parameter, static_cast<double>(point.order), point.mismatch};
-  append(values, point.section);
-  append(values, point.alternating);
-  append(values, point.effective);
-  append(values, point.end);
-  return {table, static_cast<std::int64_t>(index), std::move(values), point.failure};
+std::string write_strobe(std::vector<double>& values, const StrobePoint& point) {
+  const orbits::Strobe& strobe = point.settled;
+  values.insert(values.end(), {static_cast<double>(strobe.order), strobe.mismatch});
+  append(values, strobe.section);
+  append(values, strobe.alternating);
+  append(values, strobe.effective);
+  append(values, strobe.end);
+  return point.failure;
 }
 
-StrobePoint point_from_record(const JournalRecord& record) {
-  Cursor cursor(record);
-  StrobePoint point;
-  point.parameter = cursor.next();
-  point.order = cursor.next_int();
-  point.mismatch = cursor.next();
-  point.section = cursor.next_matrix();
-  point.alternating = cursor.next_vector();
-  point.effective = cursor.next_vector();
-  point.end = cursor.next_state();
-  point.failure = record.note;
-  return point;
-}
-
-/// Records of one table by index.
-template <class Value, class Read>
-detail::Kept<Value, std::size_t> recorded(const Journal& journal, const std::string& table, const Read& read) {
-  detail::Kept<Value, std::size_t> kept;
-  for (const JournalRecord& record : journal.records()) {
-    if (record.table == table) kept.keep({static_cast<std::size_t>(record.index)}, read(record));
-  }
-  return kept;
+void read_strobe(Cursor& cursor, StrobePoint& out_point) {
+  orbits::Strobe& strobe = out_point.settled;
+  strobe.order = cursor.next_int();
+  strobe.mismatch = cursor.next();
+  strobe.section = cursor.next_matrix();
+  strobe.alternating = cursor.next_vector();
+  strobe.effective = cursor.next_vector();
+  strobe.end = cursor.next_state();
 }
 
 void store_axis(StoreWriter& writer, const std::string& group, const SweepAxis& axis,
@@ -129,17 +114,11 @@ void store_failures(StoreWriter& writer, const std::string& group, const orbits:
 }  // namespace
 
 orbits::MapSink map_sink(Journal& journal, const std::string& start) {
-  return {.recall = recorded<std::vector<MapPoint>>(journal, start, row_from_record),
-          .store = [&journal, start](std::size_t row, const std::vector<MapPoint>& points) {
-            journal.append(to_record(start, row, points));
-          }};
+  return detail::table_sink<std::vector<MapPoint>>(journal, start, write_row, read_row);
 }
 
 orbits::StrobeSink strobe_sink(Journal& journal, const std::string& start) {
-  return {.recall = recorded<StrobePoint>(journal, start, point_from_record),
-          .store = [&journal, start](std::size_t index, const StrobePoint& point) {
-            journal.append(to_record(start, index, point));
-          }};
+  return detail::table_sink<orbits::Strobe>(journal, start, write_strobe, read_strobe);
 }
 
 void store_map(StoreWriter& writer, const SweepAxis& x, const SweepAxis& y, const orbits::MapGrid& grid,
@@ -181,19 +160,20 @@ void store_strobe(StoreWriter& writer, const SweepAxis& axis, const std::vector<
     std::vector<double> section_parameter, section_contact, section_displacement;
     std::vector<std::string> failure;
     for (const StrobePoint& point : points) {
-      const Eigen::Index contacts = std::max<Eigen::Index>(point.alternating.size(), 1);
+      const orbits::Strobe& strobe = point.settled;
+      const Eigen::Index contacts = std::max<Eigen::Index>(strobe.alternating.size(), 1);
       for (Eigen::Index c = 0; c < contacts; ++c) {
         const bool ok = point.failure.empty();
         parameter.push_back(point.parameter);
         contact.push_back(static_cast<double>(c));
-        order.push_back(point.order);
-        mismatch.push_back(point.mismatch);
-        alternating.push_back(ok ? point.alternating(c) : kNone);
-        effective.push_back(ok ? point.effective(c) : kNone);
-        gap.push_back(ok ? point.sine_gap(c) : kNone);
+        order.push_back(strobe.order);
+        mismatch.push_back(strobe.mismatch);
+        alternating.push_back(ok ? strobe.alternating(c) : kNone);
+        effective.push_back(ok ? strobe.effective(c) : kNone);
+        gap.push_back(ok ? strobe.sine_gap(c) : kNone);
         failure.push_back(point.failure);
         if (!ok) continue;
-        for (const double displacement : point.section.row(c)) {
+        for (const double displacement : strobe.section.row(c)) {
           section_parameter.push_back(point.parameter);
           section_contact.push_back(static_cast<double>(c));
           section_displacement.push_back(displacement);

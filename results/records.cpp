@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::array kBasisKinds = {pod::BasisKind::kPom, pod::BasisKind::kLnm, pod::BasisKind::kUser,
                                     pod::BasisKind::kPomf, pod::BasisKind::kLnmStatic};
-constexpr const char* kBasisWords = "pom, lnm, user, pomf or lnm_static";
+constexpr const char* kBasisWords = "pom, lnm, user, pomf or lnm+static";
 
 pod::BasisKind load_kind(const StoreReader& store, const std::string& name) {
   const std::string kind = store.text(name);

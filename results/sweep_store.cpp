@@ -20,37 +20,22 @@ using diagnostics::SweepPoint;
 using detail::append;
 using detail::Cursor;
 
-}  // namespace
-
-JournalRecord to_record(const SweepPoint& point) {
+std::string write_settled(std::vector<double>& values, const SweepPoint& point) {
   const Settled& settled = point.settled;
-  std::vector<double> values = {point.parameter,
-                                static_cast<double>(settled.period.motion),
-                                static_cast<double>(settled.period.period),
-                                settled.period.T,
-                                static_cast<double>(settled.period.contact),
-                                settled.period.mismatch,
-                                settled.stick_fraction,
-                                settled.mean_energy,
-                                settled.slip_rate,
-                                settled.time,
-                                static_cast<double>(settled.events)};
+  values.insert(values.end(), {static_cast<double>(settled.period.motion), static_cast<double>(settled.period.period),
+                               settled.period.T, static_cast<double>(settled.period.contact), settled.period.mismatch,
+                               settled.stick_fraction, settled.mean_energy, settled.slip_rate, settled.time,
+                               static_cast<double>(settled.events)});
   values.push_back(static_cast<double>(settled.slips.size()));
   for (const SlipState& slip : settled.slips) {
     values.insert(values.end(), {slip.time, static_cast<double>(slip.contact), slip.displacement});
   }
   append(values, settled.end);
-  return {point.model == 0 ? "full" : "reduced", static_cast<std::int64_t>(point.index), values, point.failure};
+  return point.failure;
 }
 
-SweepPoint from_record(const JournalRecord& record) {
-  Cursor cursor(record);
-  SweepPoint point;
-  point.index = static_cast<std::size_t>(record.index);
-  point.model = record.table == "full" ? 0 : 1;
-  point.failure = record.note;
-  point.parameter = cursor.next();
-  Settled& settled = point.settled;
+void read_settled(Cursor& cursor, SweepPoint& out_point) {
+  Settled& settled = out_point.settled;
   settled.period.motion = static_cast<Motion>(cursor.next_int());
   settled.period.period = cursor.next_int();
   settled.period.T = cursor.next();
@@ -68,16 +53,12 @@ SweepPoint from_record(const JournalRecord& record) {
     slip.displacement = cursor.next();
   }
   settled.end = cursor.next_state();
-  return point;
 }
 
+}  // namespace
+
 diagnostics::SweepSink journal_sink(Journal& journal) {
-  detail::Kept<SweepPoint, std::size_t, int> kept;
-  for (const JournalRecord& record : journal.records()) {
-    const SweepPoint point = from_record(record);
-    kept.keep({point.index, point.model}, point);
-  }
-  return {.recall = kept, .store = [&journal](const SweepPoint& point) { journal.append(to_record(point)); }};
+  return detail::table_sink<Settled>(journal, "sweep", write_settled, read_settled);
 }
 
 SweepAxis sweep_axis(const scene::Scene& scene, const std::string& key) {

@@ -12,11 +12,6 @@
 
 namespace slipmode::results {
 
-/// A finished value as a line of the journal, and back to the last bit.
-[[nodiscard]] JournalRecord to_record(const diagnostics::SweepPoint& point);
-/// @throws InvalidInput  when the record does not hold a sweep point
-[[nodiscard]] diagnostics::SweepPoint from_record(const JournalRecord& record);
-
 /// A sink that keeps finished values in a journal and takes over those it already holds. The journal must outlive it.
 [[nodiscard]] diagnostics::SweepSink journal_sink(Journal& journal);
 

@@ -80,6 +80,9 @@ struct Scene {
 ///                       of the model ([time], [flow]); the message says which and what would do
 [[nodiscard]] double get_continuous_key(const Scene& scene, const std::string& path);
 
+/// True when the scene, or an override of it, has that table ("ensemble", "validation", …). A seed alone makes none.
+[[nodiscard]] bool has_section(const Scene& scene, const std::string& name);
+
 /// The finite-element beam of a beam scene: rows of displacement, slope and strain, the structure of the full model.
 /// @throws InvalidInput  for a chain; for damping that cannot be met
 [[nodiscard]] fem::Beam build_beam(const Scene& scene);
@@ -116,6 +119,8 @@ struct Scene {
 [[nodiscard]] pod::SensorArray sensor_array(const Scene& scene, const fem::Beam& beam);
 /// Their noise. @throws InvalidInput  if it has none
 [[nodiscard]] pod::Noise sensor_noise(const Scene& scene);
+/// Readings of the scene's sensors, with their noise [ns x T]. @throws InvalidInput  for a scene without sensors
+[[nodiscard]] Eigen::MatrixXd sensor_readings(const Scene& scene, const fem::Beam& beam, const Eigen::MatrixXd& q);
 /// Where the strain of Poincaré sections is read: validation.gauge, by default an eighth of the beam from the clamp
 /// (S4: 0.05 m of 0.4) [m]. @throws InvalidInput  for a chain
 [[nodiscard]] double gauge_position(const Scene& scene);

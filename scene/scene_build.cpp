@@ -147,6 +147,11 @@ pod::Noise sensor_noise(const Scene& scene) {
   return {.deviation = sensors.noise, .scale = pod::NoiseScale::kRelativeRms, .seed = sensors.seed};
 }
 
+Eigen::MatrixXd sensor_readings(const Scene& scene, const fem::Beam& beam, const Eigen::MatrixXd& q) {
+  const Eigen::MatrixXd exact = sensor_array(scene, beam).readings(q);
+  return scene.sensors->noise > 0.0 ? pod::with_noise(exact, sensor_noise(scene)) : exact;
+}
+
 double gauge_position(const Scene& scene) {
   return scene.shaken.gauge.value_or(beam_length(beam_of(scene, "a gauge")) / 8.0);
 }

@@ -80,4 +80,14 @@ double get_continuous_key(const Scene& scene, const std::string& path) {
   return node.value<double>().value();
 }
 
+bool has_section(const Scene& scene, const std::string& name) {
+  const toml::table written = toml::parse(scene.source.text);
+  if (written.contains(name)) return true;
+  for (const std::string& override : scene.source.overrides) {
+    if (override.starts_with("ensemble.seed=")) continue;
+    if (override.starts_with(name + ".") || override.starts_with(name + "=")) return true;
+  }
+  return false;
+}
+
 }  // namespace slipmode::scene

@@ -2,7 +2,6 @@
 
 #include <slipmode/diagnostics/attractors/model.hpp>
 #include <slipmode/rom/reduce.hpp>
-#include "diagnostics/attractors/internal/sweep_runner.hpp"
 
 #include <utility>
 
@@ -32,11 +31,12 @@ DrivenSweep driven_sweep(const DrivenModel& model, const std::vector<double>& va
     motion.mean_energy += here.energy_offset;
     return motion;
   };
-  detail::SweepRunner<DrivenMotion> run(
-      {.settle = settle, .carry = [](const DrivenMotion& motion) { return motion.end; }, .leader = options.model},
-      values, start, options.mode, options.segments, options.parallel, options.sink);
-  const bool finished = run.run();
-  return {.points = run.take_leader(), .interrupted = !finished};
+  return SweepRunner<DrivenMotion, dynamics::State>({.settle = settle,
+                                                     .carry = [](const DrivenMotion& motion) { return motion.end; },
+                                                     .leader = options.model},
+                                                    values, start, options.mode, options.segments, options.parallel,
+                                                    options.sink)
+      .run_alone();
 }
 
 }  // namespace slipmode::diagnostics

@@ -32,6 +32,7 @@ using DriveAt = std::function<friction::Drive(double parameter)>;
 
 using DrivenPoint = SweptValue<DrivenMotion>;
 using DrivenSink = SinkOf<DrivenMotion>;
+using DrivenSweep = SweepOf<DrivenMotion>;
 
 struct DrivenSweepOptions {
   SweepMode mode = SweepMode::kIndependent;
@@ -40,11 +41,6 @@ struct DrivenSweepOptions {
   DrivenOptions driven = {};
   ParallelOptions parallel = {};
   DrivenSink sink = {};
-};
-
-struct DrivenSweep {
-  std::vector<DrivenPoint> points;  ///< in the order of the values; those finished, when interrupted
-  bool interrupted = false;
 };
 
 /// settle_driven at each value, in parallel; resumable as sweep(). In kFollow each value starts from the section state

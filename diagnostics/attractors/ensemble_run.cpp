@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace slipmode::diagnostics {
@@ -95,6 +96,14 @@ EnsembleRun run_ensemble(const Model& model, const std::vector<double>& paramete
     part.resize(0, 0);
   }
   return result;
+}
+
+double EnsembleRun::worst_audit() const {
+  double worst = 0.0;
+  for (const EnsembleMember& member : members) {
+    if (member.failure.empty()) worst = std::max(worst, std::abs(member.audit.residual()));
+  }
+  return worst;
 }
 
 }  // namespace slipmode::diagnostics

@@ -44,6 +44,9 @@ struct EnsembleMember {
 struct EnsembleRun {
   pod::Ensemble ensemble;               ///< n x T, member after member
   std::vector<EnsembleMember> members;  ///< parameter by parameter, within it start by start
+
+  /// Largest energy residual of the members that went well.
+  [[nodiscard]] double worst_audit() const;
 };
 
 /// Runs every initial state at every parameter value and concatenates the snapshots.

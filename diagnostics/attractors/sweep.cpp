@@ -1,7 +1,6 @@
 #include <slipmode/diagnostics/attractors/sweep.hpp>
 
 #include <slipmode/core/errors.hpp>
-#include "diagnostics/attractors/internal/sweep_runner.hpp"
 
 #include <fmt/format.h>
 
@@ -13,8 +12,10 @@ namespace {
 
 constexpr double kMaxValues = 1e7;
 
-detail::SweepRunner<Settled> runner(detail::SweepWork<Settled> work, const std::vector<double>& values,
-                                    const dynamics::State& start, const SweepOptions& options) {
+using Runner = SweepRunner<Settled, dynamics::State>;
+
+Runner runner(SweepWork<Settled, dynamics::State> work, const std::vector<double>& values, const dynamics::State& start,
+              const SweepOptions& options) {
   return {std::move(work), values, restarted(start), options.mode, options.segments, options.parallel, options.sink};
 }
 
@@ -50,12 +51,12 @@ std::vector<double> sweep_values(double from, double to, double step) {
 
 SweepResult sweep(const Model& model, const std::vector<double>& values, const dynamics::State& start,
                   const SweepOptions& options) {
-  auto run = runner({.settle = [&](std::size_t i, int,
-                                   const dynamics::State& from) { return settle_at(model, values[i], from, options); },
-                     .carry = [](const Settled& settled) { return restarted(settled.end); }},
-                    values, start, options);
-  const bool finished = run.run();
-  return {.points = run.take_leader(), .interrupted = !finished};
+  return runner({.settle = [&](std::size_t i, int,
+                               const dynamics::State& from) { return settle_at(model, values[i], from, options); },
+                 .carry = [](const Settled& settled) { return restarted(settled.end); },
+                 .leader = options.model},
+                values, start, options)
+      .run_alone();
 }
 
 PairedSweep paired_sweep(const Model& full, const Model& reduced, const std::vector<double>& values,

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kTrustedDistance = 0.1, kTrustedNoise = 2.0, kTrustedShare = 0.9;
 
-void check(const DrivenCase& full, const std::vector<DrivenCandidate>& candidates,
+void check(const DrivenCase& full, const std::vector<pod::NamedBasis>& candidates,
            const DrivenValidationOptions& options) {
   if (options.values.empty() || candidates.empty()) {
     throw InvalidInput(fmt::format("driven validation: expected values and bases, found {} and {}",
@@ -31,14 +31,14 @@ void check(const DrivenCase& full, const std::vector<DrivenCandidate>& candidate
     throw InvalidInput(fmt::format("driven validation: expected cost_cycles >= 0 and cost_repeats >= 1, found {}, {}",
                                    options.cost_cycles, options.cost_repeats));
   }
-  for (const DrivenCandidate& candidate : candidates) {
+  for (const pod::NamedBasis& candidate : candidates) {
     if (candidate.basis.vectors.rows() == full.system.size()) continue;
     throw InvalidInput(fmt::format("driven validation: expected basis {} to have {} rows, found {}", candidate.name,
                                    full.system.size(), candidate.basis.vectors.rows()));
   }
 }
 
-std::vector<Eigen::Index> sizes(const DrivenCandidate& candidate, const std::vector<Eigen::Index>& asked) {
+std::vector<Eigen::Index> sizes(const pod::NamedBasis& candidate, const std::vector<Eigen::Index>& asked) {
   std::vector<Eigen::Index> out;
   const Eigen::Index available = candidate.basis.modes();
   if (asked.empty()) {
@@ -80,17 +80,17 @@ Eigen::Index trusted_from(const std::vector<DrivenRow>& rows) {
 /// The sweeps one after the other, and then the clocks.
 class DrivenValidationRun {
  public:
-  DrivenValidationRun(const DrivenCase& full, const DriveAt& drive, const std::vector<DrivenCandidate>& candidates,
+  DrivenValidationRun(const DrivenCase& full, const DriveAt& drive, const std::vector<pod::NamedBasis>& candidates,
                       const dynamics::State& start, const DrivenValidationOptions& options)
       : full_(full), drive_(drive), candidates_(candidates), start_(start), options_(options) {
-    for (const DrivenCandidate& candidate : candidates) total_ += sizes(candidate, options.modes).size();
+    for (const pod::NamedBasis& candidate : candidates) total_ += sizes(candidate, options.modes).size();
   }
 
   DrivenValidationReport run(const dynamics::State& other) {
     const detail::Times times = detail::timed([&] {
       out_.full = sweep(full_, start_);
       out_.again = sweep(full_, other);
-      for (const DrivenCandidate& candidate : candidates_) try_candidate(candidate);
+      for (const pod::NamedBasis& candidate : candidates_) try_candidate(candidate);
     });
     out_.sweeps_wall = times.wall;
     if (out_.interrupted) return std::move(out_);
@@ -121,7 +121,7 @@ class DrivenValidationRun {
     return std::move(found.points);
   }
 
-  void try_candidate(const DrivenCandidate& candidate) {
+  void try_candidate(const pod::NamedBasis& candidate) {
     DrivenCandidateReport report{.name = candidate.name};
     for (const Eigen::Index L : sizes(candidate, options_.modes)) {
       DrivenRow row{.modes = L};
@@ -184,7 +184,7 @@ class DrivenValidationRun {
 
   const DrivenCase& full_;
   const DriveAt& drive_;
-  const std::vector<DrivenCandidate>& candidates_;
+  const std::vector<pod::NamedBasis>& candidates_;
   const dynamics::State& start_;
   const DrivenValidationOptions& options_;
   std::size_t total_ = 2;  ///< sweeps in all
@@ -200,7 +200,7 @@ bool trusted_at(double distance, double noise) {
 }
 
 DrivenValidationReport validate_driven(const DrivenCase& full, const DriveAt& drive,
-                                       const std::vector<DrivenCandidate>& candidates, const dynamics::State& start,
+                                       const std::vector<pod::NamedBasis>& candidates, const dynamics::State& start,
                                        const dynamics::State& other, const DrivenValidationOptions& options) {
   check(full, candidates, options);
   return DrivenValidationRun(full, drive, candidates, start, options).run(other);

@@ -9,12 +9,6 @@
 
 namespace slipmode::diagnostics {
 
-/// A basis to be judged on a shaken structure, with as many vectors as shall be tried.
-struct DrivenCandidate {
-  std::string name;  ///< "POMF", "LNM", "LNM+static", "mass-POM"
-  pod::Basis basis;
-};
-
 struct DrivenValidationOptions {
   std::vector<double> values = {};       ///< of the swept parameter, not empty (shaker frequencies [Hz])
   std::vector<Eigen::Index> modes = {};  ///< L to try, those that a basis has; empty: 1..basis size
@@ -77,7 +71,7 @@ struct DrivenValidationReport {
 /// @param other  start of the second full sweep, which shows the sampling noise
 /// @throws InvalidInput  for no values or candidates, a reading that is not there, and what the parts refuse
 [[nodiscard]] DrivenValidationReport validate_driven(const DrivenCase& full, const DriveAt& drive,
-                                                     const std::vector<DrivenCandidate>& candidates,
+                                                     const std::vector<pod::NamedBasis>& candidates,
                                                      const dynamics::State& start, const dynamics::State& other,
                                                      const DrivenValidationOptions& options);
 

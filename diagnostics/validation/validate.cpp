@@ -38,8 +38,8 @@ bool is_positive(const LyapunovExponent& exponent) { return exponent.nats > kSta
 /// The work of one validation, part after part; each part runs its items in parallel.
 class Validation {
  public:
-  Validation(const dynamics::HybridSystem& full, const std::vector<Candidate>& candidates, const dynamics::State& start,
-             const ValidationOptions& options)
+  Validation(const dynamics::HybridSystem& full, const std::vector<pod::NamedBasis>& candidates,
+             const dynamics::State& start, const ValidationOptions& options)
       : full_(full),
         candidates_(candidates),
         start_(restarted(start)),
@@ -297,8 +297,8 @@ class Validation {
     if (!options_.verdict) return;
     ModelVerdictOptions judging = *options_.verdict;
     judging.parallel = batch();
-    std::vector<VerdictCandidate> candidates;
-    for (const Candidate& candidate : candidates_) {
+    std::vector<pod::NamedBasis> candidates;
+    for (const pod::NamedBasis& candidate : candidates_) {
       const Eigen::Index modes = std::min(report_.chosen, candidate.basis.modes());
       candidates.push_back({fmt::format("{} {}s", modes, candidate.name), candidate.basis.truncated(modes)});
     }
@@ -319,7 +319,7 @@ class Validation {
   static constexpr std::size_t kSunkLevels = 2;  ///< one alone may be within the scatter by chance
 
   const dynamics::HybridSystem& full_;
-  const std::vector<Candidate>& candidates_;
+  const std::vector<pod::NamedBasis>& candidates_;
   dynamics::State start_;
   ValidationOptions options_;
   Model full_model_;
@@ -356,7 +356,7 @@ std::string attractor_word(const Settled& settled, const std::optional<LyapunovE
   return zero ? "quasi-periodic" : to_string(Motion::kUndecided);
 }
 
-ValidationReport validate(const dynamics::HybridSystem& full, const std::vector<Candidate>& candidates,
+ValidationReport validate(const dynamics::HybridSystem& full, const std::vector<pod::NamedBasis>& candidates,
                           const dynamics::State& start, const ValidationOptions& options) {
   check_validation(full, candidates, options);
   return Validation(full, candidates, start, options).run();

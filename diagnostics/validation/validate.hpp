@@ -14,13 +14,6 @@
 
 namespace slipmode::diagnostics {
 
-/// A basis to be judged, with as many vectors as shall be tried.
-struct Candidate {
-  std::string name;          ///< "POM", "LNM"
-  pod::Basis basis;          ///< its first L vectors are the reduced model of L modes
-  Eigen::VectorXd captured;  ///< element L − 1: share of the ensemble's energy in the first L; pod::captured_energy
-};
-
 struct ValidationOptions {
   double speed = 0.2;                    ///< belt speed of the energy-share table (the ensemble's) [m/s]
   std::vector<Eigen::Index> modes = {};  ///< L to try; empty: 1..basis size
@@ -114,8 +107,9 @@ struct ValidationReport {
 /// @param start  initial state of the full model
 /// @throws InvalidInput      for no candidates, L beyond a basis or below 1, shares missing, and what the parts refuse
 /// @throws NumericalFailure  if the full model at `speed` fails; other failures are recorded in their rows
-[[nodiscard]] ValidationReport validate(const dynamics::HybridSystem& full, const std::vector<Candidate>& candidates,
-                                        const dynamics::State& start, const ValidationOptions& options);
+[[nodiscard]] ValidationReport validate(const dynamics::HybridSystem& full,
+                                        const std::vector<pod::NamedBasis>& candidates, const dynamics::State& start,
+                                        const ValidationOptions& options);
 
 /// Numbers of modes to try of 1..most: all up to twelve, else few and growing, with `chosen` among them:
 /// 1 2 3 4 6 8 12 16 24 ... most. @param chosen  1..most

@@ -46,7 +46,7 @@ void check(const dynamics::HybridSystem& full, const ModelVerdictOptions& option
 }
 
 Subject reduced_subject(const dynamics::HybridSystem& full, const dynamics::State& start,
-                        const VerdictCandidate& candidate, Eigen::Index channel) {
+                        const pod::NamedBasis& candidate, Eigen::Index channel) {
   Subject subject{.name = candidate.name};
   try {
     subject.system = rom::reduce(full, candidate.basis);
@@ -221,7 +221,7 @@ void compare_spectra(std::vector<ModelFindings>& models, double sample) {
 }  // namespace
 
 VerdictTable model_verdict(const dynamics::HybridSystem& full, const dynamics::State& start,
-                           const std::vector<VerdictCandidate>& candidates, const ModelVerdictOptions& options) {
+                           const std::vector<pod::NamedBasis>& candidates, const ModelVerdictOptions& options) {
   check(full, options);
   VerdictTable table{.models = std::vector<ModelFindings>(candidates.size() + 1),
                      .channel = options.channel >= 0 ? options.channel : farthest_dof(full),
@@ -230,7 +230,7 @@ VerdictTable model_verdict(const dynamics::HybridSystem& full, const dynamics::S
                                     .system = full,
                                     .start = start,
                                     .channel = Eigen::RowVectorXd::Unit(full.size(), table.channel)}};
-  for (const VerdictCandidate& candidate : candidates)
+  for (const pod::NamedBasis& candidate : candidates)
     subjects.push_back(reduced_subject(full, start, candidate, table.channel));
   rethrow_first(parallel_for(subjects.size(), options.parallel,
                              [&](std::size_t i) { table.models[i] = findings_of(subjects[i], options); }));

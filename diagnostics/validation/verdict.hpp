@@ -47,12 +47,6 @@ struct VerdictTable {
   double sample = 0.0;                ///< [s]
 };
 
-/// A reduced model by its basis.
-struct VerdictCandidate {
-  std::string name;
-  pod::Basis basis;
-};
-
 struct ModelVerdictOptions {
   TangentOptions tangent = {};     ///< transient of all models; duration, interval, number of exponents
   double sample = 0.5;             ///< of the record [s]
@@ -72,7 +66,7 @@ struct ModelVerdictOptions {
 ///                       model
 /// @throws Interrupted   if the stop flag was set
 [[nodiscard]] VerdictTable model_verdict(const dynamics::HybridSystem& full, const dynamics::State& start,
-                                         const std::vector<VerdictCandidate>& candidates,
+                                         const std::vector<pod::NamedBasis>& candidates,
                                          const ModelVerdictOptions& options);
 
 }  // namespace slipmode::diagnostics

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <slipmode/core/errors.hpp>
+#include <slipmode/core/sweep_runner.hpp>
 #include <slipmode/dynamics/system.hpp>
 #include <slipmode/results/journal.hpp>
 
@@ -9,7 +10,7 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <tuple>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -54,21 +55,6 @@ class Cursor {
   std::size_t at_ = 0;
 };
 
-/// Finished values by the key a runner recalls them with; a copy shares them.
-template <class Value, class... Key>
-class Kept {
- public:
-  void keep(const std::tuple<Key...>& key, Value value) { values_->insert_or_assign(key, std::move(value)); }
-  std::optional<Value> operator()(Key... key) const {
-    const auto found = values_->find({key...});
-    return found == values_->end() ? std::nullopt : std::optional(found->second);
-  }
-
- private:
-  std::shared_ptr<std::map<std::tuple<Key...>, Value>> values_ =
-      std::make_shared<std::map<std::tuple<Key...>, Value>>();
-};
-
 inline void append(std::vector<double>& values, const Eigen::VectorXd& vector) {
   values.push_back(static_cast<double>(vector.size()));
   values.insert(values.end(), vector.begin(), vector.end());
@@ -86,6 +72,39 @@ inline void append(std::vector<double>& values, const dynamics::State& state) {
   values.push_back(static_cast<double>(state.modes.size()));
   for (const auto mode : state.modes) values.push_back(static_cast<double>(mode));
   append(values, state.internal);
+}
+
+/// A sink that keeps finished values in a journal, one table per model, and gives back those it already holds; other
+/// tables are left alone. The journal must outlive it.
+/// @param table  "sweep", …: what the values are of
+/// @param write  std::string(std::vector<double>&, const SweptValue<Result>&): adds what a record holds after the
+///               parameter; the record's note, as a rule the failure
+/// @param read   void(Cursor&, SweptValue<Result>&): the same back, in the same order; finds the note as the failure
+template <class Result, class Write, class Read>
+SinkOf<Result> table_sink(Journal& journal, const std::string& table, const Write& write, const Read& read) {
+  auto kept = std::make_shared<std::map<std::pair<std::size_t, int>, SweptValue<Result>>>();
+  for (const JournalRecord& record : journal.records()) {
+    const std::size_t dash = record.table.rfind('-');
+    if (dash == std::string::npos || record.table.substr(0, dash) != table) continue;
+    Cursor cursor(record);
+    SweptValue<Result> value{.index = static_cast<std::size_t>(record.index),
+                             .model = std::stoi(record.table.substr(dash + 1)),
+                             .parameter = cursor.next(),
+                             .failure = record.note};
+    read(cursor, value);
+    kept->insert_or_assign({value.index, value.model}, std::move(value));
+  }
+  return {.recall = [kept](std::size_t index, int model) -> std::optional<SweptValue<Result>> {
+            const auto found = kept->find({index, model});
+            return found == kept->end() ? std::nullopt : std::optional(found->second);
+          },
+          .store =
+              [&journal, table, write](const SweptValue<Result>& value) {
+                std::vector<double> values = {value.parameter};
+                std::string note = write(values, value);
+                journal.append({fmt::format("{}-{}", table, value.model), static_cast<std::int64_t>(value.index),
+                                std::move(values), std::move(note)});
+              }};
 }
 
 }  // namespace slipmode::results::detail

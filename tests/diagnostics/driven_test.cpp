@@ -241,7 +241,7 @@ TEST(DrivenSweep, ASpringKeepsTheStretchOfPastSliding) {
 
 TEST(DrivenValidation, AllModesAreTheFullModel) {
   const DrivenCase model = two_masses(kRubbing, 0.6);
-  const DrivenCandidate lnm{.name = "lnm", .basis = rom::lnm_basis(model.system.structure(), 2)};
+  const pod::NamedBasis lnm{.name = "lnm", .basis = rom::lnm_basis(model.system.structure(), 2)};
   dynamics::State other = model.system.rest();
   other.v << 0.02, -0.01;
   const auto report = validate_driven(model, kDrive, {lnm}, model.system.rest(), other,

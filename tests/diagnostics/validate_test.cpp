@@ -18,7 +18,7 @@ struct Study {
   dynamics::HybridSystem full = tests::chain10(0.2);
   dynamics::State start = full.rest();
   pod::PodResult pod;
-  std::vector<Candidate> candidates;
+  std::vector<pod::NamedBasis> candidates;
 
   Study() {
     const dynamics::Trajectory run =
@@ -169,7 +169,7 @@ TEST(Validate, TriesOtherStartsWhereTheGivenOneLeadsToNoOrbit) {
   // end on the stick-slip cycle (fixtures/belt_oscillator.hpp).
   const fixtures::BeltOscillator o;
   const dynamics::HybridSystem full = tests::system_of(o);
-  const std::vector<Candidate> all = {
+  const std::vector<pod::NamedBasis> all = {
       {"all", rom::user_basis(Eigen::MatrixXd::Identity(1, 1)), Eigen::VectorXd::Ones(1)}};
   ValidationOptions options = quick_validation();
   options.speed = o.belt;
@@ -256,7 +256,7 @@ TEST(Validate, GivesTheSameBytesForAnyNumberOfThreads) {
 }
 
 TEST(Validate, ABasisTheContactCannotSeeFillsItsRowWithTheReason) {
-  Candidate blind{.name = "blind", .basis = study().candidates[0].basis, .captured = Eigen::VectorXd::Ones(1)};
+  pod::NamedBasis blind{.name = "blind", .basis = study().candidates[0].basis, .captured = Eigen::VectorXd::Ones(1)};
   blind.basis.vectors = Eigen::MatrixXd::Identity(10, 1);  // the first mass alone; the contact is on the tenth
   ValidationOptions options = quick_validation();
   options.modes = {1};
@@ -268,7 +268,7 @@ TEST(Validate, ABasisTheContactCannotSeeFillsItsRowWithTheReason) {
 }
 
 TEST(Validate, RefusesWhatItCannotTryAndReportsAnInterrupt) {
-  const auto run = [](const std::vector<Candidate>& candidates, const ValidationOptions& options) {
+  const auto run = [](const std::vector<pod::NamedBasis>& candidates, const ValidationOptions& options) {
     return validate(study().full, candidates, study().start, options);
   };
   ValidationOptions options = quick_validation();
@@ -281,7 +281,8 @@ TEST(Validate, RefusesWhatItCannotTryAndReportsAnInterrupt) {
   options = quick_validation();
   options.orbit_starts = 0;
   EXPECT_THROW((void)run(study().candidates, options), InvalidInput);
-  std::vector<Candidate> small = {{"small", rom::lnm_basis(fem::chain({.masses = 3}), 2), Eigen::VectorXd::Ones(2)}};
+  std::vector<pod::NamedBasis> small = {
+      {"small", rom::lnm_basis(fem::chain({.masses = 3}), 2), Eigen::VectorXd::Ones(2)}};
   EXPECT_THROW((void)run(small, quick_validation()), InvalidInput);
   options = quick_validation();
   const StopFlag stop = true;

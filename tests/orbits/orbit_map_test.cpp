@@ -137,11 +137,11 @@ TEST(OrbitMap, TakesOverRowsThatAreThere) {
   std::vector<std::size_t> stored;
   MapPoint earlier;
   earlier.order = 7;
-  const MapSink sink{.recall = [&](std::size_t row) -> std::optional<std::vector<MapPoint>> {
+  const MapSink sink{.recall = [&](std::size_t row, int) -> std::optional<MapRow> {
                        if (row != 1) return std::nullopt;
-                       return std::vector<MapPoint>{earlier, earlier};
+                       return MapRow{.index = 1, .parameter = grid.y[1], .settled = {earlier, earlier}};
                      },
-                     .store = [&](std::size_t row, const std::vector<MapPoint>&) { stored.push_back(row); }};
+                     .store = [&](const MapRow& row) { stored.push_back(row.index); }};
   const OrbitMap map = orbit_map(kFactory, kFromContact, grid, {}, {.threads = 1}, sink);
   EXPECT_EQ(stored, (std::vector<std::size_t>{0, 2}));
   EXPECT_EQ(map.rows[1][0].order, 7);

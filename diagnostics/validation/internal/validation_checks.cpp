@@ -9,14 +9,14 @@
 
 namespace slipmode::diagnostics {
 
-std::vector<Eigen::Index> modes_to_try(const Candidate& candidate, const ValidationOptions& options) {
+std::vector<Eigen::Index> modes_to_try(const pod::NamedBasis& candidate, const ValidationOptions& options) {
   if (!options.modes.empty()) return options.modes;
   std::vector<Eigen::Index> all(static_cast<std::size_t>(candidate.basis.modes()));
   std::iota(all.begin(), all.end(), 1);
   return all;
 }
 
-void check_validation(const dynamics::HybridSystem& full, const std::vector<Candidate>& candidates,
+void check_validation(const dynamics::HybridSystem& full, const std::vector<pod::NamedBasis>& candidates,
                       const ValidationOptions& options) {
   if (candidates.empty()) throw InvalidInput("validation: expected at least one basis, found none");
   if (options.horizon_starts < 1 || !(options.horizon_gap > 0.0) || !(options.horizon > 0.0) ||
@@ -30,7 +30,7 @@ void check_validation(const dynamics::HybridSystem& full, const std::vector<Cand
     throw InvalidInput(
         fmt::format("validation: expected at least one start for orbits, found {}", options.orbit_starts));
   }
-  for (const Candidate& candidate : candidates) {
+  for (const pod::NamedBasis& candidate : candidates) {
     const Eigen::Index available = std::min(candidate.basis.modes(), candidate.captured.size());
     if (candidate.basis.vectors.rows() != full.size()) {
       throw InvalidInput(fmt::format("validation: expected basis {} to have {} rows, found {}", candidate.name,

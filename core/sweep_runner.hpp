@@ -1,0 +1,197 @@
+#pragma once
+
+#include <slipmode/core/errors.hpp>
+#include <slipmode/core/parallel.hpp>
+
+#include <cstddef>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+// Everything that is found value by value of a parameter: sweeps, stroboscopic maps, rows of maps, exponents.
+
+namespace slipmode {
+
+enum class SweepMode {
+  kIndependent,  ///< every value starts from the same state
+  /// Every value starts from the end state of the one before it. A chain is sequential: `segments` chains run side by
+  /// side, each from the common start, so one segment is the sequential sweep of the literature.
+  kFollow,
+};
+
+/// One value of a sweep, finished. Result: what is kept of the motion there (Settled, DrivenMotion, Strobe, …).
+template <class Result>
+struct SweptValue {
+  std::size_t index = 0;  ///< into the values
+  int model = 0;          ///< 0: the only or the full model, 1: the reduced model of a paired sweep
+  double parameter = 0.0;
+  Result settled = {};       ///< empty where it failed; settled.end is in the model's own coordinates
+  std::string failure = {};  ///< empty, or why the value failed; the sweep went on
+
+  [[nodiscard]] bool ok() const { return failure.empty(); }
+};
+/// Where finished values go at once and where earlier ones come from, so that a sweep can be resumed.
+/// Calls come one at a time (never two at once), from any thread, in the order in which values finish.
+template <class Result>
+struct SinkOf {
+  /// The point finished in an earlier run, if there is one. Must give back settled.end to the last bit: following
+  /// values start there. Asked once per (index, model) before anything runs. Empty function: nothing to resume.
+  std::function<std::optional<SweptValue<Result>>(std::size_t index, int model)> recall = {};
+  /// Keeps a point just finished. An exception thrown here ends the sweep. Empty function: nothing kept.
+  std::function<void(const SweptValue<Result>&)> store = {};
+};
+/// A sweep, finished or not.
+template <class Result>
+struct SweepOf {
+  std::vector<SweptValue<Result>> points;  ///< in the order of the values; those finished, when interrupted
+  bool interrupted = false;
+};
+
+namespace detail {
+
+/// @throws InvalidInput  for no values, or segments that are none or more than the values
+void check_sweep(std::size_t values, std::size_t segments);
+[[noreturn]] void refuse_recalled(std::size_t index, int model, double expected, double found);
+
+}  // namespace detail
+
+/// What is done at each value of a sweep of one model or of two with shared starts. Called from several threads.
+template <class Result, class Start>
+struct SweepWork {
+  /// What is found with a model (SweptValue::model) at value i. NumericalFailure is recorded.
+  std::function<Result(std::size_t i, int model, const Start& start)> settle;
+  /// Where the next value starts when this one ended with this result.
+  std::function<Start(const Result&)> carry;
+  int leader = 0;  ///< the model whose end states are carried on
+  /// The follower's start from the leader's; empty: there is no follower (which would be model 1 − leader).
+  std::function<Start(const Start&)> follow = {};
+};
+
+/// A sweep as tasks. Task i < m runs the leading model at value i; task m + i runs the follower at value i, once its
+/// start is known.
+template <class Result, class Start>
+class SweepRunner {
+ public:
+  using Point = SweptValue<Result>;
+
+  SweepRunner(SweepWork<Result, Start> work, const std::vector<double>& values, const Start& start, SweepMode mode,
+              std::size_t segments, ParallelOptions parallel, SinkOf<Result> sink)
+      : work_(std::move(work)),
+        values_(values),
+        mode_(mode),
+        segments_(segments),
+        parallel_(std::move(parallel)),
+        sink_(std::move(sink)) {
+    detail::check_sweep(values.size(), segments);
+    starts_.assign(values.size(), start);
+    points_.resize(work_.follow ? 2 * values.size() : values.size());
+    recall();
+  }
+
+  /// False when interrupted.
+  bool run() {
+    try {
+      return run_tasks(first_tasks(), points_.size(), parallel_, [this](std::size_t id) { return task(id); });
+    } catch (const Interrupted&) {
+      return false;
+    }
+  }
+
+  SweepOf<Result> run_alone() {
+    const bool finished = run();
+    return {.points = take_leader(), .interrupted = !finished};
+  }
+
+  std::vector<Point> take_leader() { return take(0); }
+  std::vector<Point> take_follower() { return take(values_.size()); }
+
+ private:
+  [[nodiscard]] bool is_segment_begin(std::size_t i) const {
+    if (mode_ == SweepMode::kIndependent || i == 0) return true;
+    const std::size_t m = values_.size();
+    // Segment of i: the largest s with s·m/S ≤ i, in whole numbers.
+    const std::size_t segment = ((i + 1) * segments_ - 1) / m;
+    return segment * m / segments_ == i;
+  }
+
+  [[nodiscard]] std::vector<std::size_t> first_tasks() const {
+    std::vector<std::size_t> ready;
+    for (std::size_t i = 0; i < values_.size(); ++i) {
+      if (is_segment_begin(i)) make_ready(i, ready);
+    }
+    return ready;
+  }
+
+  void make_ready(std::size_t i, std::vector<std::size_t>& ready) const {
+    ready.push_back(i);
+    if (work_.follow) ready.push_back(values_.size() + i);
+  }
+
+  void recall() {
+    if (!sink_.recall) return;
+    for (std::size_t id = 0; id < points_.size(); ++id) {
+      const std::size_t i = id % values_.size();
+      std::optional<Point> point = sink_.recall(i, model(id));
+      if (!point) continue;
+      if (point->parameter != values_[i] || point->index != i || point->model != model(id)) {
+        detail::refuse_recalled(i, model(id), values_[i], point->parameter);
+      }
+      points_[id] = std::move(point);
+    }
+  }
+
+  [[nodiscard]] int model(std::size_t id) const { return id < values_.size() ? work_.leader : 1 - work_.leader; }
+
+  std::vector<std::size_t> task(std::size_t id) {
+    const std::size_t i = id % values_.size();
+    const bool leads = id < values_.size();
+    if (!points_[id]) {
+      points_[id] = compute(i, model(id), leads ? starts_[i] : work_.follow(starts_[i]));
+      store(*points_[id]);
+    }
+    std::vector<std::size_t> ready;
+    if (!leads || i + 1 == values_.size() || is_segment_begin(i + 1)) return ready;
+    starts_[i + 1] = points_[id]->ok() ? work_.carry(points_[id]->settled) : starts_[i];
+    make_ready(i + 1, ready);
+    return ready;
+  }
+
+  [[nodiscard]] Point compute(std::size_t i, int tag, const Start& start) const {
+    Point point{.index = i, .model = tag, .parameter = values_[i]};
+    try {
+      point.settled = work_.settle(i, tag, start);
+    } catch (const NumericalFailure& failure) {
+      point.failure = failure.what();
+    }
+    return point;
+  }
+
+  void store(const Point& point) {
+    if (!sink_.store) return;
+    const std::lock_guard lock(sink_mutex_);
+    sink_.store(point);
+  }
+
+  std::vector<Point> take(std::size_t first) {
+    std::vector<Point> finished;
+    for (std::size_t id = first; id < first + values_.size(); ++id) {
+      if (points_[id]) finished.push_back(std::move(*points_[id]));
+    }
+    return finished;
+  }
+
+  SweepWork<Result, Start> work_;
+  const std::vector<double>& values_;
+  SweepMode mode_;
+  std::size_t segments_;
+  ParallelOptions parallel_;
+  SinkOf<Result> sink_;
+  std::vector<Start> starts_;                 ///< of the leader, by value
+  std::vector<std::optional<Point>> points_;  ///< by task
+  std::mutex sink_mutex_;
+};
+
+}  // namespace slipmode

@@ -1,0 +1,67 @@
+#include <slipmode/results/ensemble_store.hpp>
+
+#include <slipmode/results/provenance.hpp>
+#include <slipmode/results/records.hpp>
+#include <slipmode/results/table.hpp>
+#include <slipmode/results/units.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace slipmode::results {
+
+void store_ensemble(const std::filesystem::path& path, const scene::Scene& scene, const diagnostics::EnsembleRun& run) {
+  const Units units = Units::of(scene.units);
+  StoreWriter writer(path, scene.units);
+  Provenance provenance = provenance_of(scene, "slipmode simulate");
+  Table members{.description = "runs of the ensemble", .columns = {}};
+  std::vector<double> parameter, start, columns, events, residual;
+  std::vector<std::string> failure;
+  for (const auto& member : run.members) {
+    const bool worse = !provenance.audit || std::abs(member.audit.residual()) > std::abs(provenance.audit->residual());
+    if (member.failure.empty() && worse) provenance.audit = member.audit;
+    parameter.push_back(member.parameter);
+    start.push_back(static_cast<double>(member.start));
+    columns.push_back(static_cast<double>(member.columns));
+    events.push_back(static_cast<double>(member.statistics.events));
+    residual.push_back(member.failure.empty() ? member.audit.residual() : std::numeric_limits<double>::quiet_NaN());
+    failure.push_back(member.failure);
+  }
+  const bool shaken = scene.drive.shaker() != nullptr;
+  const Column driven = shaken        ? Column{"frequency", {units.frequency, "shaker frequency"}, parameter}
+                        : scene.force ? Column{"omega", {units.angular, "frequency of the force"}, parameter}
+                                      : Column{"speed", {units.velocity, "belt speed"}, parameter};
+  members.columns = {driven,
+                     {"start", {"", "number of the initial state"}, start},
+                     {"snapshots", {"", "snapshots it gave"}, columns},
+                     {"events", {"", "events located"}, events},
+                     {"audit_residual", {"1", "energy balance relative to the energy exchanged"}, residual},
+                     {"failure", {"", "why it failed; empty: it did not"}, failure}};
+  save(writer, provenance);
+  save(writer, kEnsembleGroup, run.ensemble);
+  save(writer, "members", members);
+  if (scene.sensors) store_sensors(writer, scene, run.ensemble.snapshots);
+  writer.commit();
+}
+
+void store_sensors(StoreWriter& writer, const scene::Scene& scene, const Eigen::MatrixXd& q) {
+  const bool strain = scene.sensors->kind == pod::SensorKind::kStrain;
+  writer.describe_group("sensors", "what the scene's sensors read, noise included");
+  writer.write("sensors/x", scene.sensors->x, {"m", "places, from the clamp"});
+  writer.write("sensors/kind", std::string(strain ? "strain" : "displacement"), {"", "what they read"});
+  writer.write_columns("sensors/readings", sensor_readings(scene, scene::build_beam(scene), q),
+                       {strain ? "1" : "m", "time x sensor"});
+}
+
+pod::Ensemble load_snapshots(const StoreReader& store) {
+  if (store.has(kEnsembleGroup)) return load_ensemble(store);
+  if (store.has(kTrajectoryGroup)) {
+    return {.snapshots = load_trajectory(store).q, .run_begin = {0}};
+  }
+  store.fail("ensemble", "the file holds neither an ensemble nor a trajectory; make one with 'slipmode simulate'");
+}
+
+}  // namespace slipmode::results

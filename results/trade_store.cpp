@@ -1,0 +1,116 @@
+#include <slipmode/results/trade_store.hpp>
+
+#include <slipmode/results/table.hpp>
+#include <slipmode/results/units.hpp>
+#include <slipmode/trade/advice.hpp>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace slipmode::results {
+namespace {
+
+using trade::Measure;
+using trade::Row;
+using trade::Study;
+
+/// The scene's model and the reference first, then all others.
+std::vector<Row> all_rows(const Study& study) {
+  std::vector<Row> rows = {study.reference};
+  rows.insert(rows.end(), study.rows.begin(), study.rows.end());
+  return rows;
+}
+
+template <class Value>
+std::vector<double> numbers(const std::vector<Row>& rows, const Value& value) {
+  std::vector<double> out;
+  for (const Row& row : rows) out.push_back(static_cast<double>(value(row)));
+  return out;
+}
+
+template <class Value>
+std::vector<std::string> texts(const std::vector<Row>& rows, const Value& value) {
+  std::vector<std::string> out;
+  for (const Row& row : rows) out.push_back(std::string(value(row)));
+  return out;
+}
+
+Table candidate_table(const Study& study, const scene::Scene& scene) {
+  const std::vector<Row> rows = all_rows(study);
+  Table table{.description = "configurations: errors against the first one, the reference, and times", .columns = {}};
+  auto& columns = table.columns;
+  columns.push_back({"name", {"", "the configuration"}, texts(rows, [](const Row& r) { return r.variant.name; })});
+  columns.push_back({"axis", {"", "in what it differs from the scene"}, texts(rows, [](const Row& r) {
+                       return trade::to_string(r.variant.axis);
+                     })});
+  for (std::size_t m = 0; m < trade::kMeasures; ++m) {
+    const auto measure = static_cast<Measure>(m);
+    const std::string name(trade::to_string(measure));
+    columns.push_back({name, {"%", std::string(trade::describe(measure))}, numbers(rows, [&](const Row& r) {
+                         return trade::at(r.error, measure);
+                       })});
+    columns.push_back({name + "_noise", {"%", "scatter of it"}, numbers(rows, [&](const Row& r) {
+                         return trade::at(r.noise, measure);
+                       })});
+  }
+  const auto add = [&](const std::string& name, const std::string& what, const auto& value) {
+    columns.push_back({name, {"s", what, Meaning::Of::kClock}, numbers(rows, value)});
+  };
+  add("time", "processor time of a timed run, median", [](const Row& r) { return r.cost.cpu; });
+  add("time_low", "its least", [](const Row& r) { return r.cost.cpu_low; });
+  add("time_high", "its largest", [](const Row& r) { return r.cost.cpu_high; });
+  add("wall", "time of the clock, median", [](const Row& r) { return r.cost.wall; });
+  add("setup", "building, projection and modal data, once", [](const Row& r) { return r.cost.setup; });
+  add("basis", "making the basis, once", [](const Row& r) { return r.basis_seconds; });
+  columns.push_back({"break_even",
+                     {"1", "runs of [time] after which basis and projection are paid for"},
+                     numbers(rows, [&](const Row& r) { return trade::break_even(study, r, scene.time.duration); })});
+  columns.push_back(
+      {"failure", {"", "why it has no errors; empty: it has"}, texts(rows, [](const Row& r) { return r.failure; })});
+  return table;
+}
+
+constexpr const char* kTable = "errors";
+
+JournalRecord to_record(std::size_t index, const std::string& name, const trade::Finished& finished) {
+  JournalRecord record{.table = kTable, .index = static_cast<std::int64_t>(index), .values = {}, .note = name};
+  record.values.assign(finished.error.begin(), finished.error.end());
+  record.values.insert(record.values.end(), finished.noise.begin(), finished.noise.end());
+  return record;
+}
+
+std::optional<trade::Finished> recalled(const Journal& journal, const std::string& name) {
+  for (const JournalRecord& record : journal.records()) {
+    if (record.note != name || record.values.size() != 2 * trade::kMeasures) continue;
+    trade::Finished finished;
+    const auto middle = record.values.begin() + static_cast<std::ptrdiff_t>(trade::kMeasures);
+    std::copy(record.values.begin(), middle, finished.error.begin());
+    std::copy(middle, record.values.end(), finished.noise.begin());
+    return finished;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+void keep_in(Journal& journal, trade::StudyOptions& out_options) {
+  out_options.recall = [&journal](const std::string& name) { return recalled(journal, name); };
+  out_options.store = [&journal](const std::string& name, const trade::Finished& finished) {
+    if (finished.failure.empty()) journal.append(to_record(journal.records().size(), name, finished));
+  };
+}
+
+void store_study(StoreWriter& writer, const trade::Study& study, const scene::Scene& scene) {
+  const std::string group = kTradeGroup;
+  const std::string time = Units::of(scene.units).time;
+  writer.describe_group(group, "speed against accuracy");
+  save(writer, group + "/candidates", candidate_table(study, scene));
+  writer.write(group + "/reference", study.reference.variant.name, {"", "what errors are measured against"});
+  writer.write(group + "/timed", study.schedule.timed, {time, "simulated by a timed run"});
+  writer.write(group + "/recorded", study.schedule.duration, {time, "recorded of a settled motion"});
+  writer.write(group + "/horizon", study.schedule.horizon, {time, "of dX and dE"});
+}
+
+}  // namespace slipmode::results

@@ -1,0 +1,318 @@
+#include <slipmode/studies/bases.hpp>
+
+#include <slipmode/core/errors.hpp>
+#include <slipmode/core/none.hpp>
+#include <slipmode/fem/modes.hpp>
+#include <slipmode/pod/mode_shares.hpp>
+#include <slipmode/results/ensemble_store.hpp>
+#include <slipmode/results/records.hpp>
+#include <slipmode/results/reduced_file.hpp>
+#include <slipmode/rom/candidates.hpp>
+#include <slipmode/rom/reduce.hpp>
+#include <slipmode/scene/shaken.hpp>
+#include <slipmode/studies/ensemble.hpp>
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <charconv>
+#include <ctime>
+#include <utility>
+
+namespace slipmode::studies {
+namespace {
+
+constexpr Eigen::Index kShownModes = 6;
+/// Natural modes beyond this many are known badly by any mesh, and no reduced model is asked to have them.
+constexpr Eigen::Index kMostModes = 40;
+
+pod::Ensemble with_snapshots(const pod::Ensemble& like, Eigen::MatrixXd snapshots) {
+  return {.snapshots = std::move(snapshots), .run_begin = like.run_begin};
+}
+
+/// Displacements at the sensors' own places.
+pod::Ensemble sensor_displacements(const scene::Scene& scene, const fem::Beam& beam, const pod::SensorArray& places,
+                                   const pod::Ensemble& snapshots) {
+  const pod::SensorArray sensors = scene::sensor_array(scene, beam);
+  pod::Ensemble readings = with_snapshots(snapshots, scene::sensor_readings(scene, beam, snapshots.snapshots));
+  if (sensors.all(pod::SensorKind::kDisplacement)) return readings;
+  const Eigen::Index asked = scene.reduction.functions;
+  const Eigen::Index functions = asked > 0 ? asked : sensors.size();
+  const pod::ModalFit fit(sensors, scene.reduction.fit == pod::FitFamily::kPolynomials
+                                       ? pod::polynomial_functions(beam, functions)
+                                       : pod::natural_functions(beam, functions));
+  return pod::converted(readings, fit, places);
+}
+
+Eigen::MatrixXd lnm_shares(const pod::Basis& basis, const fem::Structure& structure, Eigen::Index lnms) {
+  return pod::mode_shares(basis, fem::natural_modes(structure, lnms), structure.M());
+}
+
+/// What an ensemble of the scene says, read from a file that holds one.
+pod::Ensemble snapshots_for(const results::StoreReader& store, Eigen::Index size) {
+  pod::Ensemble ensemble = results::load_snapshots(store);
+  if (ensemble.snapshots.rows() != size) {
+    store.fail(results::kEnsembleGroup, fmt::format("expected {} degrees of freedom as in the scene, found {}", size,
+                                                    ensemble.snapshots.rows()));
+  }
+  return ensemble;
+}
+
+pod::NamedBasis kept_basis(const results::StoreReader& store, const std::string& group, Eigen::Index n) {
+  const pod::Basis basis = results::load_basis(store, group, n);
+  const bool known = basis.energy.size() == basis.modes();
+  return {.name = basis.kind == pod::BasisKind::kPom   ? "POM"
+                  : basis.kind == pod::BasisKind::kLnm ? "LNM"
+                                                       : "user",
+          .basis = basis,
+          .captured = known ? pod::cumulative(basis.energy) : Eigen::VectorXd::Constant(basis.modes(), kNone)};
+}
+
+const std::string kReducedBasis = std::string(results::kReducedGroup) + "/basis";
+
+std::vector<pod::NamedBasis> load_belt_bases(const scene::Scene& scene, const fem::Structure& structure,
+                                             const results::StoreReader& store) {
+  const Eigen::Index n = structure.size();
+  if (store.has(results::kReducedGroup)) return {kept_basis(store, kReducedBasis, n)};
+  if (store.has(results::kPodGroup)) {
+    return belt_bases(scene, structure, results::load_pod(store, results::kPodGroup, n));
+  }
+  if (store.has(results::kBasisGroup)) return {kept_basis(store, results::kBasisGroup, n)};
+  return belt_bases(scene, structure, pod::pod(snapshots_for(store, n)));
+}
+
+std::vector<pod::NamedBasis> load_shaken_bases(const scene::Scene& scene, const dynamics::HybridSystem& full,
+                                               const results::StoreReader& store) {
+  if (store.has(results::kReducedGroup)) {
+    const pod::Basis basis = results::load_basis(store, kReducedBasis, full.size());
+    return {{.name = std::string(pod::to_string(basis.kind)), .basis = basis}};
+  }
+  const results::ShakenModes modes = store.has(results::kPodGroup)
+                                         ? results::load_shaken_modes(store, full.size())
+                                         : shaken_modes(scene, full.structure(), snapshots_for(store, full.size()));
+  return shaken_bases(scene, full, [&]() -> const results::ShakenModes& { return modes; });
+}
+
+/// As asked, else all of a reduced model's, else as [reduction] chooses by the energies there are.
+Eigen::Index modes_taken(const scene::Scene& scene, const pod::NamedBasis& choice, const std::string& file,
+                         bool is_reduced, Eigen::Index asked) {
+  const Eigen::Index available = choice.basis.modes();
+  if (asked > available)
+    throw InvalidInput(fmt::format("--modes {}: '{}' has {} {}s", asked, file, available, choice.name));
+  if (asked > 0) return asked;
+  if (is_reduced) return available;
+  if (choice.captured.size() == 0 && scene.reduction.choice.modes == 0)
+    throw InvalidInput(fmt::format("'{}' leaves the number of {}s open; say how many with --modes", file, choice.name));
+  return pod::chosen_modes(scene.reduction.choice, choice.captured, available,
+                           fmt::format("the {}s of '{}'", choice.name, file));
+}
+
+/// Processor time of a piece of work, of all its threads [s].
+template <class Work>
+double processor_time(const Work& work) {
+  const std::clock_t begin = std::clock();
+  work();
+  return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+}
+
+std::vector<trade::OfferedBasis> offered_shaken(const scene::Scene& scene, const dynamics::HybridSystem& system,
+                                                const RunOptions& run) {
+  std::optional<results::ShakenModes> made;
+  double making = 0.0;
+  const auto motion = [&]() -> const results::ShakenModes& {
+    if (!made) {
+      making = processor_time([&] { made = shaken_modes(scene, system.structure(), ensemble(scene, run).ensemble); });
+    }
+    return *made;
+  };
+  std::vector<trade::OfferedBasis> bases;
+  for (const scene::BasisChoice word : scene.shaken.bases) {
+    trade::OfferedBasis offered{.choice = word, .basis = {}};
+    offered.seconds = processor_time([&] { offered.basis = shaken_basis(word, scene, system, motion); });
+    const bool from_motion = word != scene::BasisChoice::kLnm && word != scene::BasisChoice::kLnmStatic;
+    if (from_motion) offered.seconds = making;  // whichever basis was made first
+    bases.push_back(std::move(offered));
+  }
+  return bases;
+}
+
+std::vector<trade::OfferedBasis> offered_on_belt(const scene::Scene& scene, const dynamics::HybridSystem& system,
+                                                 const RunOptions& run) {
+  std::optional<pod::PodResult> result;
+  double making = 0.0;
+  try {
+    making = processor_time([&] { result = pod::pod(ensemble(scene, run).ensemble); });
+  } catch (const InvalidInput&) {
+    trade::OfferedBasis lnm{.choice = scene::BasisChoice::kLnm, .basis = {}};
+    lnm.seconds = processor_time([&] { lnm.basis = rom::lnm_basis(system.structure(), system.size()); });
+    return {lnm};
+  }
+  std::vector<trade::OfferedBasis> bases;
+  for (auto& offered : belt_bases(scene, system.structure(), *result)) {
+    bases.push_back({.choice = offered.name == "POM" ? scene::BasisChoice::kPom : scene::BasisChoice::kLnm,
+                     .basis = std::move(offered.basis),
+                     .seconds = making});
+  }
+  return bases;
+}
+
+/// L of "pomf:3"; empty where the text is no such thing.
+std::optional<Eigen::Index> mode_count(const std::string& model) {
+  const std::size_t colon = model.find(':');
+  if (colon == std::string::npos) return std::nullopt;
+  Eigen::Index modes = 0;
+  const char* end = model.data() + model.size();
+  const auto [stopped, error] = std::from_chars(model.data() + colon + 1, end, modes);
+  return error == std::errc() && stopped == end && modes >= 1 ? std::optional(modes) : std::nullopt;
+}
+
+/// "pomf:3": a basis of the scene's own words, made as its ensemble says.
+std::optional<pod::NamedBasis> worded_basis(const scene::Scene& scene, const std::string& model,
+                                            const RunOptions& run) {
+  const std::string word = model.substr(0, model.find(':'));
+  const std::optional<Eigen::Index> modes = mode_count(model);
+  for (const auto choice : {scene::BasisChoice::kPom, scene::BasisChoice::kLnm, scene::BasisChoice::kPomf,
+                            scene::BasisChoice::kMassPom, scene::BasisChoice::kLnmStatic}) {
+    if (scene::to_string(choice) != word || !modes) continue;
+    const dynamics::HybridSystem system = scene::build_system(scene);
+    std::optional<results::ShakenModes> made;
+    const pod::Basis basis = shaken_basis(choice, scene, system, [&]() -> const results::ShakenModes& {
+      made = shaken_modes(scene, system.structure(), ensemble(scene, run).ensemble);
+      return *made;
+    });
+    if (*modes > basis.modes()) {
+      throw InvalidInput(
+          fmt::format("--model {}: there are {} such modes; valid: 1 to {}", model, basis.modes(), basis.modes()));
+    }
+    return pod::NamedBasis{.name = word, .basis = basis.truncated(*modes)};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+results::ShakenModes shaken_modes(const scene::Scene& scene, const fem::Structure& structure,
+                                  const pod::Ensemble& snapshots) {
+  results::ShakenModes modes{
+      .mass_pom = pod::mass_pod(snapshots, structure.M()), .pomf = {}, .pomf_shares = {}, .mass_shares = {}};
+  const Eigen::Index lnms =
+      std::min(scene.sensors ? static_cast<Eigen::Index>(scene.sensors->x.size()) : kShownModes, scene.size());
+  const Eigen::Index shown = std::min(lnms, modes.mass_pom.basis.modes());
+  modes.mass_shares = lnm_shares(modes.mass_pom.basis.truncated(shown), structure, lnms);
+  if (!scene.sensors) return modes;
+  const fem::Beam beam = scene::build_beam(scene);
+  const pod::SensorArray places(beam, pod::sensors_at(pod::SensorKind::kDisplacement, scene.sensors->x));
+  modes.pomf = pod::pomfs(beam, places, sensor_displacements(scene, beam, places, snapshots),
+                          {.family = scene.reduction.fit, .functions = scene.reduction.functions});
+  modes.pomf_shares = lnm_shares(modes.pomf->basis, structure, lnms);
+  return modes;
+}
+
+pod::Basis shaken_basis(scene::BasisChoice word, const scene::Scene& scene, const dynamics::HybridSystem& system,
+                        const std::function<const results::ShakenModes&()>& ensemble) {
+  const Eigen::Index n = system.size();
+  const auto contacts = static_cast<Eigen::Index>(system.contacts().size());
+  switch (word) {
+    case scene::BasisChoice::kLnm:
+      return rom::lnm_basis(system.structure(), std::min(n, kMostModes));
+    case scene::BasisChoice::kLnmStatic:
+      return rom::lnm_static_basis(system, std::min(n - contacts, kMostModes));
+    case scene::BasisChoice::kPomf:
+      if (const results::ShakenModes& modes = ensemble(); modes.pomf) return modes.pomf->basis;
+      throw InvalidInput("basis \"pomf\": the scene has no sensors to make modal functions from; add [sensors]");
+    case scene::BasisChoice::kPom:
+      if (scene.beam() == nullptr) break;  // equal masses: the mass metric weighs all alike
+      throw InvalidInput(
+          "basis \"pom\": on a beam it would weigh displacements and rotations alike; valid: \"mass-pom\"");
+    case scene::BasisChoice::kMassPom:
+      break;
+  }
+  return ensemble().mass_pom.basis;
+}
+
+std::vector<pod::NamedBasis> shaken_bases(const scene::Scene& scene, const dynamics::HybridSystem& system,
+                                          const std::function<const results::ShakenModes&()>& motion) {
+  std::vector<pod::NamedBasis> bases;
+  for (const scene::BasisChoice word : scene.shaken.bases) {
+    bases.push_back({.name = scene::to_string(word), .basis = shaken_basis(word, scene, system, motion)});
+  }
+  return bases;
+}
+
+std::vector<pod::NamedBasis> belt_bases(const scene::Scene& scene, const fem::Structure& structure,
+                                        const pod::PodResult& result) {
+  std::vector<pod::NamedBasis> bases = rom::pom_and_lnm(structure, result);
+  if (scene.reduction.basis == scene::BasisChoice::kLnm) std::swap(bases[0], bases[1]);
+  return bases;
+}
+
+std::vector<pod::NamedBasis> load_bases(const scene::Scene& scene, const dynamics::HybridSystem& full,
+                                        const std::string& file) {
+  const results::StoreReader store(file);
+  return is_shaken(scene) ? load_shaken_bases(scene, full, store) : load_belt_bases(scene, full.structure(), store);
+}
+
+std::vector<pod::NamedBasis> load_chosen_bases(const scene::Scene& scene, const dynamics::HybridSystem& full,
+                                               const std::string& file, Eigen::Index modes) {
+  const bool is_reduced = results::StoreReader(file).has(results::kReducedGroup);
+  std::vector<pod::NamedBasis> chosen;
+  for (const pod::NamedBasis& basis : load_bases(scene, full, file)) {
+    const Eigen::Index taken = modes_taken(scene, basis, file, is_reduced, modes);
+    chosen.push_back({.name = fmt::format("{} {}s", taken, basis.name), .basis = basis.basis.truncated(taken)});
+  }
+  return chosen;
+}
+
+pod::NamedBasis load_basis(const scene::Scene& scene, const dynamics::HybridSystem& full, const std::string& source) {
+  const Eigen::Index n = full.size();
+  if (is_shaken(scene)) {
+    const auto no_ensemble = []() -> const results::ShakenModes& {
+      throw InvalidInput("natural modes need no ensemble");
+    };
+    for (const auto word : {scene::BasisChoice::kLnm, scene::BasisChoice::kLnmStatic}) {
+      if (source == scene::to_string(word))
+        return {.name = source, .basis = shaken_basis(word, scene, full, no_ensemble)};
+    }
+  }
+  if (source == "lnm") return {.name = "LNM", .basis = rom::lnm_basis(full.structure(), n)};
+  const results::StoreReader store(source);
+  if (store.has(results::kPodGroup)) {
+    if (is_shaken(scene)) {  // such a POD holds several bases: the one that reduction.basis names is taken
+      scene::Scene one = scene;
+      one.shaken.bases = {scene.reduction.basis};
+      pod::NamedBasis found = load_shaken_bases(one, full, store).front();
+      found.captured = pod::cumulative(found.basis.energy);
+      return found;
+    }
+    const pod::PodResult result = results::load_pod(store, results::kPodGroup, n);
+    return {.name = "POM", .basis = result.basis, .captured = pod::cumulative(result.shares)};
+  }
+  const std::string group = store.has(kReducedBasis) ? kReducedBasis : std::string(results::kBasisGroup);
+  if (!store.has(group)) {
+    store.fail(group, "the file holds no basis; make one with 'slipmode pod', or say 'lnm' for linear natural modes");
+  }
+  const pod::Basis basis = results::load_basis(store, group, n);
+  return {.name = std::string(pod::to_string(basis.kind)), .basis = basis, .captured = pod::cumulative(basis.energy)};
+}
+
+std::optional<pod::NamedBasis> model_basis(const scene::Scene& scene, const std::string& model, const RunOptions& run) {
+  if (model == "full") return std::nullopt;
+  if (const auto file = results::reduced_file(model)) {
+    return pod::NamedBasis{.name = "", .basis = results::reduced_basis(*file, scene.size())};
+  }
+  if (!is_shaken(scene)) {
+    throw InvalidInput(fmt::format("--model {}: expected full, or rom:FILE with a result of 'slipmode reduce'", model));
+  }
+  if (auto basis = worded_basis(scene, model, run)) return basis;
+  throw InvalidInput(
+      fmt::format("--model {}: expected full, rom:FILE with a result of 'slipmode reduce', or BASIS:L with pomf, lnm, "
+                  "lnm+static or mass-pom, e.g. pomf:3",
+                  model));
+}
+
+std::vector<trade::OfferedBasis> offered_bases(const scene::Scene& scene, const RunOptions& run) {
+  const dynamics::HybridSystem system = scene::build_system(scene);
+  if (system.size() < 2) return {};
+  return is_shaken(scene) ? offered_shaken(scene, system, run) : offered_on_belt(scene, system, run);
+}
+
+}  // namespace slipmode::studies

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <slipmode/studies/family.hpp>
+#include <slipmode/studies/run_options.hpp>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace slipmode::studies {
+
+struct SweepOptions {
+  bool follow = false;       ///< each value starts where the one before it ended
+  std::size_t segments = 1;  ///< of a sweep that follows: chains side by side
+  bool reverse = false;      ///< under a shaker: from the last value to the first
+  bool both = false;         ///< under a shaker, following: up and down, to show hysteresis
+  /// Under a shaker: the largest Lyapunov exponent over so many cycles more; 0: none.
+  double exponent_cycles = 0.0;
+  results::Journal* journal = nullptr;  ///< keeps finished values and gives back earlier ones; nullptr: in memory only
+};
+
+/// Settled motion over values of one key: under a belt `belt`, under a shaker `up` and `down`.
+struct Sweep {
+  std::vector<double> values;
+  std::vector<diagnostics::SweepPoint> belt;
+  std::vector<diagnostics::DrivenPoint> up, down;
+  bool interrupted = false;
+};
+
+/// @throws InvalidInput  for a scene with a force; for options that the scene's drive does not have
+void check(const scene::Scene& scene, const SweepOptions& options);
+
+/// Sweeps a family over its one key from its scene's start, with the times of [validation].
+/// @throws InvalidInput  as check
+[[nodiscard]] Sweep sweep(const Family& family, const std::vector<double>& values, const SweepOptions& options = {},
+                          const RunOptions& run = {});
+
+/// Writes the groups `sweep/full` or `sweep/reduced`, of a downward pass with `_reverse`.
+void store(results::StoreWriter& writer, const Family& family, const Sweep& sweep);
+
+}  // namespace slipmode::studies
