@@ -1,7 +1,7 @@
 #include <slipmode/results/branch_store.hpp>
 #include <slipmode/results/provenance.hpp>
 #include <slipmode/studies/bases.hpp>
-#include "cli/orbit_range.hpp"
+#include <slipmode/studies/orbit_search.hpp>
 #include "cli/orbit_report.hpp"
 #include "cli/orbit_search.hpp"
 #include "cli/text_table.hpp"
@@ -9,67 +9,43 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 
 namespace slipmode::cli {
 namespace {
 
-using orbits::SpecialKind;
-
 struct OrbitContinueArguments {
-  OrbitSearch search;
+  OrbitSearchArguments search;
   std::string over, output;
-  bool sequential = false, switches = false;
-  double step = 0.01, max_step = 0.02;
-  int points = 2000;
+  studies::ContinuationRequest request;
 };
 
-orbits::ContinuationOptions continuation_options(const OrbitContinueArguments& arguments, const OrbitRange& range,
-                                                 double start, const orbits::ShootingOptions& shooting) {
-  return {.from = range.from,
-          .to = range.to,
-          .direction = range.to > range.from ? 1 : -1,
-          .both_ways = start != range.from && start != range.to,
-          .step = arguments.step,
-          .max_step = arguments.max_step,
-          .max_points = arguments.points,
-          .arclength = !arguments.sequential,
-          .shooting = shooting};
-}
+/// KEY=FROM:TO, a range followed without steps.
+struct OrbitRange {
+  std::string key;
+  double from = 0.0, to = 0.0;
+};
 
-/// The branch that leaves at a special point, of two mirror images one.
-results::NamedBranch switched(const orbits::SystemFamily& family, const orbits::SpecialPoint& special,
-                              orbits::ContinuationOptions options) {
-  results::NamedBranch side{
-      .title = fmt::format("from {} at {:.8g}", orbits::to_string(special.kind), special.parameter), .branch = {}};
-  try {
-    const orbits::BranchPoint first = orbits::switch_branch(family, special, options).front();
-    options.direction = first.parameter >= special.parameter ? 1 : -1;
-    options.both_ways = false;
-    options.shooting.half_period = false;
-    if (special.kind == SpecialKind::kPeriodDoubling) {
-      options.shooting.order *= 2;
-      options.shooting.period *= 2.0;
+OrbitRange parse_range(const std::string& text) {
+  const auto complain = [&text](const std::string& what) {
+    return InvalidInput(fmt::format("--over {}: {}; expected KEY=FROM:TO, e.g. drive.omega=1.8:0.3", text, what));
+  };
+  const std::size_t equals = text.find('=');
+  const std::size_t colon = text.find(':', equals == std::string::npos ? 0 : equals);
+  if (equals == std::string::npos || equals == 0) throw complain("no KEY=");
+  if (colon == std::string::npos) throw complain("no range FROM:TO");
+  const auto number = [&](std::size_t begin, std::size_t end) {
+    double value = 0.0;
+    const auto [stopped, error] = std::from_chars(text.data() + begin, text.data() + end, value);
+    if (error != std::errc() || stopped != text.data() + end || !std::isfinite(value)) {
+      throw complain(fmt::format("'{}' is not a number", text.substr(begin, end - begin)));
     }
-    side.branch = orbits::continue_orbit(family, first.orbit, first.parameter, options);
-  } catch (const NumericalFailure& failure) {
-    side.branch.end = orbits::BranchEnd::kLost;
-    side.branch.reason = failure.what();
-  }
-  return side;
-}
-
-std::vector<results::NamedBranch> follow(const orbits::SystemFamily& family, const orbits::PeriodicOrbit& orbit,
-                                         double start, const orbits::ContinuationOptions& options, bool switches) {
-  std::vector<results::NamedBranch> branches = {
-      {.title = "main branch", .branch = orbits::continue_orbit(family, orbit, start, options)}};
-  if (!switches) return branches;
-  const std::vector<orbits::SpecialPoint> special = branches.front().branch.special;
-  for (const orbits::SpecialPoint& point : special) {
-    if (point.kind != SpecialKind::kSymmetryBreaking && point.kind != SpecialKind::kPeriodDoubling) continue;
-    if (point.orbit.crossings == 0) continue;  // in one regime: a floating structure's shift, which breaks nothing
-    branches.push_back(switched(family, point, options));
-  }
-  return branches;
+    return value;
+  };
+  const OrbitRange range{text.substr(0, equals), number(equals + 1, colon), number(colon + 1, text.size())};
+  if (range.from == range.to) throw complain("the range has no length");
+  return range;
 }
 
 Json branch_json(const results::NamedBranch& named) {
@@ -126,35 +102,32 @@ std::string branch_text(const results::NamedBranch& named) {
 Report run(const Session& session, const OrbitContinueArguments& arguments) {
   require_writable(arguments.output);
   const OrbitRange range = parse_range(arguments.over);
-  scene::Scene scene = session.load(arguments.search.scene);
-  const double own = scene::get_continuous_key(scene, range.key);
-  const double start = range.holds(own) ? own : range.from;
-  if (start != own) scene = scene::set_key(scene, range.key, start);
-  const studies::Family model(scene, {range.key},
-                              studies::model_basis(scene, arguments.search.model, session.run_options()));
-  const orbits::SystemFamily family = systems_over(model, range, session);
-  const SearchStart search = search_start(arguments.search, model);
-  const orbits::ShootingResult found = orbits::shoot(family(start), search.guess, search.options);
-  if (!found.converged()) return not_found("orbit continue", found);
-
-  const orbits::ContinuationOptions options = continuation_options(arguments, range, start, search.options);
-  const std::vector<results::NamedBranch> branches = follow(family, found.orbit, start, options, arguments.switches);
+  const scene::Scene scene = session.load(arguments.search.scene);
+  const studies::RunOptions run_options = session.run_options();
+  const auto basis = studies::model_basis(scene, arguments.search.model, run_options);
+  studies::ContinuationRequest request = arguments.request;
+  request.from = range.from;
+  request.to = range.to;
+  const studies::Continuation found =
+      studies::continue_orbit(scene, range.key, basis, search_of(arguments.search, scene), request, run_options);
+  if (!found.found.converged()) return not_found("orbit continue", found.found);
+  const studies::Family model(scene, {range.key}, basis);
   results::StoreWriter writer(arguments.output, scene.units);
   results::save(writer,
                 results::provenance_of(scene, fmt::format("slipmode orbit continue --over {}", arguments.over)));
-  results::store_branches(writer, range.key, branches, family);
+  results::store_branches(writer, range.key, found.branches, model.systems());
   writer.commit();
 
   Report report;
   Json list = Json::array();
-  for (const results::NamedBranch& branch : branches) {
+  for (const results::NamedBranch& branch : found.branches) {
     list.push_back(branch_json(branch));
     report.text += branch_text(branch);
   }
   report.data = {{"verb", "orbit continue"}, {"model", model.title()}, {"file", arguments.output}, {"key", range.key},
-                 {"from", range.from},       {"to", range.to},         {"start", start},           {"branches", list}};
+                 {"from", range.from},       {"to", range.to},         {"start", found.start},     {"branches", list}};
   report.text += fmt::format("Branches: {}\n", arguments.output);
-  if (branches.front().branch.end == orbits::BranchEnd::kLost) {
+  if (found.branches.front().branch.end == orbits::BranchEnd::kLost) {
     report.exit_code = kNumericalFailure;
     report.text = "the branch was lost before the end of its range; what was found is kept\n" + report.text;
     report.data["message"] = report.text;
@@ -171,14 +144,17 @@ Verb add_orbit_continue(CLI::App& orbit) {
   add_search_options(*command, arguments->search);
   command->add_option("--over", arguments->over, "key and range: KEY=FROM:TO")->required();
   command->add_option("-o,--output", arguments->output, "result file (HDF5)")->required();
-  command->add_flag("--switch", arguments->switches,
+  command->add_flag("--switch", arguments->request.switches,
                     "also follow the branches that leave at symmetry breakings and period doublings");
-  command->add_flag("--sequential", arguments->sequential,
+  command->add_flag("--sequential", arguments->request.sequential,
                     "step the key itself instead of the arc length: a fold ends the branch");
-  command->add_option("--step", arguments->step, "first step along the branch; 1 is the range, or the orbit's size")
+  command
+      ->add_option("--step", arguments->request.step,
+                   "first step along the branch; 1 is the range, or the orbit's size")
       ->check(CLI::PositiveNumber);
-  command->add_option("--max-step", arguments->max_step, "largest step")->check(CLI::PositiveNumber);
-  command->add_option("--points", arguments->points, "orbits per branch at most")->check(CLI::Range(2, 10'000'000));
+  command->add_option("--max-step", arguments->request.max_step, "largest step")->check(CLI::PositiveNumber);
+  command->add_option("--points", arguments->request.max_points, "orbits per branch at most")
+      ->check(CLI::Range(2, 10'000'000));
   command->footer(
       "The branch starts at the scene's own value of the key when that lies in the range, and is then followed both "
       "ways; else at FROM.\n"

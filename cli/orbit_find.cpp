@@ -12,7 +12,7 @@ namespace slipmode::cli {
 namespace {
 
 struct OrbitFindArguments {
-  OrbitSearch search;
+  OrbitSearchArguments search;
   std::string output;
 };
 
@@ -36,9 +36,9 @@ Report run(const Session& session, const OrbitFindArguments& arguments) {
   const scene::Scene scene = session.load(arguments.search.scene);
   const studies::Family model(scene, {}, studies::model_basis(scene, arguments.search.model, session.run_options()));
   const dynamics::HybridSystem& system = model.own();
-  const SearchStart start = search_start(arguments.search, model);
+  const studies::OrbitSearch search = search_of(arguments.search, scene);
   session.check_interrupt();
-  const orbits::ShootingResult result = orbits::shoot(system, start.guess, start.options);
+  const orbits::ShootingResult result = studies::find_orbit(model, search);
   if (!result.converged()) return not_found("orbit find", result);
 
   const std::vector<orbits::Amplitude> amplitudes = orbits::contact_amplitudes(system, result.orbit);

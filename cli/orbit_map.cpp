@@ -1,7 +1,5 @@
-#include <slipmode/orbits/orbit_map.hpp>
+#include <slipmode/studies/orbit_map.hpp>
 
-#include <slipmode/results/map_store.hpp>
-#include <slipmode/studies/family.hpp>
 #include <slipmode/studies/result_file.hpp>
 #include "cli/sweep_request.hpp"
 #include "cli/text_table.hpp"
@@ -9,183 +7,97 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <algorithm>
 #include <map>
 
 namespace slipmode::cli {
 namespace {
 
-using orbits::MapPoint;
-using orbits::StrobePoint;
-
 struct OrbitMapArguments {
   std::string scene, output;
   std::vector<std::string> over;
   std::string start = "scene";
-  int max_order = 8, periods = 1000, kept = 100;
-  double tolerance = 1e-5;
-  bool follow = false;
+  studies::OrbitMapOptions options;
 };
 
-/// What both kinds of map have to do with.
-struct Task {
-  const Session& session;
-  const OrbitMapArguments& arguments;
-  const studies::Family& family;
-  const std::vector<Over>& over;
-  std::vector<std::string> starts;
-  studies::ResultFile& file;
+/// How often each order was met from one start; 0: motion that is not periodic.
+struct OrderCount {
+  std::map<int, std::size_t> orders;
+  std::size_t failed = 0;
 
-  [[nodiscard]] const scene::Scene& scene() const { return family.scene(); }
-  [[nodiscard]] std::string length_unit() const { return results::Units::of(scene().units).length; }
+  void add(int order, const std::string& failure) { failure.empty() ? ++orders[order] : ++failed; }
 };
 
-std::vector<std::string> starts_of(const OrbitMapArguments& arguments) {
-  if (arguments.start == "both") return {"scene", "centre"};
-  if (arguments.start == "scene" || arguments.start == "centre") return {arguments.start};
-  throw InvalidInput(
-      fmt::format("--start {}: valid: scene (its [initial]), centre (the steady linear motion in the "
-                  "gap), both",
-                  arguments.start));
-}
-
-std::function<dynamics::State(const dynamics::HybridSystem&)> start_of(const scene::Scene& scene,
-                                                                       const std::string& kind) {
-  if (kind == "centre") return [](const dynamics::HybridSystem& system) { return orbits::linear_response(system); };
-  return [&scene](const dynamics::HybridSystem& system) { return scene::initial_state(scene, system); };
-}
-
-/// How often each order was met; the first entry of `json` is that of motion which is not periodic.
-void add_orders(const std::map<int, std::size_t>& orders, std::size_t failed, const std::string& start, Report& out) {
+void say(const std::string& start, const OrderCount& count, Report& out_report) {
   TextTable table({"from " + start, "points"});
   Json json = Json::object();
-  for (const auto& [order, count] : orders) {
+  for (const auto& [order, points] : count.orders) {
     const std::string name = order == 0 ? "not periodic" : fmt::format("period {}", order);
-    table.add({name, std::to_string(count)});
-    json[name] = count;
+    table.add({name, std::to_string(points)});
+    json[name] = points;
   }
-  if (failed > 0) table.add({"failed", std::to_string(failed)});
-  out.data["starts"][start] = {{"motions", json}, {"failed", failed}};
-  out.text += table.str();
+  if (count.failed > 0) table.add({"failed", std::to_string(count.failed)});
+  out_report.data["starts"][start] = {{"motions", json}, {"failed", count.failed}};
+  out_report.text += table.str();
 }
 
-Report run_map(const Task& task) {
-  const orbits::MapGrid grid{.x = task.over[0].values, .y = task.over[1].values};
-  orbits::MapOptions options;
-  options.max_order = task.arguments.max_order;
-  options.max_periods = task.arguments.periods;
-  options.block = std::min(options.block, options.max_periods);
-  options.shooting.flow.method = task.scene().flow.method;
-  if (!task.family.own().contacts().empty()) options.row = task.family.own().contacts().front().direction;
-
+Report summary(const studies::Family& family, const studies::OrbitMapStudy& study, const std::vector<Over>& over) {
   Report report;
-  std::vector<results::StartedMap> maps;
-  for (const std::string& start : task.starts) {
-    orbits::OrbitMap map = orbits::orbit_map(
-        [&](double x, double y) {
-          return task.family.at({x, y});
-        },
-        start_of(task.scene(), start), grid, options, task.session.run_options().parallel("map from " + start),
-        results::map_sink(task.file.journal(), start));
-    if (map.interrupted) return interrupted_at(task.arguments.output);
-    maps.push_back({start, std::move(map)});
+  const std::string& title = family.scene().title;
+  report.data = {{"verb", "orbit map"}, {"keys", family.keys()}};
+  if (over.size() == 1) {
+    report.text = fmt::format("{}: {} values of {}\n", title, over[0].values.size(), over[0].key);
+    report.data["points"] = over[0].values.size();
+  } else {
+    report.text = fmt::format("{}: {} x {} points of {} and {}\n", title, over[0].values.size(), over[1].values.size(),
+                              over[0].key, over[1].key);
+    report.data["points"] = {over[0].values.size(), over[1].values.size()};
   }
-  task.file.finish([&](results::StoreWriter& writer) {
-    results::store_map(writer, task.family.axis(0), task.family.axis(1), grid, maps, task.length_unit());
-  });
-
-  report.text = fmt::format("{}: {} x {} points of {} and {}\n", task.scene().title, grid.x.size(), grid.y.size(),
-                            task.over[0].key, task.over[1].key);
-  report.data = {{"verb", "orbit map"},
-                 {"file", task.arguments.output},
-                 {"keys", {task.over[0].key, task.over[1].key}},
-                 {"points", {grid.x.size(), grid.y.size()}}};
-  for (const auto& [start, map] : maps) {
-    std::map<int, std::size_t> orders;
-    std::size_t failed = 0;
-    for (const auto& row : map.rows) {
-      for (const MapPoint& point : row) point.failure.empty() ? ++orders[point.order] : ++failed;
-    }
-    add_orders(orders, failed, start, report);
+  for (const auto& [start, map] : study.maps) {
+    OrderCount count;
+    for (const auto& row : map.rows)
+      for (const orbits::MapPoint& point : row) count.add(point.order, point.failure);
+    say(start, count, report);
+  }
+  for (const auto& [start, points] : study.strobes) {
+    OrderCount count;
+    for (const orbits::StrobePoint& point : points) count.add(point.settled.order, point.failure);
+    say(start, count, report);
   }
   return report;
-}
-
-Report run_strobe(const Task& task) {
-  const Over& over = task.over.front();
-  orbits::StrobeOptions options{.periods = task.arguments.periods,
-                                .kept = task.arguments.kept,
-                                .tolerance = task.arguments.tolerance,
-                                .max_order = task.arguments.max_order,
-                                .follow = task.arguments.follow};
-  options.flow.method = task.scene().flow.method;
-  const auto& contacts = task.family.own().contacts();
-  options.rows.resize(static_cast<Eigen::Index>(contacts.size()), task.family.own().size());
-  for (std::size_t c = 0; c < contacts.size(); ++c) {
-    options.rows.row(static_cast<Eigen::Index>(c)) = contacts[c].direction.transpose();
-  }
-  Report report;
-  std::vector<results::StartedStrobe> runs;
-  for (const std::string& start : task.starts) {
-    orbits::StrobeMap map = orbits::strobe_map(task.family.systems(), start_of(task.scene(), start), over.values,
-                                               options, task.session.run_options().parallel("map from " + start),
-                                               results::strobe_sink(task.file.journal(), start));
-    if (map.interrupted) return interrupted_at(task.arguments.output);
-    runs.push_back({start, std::move(map.points)});
-  }
-  task.file.finish([&](results::StoreWriter& writer) {
-    results::store_strobe(writer, task.family.axis(), runs, task.length_unit());
-  });
-
-  report.text = fmt::format("{}: {} values of {}\n", task.scene().title, over.values.size(), over.key);
-  report.data = {
-      {"verb", "orbit map"}, {"file", task.arguments.output}, {"keys", {over.key}}, {"points", over.values.size()}};
-  for (const auto& [start, points] : runs) {
-    std::map<int, std::size_t> orders;
-    std::size_t failed = 0;
-    for (const StrobePoint& point : points) point.failure.empty() ? ++orders[point.settled.order] : ++failed;
-    add_orders(orders, failed, start, report);
-  }
-  return report;
-}
-
-void check_arguments(const OrbitMapArguments& arguments, const scene::Scene& scene) {
-  if (arguments.over.size() > 2) {
-    throw InvalidInput(fmt::format("--over: given {} times; once for a stroboscopic map, twice for a map over a plane",
-                                   arguments.over.size()));
-  }
-  if (!scene.drive.period()) {
-    throw InvalidInput(
-        "orbit map: the scene's drive has no period; valid: kind = \"force\" or \"shaker\". For a belt "
-        "see 'sweep' and 'orbit skeleton'");
-  }
-  if (arguments.over.size() == 2 && arguments.follow) {
-    throw InvalidInput("--follow: points of a map over two keys each have their own start; valid with one --over");
-  }
 }
 
 Report run(const Session& session, const OrbitMapArguments& arguments) {
   require_writable(arguments.output);
   const scene::Scene scene = session.load(arguments.scene);
-  check_arguments(arguments, scene);
   std::vector<Over> over;
+  std::vector<std::string> keys;
+  std::vector<std::vector<double>> values;
   for (const std::string& text : arguments.over) {
     over.push_back(parse_over(text));
-    check_values(scene, over.back());
+    keys.push_back(over.back().key);
+    values.push_back(over.back().values);
   }
-  const std::string command =
-      fmt::format("slipmode orbit map --over {} --start {} --max-order {} --periods {} --kept {} --tolerance {}{}",
-                  fmt::join(arguments.over, " --over "), arguments.start, arguments.max_order, arguments.periods,
-                  arguments.kept, arguments.tolerance, arguments.follow ? " --follow" : "");
-  const std::vector<std::string> starts = starts_of(arguments);
-  std::vector<std::string> keys;
-  for (const Over& one : over) keys.push_back(one.key);
   const studies::Family family(scene, keys);
-  studies::ResultFile file(arguments.output, scene, command);
-  const Task task{session, arguments, family, over, starts, file};
-  Report report = over.size() == 2 ? run_map(task) : run_strobe(task);
-  report.data["verb"] = "orbit map";
-  if (report.exit_code != kDone) return report;
+  studies::OrbitMapOptions options = arguments.options;
+  options.starts = {arguments.start};
+  if (arguments.start == "both") options.starts = {"scene", "centre"};
+  studies::check(family, options);
+  for (const Over& one : over) check_values(scene, one);
+  studies::ResultFile file(
+      arguments.output, scene,
+      fmt::format("slipmode orbit map --over {} --start {} --max-order {} --periods {} --kept {} --tolerance {}{}",
+                  fmt::join(arguments.over, " --over "), arguments.start, options.max_order, options.periods,
+                  options.kept, options.tolerance, options.follow ? " --follow" : ""));
+  options.journal = &file.journal();
+  const studies::OrbitMapStudy study = studies::orbit_map(family, values, options, session.run_options());
+  if (study.interrupted) {
+    Report report = interrupted_at(arguments.output);
+    report.data["verb"] = "orbit map";
+    return report;
+  }
+  file.finish([&](results::StoreWriter& writer) { studies::store(writer, family, study); });
+  Report report = summary(family, study, over);
+  report.data["file"] = arguments.output;
   report.data["resumed"] = file.resumed();
   if (file.resumed() > 0)
     report.text += fmt::format("{} rows were taken over from an interrupted run\n", file.resumed());
@@ -207,15 +119,17 @@ Verb add_orbit_map(CLI::App& orbit) {
   command->add_option("-o,--output", arguments->output, "result file (HDF5)")->required();
   command->add_option("--start", arguments->start,
                       "scene (its [initial]), centre (the steady linear motion in the gap), or both");
-  command->add_option("--max-order", arguments->max_order, "longest period looked for, in periods of the drive")
+  command->add_option("--max-order", arguments->options.max_order, "longest period looked for, in periods of the drive")
       ->check(CLI::PositiveNumber);
-  command->add_option("--periods", arguments->periods, "periods of the drive simulated at most")
+  command->add_option("--periods", arguments->options.periods, "periods of the drive simulated at most")
       ->check(CLI::PositiveNumber);
-  command->add_option("--kept", arguments->kept, "one key: periods of them kept, the last ones")
+  command->add_option("--kept", arguments->options.kept, "one key: periods of them kept, the last ones")
       ->check(CLI::PositiveNumber);
-  command->add_option("--tolerance", arguments->tolerance, "one key: sections nearer than this, relative, are the same")
+  command
+      ->add_option("--tolerance", arguments->options.tolerance,
+                   "one key: sections nearer than this, relative, are the same")
       ->check(CLI::PositiveNumber);
-  command->add_flag("--follow", arguments->follow, "one key: start each value where the one before it ended");
+  command->add_flag("--follow", arguments->options.follow, "one key: start each value where the one before it ended");
   command->footer(
       "Two keys: crossings, largest |multiplier|, amplitude of the orbit found by shooting from the settled motion.\n"
       "One key: stroboscopic bifurcation diagram, alternating and effective amplitudes.\n"

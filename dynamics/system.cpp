@@ -65,6 +65,19 @@ HybridSystem HybridSystem::with_drive(friction::Drive drive) const {
   return copy;
 }
 
+HybridSystem HybridSystem::with_laws(std::vector<friction::Contact> contacts) const {
+  const auto same_place = [](const friction::Contact& a, const friction::Contact& b) {
+    return a.direction == b.direction && a.offset == b.offset;
+  };
+  if (!std::ranges::equal(contacts, contacts_, same_place))
+    throw InvalidInput("other laws: expected the same contacts in the same places, found others");
+  for (const friction::Contact& contact : contacts) friction::validate(contact);
+  HybridSystem copy = *this;
+  copy.contacts_ = std::move(contacts);
+  copy.cache_ = std::make_shared<SystemCache>(cache_->models());
+  return copy;
+}
+
 Eigen::Index HybridSystem::internal_begin(int c) const {
   Eigen::Index begin = 0;
   for (int d = 0; d < c; ++d) begin += friction::internal_states(contacts_[static_cast<std::size_t>(d)]);
@@ -86,7 +99,7 @@ bool can_stick(const HybridSystem& system) {
   });
 }
 
-const ModelTables& SystemCache::tables(const HybridSystem& system, bool rows_only) {
+const ModelTables& ModelCache::tables(const HybridSystem& system, bool rows_only) {
   const bool rows = rows_only && system.structure().rayleigh() && system.structure().is_chain_like();
   const std::lock_guard lock(building_);
   auto& slot = rows ? rows_ : full_;

@@ -64,6 +64,10 @@ class HybridSystem {
   /// speeds, frequencies or amplitudes pays for them once.
   [[nodiscard]] HybridSystem with_drive(friction::Drive drive) const;
 
+  /// The same contacts with other laws and normal loads: modal data are shared, regimes are not.
+  /// @throws InvalidInput  for another number of contacts, directions or offsets; for invalid laws
+  [[nodiscard]] HybridSystem with_laws(std::vector<friction::Contact> contacts) const;
+
   /// q = 0, v = 0 at time 0.
   [[nodiscard]] State rest() const;
 

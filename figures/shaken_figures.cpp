@@ -21,15 +21,12 @@
 namespace slipmode::figures {
 namespace {
 
-
-
-
 using results::StoreReader;
 
 std::string_view colour_of_basis(const std::string& basis) {
   if (basis == "pomf") return kPomColour;
   if (basis == "lnm") return kLnmColour;
-  return basis == "lnm+static" || basis == "lnm_static" ? kSecondColour : "#CC79A7";
+  return basis == "lnm+static" ? kSecondColour : "#CC79A7";
 }
 
 Series sections(const StoreReader& store, const std::string& group, const std::string& title, std::string_view colour) {

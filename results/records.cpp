@@ -16,7 +16,9 @@ constexpr std::array kBasisKinds = {pod::BasisKind::kPom, pod::BasisKind::kLnm, 
 constexpr const char* kBasisWords = "pom, lnm, user, pomf or lnm+static";
 
 pod::BasisKind load_kind(const StoreReader& store, const std::string& name) {
-  const std::string kind = store.text(name);
+  constexpr const char* kFormerWord = "lnm_static";  // in files of version 0.1 before 2026-11-22
+  const std::string written = store.text(name);
+  const std::string kind = written == kFormerWord ? std::string(pod::to_string(pod::BasisKind::kLnmStatic)) : written;
   const auto found = std::ranges::find(kBasisKinds, kind, [](pod::BasisKind known) { return pod::to_string(known); });
   if (found == kBasisKinds.end()) store.fail(name, fmt::format("'{}'; expected {}", kind, kBasisWords));
   return *found;

@@ -91,6 +91,10 @@ struct Scene {
 /// The same on a beam that was built already.
 [[nodiscard]] dynamics::HybridSystem build_system(const Scene& scene, const fem::Beam& beam);
 
+/// A model of this structure (full or projected), with the laws and normal loads of the scene's contacts: modal data
+/// are shared. @throws InvalidInput  for another number of contacts
+[[nodiscard]] dynamics::HybridSystem with_laws_of(const Scene& scene, const dynamics::HybridSystem& system);
+
 /// The drive at another belt speed [m/s], force's ω [rad/s] or, with the amplitude its curve has there, shaker
 /// frequency [Hz].
 /// @throws InvalidInput  for a frequency the amplitude curve does not cover

@@ -60,14 +60,18 @@ ForceRows force_rows(const Scene& scene, const fem::Structure& structure, const 
   return rows;
 }
 
+void give_law(const ContactSpec& spec, friction::Contact& out_contact) {
+  out_contact.law = spec.law;
+  out_contact.normal_load = spec.normal_load;
+  out_contact.tilt = spec.tilt_deg * std::numbers::pi / 180.0;
+}
+
 dynamics::HybridSystem assemble(const Scene& scene, fem::Structure structure, const fem::Beam* beam) {
   std::vector<friction::Contact> contacts;
   for (const ContactSpec& spec : scene.contacts) {
     friction::Contact contact;
     contact.direction = direction(spec.at, structure, beam);
-    contact.law = spec.law;
-    contact.normal_load = spec.normal_load;
-    contact.tilt = spec.tilt_deg * std::numbers::pi / 180.0;
+    give_law(spec, contact);
     contact.name = spec.name;
     contacts.push_back(std::move(contact));
   }
@@ -102,6 +106,16 @@ dynamics::HybridSystem build_system(const Scene& scene) {
 
 dynamics::HybridSystem build_system(const Scene& scene, const fem::Beam& beam) {
   return assemble(scene, beam.structure(), &beam);
+}
+
+dynamics::HybridSystem with_laws_of(const Scene& scene, const dynamics::HybridSystem& system) {
+  std::vector<friction::Contact> contacts = system.contacts();
+  if (contacts.size() != scene.contacts.size()) {
+    throw InvalidInput(fmt::format("{}: expected the {} contacts of the model, found {}", scene.source.path,
+                                   contacts.size(), scene.contacts.size()));
+  }
+  for (std::size_t c = 0; c < contacts.size(); ++c) give_law(scene.contacts[c], contacts[c]);
+  return system.with_laws(std::move(contacts));
 }
 
 friction::Drive drive_at(const Scene& scene, double speed_or_frequency) {

@@ -45,6 +45,11 @@ DriveSetter drive_setter(const scene::Scene& scene, const std::string& key, bool
 /// A force's mean is a load on the structure, all else of [drive] belongs to the drive.
 bool is_of_drive(const std::string& key) { return key.starts_with("drive.") && !key.starts_with("drive.mean"); }
 
+/// A contact's place decides what the structure's modes show of it, all else of [[contact]] is its law's.
+bool is_of_law(const std::string& key) {
+  return key.starts_with("contact.") && !key.ends_with(".at") && key.find(".between") == std::string::npos;
+}
+
 DrivenCase full_case(const scene::Scene& scene) {
   if (is_shaken(scene)) return scene::shaken_case(scene);
   return {.system = scene::build_system(scene)};
@@ -61,7 +66,7 @@ struct Family::Shared {
   std::vector<std::string> keys;
   std::optional<pod::NamedBasis> basis;
   DrivenCase own;
-  bool drive_only = false;
+  bool drive_only = false, laws_only = false;
   std::vector<DriveSetter> setters;  ///< one per key, or none where the scene must be read anew
 
   [[nodiscard]] scene::Scene scene_at(const std::vector<double>& values) const {
@@ -84,8 +89,10 @@ Family::Family(scene::Scene scene, std::vector<std::string> keys, std::optional<
                 .basis = std::move(basis),
                 .own = std::move(own),
                 .drive_only = false,
+                .laws_only = false,
                 .setters = {}};
   shared.drive_only = std::ranges::all_of(shared.keys, is_of_drive);
+  shared.laws_only = std::ranges::all_of(shared.keys, is_of_law);
   for (const std::string& key : shared.keys) {
     shared.setters.push_back(drive_setter(shared.scene, key, shared.keys.size() == 1));
   }
@@ -97,10 +104,14 @@ Family::Family(scene::Scene scene, std::vector<std::string> keys, std::optional<
 
 DrivenCase Family::case_at(const std::vector<double>& values) const {
   if (values.empty()) return shared_->own;
-  if (!shared_->drive_only) return projected(full_case(shared_->scene_at(values)), shared_->basis);
-  return {.system = shared_->own.system.with_drive(shared_->drive_at(values)),
-          .readings = shared_->own.readings,
-          .energy_offset = shared_->own.energy_offset};
+  const DrivenCase& own = shared_->own;
+  const auto with = [&own](dynamics::HybridSystem system) {
+    return DrivenCase{.system = std::move(system), .readings = own.readings, .energy_offset = own.energy_offset};
+  };
+  if (shared_->drive_only) return with(own.system.with_drive(shared_->drive_at(values)));
+  const scene::Scene changed = shared_->scene_at(values);
+  if (shared_->laws_only) return with(scene::with_laws_of(changed, own.system));
+  return projected(full_case(changed), shared_->basis);
 }
 
 const dynamics::HybridSystem& Family::own() const { return shared_->own.system; }

@@ -39,7 +39,7 @@ class Followed {
       : values_(series.values),
         options_(options),
         tree_(delay_vectors(series, options.embedding),
-              options.method == DivergenceMethod::kKantz ? Metric::kMaximum : Metric::kEuclidean),
+              options.method == DivergenceMethod::kKantz ? Norm::kMaximum : Norm::kEuclidean),
         allowed_{.window = options.window, .limit = tree_.size() - options.steps * options.stride},
         count_(options.references == 0 ? allowed_.limit : std::min(options.references, allowed_.limit)) {}
 

@@ -64,7 +64,7 @@ ExponentSpectrum exponent_spectrum(const Series& series, const SpectrumOptions& 
   const int d = settings.embedding.dimension;
   const Eigen::Index lag = settings.embedding.lag;
   const Series known = part(series, 0, series.values.size() - lag);
-  const NeighbourTree tree(delay_vectors(known, settings.embedding), Metric::kEuclidean);
+  const NeighbourTree tree(delay_vectors(known, settings.embedding), Norm::kEuclidean);
   out.steps = (tree.size() - 1) / lag + 1;
   out.steps -= out.steps % kStretches;
   Eigen::MatrixXd rows(d, out.steps);

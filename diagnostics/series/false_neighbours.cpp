@@ -41,7 +41,7 @@ struct Step {
 };
 
 /// One step per reference, in time order.
-std::vector<Step> steps(const Series& series, int dimension, Metric metric, const FalseNeighbourOptions& options) {
+std::vector<Step> steps(const Series& series, int dimension, Norm metric, const FalseNeighbourOptions& options) {
   const Eigen::Index shift = dimension * options.lag;
   const Series known = part(series, 0, series.values.size() - options.lag);
   const NeighbourTree tree(delay_vectors(known, {.dimension = dimension, .lag = options.lag}), metric);
@@ -84,7 +84,7 @@ FalseNeighbours false_neighbours(const Series& series, const FalseNeighbourOptio
   const auto far_by_size = [&](const Step& s) { return std::hypot(s.distance, s.added) > settings.size * sigma; };
   for (auto* shares : {&out.by_ratio, &out.by_size, &out.share, &out.error}) shares->resize(settings.max_dimension);
   for (int d = 1; d <= settings.max_dimension; ++d) {
-    const std::vector<Step> of = steps(series, d, Metric::kEuclidean, settings);
+    const std::vector<Step> of = steps(series, d, Norm::kEuclidean, settings);
     const Mean either = mean(of, [&](const Step& s) { return far_by_ratio(s) || far_by_size(s) ? 1.0 : 0.0; });
     out.by_ratio(d - 1) = mean(of, [&](const Step& s) { return far_by_ratio(s) ? 1.0 : 0.0; }).all;
     out.by_size(d - 1) = mean(of, [&](const Step& s) { return far_by_size(s) ? 1.0 : 0.0; }).all;
@@ -102,7 +102,7 @@ CaoAverages cao_averages(const Series& series, const FalseNeighbourOptions& opti
   const int dimensions = out.settings.max_dimension;
   std::vector<Mean> E, added;
   for (int d = 1; d <= dimensions + 1; ++d) {
-    const std::vector<Step> of = steps(series, d, Metric::kMaximum, out.settings);
+    const std::vector<Step> of = steps(series, d, Norm::kMaximum, out.settings);
     E.push_back(mean(of, [](const Step& s) { return std::max(s.distance, s.added) / s.distance; }));
     added.push_back(mean(of, [](const Step& s) { return s.added; }));
     out.references = static_cast<Eigen::Index>(of.size());

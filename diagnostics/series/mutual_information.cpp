@@ -78,7 +78,7 @@ double nearest_information(const Eigen::VectorXd& values, Eigen::Index lag, int 
   Eigen::MatrixXd points(2, pairs);
   points.row(0) = values.head(pairs).transpose();
   points.row(1) = values.tail(pairs).transpose();
-  const NeighbourTree tree(points, Metric::kMaximum);
+  const NeighbourTree tree(points, Norm::kMaximum);
   std::vector<double> x(points.row(0).begin(), points.row(0).end()), y(points.row(1).begin(), points.row(1).end());
   std::sort(x.begin(), x.end());
   std::sort(y.begin(), y.end());

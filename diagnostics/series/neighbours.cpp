@@ -30,8 +30,8 @@ bool may_be(Eigen::Index i, Eigen::Index j, const NeighbourTree::Allowed& allowe
 
 }  // namespace
 
-NeighbourTree::NeighbourTree(Eigen::MatrixXd points, Metric metric)
-    : points_(std::move(points)), euclidean_(metric == Metric::kEuclidean) {
+NeighbourTree::NeighbourTree(Eigen::MatrixXd points, Norm metric)
+    : points_(std::move(points)), euclidean_(metric == Norm::kEuclidean) {
   if (points_.size() == 0 || !points_.allFinite()) {
     throw InvalidInput(fmt::format("neighbour search: expected finite points, found {} of dimension {}{}",
                                    points_.cols(), points_.rows(),

@@ -10,7 +10,7 @@
 namespace slipmode::diagnostics {
 
 /// How distances are measured.
-enum class Metric {
+enum class Norm {
   kEuclidean,  ///< sqrt(Σ d_k²)
   kMaximum,    ///< max |d_k|
 };
@@ -26,7 +26,7 @@ struct Neighbour {
 /// Points are columns in time order; index differences are time differences. Ties go to the lower index, so that an
 /// answer depends on the points alone. Queries are const and may run in several threads.
 ///
-///     const NeighbourTree tree(delay_vectors(series, {.dimension = 3, .lag = 8}), Metric::kEuclidean);
+///     const NeighbourTree tree(delay_vectors(series, {.dimension = 3, .lag = 8}), Norm::kEuclidean);
 ///     const auto three = tree.nearest(17, 3, {.window = 50});
 ///
 /// Building costs O(n log n); a query about O(log n) in few dimensions, O(n) in many. Own tree rather than a library's:
@@ -42,7 +42,7 @@ class NeighbourTree {
 
   /// @param points  one column each, finite [d x n], n ≥ 1
   /// @throws InvalidInput  for no points or dimensions, or one that is not finite
-  NeighbourTree(Eigen::MatrixXd points, Metric metric);
+  NeighbourTree(Eigen::MatrixXd points, Norm metric);
 
   [[nodiscard]] Eigen::Index size() const { return points_.cols(); }
   [[nodiscard]] const Eigen::MatrixXd& points() const { return points_; }

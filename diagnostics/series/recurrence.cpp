@@ -12,15 +12,15 @@ namespace slipmode::diagnostics {
 namespace {
 
 /// Distances of the points j − gap and j, one diagonal of the plot.
-Eigen::VectorXd distances_at(const Eigen::MatrixXd& points, Eigen::Index gap, Metric metric) {
+Eigen::VectorXd distances_at(const Eigen::MatrixXd& points, Eigen::Index gap, Norm metric) {
   const Eigen::Index count = points.cols() - gap;
   const auto difference = points.rightCols(count) - points.leftCols(count);
-  if (metric == Metric::kMaximum) return difference.cwiseAbs().colwise().maxCoeff().transpose();
+  if (metric == Norm::kMaximum) return difference.cwiseAbs().colwise().maxCoeff().transpose();
   return difference.colwise().norm().transpose();
 }
 
 /// The distance below which a share `rate` of all pairs at least `first_gap` apart lies.
-double radius_of_rate(const Eigen::MatrixXd& points, Eigen::Index first_gap, Metric metric, double rate) {
+double radius_of_rate(const Eigen::MatrixXd& points, Eigen::Index first_gap, Norm metric, double rate) {
   const Eigen::Index free = points.cols() - first_gap;
   std::vector<double> all;
   all.reserve(static_cast<std::size_t>(free * (free + 1) / 2));

@@ -12,7 +12,7 @@ namespace slipmode::diagnostics {
 
 struct RecurrenceOptions {
   Embedding embedding = {};
-  Metric metric = Metric::kMaximum;
+  Norm metric = Norm::kMaximum;
   double radius = 0.0;        ///< largest distance of a recurrence [unit of the series]; 0: the one that gives `rate`
   double rate = 0.05;         ///< share of the pairs that shall recur when no radius is given, in (0, 1)
   Eigen::Index stride = 1;    ///< samples between points of the plot, ≥ 1

@@ -136,9 +136,9 @@ std::vector<double> cut_instants(const Series& series, const SectionOptions& opt
 
 }  // namespace
 
-Section section(const Series& series, const SectionOptions& options) {
+SectionPoints section(const Series& series, const SectionOptions& options) {
   check_section(series, options);
-  Section out;
+  SectionPoints out;
   out.settings = options;
   if (!options.level) out.settings.level = series.values.mean();
   const std::vector<double> at = cut_instants(series, out.settings);

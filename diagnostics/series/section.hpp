@@ -26,7 +26,7 @@ struct SectionOptions {
 };
 
 /// The points in which a record meets a section.
-struct Section {
+struct SectionPoints {
   Eigen::VectorXd time;       ///< of each point, from the first sample [time unit of the series]
   Eigen::MatrixXd points;     ///< delay coordinates there, one column per point [dimension x m]
   double mean_return = 0.0;   ///< mean time between consecutive points [time unit]; 0 for fewer than two
@@ -40,6 +40,6 @@ struct Section {
 /// missed.
 /// @throws InvalidInput  for options out of range, or fewer samples than span + order + 2
 /// Source: Hénon, Physica D 5 (1982) 412 for sections; interpolation by Lagrange polynomials.
-[[nodiscard]] Section section(const Series& series, const SectionOptions& options = {});
+[[nodiscard]] SectionPoints section(const Series& series, const SectionOptions& options = {});
 
 }  // namespace slipmode::diagnostics

@@ -116,7 +116,7 @@ struct SeriesStudy {
   std::optional<CorrelationDimension> correlation;
   std::optional<AmplitudeSpectrum> spectrum;
   double peak = 0.0, peak_error = 0.0;  ///< of the spectrum, half its resolution [1/time unit]
-  std::optional<Section> section;
+  std::optional<SectionPoints> section;
   std::optional<Recurrence> recurrence;
   std::optional<SurrogateTest> surrogates;
   std::vector<ToolFailure> failures;

@@ -104,7 +104,7 @@ double forecast_error(const Series& series, const Embedding& embedding, Eigen::I
                     references, window));
   }
   check_series(series, embedding.span() + ahead + 2 * window + 100, "forecast");
-  const NeighbourTree tree(delay_vectors(part(series, 0, series.values.size() - ahead), embedding), Metric::kEuclidean);
+  const NeighbourTree tree(delay_vectors(part(series, 0, series.values.size() - ahead), embedding), Norm::kEuclidean);
   const Eigen::Index shift = embedding.span() + ahead, count = std::min(references, tree.size());
   double sum = 0.0;
   for (Eigen::Index r = 0; r < count; ++r) {

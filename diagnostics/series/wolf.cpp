@@ -91,7 +91,7 @@ WolfExponent wolf_exponent(const Series& series, const WolfOptions& options) {
   out.settings = checked(series, options);
   const auto& settings = out.settings;
   const double sigma = std::sqrt((series.values.array() - series.values.mean()).square().mean());
-  const NeighbourTree tree(delay_vectors(series, settings.embedding), Metric::kEuclidean);
+  const NeighbourTree tree(delay_vectors(series, settings.embedding), Norm::kEuclidean);
   const Pair pair(tree, settings, sigma);
   const Eigen::Index evolutions = (tree.size() - 1) / settings.evolution / kStretches * kStretches;
   Eigen::RowVectorXd growth = Eigen::RowVectorXd::Zero(kStretches);

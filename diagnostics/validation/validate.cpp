@@ -2,6 +2,7 @@
 
 #include <slipmode/core/errors.hpp>
 #include <slipmode/diagnostics/attractors/ensemble_run.hpp>
+#include <slipmode/rom/reduce.hpp>
 #include "diagnostics/validation/internal/shared_starts.hpp"
 #include "diagnostics/validation/internal/validation_checks.hpp"
 
@@ -106,7 +107,7 @@ class Validation {
   }
 
   [[nodiscard]] dynamics::State projected(const pod::Basis& basis, const dynamics::State& state) const {
-    return on_subspace(full_.structure(), basis, state);
+    return restarted(rom::restrict_state(full_.structure(), basis, state));
   }
 
   // The full model alone: its attractor, itself again from elsewhere, its orbits.

@@ -50,7 +50,7 @@ Subject reduced_subject(const dynamics::HybridSystem& full, const dynamics::Stat
   Subject subject{.name = candidate.name};
   try {
     subject.system = rom::reduce(full, candidate.basis);
-    subject.start = on_subspace(full.structure(), candidate.basis, start);
+    subject.start = restarted(rom::restrict_state(full.structure(), candidate.basis, start));
     subject.start.time = start.time;
     subject.channel = candidate.basis.vectors.row(channel);
   } catch (const InvalidInput& unusable) {

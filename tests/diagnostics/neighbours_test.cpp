@@ -18,20 +18,18 @@
 
 namespace slipmode::diagnostics {
 
-static void PrintTo(Metric metric, std::ostream* out) {
-  *out << (metric == Metric::kMaximum ? "maximum" : "Euclidean");
-}
+static void PrintTo(Norm metric, std::ostream* out) { *out << (metric == Norm::kMaximum ? "maximum" : "Euclidean"); }
 
 namespace {
 
 /// Every allowed point by distance, then index: what any search must agree with.
-std::vector<Neighbour> by_brute_force(const Eigen::MatrixXd& points, Metric metric, Eigen::Index i,
+std::vector<Neighbour> by_brute_force(const Eigen::MatrixXd& points, Norm metric, Eigen::Index i,
                                       const NeighbourTree::Allowed& allowed) {
   std::vector<Neighbour> all;
   for (Eigen::Index j = 0; j < points.cols(); ++j) {
     if (std::abs(i - j) <= allowed.window || (allowed.limit >= 0 && j >= allowed.limit)) continue;
     const Eigen::VectorXd d = points.col(i) - points.col(j);
-    all.push_back({j, metric == Metric::kEuclidean ? std::sqrt(d.squaredNorm()) : d.lpNorm<Eigen::Infinity>()});
+    all.push_back({j, metric == Norm::kEuclidean ? std::sqrt(d.squaredNorm()) : d.lpNorm<Eigen::Infinity>()});
   }
   std::sort(all.begin(), all.end(), [](const Neighbour& a, const Neighbour& b) {
     return std::tie(a.distance, a.index) < std::tie(b.distance, b.index);
@@ -39,7 +37,7 @@ std::vector<Neighbour> by_brute_force(const Eigen::MatrixXd& points, Metric metr
   return all;
 }
 
-class NeighbourTreeOf : public ::testing::TestWithParam<std::tuple<int, Metric>> {};
+class NeighbourTreeOf : public ::testing::TestWithParam<std::tuple<int, Norm>> {};
 
 TEST_P(NeighbourTreeOf, AgreesWithBruteForce) {
   const auto [dimension, metric] = GetParam();
@@ -88,17 +86,17 @@ TEST_P(NeighbourTreeOf, CountsAsManyAsItFinds) {
 
 INSTANTIATE_TEST_SUITE_P(Dimensions, NeighbourTreeOf,
                          ::testing::Combine(::testing::Values(1, 2, 3, 6),
-                                            ::testing::Values(Metric::kEuclidean, Metric::kMaximum)),
+                                            ::testing::Values(Norm::kEuclidean, Norm::kMaximum)),
                          [](const auto& one) {
-                           const bool maximum = std::get<1>(one.param) == Metric::kMaximum;
+                           const bool maximum = std::get<1>(one.param) == Norm::kMaximum;
                            return std::to_string(std::get<0>(one.param)) + (maximum ? "Maximum" : "Euclidean");
                          });
 
 TEST(NeighbourTree, RefusesPointsThatAreNotFinite) {
   Eigen::MatrixXd points = Eigen::MatrixXd::Zero(2, 3);
   points(1, 1) = std::numeric_limits<double>::infinity();
-  EXPECT_THROW(NeighbourTree(points, Metric::kMaximum), InvalidInput);
-  EXPECT_THROW(NeighbourTree(Eigen::MatrixXd(2, 0), Metric::kMaximum), InvalidInput);
+  EXPECT_THROW(NeighbourTree(points, Norm::kMaximum), InvalidInput);
+  EXPECT_THROW(NeighbourTree(Eigen::MatrixXd(2, 0), Norm::kMaximum), InvalidInput);
 }
 
 TEST(DelayVectors, AreTheSamplesTheDefinitionSays) {

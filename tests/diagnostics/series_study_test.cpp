@@ -15,7 +15,7 @@ namespace {
 /// Greatest distance of the section's instants from where sin t rises through zero, t = 2πk.
 double crossing_error(int order, double interval) {
   const auto series = fixtures::sine(static_cast<Eigen::Index>(100.0 / interval), interval);
-  const Section cut = section(series, {.embedding = {.dimension = 2, .lag = 3}, .level = 0.0, .order = order});
+  const SectionPoints cut = section(series, {.embedding = {.dimension = 2, .lag = 3}, .level = 0.0, .order = order});
   double error = 0.0;
   for (Eigen::Index k = 0; k < cut.time.size(); ++k) {
     error = std::max(
@@ -37,7 +37,8 @@ TEST(Section, ConvergesWithTheOrderOfItsPolynomials) {
 TEST(Section, TakesAllDelayCoordinatesAtOneInstant) {
   const double interval = 0.05;
   const auto series = fixtures::sine(4000, interval);
-  const Section down = section(series, {.embedding = {.dimension = 3, .lag = 7}, .cut = Cut::kDownward, .level = 0.2});
+  const SectionPoints down =
+      section(series, {.embedding = {.dimension = 3, .lag = 7}, .cut = Cut::kDownward, .level = 0.2});
   ASSERT_GT(down.time.size(), 20);
   for (Eigen::Index k = 0; k < down.time.size(); ++k) {
     for (int c = 0; c < 3; ++c) {
@@ -50,7 +51,7 @@ TEST(Section, TakesAllDelayCoordinatesAtOneInstant) {
 }
 
 TEST(Section, FindsMaximaBetweenSamples) {
-  const Section tops = section(fixtures::sine(3000, 0.1), {.embedding = {.dimension = 1}, .cut = Cut::kMaximum});
+  const SectionPoints tops = section(fixtures::sine(3000, 0.1), {.embedding = {.dimension = 1}, .cut = Cut::kMaximum});
   ASSERT_GT(tops.time.size(), 40);
   for (Eigen::Index k = 0; k < tops.time.size(); ++k) {
     EXPECT_NEAR(tops.points(0, k), 1.0, 1e-8);
@@ -60,11 +61,11 @@ TEST(Section, FindsMaximaBetweenSamples) {
 
 // Once per period a periodic record is one point; the second tone of a torus goes round a circle.
 TEST(Section, StrobesADrivenRecord) {
-  const Section one =
+  const SectionPoints one =
       section(fixtures::sine(3000, 0.1), {.cut = Cut::kStrobe, .period = 2.0 * std::numbers::pi, .phase = 0.25});
   EXPECT_NEAR(one.time(0), 0.5 * std::numbers::pi, 1e-12);
   EXPECT_LT((one.points.colwise() - one.points.col(0)).cwiseAbs().maxCoeff(), 1e-7);
-  const Section circle =
+  const SectionPoints circle =
       section(fixtures::two_torus(3000, 0.1), {.cut = Cut::kStrobe, .period = 2.0 * std::numbers::pi});
   const Eigen::ArrayXd phase = std::numbers::sqrt2 * circle.time.array();
   EXPECT_LT((circle.points.row(0).transpose().array() - 0.5 * phase.sin()).abs().maxCoeff(), 1e-6);
@@ -84,7 +85,7 @@ TEST(Recurrence, OfACircleIsWholeDiagonals) {
   // The chord of two intervals is 2 sin(interval) < 4 sin(interval/2) = 0.314, that of three 0.467: gaps within two of
   // a multiple of 40 recur, five in forty.
   const Recurrence plot = recurrence(fixtures::sine(1010, interval), {.embedding = {.dimension = 2, .lag = 10},
-                                                                      .metric = Metric::kEuclidean,
+                                                                      .metric = Norm::kEuclidean,
                                                                       .radius = 4.0 * std::sin(interval / 2.0) + 1e-6,
                                                                       .window = 19});
   EXPECT_EQ(plot.points, 1000);

@@ -194,7 +194,7 @@ TEST(Basis, KindsHaveTheirWords) {
   EXPECT_EQ(to_string(BasisKind::kLnm), "lnm");
   EXPECT_EQ(to_string(BasisKind::kUser), "user");
   EXPECT_EQ(to_string(BasisKind::kPomf), "pomf");
-  EXPECT_EQ(to_string(BasisKind::kLnmStatic), "lnm_static");
+  EXPECT_EQ(to_string(BasisKind::kLnmStatic), "lnm+static");
 }
 
 }  // namespace

@@ -125,6 +125,16 @@ TEST(BeamRecords, ModalFunctionsKeepTheirKind) {
   EXPECT_EQ(load_basis(in).kind, pod::BasisKind::kPomf);
 }
 
+// Files of earlier versions say lnm_static where scenes say lnm+static.
+TEST(BeamRecords, StaticModesOfEarlierFilesAreKnown) {
+  const TemporaryFolder folder;
+  const auto in = stored(folder, [&](StoreWriter& out) {
+    out.write("basis/vectors", Eigen::MatrixXd(Eigen::MatrixXd::Identity(4, 2)), {"1", ""});
+    out.write("basis/kind", std::string("lnm_static"), {"", ""});
+  });
+  EXPECT_EQ(load_basis(in).kind, pod::BasisKind::kLnmStatic);
+}
+
 TEST(BeamRecords, StateKeepsContactsOwnStates) {
   const dynamics::State state{1.5,
                               Eigen::VectorXd::Random(4),

@@ -163,7 +163,7 @@ bool tree_is_faster(const NeighbourTree& tree, const Shells& shells, const Refer
 ClosePairs close_pairs(const Eigen::MatrixXd& points, std::span<const double> radii, const PairOptions& options) {
   const PairOptions settings = checked(points.cols(), options);
   const References references{points.cols(), settings.references, settings.blocks};
-  const NeighbourTree tree(points, Metric::kMaximum);
+  const NeighbourTree tree(points, Norm::kMaximum);
   const Shells shells = tree.shells(radii);
   ClosePairs out;
   out.method = settings.method;

@@ -31,10 +31,6 @@ std::vector<dynamics::State> states_along(const dynamics::HybridSystem& system, 
   return states;
 }
 
-dynamics::State on_subspace(const fem::Structure& structure, const pod::Basis& basis, const dynamics::State& state) {
-  return restarted(rom::restrict_state(structure, basis, state));
-}
-
 Deviation deviation_up_to_horizon(const fem::Structure& structure, const Model& full, const Model& reduced,
                                   double parameter, const std::vector<dynamics::State>& starts, double horizon,
                                   double sample, const dynamics::FlowOptions& flow) {
@@ -42,7 +38,8 @@ Deviation deviation_up_to_horizon(const fem::Structure& structure, const Model& 
   Record all_reduced;
   for (const dynamics::State& state : starts) {
     const SharedRun run =
-        run_shared(full, reduced, parameter, on_subspace(structure, *reduced.basis, state), horizon, sample, flow);
+        run_shared(full, reduced, parameter, restarted(rom::restrict_state(structure, *reduced.basis, state)), horizon,
+                   sample, flow);
     all_full = appended(std::move(all_full), run.full);
     all_reduced = appended(std::move(all_reduced), run.reduced);
   }
@@ -56,7 +53,7 @@ double distance_to_basis(const fem::Structure& structure, const pod::Basis& basi
   double lost = 0.0;
   double size = 0.0;
   for (const dynamics::State& state : states) {
-    const dynamics::State back = rom::lift(basis, on_subspace(structure, basis, state));
+    const dynamics::State back = rom::lift(basis, restarted(rom::restrict_state(structure, basis, state)));
     lost += (state.q - back.q).squaredNorm() + (state.v - back.v).squaredNorm();
     size += (state.q - mean).squaredNorm() + state.v.squaredNorm();
   }

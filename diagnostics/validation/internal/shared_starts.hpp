@@ -14,10 +14,6 @@ namespace slipmode::diagnostics {
                                                         const dynamics::State& start, int count, double gap,
                                                         const dynamics::FlowOptions& flow);
 
-/// A full state's projection as the reduced model's start.
-[[nodiscard]] dynamics::State on_subspace(const fem::Structure& structure, const pod::Basis& basis,
-                                          const dynamics::State& state);
-
 /// Deviation over the records of all shared starts, each up to the horizon.
 /// @param starts  of the full model; both models begin at their projections
 /// @throws InvalidInput  if the full model does not move

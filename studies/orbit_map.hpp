@@ -1,0 +1,42 @@
+#pragma once
+
+#include <slipmode/results/map_store.hpp>
+#include <slipmode/studies/family.hpp>
+#include <slipmode/studies/run_options.hpp>
+
+#include <string>
+#include <vector>
+
+namespace slipmode::studies {
+
+struct OrbitMapOptions {
+  /// Where motions begin: "scene" (its [initial]) and "centre" (the steady linear motion in the gap).
+  std::vector<std::string> starts = {"scene"};
+  int max_order = 8;                    ///< longest period looked for, in periods of the drive
+  int periods = 1000;                   ///< of the drive, simulated at most
+  int kept = 100;                       ///< one key: of them kept, the last ones
+  double tolerance = 1e-5;              ///< one key: sections nearer than this, relative, are the same
+  bool follow = false;                  ///< one key: start each value where the one before it ended
+  results::Journal* journal = nullptr;  ///< keeps finished values and gives back earlier ones
+};
+
+/// Settled motion of a driven scene over one key (`strobes`) or two (`maps`), one entry per start.
+struct OrbitMapStudy {
+  orbits::MapGrid grid;  ///< x: the first key's values, y: the second's; empty over one key
+  std::vector<results::StartedMap> maps;
+  std::vector<results::StartedStrobe> strobes;
+  bool interrupted = false;
+};
+
+/// @throws InvalidInput  for more than two keys, a drive without period, another start, following over two keys
+void check(const Family& family, const OrbitMapOptions& options);
+
+/// @param values  of each key of the family, in their order
+/// @throws InvalidInput  as check, orbits::orbit_map and orbits::strobe_map
+[[nodiscard]] OrbitMapStudy orbit_map(const Family& family, const std::vector<std::vector<double>>& values,
+                                      const OrbitMapOptions& options = {}, const RunOptions& run = {});
+
+/// Writes the group `map` or `strobe`.
+void store(results::StoreWriter& writer, const Family& family, const OrbitMapStudy& study);
+
+}  // namespace slipmode::studies

@@ -1,0 +1,147 @@
+#include <slipmode/studies/orbit_search.hpp>
+
+#include <slipmode/core/errors.hpp>
+#include <slipmode/orbits/continuation.hpp>
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+
+namespace slipmode::studies {
+namespace {
+
+using orbits::SpecialKind;
+
+/// The order that a period stands for under a periodic drive.
+int order_of(double period, double drive) {
+  constexpr double kClose = 1e-9;  // relative: what a period given with ten digits may miss
+  const double ratio = period / drive;
+  const double nearest = std::max(1.0, std::round(ratio));
+  if (std::abs(ratio - nearest) <= kClose * nearest) return static_cast<int>(nearest);
+  throw InvalidInput(fmt::format(
+      "--period {:.12g}: no multiple of the drive's {:.12g} (it is {:.6g} of them); valid: {:.12g}, or --order {}",
+      period, drive, ratio, nearest * drive, static_cast<int>(nearest)));
+}
+
+/// Under a periodic drive the guess settles for whole periods.
+dynamics::State settled(const OrbitSearch& search, const Family& model, double drive) {
+  const double periods = search.settle > 0.0 ? search.settle : model.scene().time.transient / drive;
+  return orbits::settle_guess(model.own(), model.start(), std::round(periods));
+}
+
+SearchStart self_excited(const OrbitSearch& search, const Family& model, orbits::ShootingOptions options) {
+  if (search.order != 1) {
+    throw InvalidInput(
+        fmt::format("--order {}: counts periods of the drive, and this drive has none; valid: --period", search.order));
+  }
+  options.period = search.period;
+  if (search.guess || !search.settles) {
+    if (search.period <= 0.0) {
+      throw InvalidInput(fmt::format("--start {}: the drive has no period, so --period is needed with it",
+                                     search.guess ? "q1,...,vn" : "initial"));
+    }
+    return {search.guess ? model.own_state(*search.guess) : model.start(), options};
+  }
+  const scene::TimeSpec& time = model.scene().time;
+  const double transient = search.settle > 0.0 ? search.settle : time.transient;
+  const orbits::RecurrenceGuess guess =
+      orbits::recurrence_guess(model.own(), model.start(), transient, time.duration - time.transient);
+  if (options.period <= 0.0) options.period = guess.period;
+  return {guess.state, options};
+}
+
+/// The branch that leaves at a special point, of two mirror images one.
+results::NamedBranch switched(const orbits::SystemFamily& family, const orbits::SpecialPoint& special,
+                              orbits::ContinuationOptions options) {
+  results::NamedBranch side{
+      .title = fmt::format("from {} at {:.8g}", orbits::to_string(special.kind), special.parameter), .branch = {}};
+  try {
+    const orbits::BranchPoint first = orbits::switch_branch(family, special, options).front();
+    options.direction = first.parameter >= special.parameter ? 1 : -1;
+    options.both_ways = false;
+    options.shooting.half_period = false;
+    if (special.kind == SpecialKind::kPeriodDoubling) {
+      options.shooting.order *= 2;
+      options.shooting.period *= 2.0;
+    }
+    side.branch = orbits::continue_orbit(family, first.orbit, first.parameter, options);
+  } catch (const NumericalFailure& failure) {
+    side.branch.end = orbits::BranchEnd::kLost;
+    side.branch.reason = failure.what();
+  }
+  return side;
+}
+
+std::vector<results::NamedBranch> follow(const orbits::SystemFamily& family, const orbits::PeriodicOrbit& orbit,
+                                         double start, const orbits::ContinuationOptions& options, bool switches) {
+  std::vector<results::NamedBranch> branches = {
+      {.title = "main branch", .branch = orbits::continue_orbit(family, orbit, start, options)}};
+  if (!switches) return branches;
+  const std::vector<orbits::SpecialPoint> special = branches.front().branch.special;
+  for (const orbits::SpecialPoint& point : special) {
+    if (point.kind != SpecialKind::kSymmetryBreaking && point.kind != SpecialKind::kPeriodDoubling) continue;
+    if (point.orbit.crossings == 0) continue;  // in one regime: a floating structure's shift, which breaks nothing
+    branches.push_back(switched(family, point, options));
+  }
+  return branches;
+}
+
+}  // namespace
+
+SearchStart search_start(const Family& model, const OrbitSearch& search) {
+  orbits::ShootingOptions options{.order = search.order,
+                                  .segments = search.segments,
+                                  .tolerance = search.tolerance,
+                                  .max_iterations = search.iterations,
+                                  .half_period = search.half};
+  options.flow.method = model.scene().flow.method;
+  const std::optional<double> drive = model.own().drive().period();
+  if (!drive) return self_excited(search, model, options);
+  if (search.period > 0.0) {
+    const int order = order_of(search.period, *drive);
+    if (search.order != 1 && search.order != order) {
+      throw InvalidInput(
+          fmt::format("--order {}: --period {} is order {}; give one of them", search.order, search.period, order));
+    }
+    options.order = order;
+  }
+  if (search.guess) return {model.own_state(*search.guess), options};
+  if (!search.settles) return {model.start(), options};
+  return {settled(search, model, *drive), options};
+}
+
+orbits::ShootingResult find_orbit(const Family& model, const OrbitSearch& search) {
+  const SearchStart start = search_start(model, search);
+  return orbits::shoot(model.own(), start.guess, start.options);
+}
+
+Continuation continue_orbit(const scene::Scene& scene, const std::string& key,
+                            const std::optional<pod::NamedBasis>& basis, const OrbitSearch& search,
+                            const ContinuationRequest& request, const RunOptions& run) {
+  const double own = scene::get_continuous_key(scene, key);
+  for (const double end : {request.from, request.to}) (void)scene::set_key(scene, key, end);
+  const auto [low, high] = std::minmax(request.from, request.to);
+  Continuation out;
+  out.start = low <= own && own <= high ? own : request.from;
+  const Family family(out.start == own ? scene : scene::set_key(scene, key, out.start), {key}, basis);
+  const orbits::SystemFamily systems = [&family, &run](double value) {
+    run.check_interrupt();
+    return family.at({value});
+  };
+  const SearchStart start = search_start(family, search);
+  out.found = orbits::shoot(systems(out.start), start.guess, start.options);
+  if (!out.found.converged()) return out;
+  const orbits::ContinuationOptions options{.from = request.from,
+                                            .to = request.to,
+                                            .direction = request.to > request.from ? 1 : -1,
+                                            .both_ways = out.start != request.from && out.start != request.to,
+                                            .step = request.step,
+                                            .max_step = request.max_step,
+                                            .max_points = request.max_points,
+                                            .arclength = !request.sequential,
+                                            .shooting = start.options};
+  out.branches = follow(systems, out.found.orbit, out.start, options, request.switches);
+  return out;
+}
+
+}  // namespace slipmode::studies
