@@ -1,6 +1,7 @@
 #include "cli/diagnose_model.hpp"
 #include "cli/exponents_report.hpp"
 
+#include <slipmode/diagnostics/validation/shared_starts.hpp>
 #include <slipmode/figures/exponents_figures.hpp>
 #include <slipmode/results/exponents_store.hpp>
 #include <slipmode/results/provenance.hpp>
@@ -9,7 +10,6 @@
 #include "cli/diagnose_subjects.hpp"
 #include "cli/diagnose_sweep.hpp"
 #include "cli/validation_setup.hpp"
-#include "diagnostics/validation/internal/shared_starts.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

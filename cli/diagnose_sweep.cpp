@@ -1,6 +1,7 @@
 #include "cli/diagnose_sweep.hpp"
 
 #include <slipmode/core/none.hpp>
+#include <slipmode/diagnostics/validation/shared_starts.hpp>
 #include <slipmode/results/journal.hpp>
 #include <slipmode/results/provenance.hpp>
 #include <slipmode/results/sweep_store.hpp>
@@ -9,7 +10,6 @@
 #include "cli/sweep_request.hpp"
 #include "cli/swept_model.hpp"
 #include "cli/validation_setup.hpp"
-#include "diagnostics/validation/internal/shared_starts.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -2,7 +2,7 @@
 
 #include <slipmode/core/errors.hpp>
 #include <slipmode/diagnostics/attractors/ensemble_run.hpp>
-#include "diagnostics/validation/internal/shared_starts.hpp"
+#include <slipmode/diagnostics/validation/shared_starts.hpp>
 #include "diagnostics/validation/internal/validation_checks.hpp"
 
 #include <fmt/format.h>

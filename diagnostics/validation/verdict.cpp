@@ -8,8 +8,8 @@
 #include <slipmode/diagnostics/series/kaplan_yorke.hpp>
 #include <slipmode/diagnostics/series/mutual_information.hpp>
 #include <slipmode/diagnostics/series/spectrum.hpp>
+#include <slipmode/diagnostics/validation/shared_starts.hpp>
 #include <slipmode/rom/reduce.hpp>
-#include "diagnostics/validation/internal/shared_starts.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "diagnostics/validation/internal/shared_starts.hpp"
+#include <slipmode/diagnostics/validation/shared_starts.hpp>
 
 #include <slipmode/rom/reduce.hpp>
 
