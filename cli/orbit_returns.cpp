@@ -1,3 +1,4 @@
+#include <slipmode/diagnostics/series/embedding.hpp>
 #include <slipmode/orbits/close_returns.hpp>
 #include <slipmode/results/store.hpp>
 #include <slipmode/results/table.hpp>
@@ -14,7 +15,8 @@ namespace {
 
 struct OrbitReturnsArguments {
   std::string series, output;
-  Eigen::Index column = 0, delay = 1, dimension = 3;
+  Eigen::Index column = 0, delay = 1;
+  int dimension = 3;
   orbits::ReturnOptions search = {.min_length = 2, .max_length = 0, .threshold = 0.0, .per_length = 1000};
 };
 
@@ -104,7 +106,8 @@ void store_groups(const OrbitReturnsArguments& arguments, const Eigen::MatrixXd&
 Report run(const OrbitReturnsArguments& arguments) {
   if (!arguments.output.empty()) require_writable(arguments.output);
   const Eigen::MatrixXd points =
-      orbits::delay_coordinates(read_series(arguments), arguments.delay, arguments.dimension);
+      diagnostics::delay_vectors({.values = read_series(arguments), .name = arguments.series},
+                                 {.dimension = arguments.dimension, .lag = arguments.delay});
   orbits::ReturnOptions search = arguments.search;
   if (search.threshold == 0.0) search.threshold = orbits::half_mean_step(points);
   if (search.max_length == 0) search.max_length = std::max(points.cols() / 4, search.min_length);

@@ -15,7 +15,8 @@ function(slipmode_import name)
     INTERFACE_INCLUDE_DIRECTORIES ${${prefix}_INCLUDE_DIR})
 endfunction()
 
-slipmode_import(arpack NAMES arpack HEADER arpack/arpack.h)
-slipmode_import(fftw3 NAMES fftw3 HEADER fftw3.h)
+if(SLIPMODE_FFTW)
+  slipmode_import(fftw3 NAMES fftw3 HEADER fftw3.h)
+endif()
 # The serial library: an MPI one may stand beside it under the plain name.
 slipmode_import(hdf5 NAMES hdf5_serial hdf5 HEADER hdf5.h PATH_SUFFIXES hdf5/serial)

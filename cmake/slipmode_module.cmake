@@ -45,14 +45,23 @@ set(SLIPMODE_BUILD_INCLUDE ${PROJECT_BINARY_DIR}/include)
 file(MAKE_DIRECTORY ${SLIPMODE_BUILD_INCLUDE})
 file(CREATE_LINK ${PROJECT_SOURCE_DIR} ${SLIPMODE_BUILD_INCLUDE}/slipmode SYMBOLIC)
 
+# diagnostics/series/internal/fourier_*.cpp: one of the two.
+set(other_fourier fftw)
+set(fourier_library)
+if(SLIPMODE_FFTW)
+  set(other_fourier kiss)
+  set(fourier_library slipmode::fftw3)
+endif()
+
 function(slipmode_module name)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${name}/*.cpp)
   list(FILTER sources EXCLUDE REGEX /kernels/)
+  list(FILTER sources EXCLUDE REGEX /fourier_${other_fourier}\.cpp$)
   add_library(slipmode_${name} OBJECT ${sources})
   target_include_directories(slipmode_${name} PUBLIC ${SLIPMODE_BUILD_INCLUDE} PRIVATE ${PROJECT_SOURCE_DIR})
   target_compile_definitions(slipmode_${name} PUBLIC ${SLIPMODE_PUBLIC_DEFINITIONS})
   target_link_libraries(slipmode_${name} PUBLIC Eigen3::Eigen PRIVATE slipmode_flags Spectra::Spectra fmt::fmt
-    tomlplusplus::tomlplusplus nlohmann_json::nlohmann_json slipmode::arpack slipmode::fftw3 slipmode::hdf5
+    tomlplusplus::tomlplusplus nlohmann_json::nlohmann_json ${fourier_library} slipmode::hdf5
     Threads::Threads)
   if(name IN_LIST SLIPMODE_LIGHT_MODULES)
     target_link_libraries(slipmode_${name} PRIVATE slipmode_light)
@@ -65,7 +74,7 @@ function(slipmode_configure_library)
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_definitions(slipmode PUBLIC ${SLIPMODE_PUBLIC_DEFINITIONS})
   target_link_libraries(slipmode PUBLIC Eigen3::Eigen PRIVATE fmt::fmt tomlplusplus::tomlplusplus LAPACK::LAPACK
-    slipmode::arpack slipmode::fftw3 slipmode::hdf5 Threads::Threads)
+    ${fourier_library} slipmode::hdf5 Threads::Threads)
   target_compile_features(slipmode PUBLIC cxx_std_20)
   set_target_properties(slipmode PROPERTIES LINKER_LANGUAGE CXX)
 endfunction()

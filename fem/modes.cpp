@@ -27,8 +27,7 @@ void check_method(const Structure& structure, Eigen::Index count, EigenMethod me
         "natural modes: the tridiagonal method needs a diagonal M and a tridiagonal K; use the dense method or "
         "Spectra");
   }
-  const bool lanczos = method == EigenMethod::kSpectra || method == EigenMethod::kArpack;
-  if (lanczos && count >= structure.size()) {
+  if (method == EigenMethod::kSpectra && count >= structure.size()) {
     throw InvalidInput(
         fmt::format("natural modes: Lanczos finds at most {} of {} modes, {} were asked; use the dense "
                     "method for all",
@@ -42,8 +41,6 @@ detail::EigenPairs solve(const Structure& structure, Eigen::Index count, EigenMe
       return detail::solve_tridiagonal(structure, count);
     case EigenMethod::kSpectra:
       return detail::solve_spectra(structure, detail::no_holds(structure.size()), count);
-    case EigenMethod::kArpack:
-      return detail::solve_arpack(structure, count);
     default:
       break;
   }

@@ -20,7 +20,6 @@ enum class EigenMethod {
   kDense,        ///< Eigen's generalized symmetric solver, all modes, O(n³)
   kTridiagonal,  ///< chains only: LAPACK dstemr (MRRR), O(n k)
   kSpectra,      ///< shift-invert Lanczos at a small negative shift (works for rigid-body modes)
-  kArpack,       ///< shift-invert Lanczos by ARPACK, the independent check; not for concurrent calls
 };
 
 /// The lowest `count` natural modes (0 = all).

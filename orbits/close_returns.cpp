@@ -151,21 +151,4 @@ double half_mean_step(const Eigen::MatrixXd& points) {
   return 0.5 * (points.rightCols(steps) - points.leftCols(steps)).colwise().norm().mean();
 }
 
-Eigen::MatrixXd delay_coordinates(const Eigen::VectorXd& series, Eigen::Index delay, Eigen::Index dimension) {
-  if (delay < 1 || dimension < 1) {
-    throw InvalidInput(
-        fmt::format("delay coordinates: expected delay and dimension >= 1, found {} and {}", delay, dimension));
-  }
-  const Eigen::Index count = series.size() - (dimension - 1) * delay;
-  if (count < 2) {
-    throw InvalidInput(
-        fmt::format("delay coordinates: expected more than {} values for dimension {} and delay {}, "
-                    "found {}",
-                    (dimension - 1) * delay + 1, dimension, delay, series.size()));
-  }
-  Eigen::MatrixXd points(dimension, count);
-  for (Eigen::Index d = 0; d < dimension; ++d) points.row(d) = series.segment(d * delay, count).transpose();
-  return points;
-}
-
 }  // namespace slipmode::orbits

@@ -39,7 +39,7 @@ struct ReturnOptions {
 /// that visit is the return. Of consecutive i whose returns belong together (lengths differ by one at most from one i
 /// to the next) the nearest is kept. Sorted by length, then by distance; per_length counts returns of the very same
 /// length.
-/// @param points  one column per instant [d x T]; see delay_coordinates
+/// @param points  one column per instant [d x T], as diagnostics::delay_vectors gives them
 /// @throws InvalidInput  as section_returns
 /// Source: S4 section 3.5.4; Lathrop & Kostelich, Phys. Rev. A 40 (1989) 4028.
 [[nodiscard]] std::vector<CloseReturn> path_returns(const Eigen::MatrixXd& points, const ReturnOptions& options);
@@ -47,10 +47,5 @@ struct ReturnOptions {
 /// The threshold of S4 section 3.5.4: half the mean distance of consecutive points.
 /// @throws InvalidInput  for fewer than two points
 [[nodiscard]] double half_mean_step(const Eigen::MatrixXd& points);
-
-/// Delay coordinates y(k) = (s_k, s_{k+τ}, …, s_{k+(d−1)τ}) [d x T − (d−1)τ]. Source: S4 section 3.5.4.
-/// @throws InvalidInput  for delay or dimension < 1, or a series too short for two points
-[[nodiscard]] Eigen::MatrixXd delay_coordinates(const Eigen::VectorXd& series, Eigen::Index delay,
-                                                Eigen::Index dimension);
 
 }  // namespace slipmode::orbits

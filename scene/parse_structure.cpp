@@ -1,5 +1,5 @@
+#include <slipmode/scene/scene_words.hpp>
 #include "scene/internal/scene_parts.hpp"
-#include "scene/internal/scene_words.hpp"
 
 #include <fmt/format.h>
 #include <numeric>

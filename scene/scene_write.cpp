@@ -1,4 +1,4 @@
-#include "scene/internal/scene_words.hpp"
+#include <slipmode/scene/scene_words.hpp>
 #include "scene/internal/toml_text.hpp"
 
 #include <toml++/toml.h>

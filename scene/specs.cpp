@@ -1,7 +1,7 @@
 #include <slipmode/scene/specs.hpp>
 
 #include <slipmode/diagnostics/attractors/sweep.hpp>
-#include "scene/internal/scene_words.hpp"
+#include <slipmode/scene/scene_words.hpp>
 
 #include <fmt/format.h>
 

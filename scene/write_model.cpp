@@ -1,5 +1,5 @@
 #include <slipmode/core/overloaded.hpp>
-#include "scene/internal/scene_words.hpp"
+#include <slipmode/scene/scene_words.hpp>
 #include "scene/internal/toml_text.hpp"
 
 #include <fmt/format.h>

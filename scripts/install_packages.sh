@@ -6,10 +6,10 @@ packages=(
   # toolchain
   g++ cmake ninja-build git ca-certificates
   # libraries
-  libeigen3-dev libspectra-dev libarpack2-dev liblapack-dev libfftw3-dev libhdf5-dev
+  libeigen3-dev libspectra-dev liblapack-dev libfftw3-dev libhdf5-dev
   libfmt-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev
   # tests, benchmarks and the peers they measure against
-  libgtest-dev libgmock-dev libbenchmark-dev libsundials-dev libboost-dev
+  libgtest-dev libgmock-dev libarpack2-dev libbenchmark-dev libsundials-dev libboost-dev
   # figures
   gnuplot-nox
   "$@"

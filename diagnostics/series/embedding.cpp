@@ -1,7 +1,6 @@
 #include <slipmode/diagnostics/series/embedding.hpp>
 
 #include <slipmode/core/errors.hpp>
-#include <slipmode/orbits/close_returns.hpp>
 
 #include <fmt/format.h>
 
@@ -15,7 +14,12 @@ Eigen::MatrixXd delay_vectors(const Series& series, const Embedding& embedding) 
   const Eigen::Index span = embedding.span();
   check_series(series, span + 2,
                fmt::format("embedding in dimension {} at lag {}", embedding.dimension, embedding.lag));
-  return orbits::delay_coordinates(series.values, embedding.lag, embedding.dimension);
+  const Eigen::Index count = series.values.size() - span;
+  Eigen::MatrixXd points(embedding.dimension, count);
+  for (Eigen::Index d = 0; d < embedding.dimension; ++d) {
+    points.row(d) = series.values.segment(d * embedding.lag, count).transpose();
+  }
+  return points;
 }
 
 }  // namespace slipmode::diagnostics

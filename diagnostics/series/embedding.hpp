@@ -17,7 +17,7 @@ struct Embedding {
 
 /// Delay vectors in time order, one column per point [dimension x (T − span)].
 /// @throws InvalidInput  for a dimension or lag below 1, a series that check_series refuses, or fewer than 2 points
-/// Source: Takens, Lecture Notes in Mathematics 898 (1981) 366; S4, section 3.2.
+/// Source: Takens, Lecture Notes in Mathematics 898 (1981) 366; S4, sections 3.2 and 3.5.4.
 [[nodiscard]] Eigen::MatrixXd delay_vectors(const Series& series, const Embedding& embedding);
 
 }  // namespace slipmode::diagnostics

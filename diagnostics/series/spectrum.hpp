@@ -13,8 +13,8 @@ struct AmplitudeSpectrum {
   Eigen::Index segments = 0;  ///< averaged
 };
 
-/// Averaged amplitude spectrum: segments that overlap by half, their mean removed, under Hann's window, transformed by
-/// FFTW, squares averaged.
+/// Averaged amplitude spectrum: segments that overlap by half, their mean removed, under Hann's window,
+/// transformed, squares averaged.
 /// @param series    equally spaced samples [T]
 /// @param interval  between samples, > 0 [s]
 /// @param segment   samples per segment N, 4 ≤ N ≤ T; 0: the largest even number with at least eight segments

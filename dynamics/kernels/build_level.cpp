@@ -1,6 +1,6 @@
 // Compiled as the library is, and data alone: it may be read on any processor.
 
-#include <slipmode/dynamics/kernels/processor.hpp>
+#include "dynamics/kernels/internal/processor.hpp"
 
 namespace slipmode::dynamics::kernels {
 

@@ -1,6 +1,6 @@
 // Built once for every width: see CMakeLists.txt beside it.
 
-#include <slipmode/dynamics/kernels/kernel_set.hpp>
+#include "dynamics/kernels/internal/kernel_set.hpp"
 
 #define SLIPMODE_TEXT_OF(name) #name
 #define SLIPMODE_TEXT(name) SLIPMODE_TEXT_OF(name)

@@ -1,7 +1,7 @@
 #include <slipmode/dynamics/kernels/kernels.hpp>
 
 #include <slipmode/core/errors.hpp>
-#include <slipmode/dynamics/kernels/processor.hpp>
+#include "dynamics/kernels/internal/processor.hpp"
 
 #include <cstdlib>
 #include <string>

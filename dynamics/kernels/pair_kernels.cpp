@@ -1,7 +1,7 @@
 // Built once for every width: see CMakeLists.txt beside it.
 
-#include <slipmode/dynamics/kernels/kernel_set.hpp>
-#include <slipmode/dynamics/kernels/lanes.hpp>
+#include "dynamics/kernels/internal/kernel_set.hpp"
+#include "dynamics/kernels/internal/lanes.hpp"
 
 namespace slipmode::dynamics::kernels::SLIPMODE_KERNEL_SET {
 namespace {

@@ -1,6 +1,6 @@
 // Compiled for the plainest processor: it runs before anything else does.
 
-#include <slipmode/dynamics/kernels/processor.hpp>
+#include "dynamics/kernels/internal/processor.hpp"
 
 #include <unistd.h>
 #include <cstring>

@@ -47,8 +47,4 @@ struct Tridiagonal {
 /// values to rounding. m counts the rigid holds.
 [[nodiscard]] EigenPairs solve_spectra(const Structure& structure, const Holds& holds, Eigen::Index count);
 
-/// The lowest `count` < n pairs by ARPACK's shift-invert Lanczos, as ARPACK returns them. ARPACK keeps state between
-/// its calls: never run two at once.
-[[nodiscard]] EigenPairs solve_arpack(const Structure& structure, Eigen::Index count);
-
 }  // namespace slipmode::fem::detail

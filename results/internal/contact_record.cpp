@@ -2,7 +2,7 @@
 
 #include <slipmode/core/none.hpp>
 #include <slipmode/core/overloaded.hpp>
-#include "scene/internal/scene_words.hpp"
+#include <slipmode/scene/scene_words.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

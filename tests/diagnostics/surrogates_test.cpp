@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <numbers>
 #include <vector>
 
 namespace slipmode::diagnostics {
@@ -27,6 +29,22 @@ std::vector<double> sorted(const Series& series) {
 double spectral_distance(const Series& a, const Series& b) {
   return (amplitudes(a) - amplitudes(b)).tail(a.values.size() / 2).norm() /
          amplitudes(a).tail(a.values.size() / 2).norm();
+}
+
+// X_k by the sum that defines it, for lengths that are even, odd, prime and powers of two.
+TEST(Fourier, IsTheSumThatDefinesIt) {
+  for (const Eigen::Index n : {1, 2, 3, 15, 64, 210, 1009}) {
+    const Eigen::VectorXd x = fixtures::white_noise(n, 5).values;
+    const Eigen::VectorXcd X = RealTransform(n).forward(x);
+    for (Eigen::Index k = 0; k <= n / 2; ++k) {
+      std::complex<double> sum = 0.0;
+      for (Eigen::Index j = 0; j < n; ++j) {
+        sum +=
+            x(j) * std::polar(1.0, -2.0 * std::numbers::pi * static_cast<double>(j * k % n) / static_cast<double>(n));
+      }
+      EXPECT_LT(std::abs(X(k) - sum), 1e-12 * x.norm()) << "length " << n << ", k = " << k;
+    }
+  }
 }
 
 TEST(Fourier, InverseUndoesForwardForEvenAndOddLengths) {

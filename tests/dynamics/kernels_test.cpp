@@ -1,8 +1,8 @@
 // The kernel sets beside one another and beside plain arithmetic; whole runs under each set, byte by byte.
 
 #include <slipmode/dynamics/kernels/kernels.hpp>
-#include <slipmode/dynamics/kernels/processor.hpp>
 #include <slipmode/dynamics/nodes.hpp>
+#include "dynamics/kernels/internal/processor.hpp"
 #include "fixtures/scenes.hpp"
 
 #include <gtest/gtest.h>

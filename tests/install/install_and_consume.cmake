@@ -7,8 +7,22 @@ endfunction()
 
 file(REMOVE_RECURSE ${SCRATCH_DIR})
 run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${SCRATCH_DIR}/prefix)
+
+# One more source for the consumer: every installed header, all of them under slipmode/.
+file(GLOB_RECURSE headers RELATIVE ${SCRATCH_DIR}/prefix/include ${SCRATCH_DIR}/prefix/include/*)
+set(strays ${headers})
+list(FILTER strays EXCLUDE REGEX "^slipmode/[^/]+/.*\\.hpp$")
+list(FILTER headers INCLUDE REGEX "\\.hpp$")
+if(strays OR NOT headers)
+  message(FATAL_ERROR "installed under include/: expected slipmode/<room>/*.hpp only, found '${strays}'")
+endif()
+list(TRANSFORM headers REPLACE "(.+)" "#include <\\1>\n")
+list(JOIN headers "" text)
+file(WRITE ${SCRATCH_DIR}/headers.cpp "${text}")
+
 run(${CMAKE_COMMAND} -G Ninja -S ${CONSUMER_DIR} -B ${SCRATCH_DIR}/build -DCMAKE_PREFIX_PATH=${SCRATCH_DIR}/prefix
-  -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${CXX_FLAGS} -DCMAKE_BUILD_TYPE=Debug)
+  -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${CXX_FLAGS} -DCMAKE_BUILD_TYPE=Debug
+  -DMORE_SOURCES=${SCRATCH_DIR}/headers.cpp)
 run(${CMAKE_COMMAND} --build ${SCRATCH_DIR}/build)
 run(${SCRATCH_DIR}/build/consumer)
 file(REMOVE_RECURSE ${SCRATCH_DIR})

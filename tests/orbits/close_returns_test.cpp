@@ -1,6 +1,7 @@
 #include <slipmode/orbits/close_returns.hpp>
 
 #include <slipmode/core/errors.hpp>
+#include <slipmode/diagnostics/series/embedding.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -101,20 +102,13 @@ TEST(PathReturns, ThresholdOfTheThesisIsHalfTheMeanStep) {
   EXPECT_NEAR(half_mean_step(doubled_circle(3, 50, 0.0)), std::sin(std::numbers::pi / 50.0), 1e-12);
 }
 
-TEST(DelayCoordinates, ShiftTheSeries) {
-  const Eigen::VectorXd series = Eigen::VectorXd::LinSpaced(10, 0.0, 9.0);
-  const Eigen::MatrixXd points = delay_coordinates(series, 3, 3);
-  ASSERT_EQ(points.cols(), 4);
-  EXPECT_EQ(points.col(1), Eigen::Vector3d(1.0, 4.0, 7.0));
-}
-
 // Two delayed values of a sine a quarter period apart are a circle: it closes after one period.
-TEST(DelayCoordinates, OfASineCloseAfterItsPeriod) {
-  Eigen::VectorXd series(500);
+TEST(PathReturns, OfASineInDelayCoordinatesCloseAfterItsPeriod) {
+  diagnostics::Series series{.values = Eigen::VectorXd(500)};
   for (Eigen::Index k = 0; k < 500; ++k) {
-    series(k) = std::sin(2.0 * std::numbers::pi * static_cast<double>(k) / 80.0);
+    series.values(k) = std::sin(2.0 * std::numbers::pi * static_cast<double>(k) / 80.0);
   }
-  const Eigen::MatrixXd points = delay_coordinates(series, 20, 2);
+  const Eigen::MatrixXd points = diagnostics::delay_vectors(series, {.dimension = 2, .lag = 20});
   const auto returns = path_returns(points, {.max_length = 200, .threshold = half_mean_step(points)});
   ASSERT_EQ(returns.size(), 1U);
   EXPECT_EQ(returns.front().length, 80);
@@ -126,7 +120,6 @@ TEST(CloseReturns, RefuseOptionsOutOfRange) {
   EXPECT_THROW((void)section_returns(points, {.min_length = 3, .max_length = 2}), InvalidInput);
   EXPECT_THROW((void)path_returns(points, {.threshold = 0.0}), InvalidInput);
   EXPECT_THROW((void)path_returns(points.leftCols(1), {}), InvalidInput);
-  EXPECT_THROW((void)delay_coordinates(Eigen::VectorXd::Zero(5), 2, 3), InvalidInput);
   Eigen::MatrixXd broken = points;
   broken(0, 3) = std::nan("");
   EXPECT_THROW((void)section_returns(broken, {}), InvalidInput);

@@ -5,8 +5,10 @@
 
 namespace slipmode::diagnostics {
 
-/// Fourier transforms of real series of one fixed length n, by FFTW; plans and buffers are made once.
-/// One object serves one thread at a time; different objects may be used, made and destroyed in different threads.
+/// Fourier transforms of real series of one fixed length n; plans and buffers are made once. By FFTW
+/// (fourier_fftw.cpp), O(n log n) for any n, or without it (SLIPMODE_FFTW off) by KISS FFT (fourier_kiss.cpp), O(n ·
+/// its prime factors). One object serves one thread at a time; different objects may be used, made and destroyed in
+/// different threads.
 class RealTransform {
  public:
   /// @param n  length, ≥ 1
