@@ -4,87 +4,16 @@
 #include <slipmode/figures/exponents_figures.hpp>
 #include <slipmode/results/exponents_store.hpp>
 #include <slipmode/results/provenance.hpp>
-#include <slipmode/rom/reduce.hpp>
 #include <slipmode/scene/own_times.hpp>
-#include <slipmode/scene/solver_options.hpp>
-#include "cli/diagnose_subjects.hpp"
 #include "cli/diagnose_sweep.hpp"
 
 #include <fmt/format.h>
-#include <algorithm>
 #include <memory>
-#include <mutex>
-#include <utility>
 
 namespace slipmode::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Progress over several models that are measured side by side.
-class SharedProgress {
- public:
-  SharedProgress(ProgressCallback update, std::size_t models)
-      : update_(std::move(update)), done_(models), total_(models) {}
-
-  [[nodiscard]] ProgressCallback of(std::size_t model) {
-    return [this, model](std::size_t done, std::size_t total) {
-      const std::scoped_lock lock(mutex_);
-      done_[model] = static_cast<double>(done) / static_cast<double>(total);
-      double sum = 0.0;
-      for (const double share : done_) sum += share;
-      constexpr double kThousand = 1000.0;
-      update_(static_cast<std::size_t>(kThousand * sum), total_ * 1000);
-    };
-  }
-
- private:
-  ProgressCallback update_;
-  std::vector<double> done_;
-  std::size_t total_;
-  std::mutex mutex_;
-};
-
-std::vector<results::ModelExponents> measure_models(const Session& session, const DiagnoseSubjects& subjects,
-                                                    const diagnostics::TangentOptions& options) {
-  const std::size_t count = subjects.candidates.size() + 1;
-  std::vector<results::ModelExponents> models(count);
-  ParallelOptions parallel = session.run_options().parallel("exponents");
-  SharedProgress progress(std::exchange(parallel.progress, {}), count);
-  rethrow_first(parallel_for(count, parallel, [&](std::size_t i) {
-    results::ModelExponents& model = models[i];
-    diagnostics::TangentOptions own = options;
-    own.progress = progress.of(i);
-    try {
-      if (i == 0) {
-        model.name = "full";
-        model.spectrum = diagnostics::lyapunov_spectrum(subjects.full, subjects.start, own);
-        return;
-      }
-      const pod::NamedBasis& candidate = subjects.candidates[i - 1];
-      model.name = candidate.name;
-      const dynamics::HybridSystem reduced = rom::reduce(subjects.full, candidate.basis);
-      const dynamics::State start = rom::restrict_state(subjects.full.structure(), candidate.basis, subjects.start);
-      own.exponents = std::min(own.exponents, 2 * reduced.size() + reduced.internal_size());
-      model.spectrum = diagnostics::lyapunov_spectrum(reduced, start, own);
-    } catch (const NumericalFailure& failure) {
-      if (count == 1) throw;
-      model.failure = fmt::format("at time {:g}: {}", failure.time, failure.what());
-    }
-  }));
-  return models;
-}
-
-diagnostics::VerdictTable judge_models(const Session& session, const scene::Scene& scene,
-                                       const DiagnoseSubjects& subjects, const diagnostics::TangentOptions& options) {
-  constexpr double kSamplesPerPeriod = 16.0;
-  const std::optional<double> period = subjects.full.drive().period();
-  diagnostics::ModelVerdictOptions judging = scene::verdict_options(scene);
-  judging.tangent = options;
-  if (period) judging.sample = *period / kSamplesPerPeriod;
-  judging.parallel = session.run_options().parallel("verdict");
-  return diagnostics::model_verdict(subjects.full, subjects.start, subjects.candidates, judging);
-}
 
 /// The file figures are drawn from: the one asked for, or one in their folder.
 std::string model_file(const DiagnoseRequest& request) {
@@ -118,15 +47,16 @@ Report diagnose_scene(const Session& session, const DiagnoseRequest& request, co
     draw_diagnosis(request, with_file.output, report);
     return report;
   }
-  const DiagnoseSubjects subjects = diagnose_subjects(scene, models);
-  const diagnostics::TangentOptions options = tangent_options(session, scene, subjects.full, models);
+  const studies::Subjects subjects = studies::subjects_of(scene, models.files, models.modes);
+  const diagnostics::TangentOptions options =
+      studies::tangent_options(scene, subjects.full, models.exponents, session.run_options());
   if (options.exponents > 2 * subjects.full.size() + subjects.full.internal_size())
     throw InvalidInput(fmt::format("--exponents {}: the model has {} directions", options.exponents,
                                    2 * subjects.full.size() + subjects.full.internal_size()));
   std::optional<diagnostics::VerdictTable> verdict;
-  if (models.verdict) verdict = judge_models(session, scene, subjects, options);
+  if (models.verdict) verdict = studies::model_verdict(scene, subjects, options, session.run_options());
   const std::vector<results::ModelExponents> spectra =
-      verdict ? results::exponents_of(*verdict) : measure_models(session, subjects, options);
+      verdict ? results::exponents_of(*verdict) : studies::model_exponents(subjects, options, session.run_options());
   if (verdict && !verdict->models.front().failure.empty())
     throw NumericalFailure("the full model failed " + verdict->models.front().failure, options.transient, {}, 0.0);
 
@@ -170,20 +100,20 @@ ModelDiagnosis add_model_diagnosis(CLI::App& command) {
       ->check(CLI::PositiveNumber)
       ->group(kGroup);
   command
-      .add_option("--exponents", models->exponents,
+      .add_option("--exponents", models->exponents.exponents,
                   "how many, the largest; else all, eight of more than 64, four with --over")
       ->check(CLI::PositiveNumber)
       ->group(kGroup);
-  command.add_option("--transient", models->transient, "time run first; else that of [time]")
+  command.add_option("--transient", models->exponents.transient, "time run first; else that of [time]")
       ->check(CLI::NonNegativeNumber)
       ->group(kGroup);
   command
-      .add_option("--duration", models->duration,
+      .add_option("--duration", models->exponents.duration,
                   "time measured; else that of [time], 500 periods of a drive, with --over a quarter")
       ->check(CLI::PositiveNumber)
       ->group(kGroup);
   command
-      .add_option("--renormalise", models->interval,
+      .add_option("--renormalise", models->exponents.interval,
                   "time between renormalisations; else a thousandth of the duration, or the drive's period")
       ->check(CLI::PositiveNumber)
       ->group(kGroup);

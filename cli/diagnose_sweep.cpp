@@ -31,9 +31,9 @@ std::vector<SweptModel> swept_models(const scene::Scene& scene, const std::strin
   const studies::Family full(scene, {key});
   std::vector<SweptModel> models = {{.title = full.title(), .role = "full", .family = full}};
   // Of a POD, which gives POMs and LNMs, the kind that [reduction] names: it comes first.
-  const DiagnoseSubjects subjects = diagnose_subjects(scene, request);
-  if (subjects.candidates.empty()) return models;
-  const pod::NamedBasis& basis = subjects.candidates.front();
+  const studies::Subjects subjects = studies::subjects_of(scene, request.files, request.modes);
+  if (subjects.bases.empty()) return models;
+  const pod::NamedBasis& basis = subjects.bases.front();
   models.push_back({.title = fmt::format("reduced model, {}", basis.name),
                     .role = "reduced",
                     .family = studies::Family(scene, {key}, basis)});
@@ -72,9 +72,10 @@ Report diagnose_over(const Session& session, const scene::Scene& scene, const Di
   const Over over = parse_over(models.over);
   check_values(scene, over);
   const std::vector<SweptModel> swept = swept_models(scene, over.key, models);
-  diagnostics::TangentOptions tangent = tangent_options(session, scene, swept.front().family.own(), models);
-  if (models.exponents == 0) tangent.exponents = kSweptExponents;
-  if (!models.duration) tangent.duration *= kSweptShare;
+  diagnostics::TangentOptions tangent =
+      studies::tangent_options(scene, swept.front().family.own(), models.exponents, session.run_options());
+  if (models.exponents.exponents == 0) tangent.exponents = kSweptExponents;
+  if (!models.exponents.duration) tangent.duration *= kSweptShare;
 
   std::string identity;
   for (const std::string& file : models.files) identity += studies::identity_of(std::filesystem::path(file));

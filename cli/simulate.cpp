@@ -2,11 +2,11 @@
 #include <slipmode/results/provenance.hpp>
 #include <slipmode/results/records.hpp>
 #include <slipmode/studies/ensemble.hpp>
+#include <slipmode/studies/simulation.hpp>
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
 
 #include <fmt/format.h>
-#include <cmath>
 
 namespace slipmode::cli {
 namespace {
@@ -16,44 +16,8 @@ struct SimulateArguments {
   bool single = false;
 };
 
-struct Run {
-  dynamics::Trajectory trajectory;
-  std::optional<NumericalFailure> failure;  ///< set: the trajectory ends before it
-};
-
-/// One run, watched: progress by simulated time, Ctrl-C polled at every event.
-dynamics::Trajectory simulate_watched(const Session& session, const dynamics::HybridSystem& system,
-                                      const dynamics::State& start, dynamics::SimulateOptions options) {
-  ProgressLine line("simulate", session.progress_mode());
-  const double duration = options.duration;
-  options.on_event = [&](const dynamics::Event& event, const dynamics::State&) {
-    constexpr double kParts = 1000.0;
-    line.update(static_cast<std::size_t>(kParts * (event.time - start.time) / duration),
-                static_cast<std::size_t>(kParts));
-    return !session.stop->load();
-  };
-  dynamics::Trajectory trajectory = dynamics::simulate(system, start, options);
-  session.check_interrupt();
-  return trajectory;
-}
-
-/// A failure part-way does not lose what came before: the run is done again up to there.
-Run simulate_or_part(const Session& session, const dynamics::HybridSystem& system, const dynamics::State& start,
-                     dynamics::SimulateOptions options) {
-  try {
-    return {simulate_watched(session, system, start, options), std::nullopt};
-  } catch (const NumericalFailure& failure) {
-    const double reached = failure.time - start.time - options.sample;
-    if (!(reached > options.transient + options.sample)) throw;
-    options.duration = reached;
-    return {simulate_watched(session, system, start, options), failure};
-  }
-}
-
 Report run_trajectory(const Session& session, const SimulateArguments& arguments, const scene::Scene& scene) {
-  const dynamics::HybridSystem system = scene::build_system(scene);
-  const Run run =
-      simulate_or_part(session, system, scene::initial_state(scene, system), scene::simulate_options(scene));
+  const studies::Simulation run = studies::simulate(scene, session.run_options());
   const dynamics::Trajectory& trajectory = run.trajectory;
 
   results::StoreWriter writer(arguments.output, scene.units);
