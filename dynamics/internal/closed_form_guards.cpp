@@ -202,11 +202,8 @@ void ClosedFormFlow::judge(const BernsteinPolynomial& polynomial, double remaind
   here.at = here.guess = root->at;
   if (!here.resolved) {
     here.refinement = 1 + std::min(8, std::ilogb(remainder / tolerance) / 8);
-    // Up to `at` the polynomial is positive.
-    BernsteinPolynomial before, after;
-    polynomial.split(here.at, before, after);
-    const std::optional<FirstRoot> likely = first_root(after);
-    here.guess = likely && !likely->touching ? here.at + (1.0 - here.at) * likely->at : 0.0;
+    const std::optional<FirstRoot> likely = first_root(polynomial);
+    here.guess = likely && !likely->touching ? likely->at : 0.0;
   }
   if (found.guard < 0 || here.at < found.at) {
     here.others = found.guard < 0 ? found.others : found.at;
@@ -250,7 +247,7 @@ ClosedFormFlow::Search ClosedFormFlow::search(int level) const {
       }
     }
     for (std::size_t j = 0; j < kNodes; ++j) values[j] = guard.constant + guard.sign * output[j];
-    const double least = *std::min_element(values.begin(), values.end());
+    const double least = Eigen::Map<const Eigen::Array<double, kNodes, 1>>(values.data()).minCoeff();
     if (least > remainder || stays_above(values, remainder, kHalvings)) {
       found.spare = std::min(found.spare, std::max(least, 0.0) / std::max(remainder, 1e-300));
       continue;
