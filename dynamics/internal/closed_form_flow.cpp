@@ -128,7 +128,12 @@ void ClosedFormFlow::move(double tau) {
   measured_ = false;
   if (!r.motion.available()) return advance(*tables_, tau, x_, inputs_);
   r.motion.add(tau, free_.data(), x_.data());
+  follow_inputs(tau);
+}
+
+void ClosedFormFlow::follow_inputs(double tau) {
   if (regime_->overlay) return;  // then all inputs are constant
+  const Regime& r = tables_->regime();
   r.advance_inputs(inputs_, tau);
   for (Eigen::Index k = 0; k <= r.speed_input(); ++k)
     if (const double change = inputs_(k) - inputs_begin_(k); change != 0.0) x_ += change * r.particular.col(k);
@@ -136,11 +141,12 @@ void ClosedFormFlow::move(double tau) {
 
 void ClosedFormFlow::pass_window() {
   const Regime& r = tables_->regime();
-  if (!regime_->overlay || !r.motion.available()) return move(tables_->length(level_));
+  if (!r.motion.available()) return move(tables_->length(level_));
   const RegimeChange& d = tables_->change(level_);
   kernels::kernels().pass(
       {r.pairs.np, d.d11.data(), d.d12.data(), d.d21.data(), d.d22.data(), r.scale1.data(), r.scale2.data()}, x_.data(),
       free_.data(), amplitude_.data());
+  follow_inputs(tables_->length(level_));
 }
 
 bool ClosedFormFlow::step(double t_limit) {

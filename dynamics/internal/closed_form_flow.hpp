@@ -104,6 +104,8 @@ class ClosedFormFlow {
   void move(double tau);
   /// The same over a whole window of the level.
   void pass_window();
+  /// Inputs that vary, and the state with them.
+  void follow_inputs(double tau);
   void foresee_starts();
   /// The size of an output's values, which its rounding error is measured by.
   [[nodiscard]] double scale(const Guard& guard) const;
