@@ -2,10 +2,9 @@
 
 #include <slipmode/dynamics/cache.hpp>
 #include <slipmode/dynamics/event_resolver.hpp>
-#include "dynamics/internal/audit_forms.hpp"
 #include "dynamics/internal/belt_work.hpp"
 #include "dynamics/internal/bernstein.hpp"
-#include "dynamics/internal/drive_overlay.hpp"
+#include "dynamics/internal/drive_cache.hpp"
 
 #include <Eigen/Core>
 #include <deque>
@@ -72,10 +71,10 @@ class ClosedFormFlow {
   struct Visited {
     std::vector<ContactRole> roles;
     const RegimeTables* tables;
-    std::unique_ptr<DriveOverlay> overlay;  ///< null for a belt
-    std::unique_ptr<TangentMaps> maps;      ///< null until tangents are carried
-    std::unique_ptr<AuditForms> forms;      ///< for a shaker or a force; null where the audit integrates by quadrature
+    const DriveOverlay* overlay = nullptr;  ///< null for a belt
+    const AuditForms* forms = nullptr;      ///< for a shaker or a force; null where the audit integrates by quadrature
     std::unique_ptr<BeltWork> belt;         ///< for a belt of constant speed; the same
+    std::unique_ptr<TangentMaps> maps;      ///< null until tangents are carried
   };
   /// What a search of one window found.
   struct Search {
@@ -177,6 +176,7 @@ class ClosedFormFlow {
   std::vector<ContactMode> modes_before_;
   double tangent_time_ = 0.0;
 
+  AuditForms::Stay stay_;
   WorkSums work_;
   FlowStatistics statistics_;
   std::deque<Visited> visited_;
