@@ -1,7 +1,5 @@
 #include <slipmode/dynamics/pair_motion.hpp>
 
-#include <slipmode/dynamics/kernels/kernels.hpp>
-
 #include <cmath>
 
 namespace slipmode::dynamics {
@@ -14,14 +12,14 @@ constexpr double kHardlyOscillates = 1e-2;
 
 PairMotion::PairMotion(const ModalModel& m) {
   decay_ = frequency_ = a11_ = a12_ = a21_ = Eigen::VectorXd::Zero(m.np);
-  available_ = m.n > 0;
   for (Eigen::Index i = 0; i < m.n; ++i) {
     const double half = (m.g11(i) - m.g22(i)) / 2.0, square = -m.g12(i) * m.g21(i) - half * half;
-    decay_(i) = (m.g11(i) + m.g22(i)) / 2.0;
-    if (!(square > kHardlyOscillates * kHardlyOscillates * decay_(i) * decay_(i))) {
-      available_ = false;
-      return;
+    const double decay = (m.g11(i) + m.g22(i)) / 2.0;
+    if (!(square > kHardlyOscillates * kHardlyOscillates * decay * decay)) {
+      others_.push_back(i);
+      continue;
     }
+    decay_(i) = decay;
     frequency_(i) = std::sqrt(square);
     a11_(i) = half / frequency_(i);
     a12_(i) = m.g12(i) / frequency_(i);
@@ -29,9 +27,18 @@ PairMotion::PairMotion(const ModalModel& m) {
   }
 }
 
+kernels::MotionArrays PairMotion::arrays() const {
+  return {decay_.size(), decay_.data(), frequency_.data(), a11_.data(), a12_.data(), a21_.data()};
+}
+
+Eigen::MatrixXd PairMotion::changes(const Eigen::VectorXd& times) const {
+  Eigen::MatrixXd out(4 * decay_.size(), times.size());
+  kernels::kernels().changes(arrays(), times.data(), times.size(), out.data());
+  return out;
+}
+
 void PairMotion::add(double t, const double* free, double* x) const {
-  kernels::kernels().free_motion(
-      {decay_.size(), decay_.data(), frequency_.data(), a11_.data(), a12_.data(), a21_.data()}, t, free, x);
+  kernels::kernels().free_motion(arrays(), t, free, x);
 }
 
 }  // namespace slipmode::dynamics

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <slipmode/dynamics/kernels/kernels.hpp>
 #include <slipmode/dynamics/modal_model.hpp>
 
 #include <Eigen/Core>
+#include <vector>
 
 namespace slipmode::dynamics {
 
@@ -16,14 +18,20 @@ class PairMotion {
   explicit PairMotion(const ModalModel& pairs);
 
   /// False when a pair does not oscillate, or hardly: then there is no such formula.
-  [[nodiscard]] bool available() const { return available_; }
-  /// x += (e^{Gt} − I) free. @param x, free  [2np], not the same
+  [[nodiscard]] bool available() const { return decay_.size() > 0 && others_.empty(); }
+  /// Those pairs, in ascending order.
+  [[nodiscard]] const std::vector<Eigen::Index>& others() const { return others_; }
+  /// e^{Gt} − I of the pairs that do oscillate, a column for each time: entries 11, 12, 21 and 22 of all [4np x times].
+  [[nodiscard]] Eigen::MatrixXd changes(const Eigen::VectorXd& times) const;
+  /// x += (e^{Gt} − I) free, if available. @param x, free  [2np], not the same
   void add(double t, const double* free, double* x) const;
 
  private:
-  bool available_ = false;
+  [[nodiscard]] kernels::MotionArrays arrays() const;
+
   Eigen::VectorXd decay_, frequency_;  ///< τ and w [np]
   Eigen::VectorXd a11_, a12_, a21_;    ///< A; its trace is zero [np]
+  std::vector<Eigen::Index> others_;
 };
 
 }  // namespace slipmode::dynamics

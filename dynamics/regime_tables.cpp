@@ -125,13 +125,9 @@ void RegimeTables::step_of(double h, RegimeStep& out) const {
 void RegimeTables::make(RegimeStep& out, int level) const { step_of(length(level), out); }
 
 void RegimeTables::make(RegimeChange& out, int level) const {
-  // Of pairs of which only one component is not zero.
   const auto np = regime_.pairs.np;
-  Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(2 * np, 2), change = unit;
-  unit.col(0).head(np).setOnes();
-  unit.col(1).tail(np).setOnes();
-  for (int k = 0; k < 2; ++k) regime_.motion.add(length(level), unit.col(k).data(), change.col(k).data());
-  out = {change.col(0).head(np), change.col(1).head(np), change.col(0).tail(np), change.col(1).tail(np)};
+  const Eigen::VectorXd change = regime_.motion.changes(Eigen::VectorXd::Constant(1, length(level)));
+  out = {change.head(np), change.segment(np, np), change.segment(2 * np, np), change.tail(np)};
 }
 
 void RegimeTables::make(RegimeAudit& out, int level) const {

@@ -33,51 +33,61 @@ Eigen::MatrixXd chebyshev_interpolation(const Eigen::VectorXd& points, const Eig
   return L;
 }
 
-int gauss_points(double phase) { return 16 + static_cast<int>(std::ceil(phase)); }
+/// Of a rule for e^{iφt} times a polynomial of degree 7 over this phase φ ≤ 4: what it is not exact for, Taylor's terms
+/// from degree 2 points − 7 on, (φ/4)ⁿ/n! by Chebyshev polynomials, is below rounding.
+int gauss_points(double phase) { return 10 + static_cast<int>(std::ceil(phase)); }
+/// The same for interpolation of e^{iφt} at Chebyshev's points.
+int chebyshev_points(double phase) { return 14 + 2 * static_cast<int>(std::ceil(phase)); }
 
 }  // namespace
 
 StepTables::StepTables(const ModalModel& model)
     : model_(model),
+      motion_(model),
       top_(kLongestPhase / (model.fastest > 0 ? model.fastest : 1.0)),
       loaded_(!model.load.isZero(0.0)) {}
+
+Eigen::MatrixXd StepTables::exponentials(const Eigen::VectorXd& times) const {
+  const auto np = model_.np;
+  Eigen::MatrixXd E = motion_.changes(times);
+  E.topRows(np).array() += 1.0;
+  E.bottomRows(np).array() += 1.0;
+  for (const Eigen::Index i : motion_.others())
+    for (Eigen::Index k = 0; k < times.size(); ++k) {
+      const Eigen::Matrix2d own = model_.exponential(i, times(k));
+      E.col(k)({i, np + i, 2 * np + i, 3 * np + i}) << own(0, 0), own(0, 1), own(1, 0), own(1, 1);
+    }
+  return E;
+}
 
 void StepTables::propagate_to(double end, double h, Propagator& out) const {
   const auto& m = model_;
   const auto np = m.np;
   const double length = end * h;
-  out.h = length;
-  for (auto* e : {&out.e11, &out.e12, &out.e21, &out.e22}) *e = Eigen::VectorXd::Zero(np);
-  out.load = Eigen::VectorXd::Zero(2 * np);
-  out.response = Eigen::MatrixXd::Zero(2 * np, kNodes * m.contacts);
-
   const GaussRule gauss = gauss_rule(gauss_points(m.fastest * length));
   const auto points = gauss.node.size();
   Eigen::MatrixXd basis(points, kNodes);  // weight · ℓ_j at the quadrature points
   for (Eigen::Index k = 0; k < points; ++k)
     basis.row(k) = length * gauss.weight(k) * radau().lagrange(end * gauss.node(k)).transpose();
+  Eigen::VectorXd times(points + 1);
+  times << length * (1.0 - gauss.node.array()), length;
+  const Eigen::MatrixXd E = exponentials(times), moments = E.leftCols(points) * basis;  // ∫ e^{G(length − t)} ℓ_j dt
 
-  Eigen::Matrix<double, 4, Eigen::Dynamic> kernel(4, points);
-  for (Eigen::Index i = 0; i < m.n; ++i) {
-    const Eigen::Matrix2d E = m.exponential(i, length);
-    out.e11(i) = E(0, 0);
-    out.e12(i) = E(0, 1);
-    out.e21(i) = E(1, 0);
-    out.e22(i) = E(1, 1);
-    for (Eigen::Index k = 0; k < points; ++k) {
-      const Eigen::Matrix2d S = m.exponential(i, length * (1.0 - gauss.node(k)));
-      kernel.col(k) << S(0, 0), S(0, 1), S(1, 0), S(1, 1);
-    }
-    const Eigen::Matrix<double, 4, kNodes> moments = kernel * basis;
-    for (int c = 0; c < m.contacts; ++c) {
-      const double b1 = m.input(i, c), b2 = m.input(np + i, c);
-      out.response.row(i).segment<kNodes>(kNodes * c) = moments.row(0) * b1 + moments.row(1) * b2;
-      out.response.row(np + i).segment<kNodes>(kNodes * c) = moments.row(2) * b1 + moments.row(3) * b2;
-    }
-    const Eigen::Vector4d total = moments.rowwise().sum();
-    out.load(i) = total(0) * m.load(i) + total(1) * m.load(np + i);
-    out.load(np + i) = total(2) * m.load(i) + total(3) * m.load(np + i);
-  }
+  out.h = length;
+  const auto e = E.col(points);
+  out.e11 = e.head(np);
+  out.e12 = e.segment(np, np);
+  out.e21 = e.segment(2 * np, np);
+  out.e22 = e.tail(np);
+  out.response.resize(2 * np, kNodes * m.contacts);
+  const auto through = [&](const auto& integrals, const auto& input, auto out_rows) {
+    const auto first = input.head(np).asDiagonal(), second = input.tail(np).asDiagonal();
+    out_rows.topRows(np) = first * integrals.topRows(np) + second * integrals.middleRows(np, np);
+    out_rows.bottomRows(np) = first * integrals.middleRows(2 * np, np) + second * integrals.bottomRows(np);
+  };
+  for (int c = 0; c < m.contacts; ++c) through(moments, m.input.col(c), out.response.middleCols(kNodes * c, kNodes));
+  out.load.resize(2 * np);
+  through(moments.rowwise().sum().eval(), m.load, out.load.leftCols(1));
 }
 
 void StepTables::make(Propagator& out, int level) const { propagate_to(1.0, step(level), out); }
@@ -97,34 +107,30 @@ void StepTables::make(Collocation& out, int level) const {
   const double h = step(level);
   const auto& node = radau().node;
 
-  out.free = Eigen::MatrixXd::Zero(kNodes, 2 * np * nc);
-  for (Eigen::Index i = 0; i < m.n; ++i)
-    for (int j = 0; j < kNodes; ++j) {
-      const Eigen::Matrix2d E = m.exponential(i, node(j) * h);
-      for (int c = 0; c < nc; ++c) {
-        const Eigen::RowVector2d row = Eigen::RowVector2d(m.velocity_row(i, c), m.velocity_row(np + i, c)) * E;
-        out.free(j, 2 * np * c + i) = row(0);
-        out.free(j, 2 * np * c + np + i) = row(1);
-      }
-    }
+  out.free.resize(kNodes, 2 * np * nc);
+  const Eigen::MatrixXd at_nodes = exponentials(h * node);
+  for (int c = 0; c < nc; ++c) {
+    const auto first = m.velocity_row.col(c).head(np).asDiagonal(),
+               second = m.velocity_row.col(c).tail(np).asDiagonal();
+    const auto rows = at_nodes.topRows(2 * np), next = at_nodes.bottomRows(2 * np);
+    out.free.middleCols(2 * np * c, np) = (first * rows.topRows(np) + second * next.topRows(np)).transpose();
+    out.free.middleCols(2 * np * c + np, np) = (first * rows.bottomRows(np) + second * next.bottomRows(np)).transpose();
+  }
 
   // The kernels g_cᵀ e^{Gs} b_d (and the load's) are smooth scalars: sampled once, then read where quadrature wants
   // them.
   const double phase = m.fastest * h;
-  const int samples = 24 + 2 * static_cast<int>(std::ceil(phase));
+  const int samples = chebyshev_points(phase);
   Eigen::VectorXd at(samples);
   for (int k = 0; k < samples; ++k) at(k) = h * (1.0 - std::cos(std::numbers::pi * k / (samples - 1))) / 2.0;
-  Eigen::MatrixXd kernel_samples = Eigen::MatrixXd::Zero(samples, nc * (nc + 1));  // column c (nc+1) + d, d = nc: load
-  for (Eigen::Index i = 0; i < m.n; ++i)
-    for (int k = 0; k < samples; ++k) {
-      const Eigen::Matrix2d E = m.exponential(i, at(k));
-      for (int c = 0; c < nc; ++c) {
-        const Eigen::RowVector2d row = Eigen::RowVector2d(m.velocity_row(i, c), m.velocity_row(np + i, c)) * E;
-        for (int d = 0; d < nc; ++d)
-          kernel_samples(k, c * (nc + 1) + d) += row(0) * m.input(i, d) + row(1) * m.input(np + i, d);
-        kernel_samples(k, c * (nc + 1) + nc) += row(0) * m.load(i) + row(1) * m.load(np + i);
-      }
+  Eigen::MatrixXd ends(4 * np, nc * (nc + 1));  // entries of e^{Gs} → column c (nc+1) + d, d = nc: load
+  for (int c = 0; c < nc; ++c)
+    for (int d = 0; d <= nc; ++d) {
+      const Eigen::VectorXd input = d < nc ? m.input.col(d) : m.load;
+      ends.col(c * (nc + 1) + d) << m.velocity_row.col(c).head(np).replicate(2, 1).cwiseProduct(input),
+          m.velocity_row.col(c).tail(np).replicate(2, 1).cwiseProduct(input);
     }
+  const Eigen::MatrixXd kernel_samples = exponentials(at).transpose() * ends;
 
   out.load = Eigen::MatrixXd::Zero(kNodes, nc);
   out.kernel = Eigen::MatrixXd::Zero(kNodes * nc, kNodes * nc);

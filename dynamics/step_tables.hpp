@@ -4,6 +4,7 @@
 #include <slipmode/dynamics/lazy_levels.hpp>
 #include <slipmode/dynamics/modal_model.hpp>
 #include <slipmode/dynamics/nodes.hpp>
+#include <slipmode/dynamics/pair_motion.hpp>
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -97,10 +98,13 @@ class StepTables {
   void make(Collocation& out, int level) const;
   void make(NodeStates& out, int level) const;
   void make(LossForm& out, int level) const;
+  /// e^{Gt} of all pairs, a column for each time: entries 11, 12, 21 and 22 [4np x times].
+  [[nodiscard]] Eigen::MatrixXd exponentials(const Eigen::VectorXd& times) const;
   /// Propagator to the time end·h of a step of size h whose forces are given at the nodes of [0, h].
   void propagate_to(double end, double h, Propagator& out) const;
 
   const ModalModel& model_;
+  PairMotion motion_;
   double top_;
   bool loaded_;
   LazyLevels<Propagator, kLevels> propagators_;

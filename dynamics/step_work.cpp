@@ -1,28 +1,31 @@
 #include <slipmode/dynamics/step_tables.hpp>
 
 #include <cmath>
+#include <vector>
 
 namespace slipmode::dynamics {
 namespace {
 
-/// Values at the points of a Gauss rule on [0, 1] → ∫₀ to each point of the polynomial through them.
-Eigen::MatrixXd running_integrals(const GaussRule& rule) {
+/// Values at the points of a Gauss rule on [0, 1] → ∫₀ to each of the ends of the polynomial through them.
+Eigen::MatrixXd running_integrals(const GaussRule& rule, const Eigen::VectorXd& ends) {
   const auto count = rule.node.size();
-  Eigen::MatrixXd P(count, count + 1);  // Legendre polynomials at 2t − 1
-  for (Eigen::Index k = 0; k < count; ++k) {
-    const double z = 2.0 * rule.node(k) - 1.0;
-    P(k, 0) = 1.0;
-    P(k, 1) = z;
+  const auto legendre = [&](const Eigen::VectorXd& at) {  // polynomials of degree 0 … count at 2t − 1
+    const Eigen::ArrayXd z = 2.0 * at.array() - 1.0;
+    Eigen::ArrayXXd P(at.size(), count + 1);
+    P.col(0).setOnes();
+    P.col(1) = z;
     for (Eigen::Index l = 2; l <= count; ++l)
-      P(k, l) = (static_cast<double>(2 * l - 1) * z * P(k, l - 1) - static_cast<double>(l - 1) * P(k, l - 2)) /
-                static_cast<double>(l);
-  }
+      P.col(l) = (static_cast<double>(2 * l - 1) * z * P.col(l - 1) - static_cast<double>(l - 1) * P.col(l - 2)) /
+                 static_cast<double>(l);
+    return P;
+  };
   // ∫₀ᵗ P_l(2s − 1) ds = (P_{l+1} − P_{l−1})(2t − 1) / (2 (2l + 1)).
-  Eigen::MatrixXd antiderivatives(count, count);
-  antiderivatives.col(0) = rule.node;
+  const Eigen::ArrayXXd at_ends = legendre(ends);
+  Eigen::MatrixXd antiderivatives(ends.size(), count);
+  antiderivatives.col(0) = ends;
   for (Eigen::Index l = 1; l < count; ++l)
-    antiderivatives.col(l) = (P.col(l + 1) - P.col(l - 1)) / static_cast<double>(2 * (2 * l + 1));
-  Eigen::MatrixXd to_legendre = P.leftCols(count).transpose() * rule.weight.asDiagonal();
+    antiderivatives.col(l) = (at_ends.col(l + 1) - at_ends.col(l - 1)) / static_cast<double>(2 * (2 * l + 1));
+  Eigen::MatrixXd to_legendre = legendre(rule.node).leftCols(count).matrix().transpose() * rule.weight.asDiagonal();
   for (Eigen::Index l = 0; l < count; ++l) to_legendre.row(l) *= static_cast<double>(2 * l + 1);
   return antiderivatives * to_legendre;
 }
@@ -30,19 +33,20 @@ Eigen::MatrixXd running_integrals(const GaussRule& rule) {
 }  // namespace
 
 void StepTables::make(LossForm& out, int level) const {
-  // Everything at the points of one rule: e^{Gt}, and the motion that each force polynomial (and the load) causes,
-  // e^{Gt} ∫₀ᵗ e^{−Gs} b ℓ_j(s/h) ds.
+  // ∫ damping η̇² dt by one rule. At each of its points the velocities that each force polynomial (and the load) causes,
+  // those of e^{Gt} ∫₀ᵗ e^{−Gs} b ℓ_j(s/h) ds, from the points of another.
   const ModalModel& m = model_;
+  const kernels::Kernels& vector = kernels::kernels();
   const auto np = m.np;
-  const int nc = m.contacts;
-  const double h = step(level);
-  const GaussRule rule = gauss_rule(18 + static_cast<int>(std::ceil(m.fastest * h)));
-  const auto points = rule.node.size();
-  const Eigen::MatrixXd integrate = h * running_integrals(rule);
-  const Eigen::VectorXd weight = h * rule.weight;
-  const Eigen::Index columns = kNodes * nc, all = columns + (loaded_ ? 1 : 0);  // the last: the load's
-  Eigen::MatrixXd basis(points, kNodes);
-  for (Eigen::Index k = 0; k < points; ++k) basis.row(k) = radau().lagrange(rule.node(k)).transpose();
+  const int nc = m.contacts, sources = nc + (loaded_ ? 1 : 0);  // the last: the load
+  const double h = step(level), phase = m.fastest * h;
+  const GaussRule outer = gauss_rule(12 + static_cast<int>(std::ceil(1.5 * phase)));
+  const GaussRule inner = gauss_rule(18 + static_cast<int>(std::ceil(phase)));
+  const auto points = inner.node.size();
+  const Eigen::MatrixXd integrate = h * running_integrals(inner, outer.node);
+  Eigen::MatrixXd basis(kNodes, points), constant = Eigen::MatrixXd::Zero(kNodes, points);
+  for (Eigen::Index l = 0; l < points; ++l) basis.col(l) = radau().lagrange(inner.node(l));
+  constant.row(0).setOnes();
 
   out.by_force = Eigen::MatrixXd::Zero(kNodes, 2 * np * nc);
   out.load = Eigen::MatrixXd::Zero(kNodes, nc);
@@ -50,52 +54,51 @@ void StepTables::make(LossForm& out, int level) const {
   out.s11 = out.s12 = out.s22 = Eigen::VectorXd::Zero(np);
   out.linear = Eigen::VectorXd::Zero(2 * np);
 
-  Eigen::MatrixXd losses = Eigen::MatrixXd::Zero(all, all);
-  Eigen::MatrixXd forward(points, 4), back(points, 4), first(points, all), second(points, all), rate;
-  for (Eigen::Index i = 0; i < m.n; ++i) {
-    for (Eigen::Index k = 0; k < points; ++k) {
-      const double t = h * rule.node(k);
-      const Eigen::Matrix2d E = m.exponential(i, t), F = m.exponential(i, -t);
-      forward.row(k) << E(0, 0), E(0, 1), E(1, 0), E(1, 1);
-      back.row(k) << F(0, 0), F(0, 1), F(1, 0), F(1, 1);
-    }
-    const auto e21 = forward.col(2), e22 = forward.col(3);
-    for (int c = 0; c <= nc; ++c) {
-      if (c == nc && !loaded_) break;
-      const double b1 = c < nc ? m.input(i, c) : m.load(i), b2 = c < nc ? m.input(np + i, c) : m.load(np + i);
-      const Eigen::VectorXd u1 = back.col(0) * b1 + back.col(1) * b2, u2 = back.col(2) * b1 + back.col(3) * b2;
-      if (c == nc) {
-        first.col(columns) = u1;
-        second.col(columns) = u2;
-      } else {
-        first.middleCols(kNodes * c, kNodes) = u1.asDiagonal() * basis;
-        second.middleCols(kNodes * c, kNodes) = u2.asDiagonal() * basis;
-      }
-    }
-    rate = e21.asDiagonal() * (integrate * first) + e22.asDiagonal() * (integrate * second);
-    const Eigen::VectorXd damped = m.damping(i) * weight, on1 = damped.cwiseProduct(e21),
-                          on2 = damped.cwiseProduct(e22);
-    out.s11(i) = on1.dot(e21);
-    out.s12(i) = 2.0 * on1.dot(e22);
-    out.s22(i) = on2.dot(e22);
-    for (int c = 0; c < nc; ++c) {
-      const auto caused = rate.middleCols(kNodes * c, kNodes);
-      out.by_force.col(2 * np * c + i) = 2.0 * caused.transpose() * on1;
-      out.by_force.col(2 * np * c + np + i) = 2.0 * caused.transpose() * on2;
-    }
-    if (loaded_) {
-      out.linear(i) = 2.0 * on1.dot(rate.col(columns));
-      out.linear(np + i) = 2.0 * on2.dot(rate.col(columns));
-    }
-    losses.noalias() += rate.transpose() * damped.asDiagonal() * rate;
+  const Eigen::MatrixXd forward = exponentials(h * outer.node), back = exponentials(-h * inner.node);
+  std::vector<Eigen::MatrixXd> first, second;  // e^{−Gs} b of each source
+  for (int c = 0; c < sources; ++c) {
+    const Eigen::VectorXd b = c < nc ? m.input.col(c) : m.load;
+    const auto b1 = b.head(np).asDiagonal(), b2 = b.tail(np).asDiagonal();
+    first.emplace_back(b1 * back.topRows(np) + b2 * back.middleRows(np, np));
+    second.emplace_back(b1 * back.middleRows(2 * np, np) + b2 * back.bottomRows(np));
   }
+  std::vector<Eigen::MatrixXd> rate(first.size(), Eigen::MatrixXd(np, kNodes)), on1 = rate, on2 = rate;
+  for (auto* sums : {&on1, &on2})
+    for (Eigen::MatrixXd& sum : *sums) sum.setZero();
+  Eigen::MatrixXd losses = Eigen::MatrixXd::Zero(kNodes * kNodes, sources * sources);
+  for (Eigen::Index k = 0; k < outer.node.size(); ++k) {
+    const auto e21 = forward.col(k).segment(2 * np, np), e22 = forward.col(k).tail(np);
+    const Eigen::VectorXd damped = h * outer.weight(k) * m.damping, d1 = damped.cwiseProduct(e21),
+                          d2 = damped.cwiseProduct(e22);
+    out.s11 += d1.cwiseProduct(e21);
+    out.s12 += 2.0 * d1.cwiseProduct(e22);
+    out.s22 += d2.cwiseProduct(e22);
+    for (int c = 0; c < sources; ++c) {
+      const auto i = static_cast<std::size_t>(c);
+      const Eigen::MatrixXd weights = (c < nc ? basis : constant) * integrate.row(k).asDiagonal();
+      vector.caused(np, points, e21.data(), e22.data(), first[i].data(), second[i].data(), weights.data(),
+                    rate[i].data());
+      on1[i] += (2.0 * d1).asDiagonal() * rate[i];
+      on2[i] += (2.0 * d2).asDiagonal() * rate[i];
+      for (int d = 0; d <= c; ++d)
+        vector.weighted_products(np, rate[i].data(), rate[static_cast<std::size_t>(d)].data(), damped.data(),
+                                 losses.col(sources * c + d).data());
+    }
+  }
+  const auto block = [&](int c, int d) { return Eigen::Map<RadauTables::Matrix8>(losses.col(sources * c + d).data()); };
   for (int c = 0; c < nc; ++c) {
-    for (int d = 0; d < nc; ++d)
-      Eigen::Map<RadauTables::Matrix8>(out.kernel.col(nc * c + d).data()) =
-          losses.block(kNodes * c, kNodes * d, kNodes, kNodes);
-    if (loaded_) out.load.col(c) = 2.0 * losses.block(kNodes * c, columns, kNodes, 1);
+    const auto i = static_cast<std::size_t>(c);
+    out.by_force.middleCols(2 * np * c, np) = on1[i].transpose();
+    out.by_force.middleCols(2 * np * c + np, np) = on2[i].transpose();
+    for (int d = 0; d <= c; ++d) {
+      Eigen::Map<RadauTables::Matrix8>(out.kernel.col(nc * c + d).data()) = block(c, d);
+      Eigen::Map<RadauTables::Matrix8>(out.kernel.col(nc * d + c).data()) = block(c, d).transpose();
+    }
+    if (loaded_) out.load.col(c) = 2.0 * block(nc, c).row(0).transpose();
   }
-  if (loaded_) out.constant = losses(columns, columns);
+  if (!loaded_) return;
+  out.linear << on1.back().col(0), on2.back().col(0);
+  out.constant = block(nc, nc)(0, 0);
 }
 
 kernels::Work StepTables::work(int level, const double* x, const double* forces, const double* velocities) const {

@@ -3,6 +3,7 @@
 #include <slipmode/core/decompositions.hpp>
 #include <slipmode/core/errors.hpp>
 #include <slipmode/dynamics/cache.hpp>
+#include "dynamics/internal/drive_cache.hpp"
 
 #include <algorithm>
 #include <string>
@@ -28,7 +29,8 @@ HybridSystem::HybridSystem(fem::Structure structure, std::vector<friction::Conta
       drive_(std::move(drive)),
       load_(std::move(load)),
       force_directions_(std::move(force_directions)),
-      cache_(std::make_shared<SystemCache>()) {
+      cache_(std::make_shared<SystemCache>()),
+      drive_cache_(std::make_shared<DriveCache>()) {
   const auto n = structure_.size();
   Eigen::MatrixXd W(n, static_cast<Eigen::Index>(contacts_.size()));
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
@@ -62,6 +64,7 @@ HybridSystem HybridSystem::with_drive(friction::Drive drive) const {
   check_drive(drive, force_directions_.cols());
   HybridSystem copy = *this;
   copy.drive_ = std::move(drive);
+  copy.drive_cache_ = std::make_shared<DriveCache>();
   return copy;
 }
 
@@ -75,6 +78,7 @@ HybridSystem HybridSystem::with_laws(std::vector<friction::Contact> contacts) co
   HybridSystem copy = *this;
   copy.contacts_ = std::move(contacts);
   copy.cache_ = std::make_shared<SystemCache>(cache_->models());
+  copy.drive_cache_ = std::make_shared<DriveCache>();
   return copy;
 }
 

@@ -39,6 +39,7 @@ struct State {
 };
 
 class SystemCache;  // modal data and regimes, built when first needed
+class DriveCache;   // regimes under a periodic drive, the same
 
 /// M q̈ + C q̇ + K q = p + Σ_k d_k u_k(t) + Σ_c w_c λ_c with contacts and a drive: a full model or a reduced one alike.
 ///
@@ -80,6 +81,7 @@ class HybridSystem {
   [[nodiscard]] double energy(const State& state) const;
 
   [[nodiscard]] SystemCache& cache() const { return *cache_; }
+  [[nodiscard]] DriveCache& drive_cache() const { return *drive_cache_; }
 
  private:
   fem::Structure structure_;
@@ -88,6 +90,7 @@ class HybridSystem {
   Eigen::VectorXd load_;
   Eigen::MatrixXd force_directions_;
   std::shared_ptr<SystemCache> cache_;
+  std::shared_ptr<DriveCache> drive_cache_;
 };
 
 /// True when every contact is a frictional one: with clearances there are no sticking modes.

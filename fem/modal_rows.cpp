@@ -1,12 +1,14 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/fem/modes.hpp>
 #include "fem/internal/eigensolvers.hpp"
+#include "fem/internal/separate_modes.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 namespace slipmode::fem {
@@ -14,6 +16,8 @@ namespace slipmode::fem {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+/// From this size on pairs are sought one by one where they are clearly separate.
+constexpr Eigen::Index kManyModes = 64;
 constexpr int kMaxSweeps = 60;  // per eigenvalue; two are usual
 
 // Implicit QL with Wilkinson's shift on a symmetric tridiagonal matrix of entries of order 1 (Golub & Van Loan, Matrix
@@ -121,7 +125,12 @@ ModalRows modal_rows(const Structure& chain_like, const Eigen::MatrixXd& vectors
   Eigen::VectorXd e = Eigen::VectorXd::Zero(n);
   e.head(n - 1) = T.off_diagonal / scale;
   Eigen::MatrixXd rows = vectors.transpose() * T.inverse_root_mass.asDiagonal();
-  ImplicitQl(d, e, rows).run();
+  if (auto modes = n >= kManyModes ? detail::separate_modes(d, e.head(n - 1), rows) : std::nullopt) {
+    d = std::move(modes->values);
+    rows = std::move(modes->rows);
+  } else {
+    ImplicitQl(d, e, rows).run();
+  }
 
   const double rounding = static_cast<double>(n) * kEpsilon * d.cwiseAbs().maxCoeff();
   if (d.minCoeff() < -rounding) {

@@ -234,20 +234,20 @@ double AuditForms::quadratic(const Eigen::MatrixXd& Y, const Eigen::VectorXd& fr
   return sum;
 }
 
-double AuditForms::steady(Kind kind, double stay, DrivePhase p) const {
+double AuditForms::Stay::steady(std::size_t kind, double stay, DrivePhase p) const {
   // With the integrals of cos θ, sin θ, cos² θ, cos θ sin θ and sin² θ over the stay.
-  const Steady& s = steady_[kind];
-  const double w = overlay_.omega(), both = p.sine * p.cosine / (2.0 * w);
-  return (s.with_inputs_cosine * p.sine - s.with_inputs_sine * p.cosine) / w + s.cosine * (stay / 2.0 + both) +
+  const Steady& s = forms_->steady_[kind];
+  const double w = forms_->overlay_.omega(), both = p.sine * p.cosine / (2.0 * w);
+  return (along_cosine_[kind] * p.sine - along_sine_[kind] * p.cosine) / w + s.cosine * (stay / 2.0 + both) +
          s.sine * (stay / 2.0 - both) + s.both * p.sine * p.sine / (2.0 * w);
 }
 
-double AuditForms::free_energy(const Place& at, DrivePhase p) {
-  const Regime& r = regime_;
-  const auto n = slipping_.np;
+double AuditForms::Stay::free_energy(const Place& at, DrivePhase p) {
+  const Regime& r = forms_->regime_;
+  const auto n = forms_->slipping_.np;
   lifted_ = at.slipping - resting_;
-  overlay_.slipping.add(p, -1.0, lifted_);
-  double twice = lifted_.tail(n).squaredNorm() + slipping_.omega.cwiseProduct(lifted_.head(n)).squaredNorm();
+  forms_->overlay_.slipping.add(p, -1.0, lifted_);
+  double twice = lifted_.tail(n).squaredNorm() + forms_->slipping_.omega.cwiseProduct(lifted_.head(n)).squaredNorm();
   for (Eigen::Index c = 0; c < r.speed_input(); ++c) {
     const double stiffness = r.answers[static_cast<std::size_t>(c)].stiffness;
     if (stiffness == 0.0) continue;
@@ -258,25 +258,25 @@ double AuditForms::free_energy(const Place& at, DrivePhase p) {
   return twice / 2.0;
 }
 
-double AuditForms::contact_potential(DrivePhase p, const Eigen::VectorXd& x) const {
-  const Regime& r = regime_;
+double AuditForms::Stay::contact_potential(DrivePhase p, const Eigen::VectorXd& x) const {
+  const Regime& r = forms_->regime_;
   double sum = 0.0;
   for (Eigen::Index c = 0; c < r.speed_input(); ++c) {
     if (r.spring(c) > 0.0) {
       const double force =
-          r.force_row.col(c).dot(x) + r.force_coefficient.col(c).dot(inputs_) + overlay_.force.at(c, p);
+          r.force_row.col(c).dot(x) + r.force_coefficient.col(c).dot(inputs_) + forms_->overlay_.force.at(c, p);
       sum -= force * force / (2.0 * r.spring(c));
     } else if (r.slope(c) != 0.0) {
       const double at = r.displacement_row.col(c).dot(x) + r.displacement_coefficient.col(c).dot(inputs_) +
-                        overlay_.displacement.at(c, p);
+                        forms_->overlay_.displacement.at(c, p);
       sum += inputs_(c) * at + r.slope(c) * at * at / 2.0;
     }
   }
   return sum;
 }
 
-AuditForms::Values AuditForms::values(const Place& at) {
-  const DrivePhase p = overlay_.phase(at.time);
+AuditForms::Stay::Values AuditForms::Stay::values(const Place& at) {
+  const DrivePhase p = forms_->overlay_.phase(at.time);
   const auto& vector = kernels::kernels();
   alignas(64) std::array<double, 2 * kKinds> sums{};
   Values out{};
@@ -284,30 +284,33 @@ AuditForms::Values AuditForms::values(const Place& at) {
     vector.node_sums(rows.data(), at.free.data(), at.free.size(), nullptr, sums.data());
     for (std::size_t kind = 0; kind < kKinds; ++kind) out[kind] += first * sums[kind] + second * sums[kKinds + kind];
   };
-  add(harmonic_, p.cosine, p.sine);
-  for (std::size_t k = 0; k < constant_.size(); ++k)
-    add(constant_[k], inputs_(acting_[2 * k]), 2 * k + 1 < acting_.size() ? inputs_(acting_[2 * k + 1]) : 0.0);
+  add(forms_->harmonic_, p.cosine, p.sine);
+  for (std::size_t k = 0; k < forms_->constant_.size(); ++k)
+    add(forms_->constant_[k], inputs_(forms_->acting_[2 * k]),
+        2 * k + 1 < forms_->acting_.size() ? inputs_(forms_->acting_[2 * k + 1]) : 0.0);
   for (const Kind kind : {kContact, kDrive, kViscous, kForce}) out[kind] += steady(kind, at.time - begin_, p);
-  out[kContact] += quadratic(forms_.contact, at.free) + contact_potential(p, at.x);
-  out[kViscous] += forms_.viscous_is_energy ? -free_energy(at, p) : quadratic(forms_.viscous, at.free);
+  out[kContact] += quadratic(forms_->forms_.contact, at.free) + contact_potential(p, at.x);
+  out[kViscous] += forms_->forms_.viscous_is_energy ? -free_energy(at, p) : quadratic(forms_->forms_.viscous, at.free);
   return out;
 }
 
-void AuditForms::begin(const Place& at, const Eigen::VectorXd& inputs) {
+void AuditForms::Stay::begin(const AuditForms& forms, const Place& at, const Eigen::VectorXd& inputs) {
+  forms_ = &forms;
   begin_ = at.time;
   inputs_ = inputs;
-  for (Steady& s : steady_) {
-    s.with_inputs_cosine = s.along_cosine.dot(inputs);
-    s.with_inputs_sine = s.along_sine.dot(inputs);
+  for (std::size_t kind = 0; kind < kKinds; ++kind) {
+    along_cosine_[kind] = forms.steady_[kind].along_cosine.dot(inputs);
+    along_sine_[kind] = forms.steady_[kind].along_sine.dot(inputs);
   }
-  if (forms_.viscous_is_energy) {
-    resting_.setZero(held_.rows());
-    kernels::kernels().product(held_.data(), held_.rows(), held_.cols(), inputs.data(), resting_.data());
+  if (forms.forms_.viscous_is_energy) {
+    resting_.setZero(forms.held_.rows());
+    kernels::kernels().product(forms.held_.data(), forms.held_.rows(), forms.held_.cols(), inputs.data(),
+                               resting_.data());
   }
   at_begin_ = values(at);
 }
 
-StayWork AuditForms::until(const Place& at) {
+StayWork AuditForms::Stay::until(const Place& at) {
   const Values now = values(at);
   const StayWork work{now[kContact] - at_begin_[kContact], now[kDrive] - at_begin_[kDrive],
                       now[kViscous] - at_begin_[kViscous], now[kForce] - at_begin_[kForce]};

@@ -25,7 +25,8 @@ struct StayWork {
 ///
 /// The quadratic part of the viscous loss is minus the energy of x_f, as it must be: of many pairs, and where Y says so
 /// too, n squares take its place. Costs O(n) then, else O(n²), per stay whatever its length, where quadrature would
-/// follow the fastest mode. Source: docs/theory/compliant-contacts.md, section 4.
+/// follow the fastest mode. Constant for a regime under a drive, and safe to share between threads. Source:
+/// docs/theory/compliant-contacts.md, section 4.
 class AuditForms {
  public:
   /// Null where a mode has no damping to speak of, or drifts, or the drive has several harmonics: then the integrals
@@ -40,10 +41,31 @@ class AuditForms {
     const Eigen::VectorXd& free;      ///< x_f
     const Eigen::VectorXd& slipping;  ///< the state in the slipping model
   };
-  /// Starts a stay. @param inputs  constant over the stay
-  void begin(const Place& at, const Eigen::VectorXd& inputs);
-  /// Work since `begin` or the last `until`.
-  [[nodiscard]] StayWork until(const Place& at);
+  /// Stays, one after another.
+  class Stay {
+   public:
+    /// @param forms  of the regime entered; they must stay @param inputs  constant over the stay
+    void begin(const AuditForms& forms, const Place& at, const Eigen::VectorXd& inputs);
+    /// Work since `begin` or the last `until`.
+    [[nodiscard]] StayWork until(const Place& at);
+
+   private:
+    using Values = std::array<double, 4>;  ///< of each Kind
+
+    [[nodiscard]] double steady(std::size_t kind, double stay, DrivePhase p) const;
+    /// Energy of x_f with the contacts' springs.
+    [[nodiscard]] double free_energy(const Place& at, DrivePhase p);
+    /// Contact work that is a function of the state: −½λ²/K_c of contact springs, ∫λ d(wᵀq) under a load of wᵀq.
+    [[nodiscard]] double contact_potential(DrivePhase p, const Eigen::VectorXd& x) const;
+    [[nodiscard]] Values values(const Place& at);
+
+    const AuditForms* forms_ = nullptr;
+    double begin_ = 0.0;
+    Eigen::VectorXd inputs_, resting_;      ///< of this stay; what the inputs hold
+    Eigen::VectorXd lifted_;                ///< x_f in the slipping model
+    Values along_cosine_{}, along_sine_{};  ///< what cos θ and sin θ come with under these inputs
+    Values at_begin_{};
+  };
 
  private:
   /// The powers, in this order.
@@ -55,22 +77,14 @@ class AuditForms {
   };
   /// ∫ uᵀPu dt: constant inputs alone move nothing and have no power.
   struct Steady {
-    Eigen::VectorXd along_cosine, along_sine;                 ///< [ni]
-    double cosine = 0.0, sine = 0.0, both = 0.0;              ///< of cos², sin² and cos sin
-    double with_inputs_cosine = 0.0, with_inputs_sine = 0.0;  ///< the first two under the inputs of a stay
+    Eigen::VectorXd along_cosine, along_sine;     ///< [ni]
+    double cosine = 0.0, sine = 0.0, both = 0.0;  ///< of cos², sin² and cos sin
   };
-  using Values = std::array<double, kKinds>;
 
   AuditForms(const Regime& regime, const RegimeForms& forms, const ModalModel& slipping, const DriveOverlay& overlay);
   [[nodiscard]] bool integrate(Kind kind, const Power& power);
-  [[nodiscard]] double steady(Kind kind, double stay, DrivePhase p) const;
   /// x_fᵀY x_f, off-diagonal entries doubled in Y's lower triangle.
   [[nodiscard]] static double quadratic(const Eigen::MatrixXd& Y, const Eigen::VectorXd& free);
-  /// Energy of x_f with the contacts' springs.
-  [[nodiscard]] double free_energy(const Place& at, DrivePhase p);
-  /// Contact work that is a function of the state: −½λ²/K_c of contact springs, ∫λ d(wᵀq) under a load of wᵀq.
-  [[nodiscard]] double contact_potential(DrivePhase p, const Eigen::VectorXd& x) const;
-  [[nodiscard]] Values values(const Place& at);
 
   const Regime& regime_;
   const RegimeForms& forms_;
@@ -83,10 +97,6 @@ class AuditForms {
   std::vector<Eigen::Index> acting_;  ///< inputs that may be other than zero in a stay
   std::array<Steady, kKinds> steady_;
   Eigen::MatrixXd held_;  ///< inputs → state in the slipping model that they hold [2np_s x ni]
-  double begin_ = 0.0;
-  Eigen::VectorXd inputs_, resting_;  ///< of this stay; what the inputs hold
-  Eigen::VectorXd lifted_;            ///< x_f in the slipping model
-  Values at_begin_{};
 };
 
 }  // namespace slipmode::dynamics

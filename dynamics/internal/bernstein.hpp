@@ -5,18 +5,12 @@
 
 namespace slipmode::dynamics {
 
-/// A polynomial on [0, 1] by its Bernstein coefficients: it lies within their convex hull, and has at most as many
-/// roots as they have sign changes, so that the absence of a root is proved, not sampled. Source: Farouki, The
-/// Bernstein polynomial basis: a centennial retrospective, 2012.
+/// A polynomial of degree 7 or 8 on [0, 1] by its Bernstein coefficients: it lies within their convex hull, and has at
+/// most as many roots as they have sign changes, so that the absence of a root is proved, not sampled. Source: Farouki,
+/// The Bernstein polynomial basis: a centennial retrospective, 2012.
 struct BernsteinPolynomial {
-  static constexpr int kMaxDegree = 8;
-  int degree = 0;
-  std::array<double, kMaxDegree + 1> coefficient{};
-
-  /// Value at t by de Casteljau's rule.
-  [[nodiscard]] double operator()(double t) const;
-  /// The part on [0, t] and the part on [t, 1], each on [0, 1] again.
-  void split(double t, BernsteinPolynomial& left, BernsteinPolynomial& right) const;
+  int degree = 7;
+  std::array<double, 9> coefficient{};
 };
 
 /// Where a polynomial that starts positive first stops being so.

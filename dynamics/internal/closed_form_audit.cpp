@@ -17,15 +17,15 @@ void ClosedFormFlow::account(double tau, bool ends) {
   if (!regime_->forms && !regime_->belt) return integrate(tau);
   if (!ends) return;
   if (regime_->forms && !measured_) measure_amplitudes();
-  const StayWork work = regime_->forms ? regime_->forms->until({point_.time, x_, free_, point_.x})
-                                       : regime_->belt->until(point_.time, x_, inputs_);
+  const StayWork work =
+      regime_->forms ? stay_.until({point_.time, x_, free_, point_.x}) : regime_->belt->until(point_.time, x_, inputs_);
   work_.add(work.contact, work.drive, work.viscous, work.force);
 }
 
 void ClosedFormFlow::integrate(double tau) {
   const RegimeTables& tables = *tables_;
   const Regime& r = tables.regime();
-  const DriveOverlay* overlay = regime_->overlay.get();
+  const DriveOverlay* overlay = regime_->overlay;
   double contact = 0.0, driven = 0.0, viscous = 0.0, forced = 0.0;
   const auto add = [&](double weight, double t, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs) {
     const DrivePhase phase = overlay ? phase_at(t) : DrivePhase{};

@@ -58,11 +58,12 @@ void ClosedFormFlow::enter_regime() {
   const auto known = std::find_if(visited_.begin(), visited_.end(), [&](const auto& v) { return v.roles == roles; });
   if (known == visited_.end()) {
     const RegimeTables& tables = system_.cache().regime(system_, roles);
-    visited_.push_back({roles, &tables, nullptr, nullptr, nullptr, nullptr});
+    visited_.push_back({.roles = roles, .tables = &tables, .belt = nullptr, .maps = nullptr});
     Visited& now = visited_.back();
     if (resolver_.drive().belt() == nullptr) {
-      now.overlay = std::make_unique<DriveOverlay>(tables.regime(), slipping_, resolver_.drive());
-      if (options_.audit) now.forms = AuditForms::make(tables, slipping_, *now.overlay);
+      const DrivenRegime& driven = system_.drive_cache().regime(tables, slipping_, system_.drive());
+      now.overlay = &driven.overlay;
+      if (options_.audit) now.forms = driven.forms();
     } else if (options_.audit && resolver_.drive().is_constant()) {
       now.belt = BeltWork::make(tables.regime());
     }
@@ -73,7 +74,7 @@ void ClosedFormFlow::enter_regime() {
   }
   tables_ = regime_->tables;
   const Regime& r = tables_->regime();
-  const DriveOverlay* overlay = regime_->overlay.get();
+  const DriveOverlay* overlay = regime_->overlay;
   const DrivePhase phase = overlay ? phase_at(point_.time) : DrivePhase{};
 
   inputs_ = Eigen::VectorXd::Zero(r.inputs());
@@ -98,7 +99,7 @@ void ClosedFormFlow::enter_regime() {
     vector.product(r.particular.data(), x_.size(), inputs_.size(), inputs_.data(), resting_.data());
   }
   measure_amplitudes();
-  if (regime_->forms) regime_->forms->begin({point_.time, x_, free_, point_.x}, inputs_);
+  if (regime_->forms) stay_.begin(*regime_->forms, {point_.time, x_, free_, point_.x}, inputs_);
   if (regime_->belt) regime_->belt->begin(point_.time, x_, inputs_);
   set_guards();
   drop_idle_guards();
@@ -128,7 +129,12 @@ void ClosedFormFlow::move(double tau) {
   measured_ = false;
   if (!r.motion.available()) return advance(*tables_, tau, x_, inputs_);
   r.motion.add(tau, free_.data(), x_.data());
+  follow_inputs(tau);
+}
+
+void ClosedFormFlow::follow_inputs(double tau) {
   if (regime_->overlay) return;  // then all inputs are constant
+  const Regime& r = tables_->regime();
   r.advance_inputs(inputs_, tau);
   for (Eigen::Index k = 0; k <= r.speed_input(); ++k)
     if (const double change = inputs_(k) - inputs_begin_(k); change != 0.0) x_ += change * r.particular.col(k);
@@ -136,11 +142,12 @@ void ClosedFormFlow::move(double tau) {
 
 void ClosedFormFlow::pass_window() {
   const Regime& r = tables_->regime();
-  if (!regime_->overlay || !r.motion.available()) return move(tables_->length(level_));
+  if (!r.motion.available()) return move(tables_->length(level_));
   const RegimeChange& d = tables_->change(level_);
   kernels::kernels().pass(
       {r.pairs.np, d.d11.data(), d.d12.data(), d.d21.data(), d.d22.data(), r.scale1.data(), r.scale2.data()}, x_.data(),
       free_.data(), amplitude_.data());
+  follow_inputs(tables_->length(level_));
 }
 
 bool ClosedFormFlow::step(double t_limit) {
@@ -269,7 +276,7 @@ void ClosedFormFlow::lift_point() {
   if (oscillator_states_.empty()) return;
   const Regime& r = tables_->regime();
   Eigen::VectorXd x = x_;
-  if (const DriveOverlay* overlay = regime_->overlay.get()) {
+  if (const DriveOverlay* overlay = regime_->overlay) {
     overlay->state.add(phase_at(point_.time), 1.0, x);
   }
   point_.internal(oscillator_states_) = r.to_oscillators * x;

@@ -2,10 +2,9 @@
 
 #include <slipmode/dynamics/cache.hpp>
 #include <slipmode/dynamics/event_resolver.hpp>
-#include "dynamics/internal/audit_forms.hpp"
 #include "dynamics/internal/belt_work.hpp"
 #include "dynamics/internal/bernstein.hpp"
-#include "dynamics/internal/drive_overlay.hpp"
+#include "dynamics/internal/drive_cache.hpp"
 
 #include <Eigen/Core>
 #include <deque>
@@ -72,10 +71,10 @@ class ClosedFormFlow {
   struct Visited {
     std::vector<ContactRole> roles;
     const RegimeTables* tables;
-    std::unique_ptr<DriveOverlay> overlay;  ///< null for a belt
-    std::unique_ptr<TangentMaps> maps;      ///< null until tangents are carried
-    std::unique_ptr<AuditForms> forms;      ///< for a shaker or a force; null where the audit integrates by quadrature
+    const DriveOverlay* overlay = nullptr;  ///< null for a belt
+    const AuditForms* forms = nullptr;      ///< for a shaker or a force; null where the audit integrates by quadrature
     std::unique_ptr<BeltWork> belt;         ///< for a belt of constant speed; the same
+    std::unique_ptr<TangentMaps> maps;      ///< null until tangents are carried
   };
   /// What a search of one window found.
   struct Search {
@@ -104,6 +103,8 @@ class ClosedFormFlow {
   void move(double tau);
   /// The same over a whole window of the level.
   void pass_window();
+  /// Inputs that vary, and the state with them.
+  void follow_inputs(double tau);
   void foresee_starts();
   /// The size of an output's values, which its rounding error is measured by.
   [[nodiscard]] double scale(const Guard& guard) const;
@@ -175,6 +176,7 @@ class ClosedFormFlow {
   std::vector<ContactMode> modes_before_;
   double tangent_time_ = 0.0;
 
+  AuditForms::Stay stay_;
   WorkSums work_;
   FlowStatistics statistics_;
   std::deque<Visited> visited_;

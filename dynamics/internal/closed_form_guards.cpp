@@ -112,7 +112,7 @@ ClosedFormFlow::GuardValue ClosedFormFlow::evaluate(const Guard& guard, double t
   const auto k = guard.output;
   double value = r.output(k, x_, inputs_);
   double rate = kernels::kernels().dot(r.row1.col(k).data(), x_.data(), x_.size()) + r.coefficient1.col(k).dot(inputs_);
-  if (const DriveOverlay* overlay = regime_->overlay.get()) {
+  if (const DriveOverlay* overlay = regime_->overlay) {
     const DrivePhase phase = phase_at(t);
     value += overlay->outputs.at(k, phase);
     rate += overlay->omega() * overlay->outputs.rate(k, phase);
@@ -123,7 +123,7 @@ ClosedFormFlow::GuardValue ClosedFormFlow::evaluate(const Guard& guard, double t
 double ClosedFormFlow::second_derivative(const Guard& guard, double t) const {
   const Regime& r = tables_->regime();
   double second = r.row2.col(guard.output).dot(x_) + r.coefficient2.col(guard.output).dot(inputs_);
-  if (const DriveOverlay* overlay = regime_->overlay.get())
+  if (const DriveOverlay* overlay = regime_->overlay)
     second += overlay->omega() * overlay->omega() * overlay->outputs.bend(guard.output, phase_at(t));
   return guard.sign * second;
 }
@@ -132,7 +132,7 @@ void ClosedFormFlow::drop_idle_guards() {
   // A load that varies by a hundredth of its mean need not be looked at: under constant inputs, with free motion that
   // does not grow, an output stays within its amplitudes of where the inputs hold it for as long as the stay lasts.
   const Regime& r = tables_->regime();
-  const DriveOverlay* overlay = regime_->overlay.get();
+  const DriveOverlay* overlay = regime_->overlay;
   if (overlay == nullptr || !r.motion.available() || r.growth > 0.0) return;
   std::erase_if(guards_, [&](const Guard& guard) {
     const auto k = guard.output;
@@ -148,7 +148,7 @@ void ClosedFormFlow::foresee_starts() {
   // A guard that starts at zero. Taylor's theorem says for how long it is sure to stay positive: g ≥ g′t − M₂t²/2 (or
   // g″t²/2 − M₃t³/6 when g′ vanishes); half of that time is used.
   const Regime& r = tables_->regime();
-  const DriveOverlay* overlay = regime_->overlay.get();
+  const DriveOverlay* overlay = regime_->overlay;
   const double tiny = 1e-9 / r.rate, room = std::exp(r.growth / r.rate);
   double shortest = std::numeric_limits<double>::infinity();
   for (Guard& guard : guards_) {
@@ -202,11 +202,8 @@ void ClosedFormFlow::judge(const BernsteinPolynomial& polynomial, double remaind
   here.at = here.guess = root->at;
   if (!here.resolved) {
     here.refinement = 1 + std::min(8, std::ilogb(remainder / tolerance) / 8);
-    // Up to `at` the polynomial is positive.
-    BernsteinPolynomial before, after;
-    polynomial.split(here.at, before, after);
-    const std::optional<FirstRoot> likely = first_root(after);
-    here.guess = likely && !likely->touching ? here.at + (1.0 - here.at) * likely->at : 0.0;
+    const std::optional<FirstRoot> likely = first_root(polynomial);
+    here.guess = likely && !likely->touching ? likely->at : 0.0;
   }
   if (found.guard < 0 || here.at < found.at) {
     here.others = found.guard < 0 ? found.others : found.at;
@@ -219,7 +216,7 @@ void ClosedFormFlow::judge(const BernsteinPolynomial& polynomial, double remaind
 ClosedFormFlow::Search ClosedFormFlow::search(int level) const {
   const Regime& r = tables_->regime();
   const RegimeWindow& w = tables_->window(level);
-  const DriveOverlay* overlay = regime_->overlay.get();
+  const DriveOverlay* overlay = regime_->overlay;
   const auto np = r.pairs.np, ni = r.inputs();
   const kernels::Kernels& vector = kernels::kernels();
   Search found;
@@ -250,7 +247,7 @@ ClosedFormFlow::Search ClosedFormFlow::search(int level) const {
       }
     }
     for (std::size_t j = 0; j < kNodes; ++j) values[j] = guard.constant + guard.sign * output[j];
-    const double least = *std::min_element(values.begin(), values.end());
+    const double least = Eigen::Map<const Eigen::Array<double, kNodes, 1>>(values.data()).minCoeff();
     if (least > remainder || stays_above(values, remainder, kHalvings)) {
       found.spare = std::min(found.spare, std::max(least, 0.0) / std::max(remainder, 1e-300));
       continue;
@@ -297,7 +294,7 @@ double ClosedFormFlow::curvature(Eigen::Index output) const {
   double bend = std::exp(std::min(r.growth * h, 200.0)) * r.weight2.col(output).dot(amplitude_) +
                 std::abs(r.polynomial2.col(output).dot(inputs_begin_)) +
                 std::abs(r.polynomial3.col(output).dot(inputs_begin_)) * h;
-  if (const DriveOverlay* overlay = regime_->overlay.get())
+  if (const DriveOverlay* overlay = regime_->overlay)
     bend += overlay->omega() * overlay->omega() * overlay->outputs.size(output, 2);
   return bend;
 }

@@ -113,7 +113,7 @@ const Eigen::VectorXd& ClosedFormFlow::point_rate() {
   input_rate_.setZero(r.inputs());
   for (const int c : maps.follows) input_rate_(c) = inputs_(V);
   input_rate_(V) = inputs_(V + 1);
-  if (const DriveOverlay* overlay = regime_->overlay.get()) {
+  if (const DriveOverlay* overlay = regime_->overlay) {
     const DrivePhase phase = phase_at(point_.time);
     const double w = overlay->omega();
     for (Eigen::Index i = 0; i < n; ++i) {

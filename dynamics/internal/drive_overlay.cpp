@@ -168,22 +168,21 @@ DrivePhase DriveOverlay::phase(double t) const {
 }
 
 const std::vector<DriveOverlay::Window>& DriveOverlay::window(int level, double h) const {
-  auto& slot = windows_[static_cast<std::size_t>(level)];
-  if (!slot.empty()) return slot;
-  for (Eigen::Index order = 1; order <= orders(); ++order) {
-    const double w = static_cast<double>(order) * omega_;
-    Eigen::Matrix<double, 8, 1> cosine, sine;
-    for (int j = 0; j < 8; ++j) {
-      cosine(j) = std::cos(w * lobatto().point(j) * h);
-      sine(j) = std::sin(w * lobatto().point(j) * h);
+  return windows_.get(level, [&](std::vector<Window>& out) {
+    for (Eigen::Index order = 1; order <= orders(); ++order) {
+      const double w = static_cast<double>(order) * omega_;
+      Eigen::Matrix<double, 8, 1> cosine, sine;
+      for (int j = 0; j < 8; ++j) {
+        cosine(j) = std::cos(w * lobatto().point(j) * h);
+        sine(j) = std::sin(w * lobatto().point(j) * h);
+      }
+      Window own;
+      Eigen::Map<Eigen::Matrix<double, 8, 1>>(own.cosine.data()) = lobatto().bernstein * cosine;
+      Eigen::Map<Eigen::Matrix<double, 8, 1>>(own.sine.data()) = lobatto().bernstein * sine;
+      own.remainder = std::min(kInterpolationGain, interpolation_share(w, h));
+      out.push_back(own);
     }
-    Window own;
-    Eigen::Map<Eigen::Matrix<double, 8, 1>>(own.cosine.data()) = lobatto().bernstein * cosine;
-    Eigen::Map<Eigen::Matrix<double, 8, 1>>(own.sine.data()) = lobatto().bernstein * sine;
-    own.remainder = std::min(kInterpolationGain, interpolation_share(w, h));
-    slot.push_back(own);
-  }
-  return slot;
+  });
 }
 
 }  // namespace slipmode::dynamics

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <slipmode/dynamics/lazy_levels.hpp>
 #include <slipmode/dynamics/regime.hpp>
 #include <slipmode/friction/drive.hpp>
 
@@ -23,6 +24,8 @@ struct DrivePhase {
 /// The steady response of a regime to a periodic drive with harmonics of θ = ωt + phase: a shaker d = A sin θ, or
 /// forces. The state of the closed-form flow is what is left beside it, x − Σ_j X_cj cos jθ + X_sj sin jθ, and moves
 /// freely: tables of a regime serve every frequency and amplitude.
+///
+/// Made once for each regime and drive (see DriveCache); safe to share between threads.
 ///
 /// (ijω − G) X_j = B J_j, J_j the drive's part of the inputs, solved at the contacts (see `harmonic_response`).
 class DriveOverlay {
@@ -75,7 +78,7 @@ class DriveOverlay {
 
  private:
   double omega_ = 0.0, phase_ = 0.0;
-  mutable std::array<std::vector<Window>, RegimeTables::kLevels> windows_ = {};
+  LazyLevels<std::vector<Window>, RegimeTables::kLevels> windows_;
 };
 
 }  // namespace slipmode::dynamics

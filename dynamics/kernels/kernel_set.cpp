@@ -28,6 +28,9 @@ const Kernels kSet{
     .taylor = taylor,
     .taylor_work = taylor_work,
     .free_motion = free_motion,
+    .changes = changes,
+    .caused = caused,
+    .weighted_products = weighted_products,
     .pass = pass,
 };
 

@@ -147,6 +147,15 @@ struct Kernels {
                       double* out_x);
   /// x += (e^{Gt} − I) free, each part of the difference by itself: short times and slow pairs lose nothing.
   void (*free_motion)(const MotionArrays& pairs, double t, const double* free, double* x);
+  /// D = e^{Gt} − I at several times, a column for each: d11, d12, d21, d22 of all pairs. @param out  [4np x count]
+  void (*changes)(const MotionArrays& pairs, const double* times, Index count, double* out);
+  /// What the velocities are at one time, by forces whose shares of the time before are given: out = Σ_l (a u_l + b
+  /// v_l) w_l for eight forces. @param a, b  [np] @param u, v  [np x points] @param w  [8 x points] @param out  [np x
+  /// 8]
+  void (*caused)(Index np, Index points, const double* a, const double* b, const double* u, const double* v,
+                 const double* w, double* out);
+  /// out += Aᵀ diag(weight) B. @param A, B  [np x 8] @param out  [8 x 8]
+  void (*weighted_products)(Index np, const double* A, const double* B, const double* weight, double* out);
   /// x += D free, free += D free, and the new sizes scale₁ |free₁| + scale₂ |free₂| [np].
   void (*pass)(const ChangeArrays& change, double* x, double* free, double* out_size);
 };

@@ -154,6 +154,42 @@ TEST_P(EachKernelSet, MovesOscillatorsExactlyToRounding) {
   }
 }
 
+TEST_P(EachKernelSet, TabulatesTheChangesOfFreeMotion) {
+  constexpr Eigen::Index np = 16;
+  const Oscillators pairs(3, np);
+  const Eigen::Vector3d times(1e-6, 0.3, -0.02);
+  Eigen::MatrixXd D(4 * np, 3);
+  set().changes(pairs.arrays(), times.data(), 3, D.data());
+  const Eigen::VectorXd free = numbers(2 * np, 11), first = free.head(np), second = free.tail(np);
+  for (int k = 0; k < 3; ++k) {
+    // Beside free motion over the same time, which is compared with long double above.
+    Eigen::VectorXd change = Eigen::VectorXd::Zero(2 * np), by_table(2 * np);
+    set().free_motion(pairs.arrays(), times(k), free.data(), change.data());
+    const auto d = [&](int entry) { return D.col(k).segment(entry * np, np); };
+    by_table << d(0).cwiseProduct(first) + d(1).cwiseProduct(second),
+        d(2).cwiseProduct(first) + d(3).cwiseProduct(second);
+    for (Eigen::Index i = 0; i < 2 * np; ++i)
+      EXPECT_NEAR(by_table(i), change(i), 1e-15 * (1.0 + std::abs(D.col(k).cwiseAbs().maxCoeff())));
+  }
+}
+
+TEST_P(EachKernelSet, SumsOverPairsAndPoints) {
+  constexpr Eigen::Index np = 24, points = 19;
+  const Eigen::VectorXd a = numbers(np, 1), b = numbers(np, 2);
+  const Eigen::MatrixXd u = numbers(np * points, 3).reshaped(np, points),
+                        v = numbers(np * points, 4).reshaped(np, points),
+                        w = numbers(8 * points, 5).reshaped(8, points);
+  Eigen::MatrixXd caused(np, 8);
+  set().caused(np, points, a.data(), b.data(), u.data(), v.data(), w.data(), caused.data());
+  const Eigen::MatrixXd expected = (a.asDiagonal() * u + b.asDiagonal() * v) * w.transpose();
+  EXPECT_LT((caused - expected).cwiseAbs().maxCoeff(), 1e-14);
+
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Ones(8, 8);
+  set().weighted_products(np, caused.data(), u.data(), a.data(), sums.data());
+  const Eigen::MatrixXd products = caused.transpose() * a.asDiagonal() * u.leftCols(8);
+  EXPECT_LT((sums - Eigen::MatrixXd::Ones(8, 8) - products).cwiseAbs().maxCoeff(), 1e-13);
+}
+
 TEST_P(EachKernelSet, PassesAWindowAsTheChangeSays) {
   constexpr Eigen::Index np = 16;
   const Eigen::VectorXd d = numbers(4 * np, 1), scale = numbers(2 * np, 2).cwiseAbs();
@@ -217,6 +253,29 @@ TEST(KernelSets, OfTwoVectorWidthsMoveOscillatorsToTheSameBytes) {
     fused[0]->free_motion(pairs.arrays(), t, free.data(), wide.data());
     fused[1]->free_motion(pairs.arrays(), t, free.data(), narrow.data());
     EXPECT_EQ(std::memcmp(wide.data(), narrow.data(), 2 * np * sizeof(double)), 0) << "seed " << seed;
+  }
+}
+
+TEST(KernelSets, OfTwoVectorWidthsMakeTheSameTables) {
+  const std::vector<const Kernels*> fused = fused_sets();
+  if (fused.size() < 2) GTEST_SKIP() << "this processor runs one vector width with fused multiply-add";
+  constexpr Eigen::Index np = 24, points = 9;
+  const Eigen::VectorXd times = numbers(points, 1);
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    const Oscillators pairs(seed, np);
+    std::vector<Eigen::MatrixXd> table, caused, sums;
+    for (const Kernels* set : fused) {
+      Eigen::MatrixXd& E = table.emplace_back(4 * np, points);
+      set->changes(pairs.arrays(), times.data(), points, E.data());
+      const Eigen::VectorXd w = numbers(8 * points, seed);
+      Eigen::MatrixXd& rate = caused.emplace_back(np, 8);
+      set->caused(np, points, pairs.a12.data(), pairs.w.data(), E.data(), E.data() + np * points, w.data(),
+                  rate.data());
+      Eigen::MatrixXd& sum = sums.emplace_back(Eigen::MatrixXd::Zero(8, 8));
+      set->weighted_products(np, rate.data(), E.data(), pairs.w.data(), sum.data());
+    }
+    for (const auto* both : {&table, &caused, &sums})
+      EXPECT_EQ(std::memcmp((*both)[0].data(), (*both)[1].data(), (*both)[0].size() * sizeof(double)), 0) << seed;
   }
 }
 

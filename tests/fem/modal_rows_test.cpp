@@ -1,12 +1,15 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/fem/chain.hpp>
 #include <slipmode/fem/modes.hpp>
+#include "fem/internal/separate_modes.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <vector>
 
 namespace slipmode::fem {
 namespace {
@@ -66,6 +69,47 @@ TEST(ModalRows, SurviveSeparateMassesAndTwins) {
   const ModalRows tracked = modal_rows(Structure(I, Rayleigh{}, Eigen::MatrixXd(4.0 * I)), I);
   EXPECT_EQ(tracked.omega, Eigen::VectorXd::Constant(4, 2.0));
   EXPECT_TRUE((tracked.rows * tracked.rows.transpose()).isIdentity(1e-15));
+}
+
+TEST(ModalRows, OfManyRandomMassesAgreeWithTheirShapes) {
+  // Beyond the size from which pairs are found one by one; what separate_modes gives is compared with dense modes.
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    std::mt19937_64 random(seed);
+    const auto draw = [&random] { return 0.8 + 0.4 * static_cast<double>(random() >> 11) * 0x1p-53; };
+    const int n = 64 + static_cast<int>(random() % 100);
+    const Eigen::VectorXd diagonal = Eigen::VectorXd::NullaryExpr(n, [&](Eigen::Index) { return 0.6 * draw(); });
+    const Eigen::VectorXd coupling = Eigen::VectorXd::NullaryExpr(n - 1, [&](Eigen::Index) { return -0.25 * draw(); });
+    Eigen::MatrixXd rows(2, n);
+    for (double& y : rows.reshaped()) y = draw() - 1.0;
+    const auto modes = detail::separate_modes(diagonal, coupling, rows);
+    ASSERT_TRUE(modes.has_value());
+    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> dense;
+    dense.computeFromTridiagonal(diagonal, coupling);
+    EXPECT_LT((modes->values - dense.eigenvalues()).cwiseAbs().maxCoeff(), 1e-13);
+    const Eigen::MatrixXd full = rows * dense.eigenvectors();
+    for (int k = 0; k < n; ++k) {
+      const double sign = full.col(k).dot(modes->rows.col(k)) < 0.0 ? -1.0 : 1.0;
+      EXPECT_LT((full.col(k) - sign * modes->rows.col(k)).norm(), 1e-10) << "mode " << k << " of " << n;
+    }
+  }
+}
+
+TEST(ModalRows, OfTwinsAreNotSoughtOneByOne) {
+  // Two equal halves, each held to the ground, joined by a spring of 1e-9: pairs of frequencies 1e-9 apart, whose
+  // shapes no residual tells apart. Expected: completeness, Φ Φᵀ = M⁻¹ = I, and no separate modes.
+  const int n = 80;
+  ChainOptions options{.masses = n, .stiffness = std::vector<double>(n, 1.0), .ground_stiffness = {0.5}};
+  options.stiffness[0] = 1e-9;
+  options.stiffness[n / 2] = 1e-9;
+  const Structure s = chain(options);
+  Eigen::MatrixXd Y(n, 3);
+  Y << Eigen::VectorXd::Unit(n, 3), Eigen::VectorXd::Unit(n, n / 2 + 3), Eigen::VectorXd::Unit(n, n - 1);
+  const Eigen::MatrixXd found = modal_rows(s, Y).rows;
+  EXPECT_LT((found * found.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-12);
+  const Eigen::VectorXd diagonal = Eigen::VectorXd::Constant(n, 0.5);
+  Eigen::VectorXd coupling = Eigen::VectorXd::Constant(n - 1, -0.2);
+  coupling(n / 2 - 1) = 1e-5;
+  EXPECT_FALSE(detail::separate_modes(diagonal, coupling, Y.transpose()).has_value());
 }
 
 TEST(ModalRows, OneMass) {

@@ -34,6 +34,10 @@ Work taylor_work(const PairArrays& pairs, const double* velocity_row, const doub
                  double* out_x);
 
 void free_motion(const MotionArrays& pairs, double t, const double* free, double* x);
+void changes(const MotionArrays& pairs, const double* times, Index count, double* out);
+void caused(Index np, Index points, const double* a, const double* b, const double* u, const double* v, const double* w,
+            double* out);
+void weighted_products(Index np, const double* A, const double* B, const double* weight, double* out);
 void pass(const ChangeArrays& change, double* x, double* free, double* out_size);
 
 extern const Kernels kSet;
