@@ -14,7 +14,7 @@ int main() {
 
   const diagnostics::SweepResult result =
       diagnostics::sweep(diagnostics::belt_model(chain), diagnostics::sweep_values(0.47, 0.45, 0.01),
-                         diagnostics::sliding_equilibrium(chain), {.mode = diagnostics::SweepMode::kFollow});
+                         diagnostics::sliding_equilibrium(chain), {.mode = SweepMode::kFollow});
   for (const diagnostics::SweepPoint& point : result.points) {
     const diagnostics::PeriodResult& motion = point.settled.period;
     std::printf("V = %.2f: %s, period %.5f with %d slip(s)\n", point.parameter, to_string(motion.motion), motion.T,
