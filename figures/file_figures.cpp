@@ -32,7 +32,6 @@
 namespace slipmode::figures {
 namespace {
 
-
 using results::StoreReader;
 
 std::string_view colour_of(const std::string& role) {

@@ -17,9 +17,6 @@
 namespace slipmode::figures {
 namespace {
 
-
-
-
 using results::StoreReader;
 
 /// The reading of a stored trajectory, with the time between samples.
