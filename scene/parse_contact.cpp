@@ -1,6 +1,6 @@
 #include <slipmode/core/errors.hpp>
 #include "scene/internal/scene_parts.hpp"
-#include "scene/internal/scene_words.hpp"
+#include "scene/internal/toml_fields.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -10,18 +10,6 @@
 namespace slipmode::scene {
 
 namespace {
-
-friction::NormalOscillator read_oscillator(TomlReader in) {
-  friction::NormalOscillator own;
-  own.mass = in.number("mass", kPositive);
-  own.support_stiffness = in.number("support_stiffness", kNonNegative);
-  own.support_damping = in.number_or("support_damping", 0.0, kNonNegative);
-  own.spring_stiffness = in.number("spring_stiffness", kPositive);
-  own.spring_damping = in.number_or("spring_damping", 0.0, kNonNegative);
-  own.slope = in.number("slope", kFinite);
-  in.finish();
-  return own;
-}
 
 friction::NormalLoad read_load(TomlReader& contact) {
   const char* key = "normal_load";
@@ -34,7 +22,7 @@ friction::NormalLoad read_load(TomlReader& contact) {
     return {constant, slope};
   }
   in.refuse("slope", "an oscillator is given too", "oscillator.slope, or a slope and no oscillator");
-  const friction::NormalOscillator own = read_oscillator(in.table("oscillator"));
+  const auto own = read_table<friction::NormalOscillator>(in.table("oscillator"));
   in.finish();
   return {constant, own};
 }
@@ -50,7 +38,7 @@ double read_tilt(TomlReader& in) {
 void check_combination(TomlReader& in, const ContactSpec& spec) {
   if (!friction::is_piecewise_linear(spec.law)) {
     constexpr const char* kValid = "law = \"coulomb\" or \"compliant\"";
-    const std::string what = fmt::format("does not go with law \"{}\"", kLaws[spec.law.index()]);
+    const std::string what = fmt::format("does not go with law \"{}\"", friction::law_words()[spec.law.index()]);
     if (spec.tilt_deg != 0.0) in.fail("tilt_deg", what, fmt::format("0, or {}", kValid));
     if (!spec.normal_load.is_constant()) in.fail("normal_load", what, fmt::format("a number, or {}", kValid));
     return;

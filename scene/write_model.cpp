@@ -1,10 +1,9 @@
 #include <slipmode/core/overloaded.hpp>
 #include "scene/internal/scene_words.hpp"
-#include "scene/internal/toml_text.hpp"
+#include "scene/internal/toml_fields.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <tuple>
 
 namespace slipmode::scene {
 
@@ -96,50 +95,17 @@ std::string load_toml(const friction::NormalLoad& load) {
   if (!load.oscillator) {
     return fmt::format("{{ constant = {}, slope = {} }}", number_text(load.constant), number_text(load.slope));
   }
-  const friction::NormalOscillator& own = *load.oscillator;
-  return fmt::format(
-      "{{ constant = {}, oscillator = {{ mass = {}, support_stiffness = {}, support_damping = {}, spring_stiffness = "
-      "{}, spring_damping = {}, slope = {} }} }}",
-      number_text(load.constant), number_text(own.mass), number_text(own.support_stiffness),
-      number_text(own.support_damping), number_text(own.spring_stiffness), number_text(own.spring_damping),
-      number_text(own.slope));
+  return fmt::format("{{ constant = {}, oscillator = {} }}", number_text(load.constant),
+                     inline_table(*load.oscillator));
 }
 
-std::string coefficients_toml(const auto& law) { return number_line("mu_s", law.mu_s) + number_line("mu_k", law.mu_k); }
+std::string law_toml(const auto& law) { return lines_toml(law); }
 
-std::string stop_toml(const char* key, const friction::Stop& stop) {
-  return fmt::format("{} = {{ stiffness = {}, damping = {}, gap = {} }}\n", key, number_text(stop.stiffness),
-                     number_text(stop.damping), number_text(stop.gap));
-}
-
-std::string clearance_toml(const friction::Clearance& law) {
-  const auto numbers = [](const friction::Stop& stop) { return std::tuple(stop.stiffness, stop.damping, stop.gap); };
-  std::string out = fmt::format("loss = \"{}\"\n", kLosses[static_cast<std::size_t>(law.loss)]);
-  if (law.left && law.right && numbers(*law.left) == numbers(*law.right)) return out + stop_toml("stop", *law.left);
-  if (law.left) out += stop_toml("left", *law.left);
-  if (law.right) out += stop_toml("right", *law.right);
-  return out;
-}
-
-std::string law_toml(const friction::Law& any) {
-  return std::visit(
-      Overloaded{
-          [](const friction::Coulomb& law) { return coefficients_toml(law); },
-          [](const friction::Stribeck& law) { return coefficients_toml(law) + number_line("alpha", law.alpha); },
-          [](const friction::TanhRegularised& law) {
-            return coefficients_toml(law) + number_line("alpha", law.alpha) + number_line("epsilon", law.epsilon);
-          },
-          [](const friction::CompliantCoulomb& law) {
-            return coefficients_toml(law) + number_line("stiffness", law.stiffness);
-          },
-          [](const friction::Dahl& law) { return number_line("mu", law.mu) + number_line("stiffness", law.stiffness); },
-          [](const friction::LuGre& law) {
-            return coefficients_toml(law) + number_line("stribeck_speed", law.stribeck_speed) +
-                   number_line("stiffness", law.stiffness) + number_line("damping", law.damping) +
-                   number_line("viscous", law.viscous);
-          },
-          [](const friction::Clearance& law) { return clearance_toml(law); }},
-      any);
+/// Stops that are alike are said once.
+std::string law_toml(const friction::Clearance& law) {
+  const bool alike = law.left && law.right && inline_table(*law.left) == inline_table(*law.right);
+  if (!alike) return lines_toml(law);
+  return lines_toml(law, {"left", "right"}) + fmt::format("stop = {}\n", inline_table(*law.left));
 }
 
 }  // namespace
@@ -154,10 +120,10 @@ std::string structure_toml(const Scene& scene) {
 
 std::string contact_toml(const ContactSpec& contact, const Scene& scene) {
   std::string out = fmt::format("\n[[contact]]\nname = {}\n{}law = \"{}\"\n", quoted_text(contact.name),
-                                place_toml(contact.at), kLaws[contact.law.index()]);
+                                place_toml(contact.at), friction::law_words()[contact.law.index()]);
   const bool clearance = std::holds_alternative<friction::Clearance>(contact.law);
   if (!clearance) out += fmt::format("normal_load = {}\n", load_toml(contact.normal_load));
-  out += law_toml(contact.law);
+  out += std::visit([](const auto& law) { return law_toml(law); }, contact.law);
   if (clearance) return out;
   if (contact.tilt_deg != 0.0 || scene.beam() != nullptr) out += number_line("tilt_deg", contact.tilt_deg);
   return out;

@@ -25,12 +25,6 @@ inline constexpr std::array<Ends, 4> kEnds = {{{"fixed-free", true, false},
                                                {"fixed-fixed", true, true},
                                                {"free-free", false, false}}};
 
-/// In the order of friction::Law's alternatives.
-inline const std::vector<std::string> kLaws = {"coulomb", "stribeck", "tanh",     "compliant",
-                                               "dahl",    "lugre",    "clearance"};
-/// In the order of friction::ContactLoss.
-inline const std::vector<std::string> kLosses = {"zero-force", "gap"};
-
 struct TheoryWord {
   const char* word;
   fem::BeamTheory theory;

@@ -2,6 +2,8 @@
 
 // The only header that shows toml++.
 
+#include <slipmode/core/fields.hpp>
+
 #include <toml++/toml.h>
 #include <Eigen/Core>
 #include <cstdint>
@@ -42,17 +44,6 @@ class TomlDocument {
 
 /// The candidate nearest to `word` by edit distance, if near enough to be a misspelling.
 [[nodiscard]] std::optional<std::string> nearest(const std::string& word, const std::vector<std::string>& candidates);
-
-/// The numbers a key may hold; NaN and infinities never pass.
-struct Limits {
-  double low = -std::numeric_limits<double>::max();
-  double high = std::numeric_limits<double>::max();
-  bool above = false;  ///< `low` itself is not allowed
-  const char* text = "any finite number";
-};
-inline constexpr Limits kFinite{};
-inline constexpr Limits kPositive{.low = 0.0, .above = true, .text = "a number > 0"};
-inline constexpr Limits kNonNegative{.low = 0.0, .text = "a number >= 0"};
 
 /// Reads one table key by key. Each key asked for becomes a known one; `finish` rejects all others. So a scene's schema
 /// is the code that reads it, and a new key is one line.
