@@ -37,9 +37,15 @@ struct Field {
   const char* unit;  ///< of SI; "1" for a pure number, "" for what has none (words, counts)
   const char* meaning;
   Limits limits;
-  bool is_required;    ///< otherwise what the struct starts with stands where nothing is said
-  const char* stored;  ///< name of the dataset in result files
+  bool is_required;          ///< otherwise what the struct starts with stands where nothing is said
+  const char* stored;        ///< name of the dataset in result files
+  bool is_per_item = false;  ///< an array of which one value may stand for all
 
+  [[nodiscard]] constexpr Field per_item() const {
+    Field other = *this;
+    other.is_per_item = true;
+    return other;
+  }
   [[nodiscard]] constexpr Field stored_as(const char* dataset) const {
     Field other = *this;
     other.stored = dataset;

@@ -166,9 +166,16 @@ struct NormalOscillator {
 /// The normal load: constant, affine in the contact's displacement y = wᵀq + offset, N = constant + slope y, or with a
 /// normal oscillator (slope 0 then). Where it would be negative contact is lost: no force until it is positive again.
 struct NormalLoad {
-  double constant = 1.0;  ///< N0 ≥ 0 [N]
-  double slope = 0.0;     ///< N1 [N/m]
+  double constant = 1.0, slope = 0.0;
   std::optional<NormalOscillator> oscillator = {};
+
+  static constexpr auto fields() {
+    return std::tuple{required("constant", &NormalLoad::constant, "N", "normal load, constant part", kPositive)
+                          .stored_as("normal_load"),
+                      optional("slope", &NormalLoad::slope, "N/m", "normal load per contact displacement")
+                          .stored_as("normal_load_slope"),
+                      optional("oscillator", &NormalLoad::oscillator, "", "its own vibration")};
+  }
 
   NormalLoad() = default;
   NormalLoad(double n0) : constant(n0) {}  // NOLINT(google-explicit-constructor): a number is a constant load
@@ -189,6 +196,11 @@ struct Contact {
   /// (μ cos θ ± sin θ)/(cos θ ∓ μ sin θ) for a force along ±w. Coulomb laws only. Source: S4 (4.1), both directions.
   double tilt = 0.0;
   std::string name = {};
+
+  static constexpr auto fields() {
+    return std::tuple{optional("tilt", &Contact::tilt, "rad", "of the slider's face"),
+                      required("offset", &Contact::offset, "m", "added to the contact displacement")};
+  }
 };
 
 /// Checks a contact's numbers.

@@ -15,16 +15,13 @@ friction::NormalLoad read_load(TomlReader& contact) {
   const char* key = "normal_load";
   if (!contact.is_table(key)) return {contact.number(key, kPositive)};
   TomlReader in = contact.table(key);
-  const double constant = in.number("constant", kPositive);
-  if (!in.has("oscillator")) {
-    const double slope = in.number("slope", kFinite);
-    in.finish();
-    return {constant, slope};
-  }
-  in.refuse("slope", "an oscillator is given too", "oscillator.slope, or a slope and no oscillator");
-  const auto own = read_table<friction::NormalOscillator>(in.table("oscillator"));
+  const bool oscillates = in.has("oscillator");
+  if (oscillates) in.refuse("slope", "an oscillator is given too", "oscillator.slope, or a slope and no oscillator");
+  friction::NormalLoad load;
+  read_fields(in, load, {.without = {oscillates ? "slope" : "oscillator"}});
+  if (!oscillates) in.require("slope");
   in.finish();
-  return {constant, own};
+  return load;
 }
 
 double read_tilt(TomlReader& in) {
@@ -83,7 +80,7 @@ void check_alone(TomlReader& in, const ContactPlace& place, const std::vector<Co
 Between read_between(TomlReader& in, int masses) {
   const std::string valid = fmt::format("[mass, mass], two different masses from 1 to {}", masses);
   in.refuse("at", "between is given too", "either at or between");
-  const std::vector<int> pair = in.integers_or("between", {}, 1, masses);
+  const std::vector<int> pair = in.integers("between", {.low = 1.0, .high = static_cast<double>(masses)});
   if (pair.size() != 2 || pair[0] == pair[1]) in.fail("between", "not two different masses", valid);
   return {pair[0], pair[1]};
 }
@@ -94,7 +91,7 @@ ContactPlace read_place(TomlReader& in, const Scene& scene) {
   if (scene.beam() == nullptr) {
     const int masses = static_cast<int>(scene.size());
     if (in.has("between")) return read_between(in, masses);
-    return static_cast<int>(in.integer("at", 1, masses));
+    return in.integer<int>("at", {.low = 1.0, .high = static_cast<double>(masses)});
   }
   if (in.is_text("at")) {
     (void)in.choice("at", {"tip"});

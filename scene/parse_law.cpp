@@ -30,21 +30,37 @@ constexpr std::array<Stranger, 10> kStrangers = {
      {"clearance", "alpha", kNoFriction, kStops},
      {"clearance", "tilt_deg", kNoFriction, kStops}}};
 
-void read(TomlReader& in, auto& law) {
-  read_fields(in, law);
+void check_coefficients(TomlReader& in, const auto& law) {
   if constexpr (requires { law.mu_s < law.mu_k; }) {
     if (law.mu_s < law.mu_k)
       in.fail("mu_s", fmt::format("less than mu_k = {}", law.mu_k), fmt::format("mu_s >= {}", law.mu_k));
   }
 }
 
+void read(TomlReader& in, auto& law) {
+  read_fields(in, law);
+  check_coefficients(in, law);
+}
+
+void read(TomlReader& in, friction::LuGre& law) {
+  if (in.has("mu_k") && in.number("mu_k", kNonNegative) == 0.0) {
+    in.fail("mu_k", "impossible value with law \"lugre\"", kPositive.text);
+  }
+  read_fields(in, law);
+  check_coefficients(in, law);
+}
+
 /// A side takes what it does not say from `stop`, when there is one.
+friction::Stop read_side(TomlReader in, const std::optional<friction::Stop>& stop) {
+  return read_table(in, stop.value_or(friction::Stop{}), {.all_optional = stop.has_value()});
+}
+
 void read(TomlReader& in, friction::Clearance& law) {
   if (!in.has("left") && !in.has("right")) (void)in.table("stop");  // missing unless there
   if (in.has("stop")) law.left = law.right = read_table<friction::Stop>(in.table("stop"));
-  if (in.has("left")) law.left = read_table(in.table("left"), law.left);
-  if (in.has("right")) law.right = read_table(in.table("right"), law.right);
-  read_fields(in, law, {"left", "right"});
+  if (in.has("left")) law.left = read_side(in.table("left"), law.left);
+  if (in.has("right")) law.right = read_side(in.table("right"), law.right);
+  read_fields(in, law, {.without = {"left", "right"}});
   if (law.left && law.right && law.left->gap + law.right->gap < 0.0) {
     in.fail("law", fmt::format("the stops overlap: gaps {} and {}", law.left->gap, law.right->gap),
             "gaps whose sum is >= 0");

@@ -50,27 +50,22 @@ double law_number(const friction::Law& any, const std::string& dataset) {
 /// The numbers of a struct that may be absent: then all NaN.
 template <class S>
 Eigen::VectorXd numbers_or_none(const std::optional<S>& own) {
-  return own ? numbers_of(*own) : Eigen::VectorXd::Constant(number_count<S>(), kNone);
+  return own ? to_numbers(*own) : Eigen::VectorXd::Constant(kNumbers<S>, kNone);
 }
 
 template <class S>
 std::optional<S> if_numbers(const Eigen::VectorXd& numbers) {
-  return std::isnan(numbers(0)) ? std::nullopt : std::optional(of_numbers<S>(numbers));
+  return std::isnan(numbers(0)) ? std::nullopt : std::optional(from_numbers<S>(numbers));
 }
 
-constexpr Eigen::Index kStopNumbers = number_count<friction::Stop>();
-constexpr Eigen::Index kOscillatorNumbers = number_count<friction::NormalOscillator>();
+constexpr Eigen::Index kStopNumbers = kNumbers<friction::Stop>;
+constexpr Eigen::Index kOscillatorNumbers = kNumbers<friction::NormalOscillator>;
 
 /// Both stops of a contact, left first; all NaN for another law.
 Eigen::VectorXd stops_numbers(const friction::Clearance& clearance) {
   Eigen::VectorXd both(2 * kStopNumbers);
   both << numbers_or_none(clearance.left), numbers_or_none(clearance.right);
   return both;
-}
-
-/// One number per contact; `otherwise` in files of versions that did not have it.
-Eigen::VectorXd numbers_or(const StoreReader& store, const std::string& name, Eigen::Index count, double otherwise) {
-  return store.has(name) ? store.vector(name, count) : Eigen::VectorXd::Constant(count, otherwise);
 }
 
 /// The law of that word with contact c's numbers.
@@ -95,20 +90,17 @@ void save_contacts(StoreWriter& store, const std::string& group, const std::vect
   const auto count = static_cast<Eigen::Index>(contacts.size());
   const std::vector<std::string> words = friction::law_words();
   std::vector<std::string> names, laws, losses;
-  Eigen::VectorXd load(count), slope(count), tilt(count), offset(count);
+  std::vector<friction::NormalLoad> loads;
   Eigen::MatrixXd oscillator(kOscillatorNumbers, count), stops(2 * kStopNumbers, count), direction(n, count);
   for (Eigen::Index c = 0; c < count; ++c) {
     const friction::Contact& contact = contacts[static_cast<std::size_t>(c)];
     const auto* clearance = std::get_if<friction::Clearance>(&contact.law);
     names.push_back(contact.name);
     laws.push_back(words[contact.law.index()]);
-    load(c) = contact.normal_load.constant;
-    slope(c) = contact.normal_load.slope;
+    loads.push_back(contact.normal_load);
     oscillator.col(c) = numbers_or_none(contact.normal_load.oscillator);
     stops.col(c) = stops_numbers(clearance != nullptr ? *clearance : friction::Clearance{});
     losses.push_back(clearance != nullptr ? kLosses[static_cast<std::size_t>(clearance->loss)] : "");
-    tilt(c) = contact.tilt;
-    offset(c) = contact.offset;
     direction.col(c) = contact.direction;
   }
   store.describe_group(group, "contacts, one entry of each dataset per contact");
@@ -121,8 +113,7 @@ void save_contacts(StoreWriter& store, const std::string& group, const std::vect
     const char* gaps = name.starts_with("mu_") ? "" : "; NaN where the law has none";
     store.write(group + "/" + name, values, {field.unit, std::string(field.meaning) + gaps});
   });
-  store.write(group + "/normal_load", load, {"N", "normal load, constant part"});
-  store.write(group + "/normal_load_slope", slope, {"N/m", "normal load per contact displacement"});
+  save_rows(store, group, loads);
   store.write_columns(group + "/oscillator", oscillator,
                       {"",
                        "normal oscillator, contact x (mass [kg], support stiffness [N/m] and damping [N s/m], "
@@ -133,8 +124,7 @@ void save_contacts(StoreWriter& store, const std::string& group, const std::vect
        "stops of a clearance, contact x (left stiffness [N/m], damping [N s/m] and gap [m], the same of "
        "the right one); NaN: none"});
   store.write(group + "/loss", losses, {"", fmt::format("when a stop lets go: {}", fmt::join(kLosses, ", "))});
-  store.write(group + "/tilt", tilt, {"rad", "of the slider's face"});
-  store.write(group + "/offset", offset, {"m", "added to the contact displacement"});
+  save_rows(store, group, contacts);
   store.write_columns(group + "/direction", direction, {"1", "contact directions w, contact x dof"});
 }
 
@@ -143,10 +133,11 @@ std::vector<friction::Contact> load_contacts(const StoreReader& store, const std
   const auto count = static_cast<Eigen::Index>(names.size());
   const std::vector<std::string> laws = store.texts(group + "/law", count);
   std::map<std::string, Eigen::VectorXd> numbers;
-  for_each_column(
-      [&](const auto& field) { numbers[field.stored] = numbers_or(store, group + "/" + field.stored, count, kNone); });
-  const Eigen::VectorXd load = store.vector(group + "/normal_load", count);
-  const Eigen::VectorXd slope = numbers_or(store, group + "/normal_load_slope", count, 0.0);
+  for_each_column([&](const auto& field) {  // not in files of versions that did not have it
+    const std::string name = group + "/" + field.stored;
+    numbers[field.stored] = store.has(name) ? store.vector(name, count) : Eigen::VectorXd::Constant(count, kNone);
+  });
+  const auto loads = load_rows<friction::NormalLoad>(store, group, count);
   const Eigen::MatrixXd oscillator = store.has(group + "/oscillator")
                                          ? store.columns(group + "/oscillator", kOscillatorNumbers, count)
                                          : Eigen::MatrixXd::Constant(kOscillatorNumbers, count, kNone);
@@ -155,21 +146,17 @@ std::vector<friction::Contact> load_contacts(const StoreReader& store, const std
                                         : Eigen::MatrixXd::Constant(2 * kStopNumbers, count, kNone);
   const std::vector<std::string> losses =
       stopped ? store.texts(group + "/loss", count) : std::vector<std::string>(names.size());
-  const Eigen::VectorXd tilt = numbers_or(store, group + "/tilt", count, 0.0);
-  const Eigen::VectorXd offset = store.vector(group + "/offset", count);
   const Eigen::MatrixXd direction = store.columns(group + "/direction", n, count);
-  std::vector<friction::Contact> contacts;
+  auto contacts = load_rows<friction::Contact>(store, group, count);
   for (Eigen::Index c = 0; c < count; ++c) {
     const auto at = static_cast<std::size_t>(c);
-    friction::NormalLoad normal_load(load(c), slope(c));
-    normal_load.oscillator = if_numbers<friction::NormalOscillator>(oscillator.col(c));
-    contacts.push_back({.direction = direction.col(c),
-                        .law = law_of(store, group + "/law", laws[at], numbers, c),
-                        .normal_load = normal_load,
-                        .offset = offset(c),
-                        .tilt = tilt(c),
-                        .name = names[at]});
-    if (auto* clearance = std::get_if<friction::Clearance>(&contacts.back().law)) {
+    friction::Contact& contact = contacts[at];
+    contact.direction = direction.col(c);
+    contact.law = law_of(store, group + "/law", laws[at], numbers, c);
+    contact.normal_load = loads[at];
+    contact.normal_load.oscillator = if_numbers<friction::NormalOscillator>(oscillator.col(c));
+    contact.name = names[at];
+    if (auto* clearance = std::get_if<friction::Clearance>(&contact.law)) {
       clearance->left = if_numbers<friction::Stop>(stops.col(c).head(kStopNumbers));
       clearance->right = if_numbers<friction::Stop>(stops.col(c).tail(kStopNumbers));
       if (losses[at] == kLosses.back()) clearance->loss = friction::ContactLoss::kGap;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace slipmode::scene {
@@ -16,69 +17,42 @@ inline const std::vector<std::string> kUnits = {"dimensionless", "SI"};
 /// In the order of StructureSpec's alternatives.
 inline const std::vector<std::string> kStructures = {"chain", "beam", "masses", "matrices"};
 
-struct Ends {
-  const char* word;
-  bool left_fixed, right_fixed;
-};
-inline constexpr std::array<Ends, 4> kEnds = {{{"fixed-free", true, false},
-                                               {"free-fixed", false, true},
-                                               {"fixed-fixed", true, true},
-                                               {"free-free", false, false}}};
+/// Of a chain, the left one first.
+inline const std::vector<std::string> kEnds = {"fixed-free", "free-fixed", "fixed-fixed", "free-free"};
 
-struct TheoryWord {
-  const char* word;
-  fem::BeamTheory theory;
-};
-inline constexpr std::array<TheoryWord, 2> kTheories = {
-    {{"euler-bernoulli", fem::BeamTheory::kEulerBernoulli}, {"timoshenko", fem::BeamTheory::kTimoshenko}}};
-
-struct SensorWord {
-  const char* word;
-  pod::SensorKind kind;
-};
-inline constexpr std::array<SensorWord, 2> kSensors = {
-    {{"strain", pod::SensorKind::kStrain}, {"displacement", pod::SensorKind::kDisplacement}}};
-
-struct FitWord {
-  const char* word;
-  pod::FitFamily family;
-};
-inline constexpr std::array<FitWord, 2> kFits = {
-    {{"modes", pod::FitFamily::kNaturalModes}, {"polynomial", pod::FitFamily::kPolynomials}}};
-
-struct FollowWord {
-  const char* word;
-  ShakenValidationSpec::Follow follow;
-};
-inline constexpr std::array<FollowWord, 3> kFollows = {{{"none", ShakenValidationSpec::Follow::kNone},
-                                                        {"forward", ShakenValidationSpec::Follow::kForward},
-                                                        {"both", ShakenValidationSpec::Follow::kBoth}}};
-
-struct StartWord {
-  const char* word;
-  InitialSpec::At at;
-};
-inline constexpr std::array<StartWord, 2> kStarts = {
-    {{"rest", InitialSpec::At::kRest}, {"static", InitialSpec::At::kStatic}}};
-
-/// In the order of BasisChoice; the first two are a chain's.
-inline const std::vector<std::string> kBases = {"pom", "lnm", "pomf", "mass-pom", "lnm+static"};
+/// How many of BasisChoice, the first, are a chain's too.
 inline constexpr std::size_t kChainBases = 2;
 
-struct MethodWord {
-  const char* word;
-  dynamics::FlowMethod method;
-};
-inline constexpr std::array<MethodWord, 3> kMethods = {{{"automatic", dynamics::FlowMethod::kAutomatic},
-                                                        {"closed-form", dynamics::FlowMethod::kClosedForm},
-                                                        {"collocation", dynamics::FlowMethod::kCollocation}}};
-
-/// The words of a list of entries that each have one.
-template <class List>
-std::vector<std::string> words_of(const List& list) {
-  std::vector<std::string> words;
-  for (const auto& entry : list) words.emplace_back(entry.word);
-  return words;
-}
-
 }  // namespace slipmode::scene
+
+namespace slipmode {
+
+template <>
+inline constexpr std::array kWords<fem::BeamTheory> = {"euler-bernoulli", "timoshenko"};
+template <>
+inline constexpr std::array kWords<pod::SensorKind> = {"strain", "displacement"};
+template <>
+inline constexpr std::array kWords<pod::FitFamily> = {"modes", "polynomial"};
+template <>
+inline constexpr std::array kWords<scene::ShakenValidationSpec::Follow> = {"none", "forward", "both"};
+template <>
+inline constexpr std::array kWords<scene::InitialSpec::At> = {"rest", "static"};
+template <>
+inline constexpr std::array kWords<scene::BasisChoice> = {"pom", "lnm", "pomf", "mass-pom", "lnm+static"};
+template <>
+inline constexpr std::array kWords<dynamics::FlowMethod> = {"automatic", "closed-form", "collocation"};
+
+template <>
+inline constexpr auto kFields<fem::Rayleigh> =
+    std::tuple{required("coefficient", &fem::Rayleigh::stiffness, "s", "C = coefficient K", kNonNegative),
+               optional("mass_coefficient", &fem::Rayleigh::mass, "1/s", "C += mass_coefficient M", kNonNegative)};
+template <>
+inline constexpr auto kFields<dynamics::FlowOptions> = std::tuple{
+    optional("method", &dynamics::FlowOptions::method, "", "how the flow is computed"),
+    optional("tolerance", &dynamics::FlowOptions::tolerance, "1", "bound on the error of a step",
+             {.low = 0.0, .high = 1.0, .above = true, .text = "a number > 0 and <= 1"}),
+    optional("max_events_per_window", &dynamics::FlowOptions::max_events_per_window, "", "more is Zeno", kCount),
+    optional("zeno_window", &dynamics::FlowOptions::zeno_window, "s", "in which these are counted; 0: chosen",
+             kNonNegative)};
+
+}  // namespace slipmode

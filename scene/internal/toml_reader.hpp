@@ -6,6 +6,7 @@
 
 #include <toml++/toml.h>
 #include <Eigen/Core>
+#include <concepts>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -56,26 +57,31 @@ class TomlReader {
 
   [[nodiscard]] bool has(const std::string& key);
 
+  /// Reports a key that is not there.
+  void require(const std::string& key) { static_cast<void>(need(key)); }
+
   [[nodiscard]] double number(const std::string& key, const Limits& limits);
   [[nodiscard]] double number_or(const std::string& key, double otherwise, const Limits& limits);
-  [[nodiscard]] std::int64_t integer(const std::string& key, std::int64_t low, std::int64_t high);
-  [[nodiscard]] std::int64_t integer_or(const std::string& key, std::int64_t otherwise, std::int64_t low,
-                                        std::int64_t high);
+  template <std::integral T>
+  [[nodiscard]] T integer(const std::string& key, const Limits& limits) {
+    constexpr auto kMost = std::in_range<std::int64_t>(std::numeric_limits<T>::max())
+                               ? static_cast<std::int64_t>(std::numeric_limits<T>::max())
+                               : std::numeric_limits<std::int64_t>::max();
+    return static_cast<T>(checked_integer(key, need(key), limits, kMost));
+  }
   [[nodiscard]] std::string text_or(const std::string& key, const std::string& otherwise);
-  [[nodiscard]] bool flag_or(const std::string& key, bool otherwise);
   /// An array of strings.
   [[nodiscard]] std::vector<std::string> texts(const std::string& key);
   /// Index of the word among `words`.
   [[nodiscard]] std::size_t choice(const std::string& key, const std::vector<std::string>& words);
   [[nodiscard]] std::size_t choice_or(const std::string& key, std::size_t otherwise,
                                       const std::vector<std::string>& words);
-  /// A number (then one value) or an array of exactly `count` numbers.
-  [[nodiscard]] std::vector<double> per_item_or(const std::string& key, std::vector<double> otherwise,
-                                                std::int64_t count, const Limits& limits);
-  /// An array of numbers of any length, or of `count` when that is not negative.
+  /// A number (then one value) or an array of numbers, of any length, or of `count` when that is not negative.
+  [[nodiscard]] std::vector<double> per_item(const std::string& key, const Limits& limits, std::int64_t count = -1);
+  [[nodiscard]] std::vector<double> numbers(const std::string& key, const Limits& limits, std::int64_t count = -1);
   [[nodiscard]] std::vector<double> numbers_or(const std::string& key, std::vector<double> otherwise,
                                                const Limits& limits, std::int64_t count = -1);
-  [[nodiscard]] std::vector<int> integers_or(const std::string& key, std::vector<int> otherwise, int low, int high);
+  [[nodiscard]] std::vector<int> integers(const std::string& key, const Limits& limits);
   /// An array of pairs of numbers, [[first, second], ...].
   [[nodiscard]] std::vector<std::pair<double, double>> pairs(const std::string& key, const Limits& first,
                                                              const Limits& second);
@@ -110,8 +116,8 @@ class TomlReader {
   [[nodiscard]] double checked_number(const std::string& key, const toml::node& node, const Limits& limits);
   [[nodiscard]] std::size_t checked_word(const std::string& key, const toml::node& node,
                                          const std::vector<std::string>& words);
-  [[nodiscard]] std::int64_t checked_integer(const std::string& key, const toml::node& node, std::int64_t low,
-                                             std::int64_t high);
+  [[nodiscard]] std::int64_t checked_integer(const std::string& key, const toml::node& node, const Limits& limits,
+                                             std::int64_t most);
 
   const TomlDocument* document_;
   const toml::table* table_;
