@@ -2,7 +2,7 @@
 
 #include <slipmode/core/none.hpp>
 #include <slipmode/results/table.hpp>
-#include "results/internal/journal_cursor.hpp"
+#include "results/internal/journal_line.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -13,28 +13,15 @@
 namespace slipmode::results {
 namespace {
 
-using detail::append;
-using detail::Cursor;
-using diagnostics::DrivenLabel;
 using diagnostics::DrivenMotion;
 using diagnostics::DrivenPoint;
 using diagnostics::DrivenRepeat;
 
-void append_exponent(std::vector<double>& values, const std::optional<diagnostics::LyapunovExponent>& exponent) {
-  values.push_back(exponent ? 1.0 : 0.0);
-  if (!exponent) return;
-  values.insert(values.end(),
-                {exponent->nats, exponent->bits, exponent->error, static_cast<double>(exponent->renormalisations)});
-}
-
-std::optional<diagnostics::LyapunovExponent> next_exponent(Cursor& cursor) {
-  if (cursor.next() == 0.0) return std::nullopt;
-  diagnostics::LyapunovExponent exponent;
-  exponent.nats = cursor.next();
-  exponent.bits = cursor.next();
-  exponent.error = cursor.next();
-  exponent.renormalisations = cursor.next_int();
-  return exponent;
+void list(detail::Line& line, DrivenPoint& point) {
+  DrivenMotion& own = point.settled;
+  line(point.parameter, own.frequency_hz, own.label, own.period.repeat, own.period.period, own.period.mismatch,
+       own.stick_fraction, own.longest_stick, own.separations, own.jumps, own.events, own.mean_energy,
+       own.audit_residual, own.readings, own.contact_q, own.contact_v, own.mean, own.rms, own.exponent, own.end);
 }
 
 /// The columns of `values`, filled point by point.
@@ -115,28 +102,10 @@ class ValueTable {
 }  // namespace
 
 JournalRecord to_record(const DrivenPoint& point) {
-  const DrivenMotion& m = point.settled;
-  std::vector<double> values = {point.parameter,
-                                m.frequency_hz,
-                                static_cast<double>(m.label),
-                                static_cast<double>(m.period.repeat),
-                                static_cast<double>(m.period.period),
-                                m.period.mismatch,
-                                m.stick_fraction,
-                                m.longest_stick,
-                                static_cast<double>(m.separations),
-                                static_cast<double>(m.jumps),
-                                static_cast<double>(m.events),
-                                m.mean_energy,
-                                m.audit_residual};
-  append(values, m.readings);
-  append(values, m.contact_q);
-  append(values, m.contact_v);
-  append(values, m.mean);
-  append(values, m.rms);
-  append_exponent(values, m.exponent);
-  append(values, m.end);
-  return {fmt::format("model{}", point.model), static_cast<std::int64_t>(point.index), values, point.failure};
+  DrivenPoint own = point;
+  detail::Line line;
+  list(line, own);
+  return {fmt::format("model{}", own.model), static_cast<std::int64_t>(own.index), line.written(), own.failure};
 }
 
 DrivenPoint driven_from_record(const JournalRecord& record) {
@@ -145,32 +114,12 @@ DrivenPoint driven_from_record(const JournalRecord& record) {
     throw InvalidInput(fmt::format("journal record {} {}: it belongs to another kind of sweep; remove the journal",
                                    record.table, record.index));
   }
-  Cursor cursor(record);
   DrivenPoint point;
   point.index = static_cast<std::size_t>(record.index);
   point.model = std::stoi(record.table.substr(kTable.size()));
   point.failure = record.note;
-  point.parameter = cursor.next();
-  DrivenMotion& m = point.settled;
-  m.frequency_hz = cursor.next();
-  m.label = static_cast<DrivenLabel>(cursor.next_int());
-  m.period.repeat = static_cast<DrivenRepeat>(cursor.next_int());
-  m.period.period = cursor.next_int();
-  m.period.mismatch = cursor.next();
-  m.stick_fraction = cursor.next();
-  m.longest_stick = cursor.next();
-  m.separations = static_cast<std::int64_t>(cursor.next());
-  m.jumps = static_cast<std::int64_t>(cursor.next());
-  m.events = static_cast<std::int64_t>(cursor.next());
-  m.mean_energy = cursor.next();
-  m.audit_residual = cursor.next();
-  m.readings = cursor.next_matrix();
-  m.contact_q = cursor.next_matrix();
-  m.contact_v = cursor.next_matrix();
-  m.mean = cursor.next_vector();
-  m.rms = cursor.next_vector();
-  m.exponent = next_exponent(cursor);
-  m.end = cursor.next_state();
+  detail::Line line(record);
+  list(line, point);
   return point;
 }
 

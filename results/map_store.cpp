@@ -1,7 +1,7 @@
 #include <slipmode/results/map_store.hpp>
 
 #include <slipmode/core/none.hpp>
-#include "results/internal/journal_cursor.hpp"
+#include "results/internal/journal_line.hpp"
 
 #include <fmt/format.h>
 #include <functional>
@@ -11,8 +11,6 @@
 namespace slipmode::results {
 namespace {
 
-using detail::append;
-using detail::Cursor;
 using orbits::MapPoint;
 using orbits::StrobePoint;
 
@@ -27,53 +25,46 @@ std::string failure_lines(const std::vector<MapPoint>& row) {
   return any ? text : std::string();
 }
 
-JournalRecord to_record(const std::string& table, std::size_t row, const std::vector<MapPoint>& points) {
-  std::vector<double> values{static_cast<double>(points.size())};
-  for (const MapPoint& point : points) {
-    values.insert(values.end(), {static_cast<double>(point.order), static_cast<double>(point.crossings),
-                                 point.multiplier, point.symmetric ? 1.0 : 0.0, point.floating ? 1.0 : 0.0,
-                                 point.alternating, point.residual, static_cast<double>(point.periods)});
-  }
-  return {table, static_cast<std::int64_t>(row), std::move(values), failure_lines(points)};
+void list(detail::Line& line, MapPoint& point) {
+  line(point.order, point.crossings, point.multiplier, point.symmetric, point.floating, point.alternating,
+       point.residual, point.periods);
+}
+
+void list(detail::Line& line, StrobePoint& point) {
+  line(point.parameter, point.order, point.mismatch, point.section, point.alternating, point.effective, point.end);
+}
+
+JournalRecord to_record(const std::string& table, std::size_t row, std::vector<MapPoint> points) {
+  detail::Line line;
+  std::size_t size = points.size();
+  line(size);
+  for (MapPoint& point : points) list(line, point);
+  return {table, static_cast<std::int64_t>(row), line.written(), failure_lines(points)};
 }
 
 std::vector<MapPoint> row_from_record(const JournalRecord& record) {
-  Cursor cursor(record);
-  std::vector<MapPoint> row(static_cast<std::size_t>(cursor.next()));
+  detail::Line line(record);
+  std::size_t size = 0;
+  line(size);
+  std::vector<MapPoint> row(size);
   std::istringstream failures(record.note);
   for (MapPoint& point : row) {
-    point.order = cursor.next_int();
-    point.crossings = cursor.next_int();
-    point.multiplier = cursor.next();
-    point.symmetric = cursor.next_int() != 0;
-    point.floating = cursor.next_int() != 0;
-    point.alternating = cursor.next();
-    point.residual = cursor.next();
-    point.periods = cursor.next_int();
+    list(line, point);
     std::getline(failures, point.failure);
   }
   return row;
 }
 
-JournalRecord to_record(const std::string& table, std::size_t index, const StrobePoint& point) {
-  std::vector<double> values{point.parameter, static_cast<double>(point.order), point.mismatch};
-  append(values, point.section);
-  append(values, point.alternating);
-  append(values, point.effective);
-  append(values, point.end);
-  return {table, static_cast<std::int64_t>(index), std::move(values), point.failure};
+JournalRecord to_record(const std::string& table, std::size_t index, StrobePoint point) {
+  detail::Line line;
+  list(line, point);
+  return {table, static_cast<std::int64_t>(index), line.written(), point.failure};
 }
 
 StrobePoint point_from_record(const JournalRecord& record) {
-  Cursor cursor(record);
   StrobePoint point;
-  point.parameter = cursor.next();
-  point.order = cursor.next_int();
-  point.mismatch = cursor.next();
-  point.section = cursor.next_matrix();
-  point.alternating = cursor.next_vector();
-  point.effective = cursor.next_vector();
-  point.end = cursor.next_state();
+  detail::Line line(record);
+  list(line, point);
   point.failure = record.note;
   return point;
 }

@@ -1,7 +1,7 @@
 #include <slipmode/results/sweep_store.hpp>
 
 #include <slipmode/core/none.hpp>
-#include "results/internal/journal_cursor.hpp"
+#include "results/internal/journal_line.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -17,57 +17,28 @@ using diagnostics::Settled;
 using diagnostics::SlipState;
 using diagnostics::SweepPoint;
 
-using detail::append;
-using detail::Cursor;
+void list(detail::Line& line, SweepPoint& point) {
+  Settled& own = point.settled;
+  line(point.parameter, own.period.motion, own.period.period, own.period.T, own.period.contact, own.period.mismatch,
+       own.stick_fraction, own.mean_energy, own.slip_rate, own.time, own.events, own.slips, own.end);
+}
 
 }  // namespace
 
 JournalRecord to_record(const SweepPoint& point) {
-  const Settled& settled = point.settled;
-  std::vector<double> values = {point.parameter,
-                                static_cast<double>(settled.period.motion),
-                                static_cast<double>(settled.period.period),
-                                settled.period.T,
-                                static_cast<double>(settled.period.contact),
-                                settled.period.mismatch,
-                                settled.stick_fraction,
-                                settled.mean_energy,
-                                settled.slip_rate,
-                                settled.time,
-                                static_cast<double>(settled.events)};
-  values.push_back(static_cast<double>(settled.slips.size()));
-  for (const SlipState& slip : settled.slips) {
-    values.insert(values.end(), {slip.time, static_cast<double>(slip.contact), slip.displacement});
-  }
-  append(values, settled.end);
-  return {point.model == 0 ? "full" : "reduced", static_cast<std::int64_t>(point.index), values, point.failure};
+  SweepPoint own = point;
+  detail::Line line;
+  list(line, own);
+  return {own.model == 0 ? "full" : "reduced", static_cast<std::int64_t>(own.index), line.written(), own.failure};
 }
 
 SweepPoint from_record(const JournalRecord& record) {
-  Cursor cursor(record);
   SweepPoint point;
   point.index = static_cast<std::size_t>(record.index);
   point.model = record.table == "full" ? 0 : 1;
   point.failure = record.note;
-  point.parameter = cursor.next();
-  Settled& settled = point.settled;
-  settled.period.motion = static_cast<Motion>(cursor.next_int());
-  settled.period.period = cursor.next_int();
-  settled.period.T = cursor.next();
-  settled.period.contact = cursor.next_int();
-  settled.period.mismatch = cursor.next();
-  settled.stick_fraction = cursor.next();
-  settled.mean_energy = cursor.next();
-  settled.slip_rate = cursor.next();
-  settled.time = cursor.next();
-  settled.events = static_cast<std::int64_t>(cursor.next());
-  settled.slips.resize(static_cast<std::size_t>(cursor.next()));
-  for (SlipState& slip : settled.slips) {
-    slip.time = cursor.next();
-    slip.contact = cursor.next_int();
-    slip.displacement = cursor.next();
-  }
-  settled.end = cursor.next_state();
+  detail::Line line(record);
+  list(line, point);
   return point;
 }
 
