@@ -1,5 +1,8 @@
 #pragma once
 
+#include <slipmode/core/fields.hpp>
+
+#include <tuple>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -23,9 +26,13 @@ struct AmplitudeCurve {
   };
   /// amplitude · e^{−(f − at)/decay}
   struct Exponential {
-    double at = 0.0;         ///< [Hz]
-    double amplitude = 0.0;  ///< at that frequency, ≥ 0 [m]
-    double decay = 1.0;      ///< > 0 [Hz]
+    double at = 0.0, amplitude = 0.0, decay = 1.0;
+
+    static constexpr auto fields() {
+      return std::tuple{required("at", &Exponential::at, "Hz", "a frequency"),
+                        required("amplitude", &Exponential::amplitude, "m", "at that frequency", kNonNegative),
+                        required("decay", &Exponential::decay, "Hz", "over which it falls to 1/e", kPositive)};
+    }
   };
 
   std::variant<Constant, Polynomial, Table, Exponential> kind = Constant{};

@@ -14,40 +14,31 @@ namespace {
 struct Checker {
   const Contact& contact;
 
-  [[noreturn]] void fail(const std::string& found, const char* expected) const {
+  [[noreturn]] void fail(const std::string& found, const std::string& expected) const {
     throw InvalidInput(fmt::format("contact {}: {}; expected {}",
                                    contact.name.empty() ? "(unnamed)" : "'" + contact.name + "'", found, expected));
   }
 
-  void non_negative(const char* key, double value) const {
-    if (!(value >= 0.0) || !std::isfinite(value)) {
-      fail(fmt::format("{} = {}", key, value), "a finite value >= 0");
-    }
+  void within(const std::string& key, double value, const Limits& limits) const {
+    if (limits.hold(value)) return;
+    const char* range = limits.low < 0.0 ? "" : limits.above ? " > 0" : " >= 0";
+    fail(fmt::format("{} = {}", key, value), fmt::format("a finite value{}", range));
   }
 
-  void positive(const char* key, double value) const {
-    if (!(value > 0.0) || !std::isfinite(value)) fail(fmt::format("{} = {}", key, value), "a finite value > 0");
-  }
-
-  void finite(const char* key, double value) const {
-    if (!std::isfinite(value)) fail(fmt::format("{} = {}", key, value), "a finite value");
+  /// Every number of `own` within its field's limits.
+  template <class S>
+  void fields(const S& own, const std::string& whose = "") const {
+    for_each_number<S>([&](const auto& field) { within(whose + field.name, own.*field.member, field.limits); });
   }
 
   void load(const NormalLoad& load) const {
-    non_negative("normal_load", load.constant);
-    finite("normal_load slope", load.slope);
+    within("normal_load", load.constant, kNonNegative);
+    within("normal_load slope", load.slope, kFinite);
     if (!load.oscillator) return;
     if (load.slope != 0.0)
       fail(fmt::format("normal_load has a slope of {} and an oscillator", load.slope),
            "one of them (the oscillator has its own slope)");
-    const NormalOscillator& own = *load.oscillator;
-    positive("oscillator mass", own.mass);
-    non_negative("oscillator support_stiffness", own.support_stiffness);
-    non_negative("oscillator support_damping", own.support_damping);
-    non_negative("oscillator spring_stiffness", own.spring_stiffness);
-    non_negative("oscillator spring_damping", own.spring_damping);
-    positive("oscillator support_stiffness + spring_stiffness", own.support_stiffness + own.spring_stiffness);
-    finite("oscillator slope", own.slope);
+    fields(*load.oscillator, "oscillator ");
   }
 
   void tilted(double mu) const {
@@ -59,16 +50,10 @@ struct Checker {
     }
   }
 
-  void stop(const char* side, const Stop& stop) const {
-    positive(fmt::format("{} stop stiffness", side).c_str(), stop.stiffness);
-    non_negative(fmt::format("{} stop damping", side).c_str(), stop.damping);
-    finite(fmt::format("{} stop gap", side).c_str(), stop.gap);
-  }
-
-  void stops(const Clearance& law) const {
+  void law(const Clearance& law) const {
     if (!law.left && !law.right) fail("a clearance without stops", "a left stop, a right stop, or both");
-    if (law.left) stop("left", *law.left);
-    if (law.right) stop("right", *law.right);
+    if (law.left) fields(*law.left, "left stop ");
+    if (law.right) fields(*law.right, "right stop ");
     if (law.left && law.right && law.left->gap + law.right->gap < 0.0)
       fail(fmt::format("the stops overlap: left gap {} + right gap {} < 0", law.left->gap, law.right->gap),
            "gaps whose sum is >= 0");
@@ -77,12 +62,12 @@ struct Checker {
       fail("a normal load that varies, with a clearance", "no normal load: a clearance has no friction");
   }
 
-  void coefficients(double mu_s, double mu_k) const {
-    non_negative("mu_k", mu_k);
-    non_negative("mu_s", mu_s);
-    if (mu_s < mu_k) {
-      fail(fmt::format("mu_s = {} is below mu_k = {}", mu_s, mu_k),
-           "mu_s >= mu_k (static friction holds at least as much as sliding friction)");
+  void law(const auto& law) const {
+    fields(law);
+    if constexpr (requires { law.mu_s < law.mu_k; }) {
+      if (law.mu_s < law.mu_k)
+        fail(fmt::format("mu_s = {} is below mu_k = {}", law.mu_s, law.mu_k),
+             "mu_s >= mu_k (static friction holds at least as much as sliding friction)");
     }
   }
 };
@@ -97,40 +82,9 @@ void validate(const Contact& contact) {
     check.fail("direction is zero", "a direction that moves the contact");
   }
   check.load(contact.normal_load);
-  if (!std::isfinite(contact.offset)) {
-    check.fail(fmt::format("offset = {}", contact.offset), "a finite value");
-  }
-  std::visit(Overloaded{[&](const Coulomb& law) { check.coefficients(law.mu_s, law.mu_k); },
-                        [&](const Stribeck& law) {
-                          check.coefficients(law.mu_s, law.mu_k);
-                          check.non_negative("alpha", law.alpha);
-                        },
-                        [&](const TanhRegularised& law) {
-                          check.coefficients(law.mu_s, law.mu_k);
-                          check.non_negative("alpha", law.alpha);
-                          if (!(law.epsilon > 0.0) || !std::isfinite(law.epsilon)) {
-                            check.fail(fmt::format("epsilon = {}", law.epsilon), "a finite value > 0");
-                          }
-                        },
-                        [&](const CompliantCoulomb& law) {
-                          check.coefficients(law.mu_s, law.mu_k);
-                          check.positive("stiffness", law.stiffness);
-                        },
-                        [&](const Dahl& law) {
-                          check.positive("mu", law.mu);
-                          check.positive("stiffness", law.stiffness);
-                        },
-                        [&](const LuGre& law) {
-                          check.coefficients(law.mu_s, law.mu_k);
-                          check.positive("mu_k", law.mu_k);
-                          check.positive("stribeck_speed", law.stribeck_speed);
-                          check.positive("stiffness", law.stiffness);
-                          check.non_negative("damping", law.damping);
-                          check.non_negative("viscous", law.viscous);
-                        },
-                        [&](const Clearance& law) { check.stops(law); }},
-             contact.law);
-  check.finite("tilt", contact.tilt);
+  check.within("offset", contact.offset, kFinite);
+  std::visit([&check](const auto& law) { check.law(law); }, contact.law);
+  check.within("tilt", contact.tilt, kFinite);
   if (std::holds_alternative<Clearance>(contact.law)) return;
   if (!is_piecewise_linear(contact.law)) {
     if (contact.tilt != 0.0)

@@ -1,71 +1,115 @@
 #pragma once
 
+#include <slipmode/core/fields.hpp>
+
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <variant>
+#include <vector>
 
 namespace slipmode::friction {
 
+/// The fields of a law with a static and a kinetic coefficient, mu_s ≥ mu_k.
+template <class Law>
+constexpr auto coefficients(const Limits& kinetic = kNonNegative) {
+  return std::tuple{required("mu_s", &Law::mu_s, "1", "static coefficient", kNonNegative),
+                    required("mu_k", &Law::mu_k, "1", "kinetic coefficient", kinetic)};
+}
+
 /// Rigid Coulomb friction. In slip λ = μ_k N sign(v_rel); in stick |λ| ≤ μ_s N.
 struct Coulomb {
-  double mu_s = 0.0;  ///< ≥ mu_k
-  double mu_k = 0.0;  ///< ≥ 0
+  double mu_s = 0.0, mu_k = 0.0;
+
+  static constexpr const char* word = "coulomb";
+  static constexpr auto fields() { return coefficients<Coulomb>(); }
 };
 
 /// Rigid friction with an exponential Stribeck curve. In slip λ = N (μ_k + (μ_s − μ_k) e^{−α|v_rel|}) sign(v_rel); in
 /// stick |λ| ≤ μ_s N. Source: S4 (3.4)-(3.6).
 struct Stribeck {
-  double mu_s = 0.0;   ///< ≥ mu_k
-  double mu_k = 0.0;   ///< ≥ 0
-  double alpha = 0.0;  ///< decay with sliding speed, ≥ 0 [s/m]
+  double mu_s = 0.0, mu_k = 0.0, alpha = 0.0;
+
+  static constexpr const char* word = "stribeck";
+  static constexpr auto fields() {
+    return std::tuple_cat(coefficients<Stribeck>(), std::tuple{required("alpha", &Stribeck::alpha, "s/m",
+                                                                        "decay with sliding speed", kNonNegative)});
+  }
 };
 
 /// The smooth stand-in everybody uses: λ = N (μ_k + (μ_s − μ_k) e^{−α |v|}) tanh(v/ε) with |v| ≈ v tanh(v/ε), so that
 /// λ is analytic. There is no stick, only creep; the error is of the order of ε. Kept as a baseline to measure against.
 struct TanhRegularised {
-  double mu_s = 0.0;
-  double mu_k = 0.0;
-  double alpha = 0.0;     ///< [s/m]
-  double epsilon = 1e-3;  ///< > 0 [m/s]
+  double mu_s = 0.0, mu_k = 0.0, alpha = 0.0, epsilon = 1e-3;
+
+  static constexpr const char* word = "tanh";
+  static constexpr auto fields() {
+    return std::tuple_cat(
+        coefficients<TanhRegularised>(),
+        std::tuple{optional("alpha", &TanhRegularised::alpha, "s/m", "decay with sliding speed", kNonNegative),
+                   optional("epsilon", &TanhRegularised::epsilon, "m/s", "regularisation speed", kPositive)});
+  }
 };
 
-/// Coulomb friction behind a tangential contact spring (Jenkins element, elastic Coulomb). In stick
+/// Coulomb friction behind a tangential contact spring K_c (Jenkins element, elastic Coulomb). In stick
 /// λ = K_c (y_c − y) with y_c the contact point, carried by the drive; in slip λ = μ_k N sign of the sliding speed. The
 /// stretch y_c − y is kept when sliding ends; when it begins at |λ| = μ_s N > μ_k N the massless contact point jumps.
 /// Source: S4 section 6.1.2 and (6.23), with the sign of K_c corrected.
 struct CompliantCoulomb {
-  double mu_s = 0.0;       ///< ≥ mu_k
-  double mu_k = 0.0;       ///< ≥ 0
-  double stiffness = 0.0;  ///< K_c > 0 [N/m]
+  double mu_s = 0.0, mu_k = 0.0, stiffness = 0.0;
+
+  static constexpr const char* word = "compliant";
+  static constexpr auto fields() {
+    return std::tuple_cat(coefficients<CompliantCoulomb>(),
+                          std::tuple{required("stiffness", &CompliantCoulomb::stiffness, "N/m",
+                                              "of contact spring or bristle", kPositive)});
+  }
 };
 
-/// Dahl's law: λ = σ z, ż = v_rel − |v_rel| σ z / (μ N): a spring that yields smoothly; no difference between static
+/// Dahl's law: λ = σ z, ż = v_rel − |v_rel| σ z / (μ N): a spring σ that yields smoothly; no difference between static
 /// and kinetic friction. Source: P. R. Dahl, A solid friction model, TOR-158(3107-18), Aerospace Corporation, 1968,
 /// with exponent 1.
 struct Dahl {
-  double mu = 0.0;         ///< > 0
-  double stiffness = 0.0;  ///< σ > 0 [N/m]
+  double mu = 0.0, stiffness = 0.0;
+
+  static constexpr const char* word = "dahl";
+  static constexpr auto fields() {
+    return std::tuple{required("mu", &Dahl::mu, "1", "coefficient", kPositive).stored_as("mu_s"),
+                      required("stiffness", &Dahl::stiffness, "N/m", "of contact spring or bristle", kPositive)};
+  }
 };
 
 /// The LuGre bristle law: λ = σ0 z + σ1 ż + σ2 v_rel, ż = v_rel − σ0 |v_rel| z / g(v_rel),
-/// g(v) = N (μ_k + (μ_s − μ_k) e^{−(v/v_s)²}).
+/// g(v) = N (μ_k + (μ_s − μ_k) e^{−(v/v_s)²}), with stiffness σ0, damping σ1, viscous σ2, stribeck_speed v_s.
 /// Source: Canudas de Wit, Olsson, Åström, Lischinsky, IEEE Trans. Automatic Control 40 (1995) 419.
 struct LuGre {
-  double mu_s = 0.0;            ///< ≥ mu_k
-  double mu_k = 0.0;            ///< > 0
-  double stribeck_speed = 0.0;  ///< v_s > 0 [m/s]
-  double stiffness = 0.0;       ///< σ0 > 0 [N/m]
-  double damping = 0.0;         ///< σ1 ≥ 0 [N s/m]
-  double viscous = 0.0;         ///< σ2 ≥ 0 [N s/m]
+  double mu_s = 0.0, mu_k = 0.0, stribeck_speed = 0.0, stiffness = 0.0, damping = 0.0, viscous = 0.0;
+
+  static constexpr const char* word = "lugre";
+  static constexpr auto fields() {
+    return std::tuple_cat(
+        coefficients<LuGre>(kPositive),
+        std::tuple{
+            required("stribeck_speed", &LuGre::stribeck_speed, "m/s", "Stribeck speed", kPositive),
+            required("stiffness", &LuGre::stiffness, "N/m", "of contact spring or bristle", kPositive),
+            optional("damping", &LuGre::damping, "N s/m", "of the bristle", kNonNegative).stored_as("bristle_damping"),
+            optional("viscous", &LuGre::viscous, "N s/m", "viscous friction", kNonNegative)});
+  }
 };
 
-/// One stop of a clearance: beyond the gap it presses with stiffness · (|y| − gap) + damping · d|y|/dt.
+/// One stop of a clearance: beyond the gap it presses with stiffness · (|y| − gap) + damping · d|y|/dt. Contact is at
+/// y ≥ gap on the right, y ≤ −gap on the left; a negative gap is a preload.
 struct Stop {
-  double stiffness = 0.0;  ///< k > 0 [N/m]
-  double damping = 0.0;    ///< c ≥ 0 [N s/m]
-  double gap = 0.0;  ///< b [m]: contact at y ≥ b on the right, y ≤ −b on the left; may be negative (preload)
+  double stiffness = 0.0, damping = 0.0, gap = 0.0;
+
+  static constexpr auto fields() {
+    return std::tuple{required("stiffness", &Stop::stiffness, "N/m", "stiffness", kPositive),
+                      optional("damping", &Stop::damping, "N s/m", "damping", kNonNegative),
+                      required("gap", &Stop::gap, "m", "gap")};
+  }
 };
 
 /// When a stop lets go.
@@ -83,9 +127,19 @@ enum class ContactLoss : std::uint8_t {
 struct Clearance {
   std::optional<Stop> left, right;  ///< at least one
   ContactLoss loss = ContactLoss::kZeroForce;
+
+  static constexpr const char* word = "clearance";
+  static constexpr auto fields() {
+    return std::tuple{optional("loss", &Clearance::loss, "", "when a stop lets go"),
+                      optional("left", &Clearance::left, "", "left stop"),
+                      optional("right", &Clearance::right, "", "right stop")};
+  }
 };
 
 using Law = std::variant<Coulomb, Stribeck, TanhRegularised, CompliantCoulomb, Dahl, LuGre, Clearance>;
+
+/// The words of the laws, in the order of Law's alternatives.
+[[nodiscard]] inline std::vector<std::string> law_words() { return words_of(Law()); }
 
 /// The normal load's own vibration: a mass on the beam's normal stiffness, pressed on the inclined slider by a leaf
 /// spring that rides at height slope · y, y the contact's displacement:
@@ -95,20 +149,33 @@ using Law = std::variant<Coulomb, Stribeck, TanhRegularised, CompliantCoulomb, D
 /// One-way: friction does not act back on z. Source: S4 (6.25), (6.26), measured from the static preload N0 = k_e Z_c;
 /// as printed the preload enters twice.
 struct NormalOscillator {
-  double mass = 0.0;               ///< m > 0 [kg]
-  double support_stiffness = 0.0;  ///< k_b ≥ 0 [N/m]
-  double support_damping = 0.0;    ///< c_b ≥ 0 [N s/m]
-  double spring_stiffness = 0.0;   ///< k_e ≥ 0 [N/m]
-  double spring_damping = 0.0;     ///< c_e ≥ 0 [N s/m]
-  double slope = 0.0;              ///< s, rise of the slider along y
+  double mass = 0.0, support_stiffness = 0.0, support_damping = 0.0, spring_stiffness = 0.0, spring_damping = 0.0,
+         slope = 0.0;
+
+  static constexpr auto fields() {
+    using Own = NormalOscillator;
+    return std::tuple{required("mass", &Own::mass, "kg", "m", kPositive),
+                      required("support_stiffness", &Own::support_stiffness, "N/m", "k_b", kNonNegative),
+                      optional("support_damping", &Own::support_damping, "N s/m", "c_b", kNonNegative),
+                      required("spring_stiffness", &Own::spring_stiffness, "N/m", "k_e", kPositive),
+                      optional("spring_damping", &Own::spring_damping, "N s/m", "c_e", kNonNegative),
+                      required("slope", &Own::slope, "1", "s, rise of the slider along y")};
+  }
 };
 
 /// The normal load: constant, affine in the contact's displacement y = wᵀq + offset, N = constant + slope y, or with a
 /// normal oscillator (slope 0 then). Where it would be negative contact is lost: no force until it is positive again.
 struct NormalLoad {
-  double constant = 1.0;  ///< N0 ≥ 0 [N]
-  double slope = 0.0;     ///< N1 [N/m]
+  double constant = 1.0, slope = 0.0;
   std::optional<NormalOscillator> oscillator = {};
+
+  static constexpr auto fields() {
+    return std::tuple{required("constant", &NormalLoad::constant, "N", "normal load, constant part", kPositive)
+                          .stored_as("normal_load"),
+                      optional("slope", &NormalLoad::slope, "N/m", "normal load per contact displacement")
+                          .stored_as("normal_load_slope"),
+                      optional("oscillator", &NormalLoad::oscillator, "", "its own vibration")};
+  }
 
   NormalLoad() = default;
   NormalLoad(double n0) : constant(n0) {}  // NOLINT(google-explicit-constructor): a number is a constant load
@@ -129,6 +196,11 @@ struct Contact {
   /// (μ cos θ ± sin θ)/(cos θ ∓ μ sin θ) for a force along ±w. Coulomb laws only. Source: S4 (4.1), both directions.
   double tilt = 0.0;
   std::string name = {};
+
+  static constexpr auto fields() {
+    return std::tuple{optional("tilt", &Contact::tilt, "rad", "of the slider's face"),
+                      required("offset", &Contact::offset, "m", "added to the contact displacement")};
+  }
 };
 
 /// Checks a contact's numbers.
@@ -157,3 +229,10 @@ void validate(const Contact& contact);
 [[nodiscard]] bool is_piecewise_linear(const Law& law);
 
 }  // namespace slipmode::friction
+
+namespace slipmode {
+
+template <>
+inline constexpr std::array kWords<friction::ContactLoss> = {"zero-force", "gap"};
+
+}  // namespace slipmode

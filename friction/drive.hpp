@@ -1,7 +1,10 @@
 #pragma once
 
+#include <slipmode/core/fields.hpp>
+
 #include <cmath>
 #include <optional>
+#include <tuple>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -11,9 +14,16 @@ namespace slipmode::friction {
 /// A belt under the contacts: constant speed, or a linear ramp from `speed` to `end_speed` over
 /// [ramp_begin, ramp_end], constant before and after.
 struct Belt {
-  double speed = 0.0;                       ///< [m/s]; may be 0 or negative
-  double end_speed = 0.0;                   ///< used only when ramp_end > ramp_begin
-  double ramp_begin = 0.0, ramp_end = 0.0;  ///< [s]
+  double speed = 0.0, end_speed = 0.0, ramp_begin = 0.0, ramp_end = 0.0;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        required("from", &Belt::speed, "m/s", "speed at the start").stored_as("speed"),
+        required("to", &Belt::end_speed, "m/s", "speed after the ramp").stored_as("end_speed"),
+        required("begin", &Belt::ramp_begin, "s", "start of the ramp", kNonNegative).stored_as("ramp_begin"),
+        required("end", &Belt::ramp_end, "s", "end of the ramp; not after ramp_begin: no ramp", kNonNegative)
+            .stored_as("ramp_end")};
+  }
 
   [[nodiscard]] static Belt constant(double speed) { return {speed, speed, 0.0, 0.0}; }
   [[nodiscard]] static Belt ramp(double from, double to, double begin, double end) { return {from, to, begin, end}; }
@@ -29,9 +39,13 @@ struct Belt {
 
 /// A slider that is shaken under the contacts: d = amplitude sin(ω t + phase), ω = 2π frequency_hz.
 struct Shaker {
-  double amplitude = 0.0;     ///< ≥ 0 [m]
-  double frequency_hz = 1.0;  ///< > 0
-  double phase = 0.0;         ///< [rad]
+  double amplitude = 0.0, frequency_hz = 1.0, phase = 0.0;
+
+  static constexpr auto fields() {
+    return std::tuple{required("amplitude", &Shaker::amplitude, "m", "amplitude", kNonNegative),
+                      required("frequency", &Shaker::frequency_hz, "Hz", "frequency", kPositive),
+                      optional("phase", &Shaker::phase, "rad", "phase at time 0")};
+  }
 
   [[nodiscard]] double omega() const;                 ///< [rad/s]
   [[nodiscard]] double period() const;                ///< [s]
@@ -44,16 +58,28 @@ struct Shaker {
 
 /// One harmonic of a force: amplitude sin(order · ωt + phase) along a direction.
 struct ForceHarmonic {
-  double amplitude = 0.0;  ///< [N]
-  double phase = 0.0;      ///< [rad]
-  int order = 1;           ///< ≥ 1
-  int direction = 0;       ///< column of HybridSystem::force_directions
+  double amplitude = 0.0, phase = 0.0;
+  int order = 1;
+  int direction = 0;  ///< column of HybridSystem::force_directions
+
+  static constexpr auto fields() {
+    using Own = ForceHarmonic;
+    return std::tuple{required("amplitude", &Own::amplitude, "N", "of each harmonic"),
+                      required("phase", &Own::phase, "rad", "of each harmonic at time 0"),
+                      required("order", &Own::order, "", "of each harmonic", kCount),
+                      required("direction", &Own::direction, "",
+                               "row of force_directions each harmonic acts along, from 0", kFromZero)};
+  }
 };
 
 /// A periodic force on the structure; contacts' counterparts rest. Its mean is the structure's constant load.
 struct Force {
-  double omega = 1.0;  ///< > 0 [rad/s]
+  double omega = 1.0;
   std::vector<ForceHarmonic> harmonics = {};
+
+  static constexpr auto fields() {
+    return std::tuple{required("omega", &Force::omega, "rad/s", "angular frequency of order 1", kPositive)};
+  }
 
   [[nodiscard]] double period() const;  ///< [s]
   /// Force along a direction at t, and its time derivative.

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <slipmode/core/fields.hpp>
 #include <slipmode/fem/structure.hpp>
 
 #include <Eigen/Core>
 #include <string>
 #include <string_view>
+#include <tuple>
 
 namespace slipmode::pod {
 
@@ -43,7 +45,13 @@ struct NamedBasis {
 /// How many modes to keep: a count, or the smallest number whose cumulative energy share reaches `energy`.
 struct ModeChoice {
   Eigen::Index modes = 0;  ///< 0: by energy
-  double energy = 0.99;    ///< in (0, 1]; S4 section 3.4.2 uses 0.99
+  double energy = 0.99;    ///< S4 section 3.4.2 uses 0.99
+
+  static constexpr auto fields() {
+    return std::tuple{optional("modes", &ModeChoice::modes, "", "how many", kCount),
+                      optional("energy", &ModeChoice::energy, "1", "cumulative share to be reached",
+                               {.low = 0.0, .high = 1.0, .above = true, .text = "a share > 0 and <= 1"})};
+  }
 };
 
 /// The number of modes a choice asks for, given the shares of energy captured (NamedBasis::captured).

@@ -9,8 +9,8 @@
 namespace slipmode::pod {
 
 enum class SensorKind {
-  kDisplacement,  ///< reads y(x) [m]
   kStrain,        ///< reads the bending strain at the surface, ½ thickness · y″(x) [1]
+  kDisplacement,  ///< reads y(x) [m]
 };
 
 struct Sensor {

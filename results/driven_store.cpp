@@ -2,7 +2,7 @@
 
 #include <slipmode/core/none.hpp>
 #include <slipmode/results/table.hpp>
-#include "results/internal/journal_cursor.hpp"
+#include "results/internal/journal_line.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -13,28 +13,15 @@
 namespace slipmode::results {
 namespace {
 
-using detail::append;
-using detail::Cursor;
-using diagnostics::DrivenLabel;
 using diagnostics::DrivenMotion;
 using diagnostics::DrivenPoint;
 using diagnostics::DrivenRepeat;
 
-void append_exponent(std::vector<double>& values, const std::optional<diagnostics::LyapunovExponent>& exponent) {
-  values.push_back(exponent ? 1.0 : 0.0);
-  if (!exponent) return;
-  values.insert(values.end(),
-                {exponent->nats, exponent->bits, exponent->error, static_cast<double>(exponent->renormalisations)});
-}
-
-std::optional<diagnostics::LyapunovExponent> next_exponent(Cursor& cursor) {
-  if (cursor.next() == 0.0) return std::nullopt;
-  diagnostics::LyapunovExponent exponent;
-  exponent.nats = cursor.next();
-  exponent.bits = cursor.next();
-  exponent.error = cursor.next();
-  exponent.renormalisations = cursor.next_int();
-  return exponent;
+void list_motion(detail::Line& line, DrivenPoint& point) {
+  DrivenMotion& own = point.settled;
+  line(own.frequency_hz, own.label, own.period.repeat, own.period.period, own.period.mismatch, own.stick_fraction,
+       own.longest_stick, own.separations, own.jumps, own.events, own.mean_energy, own.audit_residual, own.readings,
+       own.contact_q, own.contact_v, own.mean, own.rms, own.exponent, own.end);
 }
 
 /// The columns of `values`, filled point by point.
@@ -112,49 +99,10 @@ class ValueTable {
   std::vector<Text> texts_;
 };
 
-std::string write_motion(std::vector<double>& values, const DrivenPoint& point) {
-  const DrivenMotion& m = point.settled;
-  values.insert(values.end(), {m.frequency_hz, static_cast<double>(m.label), static_cast<double>(m.period.repeat),
-                               static_cast<double>(m.period.period), m.period.mismatch, m.stick_fraction,
-                               m.longest_stick, static_cast<double>(m.separations), static_cast<double>(m.jumps),
-                               static_cast<double>(m.events), m.mean_energy, m.audit_residual});
-  append(values, m.readings);
-  append(values, m.contact_q);
-  append(values, m.contact_v);
-  append(values, m.mean);
-  append(values, m.rms);
-  append_exponent(values, m.exponent);
-  append(values, m.end);
-  return point.failure;
-}
-
-void read_motion(Cursor& cursor, DrivenPoint& out_point) {
-  DrivenMotion& m = out_point.settled;
-  m.frequency_hz = cursor.next();
-  m.label = static_cast<DrivenLabel>(cursor.next_int());
-  m.period.repeat = static_cast<DrivenRepeat>(cursor.next_int());
-  m.period.period = cursor.next_int();
-  m.period.mismatch = cursor.next();
-  m.stick_fraction = cursor.next();
-  m.longest_stick = cursor.next();
-  m.separations = static_cast<std::int64_t>(cursor.next());
-  m.jumps = static_cast<std::int64_t>(cursor.next());
-  m.events = static_cast<std::int64_t>(cursor.next());
-  m.mean_energy = cursor.next();
-  m.audit_residual = cursor.next();
-  m.readings = cursor.next_matrix();
-  m.contact_q = cursor.next_matrix();
-  m.contact_v = cursor.next_matrix();
-  m.mean = cursor.next_vector();
-  m.rms = cursor.next_vector();
-  m.exponent = next_exponent(cursor);
-  m.end = cursor.next_state();
-}
-
 }  // namespace
 
 diagnostics::DrivenSink driven_journal_sink(Journal& journal) {
-  return detail::table_sink<DrivenMotion>(journal, "driven", write_motion, read_motion);
+  return detail::table_sink<DrivenMotion>(journal, "driven", list_motion);
 }
 
 void store_driven(StoreWriter& writer, const std::string& group, const std::string& title, const DrivenAxes& axes,

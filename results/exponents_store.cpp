@@ -2,7 +2,7 @@
 
 #include <slipmode/core/none.hpp>
 #include <slipmode/results/table.hpp>
-#include "results/internal/journal_cursor.hpp"
+#include "results/internal/journal_line.hpp"
 
 #include <fmt/format.h>
 #include <cmath>
@@ -87,18 +87,11 @@ Eigen::MatrixXd exponent_columns(const std::vector<ExponentPoint>& points, Eigen
 }  // namespace
 
 ExponentSink exponent_sink(Journal& journal) {
-  return detail::table_sink<LeadingExponents>(
-      journal, "exponents",
-      [](std::vector<double>& values, const ExponentPoint& point) {
-        detail::append(values, point.settled.nats);
-        detail::append(values, point.settled.error);
-        return point.ok() ? point.settled.ended : point.failure;
-      },
-      [](detail::Cursor& cursor, ExponentPoint& out_point) {
-        out_point.settled.nats = cursor.next_vector();
-        out_point.settled.error = cursor.next_vector();
-        if (out_point.settled.nats.size() > 0) out_point.settled.ended = std::exchange(out_point.failure, {});
-      });
+  return detail::table_sink<LeadingExponents>(journal, "exponents", [](detail::Line& line, ExponentPoint& point) {
+    line(point.settled.nats, point.settled.error);
+    if (!line.reads() && point.ok()) point.failure = point.settled.ended;
+    if (line.reads() && point.settled.nats.size() > 0) point.settled.ended = std::exchange(point.failure, {});
+  });
 }
 
 void store_exponent_sweep(StoreWriter& writer, const std::string& group, const std::string& title,

@@ -1,7 +1,7 @@
 #include <slipmode/results/map_store.hpp>
 
 #include <slipmode/core/none.hpp>
-#include "results/internal/journal_cursor.hpp"
+#include "results/internal/journal_line.hpp"
 
 #include <fmt/format.h>
 #include <functional>
@@ -11,8 +11,6 @@
 namespace slipmode::results {
 namespace {
 
-using detail::append;
-using detail::Cursor;
 using orbits::MapPoint;
 using orbits::StrobePoint;
 
@@ -27,50 +25,27 @@ std::string failure_lines(const std::vector<MapPoint>& row) {
   return any ? text : std::string();
 }
 
-std::string write_row(std::vector<double>& values, const orbits::MapRow& row) {
-  values.push_back(static_cast<double>(row.settled.size()));
-  for (const MapPoint& point : row.settled) {
-    values.insert(values.end(), {static_cast<double>(point.order), static_cast<double>(point.crossings),
-                                 point.multiplier, point.symmetric ? 1.0 : 0.0, point.floating ? 1.0 : 0.0,
-                                 point.alternating, point.residual, static_cast<double>(point.periods)});
+void list_point(detail::Line& line, MapPoint& point) {
+  line(point.order, point.crossings, point.multiplier, point.symmetric, point.floating, point.alternating,
+       point.residual, point.periods);
+}
+
+void list_row(detail::Line& line, orbits::MapRow& row) {
+  std::size_t size = row.settled.size();
+  line(size);
+  row.settled.resize(size);
+  for (MapPoint& point : row.settled) list_point(line, point);
+  if (!line.reads()) {
+    row.failure = failure_lines(row.settled);
+    return;
   }
-  return failure_lines(row.settled);
+  std::istringstream failures(std::exchange(row.failure, {}));
+  for (MapPoint& point : row.settled) std::getline(failures, point.failure);
 }
 
-void read_row(Cursor& cursor, orbits::MapRow& out_row) {
-  out_row.settled.resize(static_cast<std::size_t>(cursor.next()));
-  std::istringstream failures(std::exchange(out_row.failure, {}));
-  for (MapPoint& point : out_row.settled) {
-    point.order = cursor.next_int();
-    point.crossings = cursor.next_int();
-    point.multiplier = cursor.next();
-    point.symmetric = cursor.next_int() != 0;
-    point.floating = cursor.next_int() != 0;
-    point.alternating = cursor.next();
-    point.residual = cursor.next();
-    point.periods = cursor.next_int();
-    std::getline(failures, point.failure);
-  }
-}
-
-std::string write_strobe(std::vector<double>& values, const StrobePoint& point) {
-  const orbits::Strobe& strobe = point.settled;
-  values.insert(values.end(), {static_cast<double>(strobe.order), strobe.mismatch});
-  append(values, strobe.section);
-  append(values, strobe.alternating);
-  append(values, strobe.effective);
-  append(values, strobe.end);
-  return point.failure;
-}
-
-void read_strobe(Cursor& cursor, StrobePoint& out_point) {
-  orbits::Strobe& strobe = out_point.settled;
-  strobe.order = cursor.next_int();
-  strobe.mismatch = cursor.next();
-  strobe.section = cursor.next_matrix();
-  strobe.alternating = cursor.next_vector();
-  strobe.effective = cursor.next_vector();
-  strobe.end = cursor.next_state();
+void list_strobe(detail::Line& line, StrobePoint& point) {
+  orbits::Strobe& own = point.settled;
+  line(own.order, own.mismatch, own.section, own.alternating, own.effective, own.end);
 }
 
 void store_axis(StoreWriter& writer, const std::string& group, const SweepAxis& axis,
@@ -114,11 +89,11 @@ void store_failures(StoreWriter& writer, const std::string& group, const orbits:
 }  // namespace
 
 orbits::MapSink map_sink(Journal& journal, const std::string& start) {
-  return detail::table_sink<std::vector<MapPoint>>(journal, start, write_row, read_row);
+  return detail::table_sink<std::vector<MapPoint>>(journal, start, list_row);
 }
 
 orbits::StrobeSink strobe_sink(Journal& journal, const std::string& start) {
-  return detail::table_sink<orbits::Strobe>(journal, start, write_strobe, read_strobe);
+  return detail::table_sink<orbits::Strobe>(journal, start, list_strobe);
 }
 
 void store_map(StoreWriter& writer, const SweepAxis& x, const SweepAxis& y, const orbits::MapGrid& grid,

@@ -2,10 +2,33 @@
 
 #include "results/internal/checked_read.hpp"
 #include "results/internal/event_record.hpp"
+#include "results/internal/field_record.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
+
+namespace slipmode {
+
+template <>
+inline constexpr auto kFields<dynamics::EnergyAudit> = std::tuple{
+    required("energy_start", &dynamics::EnergyAudit::energy_start, "J", "energy at the start"),
+    required("energy_end", &dynamics::EnergyAudit::energy_end, "J", "energy at the end"),
+    required("contact_work", &dynamics::EnergyAudit::contact_work, "J", "work of the contact forces on the structure"),
+    required("drive_work", &dynamics::EnergyAudit::drive_work, "J", "work of the drive"),
+    required("friction_loss", &dynamics::EnergyAudit::friction_loss, "J", "dissipated by friction"),
+    optional("force_work", &dynamics::EnergyAudit::force_work, "J", "work of a force drive"),
+    required("viscous_loss", &dynamics::EnergyAudit::viscous_loss, "J", "dissipated by damping"),
+    required("exchanged", &dynamics::EnergyAudit::exchanged, "J", "scale of the residual")};
+template <>
+inline constexpr auto kFields<dynamics::FlowStatistics> =
+    std::tuple{required("steps", &dynamics::FlowStatistics::steps, "", "steps taken"),
+               required("rejected", &dynamics::FlowStatistics::rejected, "", "steps rejected"),
+               required("events", &dynamics::FlowStatistics::events, "", "events located, kept or not"),
+               required("regimes_built", &dynamics::FlowStatistics::regimes_built, "", "regimes built"),
+               required("stick_time", &dynamics::FlowStatistics::stick_time, "s", "time in stick, per contact")};
+
+}  // namespace slipmode
 
 namespace slipmode::results {
 
@@ -24,53 +47,16 @@ pod::BasisKind load_kind(const StoreReader& store, const std::string& name) {
   return *found;
 }
 
-void save_statistics(StoreWriter& store, const std::string& group, const dynamics::FlowStatistics& statistics) {
-  store.describe_group(group, "what the run counted");
-  store.write(group + "/steps", statistics.steps, {"", "steps taken"});
-  store.write(group + "/rejected", statistics.rejected, {"", "steps rejected"});
-  store.write(group + "/events", statistics.events, {"", "events located, kept or not"});
-  store.write(group + "/regimes_built", std::int64_t{statistics.regimes_built}, {"", "regimes built"});
-  store.write(group + "/stick_time", statistics.stick_time, {"s", "time in stick, per contact"});
-}
-
-dynamics::FlowStatistics load_statistics(const StoreReader& store, const std::string& group) {
-  dynamics::FlowStatistics statistics;
-  statistics.steps = store.integer(group + "/steps");
-  statistics.rejected = store.integer(group + "/rejected");
-  statistics.events = store.integer(group + "/events");
-  statistics.regimes_built = static_cast<int>(store.integer(group + "/regimes_built"));
-  const Eigen::VectorXd stick_time = finite_vector(store, group + "/stick_time");
-  statistics.stick_time.assign(stick_time.begin(), stick_time.end());
-  return statistics;
-}
-
 }  // namespace
 
 void save(StoreWriter& store, const std::string& group, const dynamics::EnergyAudit& audit) {
   store.describe_group(group, "energy balance: end - start = contact_work + force_work - viscous_loss");
-  store.write(group + "/energy_start", audit.energy_start, {"J", "energy at the start"});
-  store.write(group + "/energy_end", audit.energy_end, {"J", "energy at the end"});
-  store.write(group + "/contact_work", audit.contact_work, {"J", "work of the contact forces on the structure"});
-  store.write(group + "/drive_work", audit.drive_work, {"J", "work of the drive"});
-  store.write(group + "/friction_loss", audit.friction_loss, {"J", "dissipated by friction"});
-  store.write(group + "/force_work", audit.force_work, {"J", "work of a force drive"});
-  store.write(group + "/viscous_loss", audit.viscous_loss, {"J", "dissipated by damping"});
-  store.write(group + "/exchanged", audit.exchanged, {"J", "scale of the residual"});
+  save_fields(store, group, audit);
   store.write(group + "/residual", audit.residual(), {"1", "what the balance leaves, over exchanged"});
 }
 
 dynamics::EnergyAudit load_audit(const StoreReader& store, const std::string& group) {
-  dynamics::EnergyAudit audit;
-  audit.energy_start = store.number(group + "/energy_start");
-  audit.energy_end = store.number(group + "/energy_end");
-  audit.contact_work = store.number(group + "/contact_work");
-  audit.drive_work = store.number(group + "/drive_work");
-  audit.friction_loss = store.number(group + "/friction_loss");
-  // Not in files of versions that had no forces.
-  audit.force_work = store.has(group + "/force_work") ? store.number(group + "/force_work") : 0.0;
-  audit.viscous_loss = store.number(group + "/viscous_loss");
-  audit.exchanged = store.number(group + "/exchanged");
-  return audit;
+  return load_fields<dynamics::EnergyAudit>(store, group);
 }
 
 void save(StoreWriter& store, const std::string& group, const dynamics::State& state) {
@@ -109,7 +95,8 @@ void save(StoreWriter& store, const std::string& group, const dynamics::Trajecto
   store.write_columns(group + "/event_v", trajectory.event_v, {"m/s", "velocities at events, event x dof"});
   save(store, group + "/final_state", trajectory.final_state);
   save(store, group + "/audit", trajectory.audit);
-  save_statistics(store, group + "/statistics", trajectory.statistics);
+  store.describe_group(group + "/statistics", "what the run counted");
+  save_fields(store, group + "/statistics", trajectory.statistics);
 }
 
 dynamics::Trajectory load_trajectory(const StoreReader& store, const std::string& group) {
@@ -132,7 +119,7 @@ dynamics::Trajectory load_trajectory(const StoreReader& store, const std::string
   }
   run.final_state = load_state(store, group + "/final_state");
   run.audit = load_audit(store, group + "/audit");
-  run.statistics = load_statistics(store, group + "/statistics");
+  run.statistics = load_fields<dynamics::FlowStatistics>(store, group + "/statistics");
   return run;
 }
 

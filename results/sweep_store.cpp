@@ -1,12 +1,11 @@
 #include <slipmode/results/sweep_store.hpp>
 
 #include <slipmode/core/none.hpp>
-#include "results/internal/journal_cursor.hpp"
+#include "results/internal/journal_line.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
 
 namespace slipmode::results {
@@ -17,48 +16,16 @@ using diagnostics::Settled;
 using diagnostics::SlipState;
 using diagnostics::SweepPoint;
 
-using detail::append;
-using detail::Cursor;
-
-std::string write_settled(std::vector<double>& values, const SweepPoint& point) {
-  const Settled& settled = point.settled;
-  values.insert(values.end(), {static_cast<double>(settled.period.motion), static_cast<double>(settled.period.period),
-                               settled.period.T, static_cast<double>(settled.period.contact), settled.period.mismatch,
-                               settled.stick_fraction, settled.mean_energy, settled.slip_rate, settled.time,
-                               static_cast<double>(settled.events)});
-  values.push_back(static_cast<double>(settled.slips.size()));
-  for (const SlipState& slip : settled.slips) {
-    values.insert(values.end(), {slip.time, static_cast<double>(slip.contact), slip.displacement});
-  }
-  append(values, settled.end);
-  return point.failure;
-}
-
-void read_settled(Cursor& cursor, SweepPoint& out_point) {
-  Settled& settled = out_point.settled;
-  settled.period.motion = static_cast<Motion>(cursor.next_int());
-  settled.period.period = cursor.next_int();
-  settled.period.T = cursor.next();
-  settled.period.contact = cursor.next_int();
-  settled.period.mismatch = cursor.next();
-  settled.stick_fraction = cursor.next();
-  settled.mean_energy = cursor.next();
-  settled.slip_rate = cursor.next();
-  settled.time = cursor.next();
-  settled.events = static_cast<std::int64_t>(cursor.next());
-  settled.slips.resize(static_cast<std::size_t>(cursor.next()));
-  for (SlipState& slip : settled.slips) {
-    slip.time = cursor.next();
-    slip.contact = cursor.next_int();
-    slip.displacement = cursor.next();
-  }
-  settled.end = cursor.next_state();
+void list_settled(detail::Line& line, SweepPoint& point) {
+  Settled& own = point.settled;
+  line(own.period.motion, own.period.period, own.period.T, own.period.contact, own.period.mismatch, own.stick_fraction,
+       own.mean_energy, own.slip_rate, own.time, own.events, own.slips, own.end);
 }
 
 }  // namespace
 
 diagnostics::SweepSink journal_sink(Journal& journal) {
-  return detail::table_sink<Settled>(journal, "sweep", write_settled, read_settled);
+  return detail::table_sink<Settled>(journal, "sweep", list_settled);
 }
 
 SweepAxis sweep_axis(const scene::Scene& scene, const std::string& key) {

@@ -1,6 +1,7 @@
 #include <slipmode/core/errors.hpp>
-#include <slipmode/scene/scene_words.hpp>
 #include "scene/internal/scene_parts.hpp"
+#include "scene/internal/scene_words.hpp"
+#include "scene/internal/toml_fields.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -11,32 +12,17 @@ namespace slipmode::scene {
 
 namespace {
 
-friction::NormalOscillator read_oscillator(TomlReader in) {
-  friction::NormalOscillator own;
-  own.mass = in.number("mass", kPositive);
-  own.support_stiffness = in.number("support_stiffness", kNonNegative);
-  own.support_damping = in.number_or("support_damping", 0.0, kNonNegative);
-  own.spring_stiffness = in.number("spring_stiffness", kPositive);
-  own.spring_damping = in.number_or("spring_damping", 0.0, kNonNegative);
-  own.slope = in.number("slope", kFinite);
-  in.finish();
-  return own;
-}
-
 friction::NormalLoad read_load(TomlReader& contact) {
   const char* key = "normal_load";
   if (!contact.is_table(key)) return {contact.number(key, kPositive)};
   TomlReader in = contact.table(key);
-  const double constant = in.number("constant", kPositive);
-  if (!in.has("oscillator")) {
-    const double slope = in.number("slope", kFinite);
-    in.finish();
-    return {constant, slope};
-  }
-  in.refuse("slope", "an oscillator is given too", "oscillator.slope, or a slope and no oscillator");
-  const friction::NormalOscillator own = read_oscillator(in.table("oscillator"));
+  const bool oscillates = in.has("oscillator");
+  if (oscillates) in.refuse("slope", "an oscillator is given too", "oscillator.slope, or a slope and no oscillator");
+  friction::NormalLoad load;
+  read_fields(in, load, {.without = {oscillates ? "slope" : "oscillator"}});
+  if (!oscillates) in.require("slope");
   in.finish();
-  return {constant, own};
+  return load;
 }
 
 double read_tilt(TomlReader& in) {
@@ -50,7 +36,7 @@ double read_tilt(TomlReader& in) {
 void check_combination(TomlReader& in, const ContactSpec& spec) {
   if (!friction::is_piecewise_linear(spec.law)) {
     constexpr const char* kValid = "law = \"coulomb\" or \"compliant\"";
-    const std::string what = fmt::format("does not go with law \"{}\"", kLaws[spec.law.index()]);
+    const std::string what = fmt::format("does not go with law \"{}\"", friction::law_words()[spec.law.index()]);
     if (spec.tilt_deg != 0.0) in.fail("tilt_deg", what, fmt::format("0, or {}", kValid));
     if (!spec.normal_load.is_constant()) in.fail("normal_load", what, fmt::format("a number, or {}", kValid));
     return;
@@ -95,7 +81,7 @@ void check_alone(TomlReader& in, const ContactPlace& place, const std::vector<Co
 Between read_between(TomlReader& in, int masses) {
   const std::string valid = fmt::format("[mass, mass], two different masses from 1 to {}", masses);
   in.refuse("at", "between is given too", "either at or between");
-  const std::vector<int> pair = in.integers_or("between", {}, 1, masses);
+  const std::vector<int> pair = in.integers("between", {.low = 1.0, .high = static_cast<double>(masses)});
   if (pair.size() != 2 || pair[0] == pair[1]) in.fail("between", "not two different masses", valid);
   return {pair[0], pair[1]};
 }
@@ -106,7 +92,7 @@ ContactPlace read_place(TomlReader& in, const Scene& scene) {
   if (scene.beam() == nullptr) {
     const int masses = static_cast<int>(scene.size());
     if (in.has("between")) return read_between(in, masses);
-    return static_cast<int>(in.integer("at", 1, masses));
+    return in.integer<int>("at", {.low = 1.0, .high = static_cast<double>(masses)});
   }
   if (in.is_text("at")) {
     (void)in.choice("at", {"tip"});

@@ -15,8 +15,7 @@ friction::Belt read_belt(TomlReader& in) {
   friction::Belt belt;
   if (in.is_table("speed")) {
     TomlReader ramp = in.table("speed");
-    belt = friction::Belt::ramp(ramp.number("from", kFinite), ramp.number("to", kFinite),
-                                ramp.number("begin", kNonNegative), ramp.number("end", kNonNegative));
+    read_fields(ramp, belt);
     if (belt.ramp_end <= belt.ramp_begin) ramp.fail("end", "not after begin", fmt::format("> {}", belt.ramp_begin));
     ramp.finish();
   } else {
@@ -25,27 +24,17 @@ friction::Belt read_belt(TomlReader& in) {
   return belt;
 }
 
-friction::AmplitudeCurve read_exponential(TomlReader in) {
-  friction::AmplitudeCurve::Exponential curve;
-  curve.at = in.number("at", kFinite);
-  curve.amplitude = in.number("amplitude", kNonNegative);
-  curve.decay = in.number("decay", kPositive);
-  in.finish();
-  return {curve};
-}
-
 friction::AmplitudeCurve read_curve(TomlReader in) {
   friction::AmplitudeCurve curve;
   const auto given = std::ranges::count_if(std::array{"polynomial", "table", "exponential"},
                                            [&in](const char* key) { return in.has(key); });
   in.finish();
   if (in.has("exponential")) {
-    curve = read_exponential(in.table("exponential"));
+    curve.kind = read_table<friction::AmplitudeCurve::Exponential>(in.table("exponential"));
   } else if (in.has("table")) {
     curve.kind = friction::AmplitudeCurve::Table{in.pairs("table", kPositive, kNonNegative)};
   } else {
-    if (!in.has("polynomial")) (void)in.number("polynomial", kFinite);
-    curve.kind = friction::AmplitudeCurve::Polynomial{in.numbers_or("polynomial", {}, kFinite)};
+    curve.kind = friction::AmplitudeCurve::Polynomial{in.numbers("polynomial", kFinite)};
   }
   const char* key = in.has("exponential") ? "exponential" : in.has("table") ? "table" : "polynomial";
   constexpr const char* kValid =
@@ -85,8 +74,7 @@ void read_drive(TomlReader in, Scene& scene) {
   in.refuse("speed", "belongs to a belt, the drive is a shaker", "frequency and amplitude, or kind = \"belt\"");
   in.refuse("omega", "belongs to a force, the drive is a shaker", "frequency, or kind = \"force\"");
   friction::Shaker shaker;
-  shaker.frequency_hz = in.number("frequency", kPositive);
-  shaker.phase = in.number_or("phase", shaker.phase, kFinite);
+  read_fields(in, shaker, {.without = {"amplitude"}});
   scene.amplitude = read_amplitude(in);
   try {
     shaker.amplitude = scene.amplitude.at(shaker.frequency_hz);

@@ -12,7 +12,7 @@ namespace {
 ForcePlace read_force_place(TomlReader& in, const Scene& scene) {
   if (!in.has("direction")) return read_place(in, scene);
   for (const char* key : {"at", "between"}) in.refuse(key, "direction is given too", "either a place or a direction");
-  std::vector<double> direction = in.numbers_or("direction", {}, kFinite, scene.size());
+  std::vector<double> direction = in.numbers("direction", kFinite, scene.size());
   if (std::ranges::all_of(direction, [](double x) { return x == 0.0; })) {
     in.fail("direction", "all zero", "one number per degree of freedom, not all 0");
   }
@@ -22,9 +22,7 @@ ForcePlace read_force_place(TomlReader& in, const Scene& scene) {
 /// A harmonic after the first; it acts where the first does when it names no place.
 ForceSpec::Harmonic read_harmonic(TomlReader& in, const Scene& scene, const ForcePlace& otherwise) {
   ForceSpec::Harmonic harmonic;
-  harmonic.order = static_cast<int>(in.integer("order", 1, kMostCount));
-  harmonic.amplitude = in.number("amplitude", kNonNegative);
-  harmonic.phase = in.number_or("phase", harmonic.phase, kFinite);
+  read_fields(in, harmonic);
   const bool own = in.has("at") || in.has("between") || in.has("direction");
   harmonic.at = own ? read_force_place(in, scene) : otherwise;
   in.finish();
@@ -51,8 +49,7 @@ ForceSpec read_force(TomlReader& in, const Scene& scene) {
     spec.omega = in.number("omega", kPositive);
   }
   ForceSpec::Harmonic first;
-  first.amplitude = in.number("amplitude", kNonNegative);
-  first.phase = in.number_or("phase", first.phase, kFinite);
+  read_fields(in, first, {.without = {"order"}});
   first.at = read_force_place(in, scene);
   spec.harmonics = {first};
   if (in.has("harmonic")) {
@@ -61,7 +58,7 @@ ForceSpec read_force(TomlReader& in, const Scene& scene) {
     }
   }
   if (in.is_array("mean")) {
-    spec.mean = in.numbers_or("mean", {}, kFinite, scene.size());
+    spec.mean = in.numbers("mean", kFinite, scene.size());
   } else {
     spec.mean = in.number_or("mean", 0.0, kFinite);
   }

@@ -1,5 +1,6 @@
 #include <slipmode/core/errors.hpp>
 #include "scene/internal/scene_parts.hpp"
+#include "scene/internal/toml_fields.hpp"
 
 #include <fmt/format.h>
 
@@ -14,20 +15,18 @@ fem::Link read_link(TomlReader& in, int masses) {
         in.has("at") ? "between" : "at", in.has("at") ? "at is given too" : "missing",
         fmt::format("either at = mass (the other end is ground) or between = [mass, mass], masses 1 to {}", masses));
   }
+  const Limits mass{.low = 1.0, .high = static_cast<double>(masses)};
   if (in.has("at")) {
-    link.second = static_cast<int>(in.integer("at", 1, masses));
+    link.second = in.integer<int>("at", mass);
   } else {
-    const std::vector<int> ends = in.integers_or("between", {}, 1, masses);
+    const std::vector<int> ends = in.integers("between", mass);
     if (ends.size() != 2 || ends[0] == ends[1]) {
       in.fail("between", "not two different masses", fmt::format("[mass, mass], masses 1 to {}", masses));
     }
     link.first = ends[0];
     link.second = ends[1];
   }
-  link.stiffness = in.number_or("stiffness", link.stiffness, kNonNegative);
-  link.damping = in.number_or("damping", link.damping, kNonNegative);
-  in.finish();
-  return link;
+  return read_table(in, link);
 }
 
 Eigen::MatrixXd square_or(TomlReader& in, const std::string& key, const Eigen::MatrixXd& otherwise) {
@@ -39,8 +38,7 @@ Eigen::MatrixXd square_or(TomlReader& in, const std::string& key, const Eigen::M
 fem::MassesOptions read_masses(TomlReader& in, const std::string& units) {
   fem::MassesOptions options;
   options.units = units;
-  options.mass =
-      in.is_array("mass") ? in.numbers_or("mass", {}, kPositive) : std::vector<double>{in.number("mass", kPositive)};
+  read_fields(in, options);
   if (options.mass.empty()) in.fail("mass", "no masses", "one number > 0 per mass");
   if (in.has("link")) {
     for (TomlReader& table : in.tables("link")) {

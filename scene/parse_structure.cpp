@@ -1,5 +1,6 @@
-#include <slipmode/scene/scene_words.hpp>
 #include "scene/internal/scene_parts.hpp"
+#include "scene/internal/scene_words.hpp"
+#include "scene/internal/toml_fields.hpp"
 
 #include <fmt/format.h>
 #include <numeric>
@@ -8,43 +9,29 @@ namespace slipmode::scene {
 
 namespace {
 
-constexpr int kMostMasses = 10'000'000;
-constexpr int kMostElements = 1'000'000;
-
 fem::ChainOptions read_chain(TomlReader& in, const std::string& units) {
   fem::ChainOptions chain;
   chain.units = units;
-  chain.masses = static_cast<int>(in.integer("masses", 1, kMostMasses));
-  const Ends& ends = kEnds[in.choice_or("ends", 0, words_of(kEnds))];
-  chain.left_fixed = ends.left_fixed;
-  chain.right_fixed = ends.right_fixed;
-  const int springs = chain.masses - 1 + static_cast<int>(chain.left_fixed) + static_cast<int>(chain.right_fixed);
-  chain.mass = in.per_item_or("mass", chain.mass, chain.masses, kPositive);
-  chain.stiffness = in.per_item_or("stiffness", chain.stiffness, springs, kPositive);
-  chain.ground_stiffness = in.per_item_or("ground_stiffness", {}, chain.masses, kNonNegative);
-  chain.damping = in.number_or("damping", chain.damping, kNonNegative);
-  chain.mass_damping = in.number_or("mass_damping", chain.mass_damping, kNonNegative);
+  const std::string& ends = kEnds[in.choice_or("ends", 0, kEnds)];
+  chain.left_fixed = ends.starts_with("fixed");
+  chain.right_fixed = ends.ends_with("fixed");
+  const auto count = [&chain](std::string_view key) {
+    const int springs = chain.masses - 1 + static_cast<int>(chain.left_fixed) + static_cast<int>(chain.right_fixed);
+    return key == "stiffness" ? springs : chain.masses;
+  };
+  read_fields(in, chain, {.count = count});
   in.finish();
   return chain;
 }
 
 fem::BeamSpan read_span(TomlReader& in, fem::BeamTheory theory) {
   fem::BeamSpan span;
-  span.length = in.number("length", kPositive);
-  span.width = in.number("width", kPositive);
-  span.thickness = in.number("thickness", kPositive);
-  span.youngs_modulus = in.number("youngs_modulus", kPositive);
-  span.density = in.number("density", kPositive);
-  span.elements = static_cast<int>(in.integer("elements", 1, kMostElements));
-  if (theory == fem::BeamTheory::kEulerBernoulli) {
-    for (const char* key : {"poisson_ratio", "shear_coefficient"}) {
-      in.refuse(key, "theory \"euler-bernoulli\" has no shear", "this key only with theory = \"timoshenko\"");
-    }
-    return span;
+  const Without shear = without_shear(theory);
+  for (const std::string_view key : shear) {
+    in.refuse(std::string(key), "theory \"euler-bernoulli\" has no shear",
+              "this key only with theory = \"timoshenko\"");
   }
-  span.poisson_ratio = in.number_or("poisson_ratio", span.poisson_ratio,
-                                    {.low = -1.0, .high = 0.5, .above = true, .text = "a number > -1 and <= 0.5"});
-  span.shear_coefficient = in.number_or("shear_coefficient", span.shear_coefficient, kPositive);
+  read_fields(in, span, {.without = shear});
   return span;
 }
 
@@ -61,24 +48,13 @@ std::vector<fem::BeamSpan> read_spans(TomlReader& in, fem::BeamTheory theory) {
   return spans;
 }
 
-fem::TipBody read_tip(TomlReader in) {
-  fem::TipBody tip;
-  tip.mass = in.number_or("mass", tip.mass, kNonNegative);
-  tip.inertia = in.number_or("inertia", tip.inertia, kNonNegative);
-  tip.offset = in.number_or("offset", tip.offset, kFinite);
-  tip.extension = in.number_or("extension", tip.extension, kNonNegative);
-  in.finish();
-  return tip;
-}
-
 fem::ProportionalRatios read_ratios(TomlReader& in) {
-  const std::vector<double> ratios = in.per_item_or("ratio", {}, 2, kNonNegative);
+  const std::vector<double> ratios = in.per_item("ratio", kNonNegative, 2);
   std::vector<double> frequencies;
   if (ratios.size() == 1) {
     frequencies = {in.number("frequency", kPositive)};
   } else {
-    if (!in.has("frequency")) (void)in.number("frequency", kPositive);
-    frequencies = in.numbers_or("frequency", {}, kPositive, 2);
+    frequencies = in.numbers("frequency", kPositive, 2);
     if (frequencies[0] == frequencies[1]) in.fail("frequency", "the same twice", "two different frequencies");
   }
   fem::ProportionalRatios damping;
@@ -100,14 +76,14 @@ fem::BeamDamping read_damping(TomlReader in) {
     damping = read_ratios(in);
   } else if (in.has("modal_ratio")) {
     // A number holds for all modes, an array for modes 1, 2, … and its last value for all further ones.
-    const bool is_list = in.is_array("modal_ratio");
-    const std::vector<double> ratios = is_list ? in.numbers_or("modal_ratio", {}, kNonNegative)
-                                               : std::vector<double>{in.number("modal_ratio", kNonNegative)};
-    if (ratios.empty()) in.fail("modal_ratio", "no values", "a number >= 0, or an array of one or more");
-    damping = fem::ModalRatios{ratios};
+    fem::ModalRatios modal;
+    read_fields(in, modal);
+    if (modal.ratios.empty()) in.fail("modal_ratio", "no values", "a number >= 0, or an array of one or more");
+    damping = modal;
   } else {
-    damping = fem::Rayleigh{.mass = in.number_or("mass_coefficient", 0.0, kNonNegative),
-                            .stiffness = in.number("coefficient", kNonNegative)};
+    fem::Rayleigh rayleigh;
+    read_fields(in, rayleigh);
+    damping = rayleigh;
   }
   in.finish();
   return damping;
@@ -115,15 +91,20 @@ fem::BeamDamping read_damping(TomlReader in) {
 
 fem::BeamOptions read_beam(TomlReader& in) {
   fem::BeamOptions beam;
-  beam.theory = kTheories[in.choice_or("theory", 0, words_of(kTheories))].theory;
+  read_fields(in, beam);
   beam.spans = read_spans(in, beam.theory);
-  if (in.has("tip")) beam.tip = read_tip(in.table("tip"));
+  if (in.has("tip")) beam.tip = read_table<fem::TipBody>(in.table("tip"));
   if (in.has("damping")) beam.damping = read_damping(in.table("damping"));
   in.finish();
   return beam;
 }
 
 }  // namespace
+
+Without without_shear(fem::BeamTheory theory) {
+  if (theory == fem::BeamTheory::kTimoshenko) return {};
+  return {"poisson_ratio", "shear_coefficient"};
+}
 
 double beam_length(const fem::BeamOptions& beam) {
   return std::accumulate(beam.spans.begin(), beam.spans.end(), 0.0,

@@ -1,7 +1,7 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/core/overloaded.hpp>
-#include <slipmode/scene/scene_words.hpp>
 #include "scene/internal/scene_parts.hpp"
+#include "scene/internal/scene_words.hpp"
 
 #include <fmt/format.h>
 #include <numbers>

@@ -1,12 +1,11 @@
 #include <slipmode/core/errors.hpp>
-#include <slipmode/scene/scene_words.hpp>
 #include "scene/internal/scene_parts.hpp"
+#include "scene/internal/scene_words.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <fstream>
-#include <limits>
 #include <sstream>
 
 namespace slipmode::scene {
@@ -14,13 +13,9 @@ namespace slipmode::scene {
 namespace {
 
 TimeSpec read_cycles(TomlReader& in, double frequency_hz) {
-  for (const char* key : {"duration", "transient", "sample"}) {
-    in.refuse(key, "the time is given in cycles too", "either cycles or seconds");
-  }
+  refuse_others<TimeSpec, TimeSpec::Cycles>(in, "the time is given in cycles too", "either cycles or seconds");
   TimeSpec::Cycles cycles;
-  cycles.cycles = in.number("cycles", kPositive);
-  cycles.transient_cycles = in.number_or("transient_cycles", cycles.transient_cycles, kNonNegative);
-  cycles.samples = in.integer_or("samples_per_cycle", cycles.samples, 1, kMostCount);
+  read_fields(in, cycles);
   if (cycles.transient_cycles >= cycles.cycles) {
     in.fail("transient_cycles", "nothing is left to keep", fmt::format("less than cycles = {}", cycles.cycles));
   }
@@ -32,9 +27,8 @@ TimeSpec read_cycles(TomlReader& in, double frequency_hz) {
 
 TimeSpec read_seconds(TomlReader& in, bool periodic) {
   TimeSpec time;
-  time.duration = in.number("duration", kPositive);
-  time.transient = in.number_or("transient", time.transient, kNonNegative);
-  time.sample = periodic ? in.number("sample", kPositive) : in.number_or("sample", time.sample, kPositive);
+  read_fields(in, time);
+  if (periodic) in.require("sample");
   if (time.transient >= time.duration) {
     in.fail("transient", "nothing is left to keep", fmt::format("less than duration = {}", time.duration));
   }
@@ -46,16 +40,13 @@ TimeSpec read_seconds(TomlReader& in, bool periodic) {
 }
 
 TimeSpec read_time(TomlReader in, const friction::Drive& drive) {
-  constexpr std::array kCycleKeys = {"cycles", "transient_cycles", "samples_per_cycle"};
   TimeSpec time;
   if (const auto period = drive.period()) {
-    const bool counted = std::ranges::any_of(kCycleKeys, [&in](const char* key) { return in.has(key); });
     const double frequency = drive.shaker() != nullptr ? drive.shaker()->frequency_hz : 1.0 / *period;
-    time = counted ? read_cycles(in, frequency) : read_seconds(in, true);
+    time = has_any<TimeSpec::Cycles>(in) ? read_cycles(in, frequency) : read_seconds(in, true);
   } else {
-    for (const char* key : kCycleKeys) {
-      in.refuse(key, "counts a shaker's cycles or a force's, the drive is a belt", "duration");
-    }
+    refuse_others<TimeSpec::Cycles, TimeSpec>(in, "counts a shaker's cycles or a force's, the drive is a belt",
+                                              "duration");
     time = read_seconds(in, false);
   }
   in.finish();
@@ -66,7 +57,7 @@ InitialSpec read_initial(TomlReader in, const Scene& scene) {
   InitialSpec initial;
   const bool given = in.has("displacement") || in.has("velocity");
   if (given && in.has("at")) in.fail("at", "displacement or velocity is given too", "either at, or arrays");
-  initial.at = kStarts[in.choice_or("at", 0, words_of(kStarts))].at;
+  read_fields(in, initial, {.without = {"displacement", "velocity"}});
   if (initial.at == InitialSpec::At::kStatic) {
     constexpr const char* kValid = "\"rest\", or displacement and velocity";
     if (scene.drive.belt() == nullptr) {
@@ -79,56 +70,36 @@ InitialSpec read_initial(TomlReader in, const Scene& scene) {
     }
   }
   if (given) {
-    const std::vector<double> zero(static_cast<std::size_t>(scene.size()), 0.0);
     initial.at = InitialSpec::At::kGiven;
-    initial.displacement = in.numbers_or("displacement", zero, kFinite, scene.size());
-    initial.velocity = in.numbers_or("velocity", zero, kFinite, scene.size());
+    initial.displacement.assign(static_cast<std::size_t>(scene.size()), 0.0);
+    initial.velocity = initial.displacement;
+    read_fields(in, initial, {.without = {"at"}, .count = [&scene](std::string_view) { return scene.size(); }});
   }
   in.finish();
   return initial;
 }
 
-std::vector<double> read_frequencies(TomlReader& in, const friction::AmplitudeCurve& amplitude) {
-  const std::vector<double> frequencies = in.numbers_or("frequencies", {}, kPositive);
-  for (const double frequency : frequencies) {
-    if (amplitude.covers(frequency, frequency)) continue;
+EnsembleSpec read_ensemble(TomlReader in, const Scene& scene) {
+  const Without others = without_other_drives(scene.drive);
+  for (const std::string_view key : others) {
+    if (scene.force) {
+      in.refuse(std::string(key), "belongs to a belt or a shaker, the drive is a force",
+                "no such key; change drive.omega with --set");
+    } else if (scene.drive.shaker() != nullptr) {
+      in.refuse("speeds", "belongs to a belt, the drive is a shaker", "frequencies");
+    } else {
+      in.refuse("frequencies", "belongs to a shaker, the drive is a belt", "speeds");
+    }
+  }
+  EnsembleSpec ensemble;
+  read_fields(in, ensemble, {.without = others});
+  for (const double frequency : ensemble.frequencies) {
+    if (scene.amplitude.covers(frequency, frequency)) continue;
     in.fail("frequencies", fmt::format("the amplitude curve has no value >= 0 at {} Hz", frequency),
             "frequencies the curve of drive.amplitude covers");
   }
-  return frequencies;
-}
-
-EnsembleSpec read_ensemble(TomlReader in, const Scene& scene) {
-  EnsembleSpec ensemble;
-  ensemble.members = static_cast<int>(in.integer_or("members", ensemble.members, 1, kMostCount));
-  ensemble.seed = static_cast<std::uint64_t>(in.integer_or("seed", 1, 0, std::numeric_limits<std::int64_t>::max()));
-  ensemble.spread = in.number_or("spread", ensemble.spread, kNonNegative);
-  if (scene.force) {
-    for (const char* key : {"speeds", "frequencies"}) {
-      in.refuse(key, "belongs to a belt or a shaker, the drive is a force",
-                "no such key; change drive.omega with --set");
-    }
-  } else if (scene.drive.shaker() != nullptr) {
-    in.refuse("speeds", "belongs to a belt, the drive is a shaker", "frequencies");
-    ensemble.frequencies = read_frequencies(in, scene.amplitude);
-  } else {
-    in.refuse("frequencies", "belongs to a shaker, the drive is a belt", "speeds");
-    ensemble.speeds = in.numbers_or("speeds", {}, kFinite);
-  }
   in.finish();
   return ensemble;
-}
-
-dynamics::FlowOptions read_flow(TomlReader in) {
-  dynamics::FlowOptions flow;
-  flow.method = kMethods[in.choice_or("method", 0, words_of(kMethods))].method;
-  flow.tolerance = in.number_or("tolerance", flow.tolerance,
-                                {.low = 0.0, .high = 1.0, .above = true, .text = "a number > 0 and <= 1"});
-  flow.max_events_per_window =
-      static_cast<int>(in.integer_or("max_events_per_window", flow.max_events_per_window, 1, kMostCount));
-  flow.zeno_window = in.number_or("zeno_window", flow.zeno_window, kNonNegative);
-  in.finish();
-  return flow;
 }
 
 std::string read_file(const std::filesystem::path& path) {
@@ -147,6 +118,13 @@ std::string read_file(const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+Without without_other_drives(const friction::Drive& drive) {
+  Without others;
+  if (drive.belt() == nullptr) others.emplace_back("speeds");
+  if (drive.shaker() == nullptr) others.emplace_back("frequencies");
+  return others;
+}
 
 Scene parse_scene(const std::string& text, const std::vector<std::string>& overrides, const std::string& path) {
   const TomlDocument document(text, path, overrides);
@@ -175,7 +153,7 @@ Scene parse_scene(const std::string& text, const std::vector<std::string>& overr
   } else {
     scene.validation = read_validation(in.table_or_empty("validation"), scene);
   }
-  scene.flow = read_flow(in.table_or_empty("flow"));
+  scene.flow = read_table<dynamics::FlowOptions>(in.table_or_empty("flow"));
   in.finish();
   return scene;
 }

@@ -1,7 +1,7 @@
 #include <slipmode/scene/specs.hpp>
 
 #include <slipmode/diagnostics/attractors/sweep.hpp>
-#include <slipmode/scene/scene_words.hpp>
+#include "scene/internal/scene_words.hpp"
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@ std::string to_string(const ContactPlace& place) {
   return "tip";
 }
 
-std::string to_string(BasisChoice basis) { return kBases[static_cast<std::size_t>(basis)]; }
+std::string to_string(BasisChoice basis) { return kWords<BasisChoice>.at(static_cast<std::size_t>(basis)); }
 
 std::vector<double> Range::values() const { return diagnostics::sweep_values(from, to, step); }
 

@@ -1,13 +1,16 @@
 #pragma once
 
+#include <slipmode/core/fields.hpp>
 #include <slipmode/friction/contact.hpp>
 #include <slipmode/pod/pomf.hpp>
 #include <slipmode/pod/sensors.hpp>
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <variant>
 #include <vector>
 
@@ -50,10 +53,15 @@ using ForcePlace = std::variant<ContactPlace, std::vector<double>>;
 struct ForceSpec {
   /// amplitude sin(order ω t + phase).
   struct Harmonic {
-    double amplitude = 0.0;  ///< ≥ 0 [N]
-    double phase = 0.0;      ///< [rad]
-    int order = 1;           ///< ≥ 1
+    double amplitude = 0.0, phase = 0.0;
+    int order = 1;
     ForcePlace at = ContactPlace{1};
+
+    static constexpr auto fields() {
+      return std::tuple{required("order", &Harmonic::order, "", "frequency over omega", kCount),
+                        required("amplitude", &Harmonic::amplitude, "N", "amplitude", kNonNegative),
+                        optional("phase", &Harmonic::phase, "rad", "phase at time 0")};
+    }
   };
 
   double omega = 1.0;                  ///< ω > 0 [rad/s]
@@ -65,16 +73,26 @@ struct ForceSpec {
 
 /// How long a run is and what is kept ([time]).
 struct TimeSpec {
-  double duration = 0.0;   ///< of the whole run, > transient [s]
-  double transient = 0.0;  ///< not kept, ≥ 0 [s]
-  double sample = 0.5;     ///< sampling interval, > 0 [s]
+  double duration = 0.0, transient = 0.0, sample = 0.5;
+
+  static constexpr auto fields() {
+    return std::tuple{required("duration", &TimeSpec::duration, "s", "of the whole run, > transient", kPositive),
+                      optional("transient", &TimeSpec::transient, "s", "not kept", kNonNegative),
+                      optional("sample", &TimeSpec::sample, "s", "sampling interval", kPositive)};
+  }
 
   /// The same in cycles of a shaker or a force: the three above are then those at the scene's own frequency (see
   /// time_at).
   struct Cycles {
-    double cycles = 0.0;            ///< > transient_cycles
-    double transient_cycles = 0.0;  ///< ≥ 0
-    std::int64_t samples = 32;      ///< kept per cycle, ≥ 1
+    double cycles = 0.0, transient_cycles = 0.0;
+    std::int64_t samples = 32;
+
+    static constexpr auto fields() {
+      return std::tuple{required("cycles", &Cycles::cycles, "", "of the whole run, > transient_cycles", kPositive),
+                        optional("transient_cycles", &Cycles::transient_cycles, "", "not kept", kNonNegative),
+                        optional("samples_per_cycle", &Cycles::samples, "", "kept per cycle",
+                                 {.low = 1.0, .high = std::numeric_limits<int>::max()})};
+    }
   };
   std::optional<Cycles> cycles;
 };
@@ -86,25 +104,49 @@ struct InitialSpec {
     kStatic,  ///< K q = Σ w λ with λ = μ_k N in the direction of the belt at time 0 (tilt counts), v = 0
     kGiven,   ///< the arrays below
   } at = At::kRest;
-  std::vector<double> displacement;  ///< one value per degree of freedom (kGiven) [m]
-  std::vector<double> velocity;      ///< one value per degree of freedom (kGiven) [m/s]
+  std::vector<double> displacement, velocity;  ///< for kGiven
+
+  static constexpr auto fields() {
+    return std::tuple{optional("at", &InitialSpec::at, "", "a state of the model"),
+                      optional("displacement", &InitialSpec::displacement, "m", "one value per degree of freedom"),
+                      optional("velocity", &InitialSpec::velocity, "m/s", "one value per degree of freedom")};
+  }
 };
 
 /// Runs that feed the basis ([ensemble]); without it one run, unperturbed.
 struct EnsembleSpec {
-  int members = 1;                  ///< runs per speed or frequency, ≥ 1
-  std::uint64_t seed = 1;           ///< of the perturbations
-  double spread = 0.0;              ///< standard deviation of the starts, ≥ 0 [m], [m/s] (see ensemble_states)
-  std::vector<double> speeds;       ///< belt speeds to run at; empty: the drive's own [m/s]
-  std::vector<double> frequencies;  ///< shaker frequencies to run at; empty: the drive's own [Hz]
+  int members = 1;
+  std::uint64_t seed = 1;
+  double spread = 0.0;
+  std::vector<double> speeds, frequencies;
+
+  static constexpr auto fields() {
+    using Own = EnsembleSpec;
+    return std::tuple{optional("members", &Own::members, "", "runs per speed or frequency", kCount),
+                      optional("seed", &Own::seed, "", "of the perturbations", kFromZero),
+                      optional("spread", &Own::spread, "m, m/s",
+                               "standard deviation of the starts (see ensemble_states)", kNonNegative),
+                      optional("speeds", &Own::speeds, "m/s", "belt speeds to run at; empty: the drive's own"),
+                      optional("frequencies", &Own::frequencies, "Hz",
+                               "shaker frequencies to run at; empty: the drive's own", kPositive)};
+  }
 };
 
 /// Sensors on a beam ([sensors]): what the basis of modal functions is made from.
 struct SensorSpec {
   pod::SensorKind kind = pod::SensorKind::kStrain;
-  std::vector<double> x;   ///< places from the clamp, at least one [m]
-  double noise = 0.0;      ///< standard deviation as a fraction of each sensor's rms, ≥ 0
-  std::uint64_t seed = 1;  ///< of the noise
+  std::vector<double> x;
+  double noise = 0.0;
+  std::uint64_t seed = 1;
+
+  static constexpr auto fields() {
+    using Own = SensorSpec;
+    return std::tuple{
+        required("kind", &Own::kind, "", "what is read"),
+        required("x", &Own::x, "m", "places from the clamp, at least one"),
+        optional("noise", &Own::noise, "1", "standard deviation as a fraction of each sensor's rms", kNonNegative),
+        optional("seed", &Own::seed, "", "of the noise", kFromZero)};
+  }
 };
 
 /// What the vectors of a basis are.
@@ -123,14 +165,26 @@ enum class BasisChoice {
 struct ReductionSpec {
   BasisChoice basis = BasisChoice::kPom;
   pod::ModeChoice choice = {.modes = 0, .energy = 0.99};  ///< energy, or modes
-  /// Of modal functions: what carries each POM. Only with sensors.
   pod::FitFamily fit = pod::FitFamily::kNaturalModes;
-  int functions = 0;  ///< how many of them, at most one per sensor; 0: one per sensor
+  int functions = 0;
+
+  static constexpr auto fields() {
+    using Own = ReductionSpec;
+    return std::tuple{optional("basis", &Own::basis, "", "what the vectors are"),
+                      optional("fit", &Own::fit, "", "of modal functions, with sensors: what carries each POM"),
+                      optional("functions", &Own::functions, "",
+                               "how many of them, at most one per sensor; 0: one per sensor", kCount)};
+  }
 };
 
 /// A grid of values from, from ± step, ... up to `to`.
 struct Range {
-  double from = 0.0, to = 0.0, step = 1.0;  ///< step > 0; the direction follows from `from` and `to`
+  double from = 0.0, to = 0.0, step = 1.0;  ///< the direction follows from `from` and `to`
+
+  static constexpr auto fields() {
+    return std::tuple{required("from", &Range::from, "", "first value"), required("to", &Range::to, "", "last value"),
+                      required("step", &Range::step, "", "between values", kPositive)};
+  }
 
   /// The values, as diagnostics::sweep_values gives them.
   [[nodiscard]] std::vector<double> values() const;
@@ -138,22 +192,41 @@ struct Range {
 
 /// How full and reduced models are compared on a belt ([validation]).
 struct ValidationSpec {
-  Range speeds = {0.5, 0.001, 0.001};  ///< belt speeds of the bifurcation diagram [m/s]
-  int segments = 1;                    ///< chains the sweep is cut into; each starts anew
-  double transient = 1000.0;           ///< run first at each speed, nothing kept [s]
-  double block = 5000.0;               ///< then blocks of this length, each judged [s]
-  double limit = 100000.0;             ///< until periodic or so long, ≥ block: attractors and orbits [s]
-  double sweep_limit = 5000.0;         ///< the same at each value of a sweep, > 0 [s]
-  double period_tolerance = 1e-5;      ///< slip states closer than this, relative to their range, count as the same
-  int max_period = 64;                 ///< longest period looked for, in slips
-  double horizon = 100.0;              ///< full against reduced from shared starts, on the scene's own drive [s]
-  int horizon_starts = 16;             ///< how many shared starts are averaged
-  std::vector<double> orbits;          ///< belt speeds at which periodic orbits are compared [m/s]
-  double orbit_tolerance = 1e-8;       ///< to which such an orbit must repeat
-  std::vector<int> modes;              ///< sizes of the reduced models compared; empty: 1..N
-  double lyapunov_duration = 20000.0;  ///< over which the largest exponent is measured [s]
-  double cost_duration = 10000.0;      ///< simulated by the timed runs; 0: no timing [s]
-  int cost_repeats = 5;                ///< cost is the median of this many runs
+  Range speeds = {0.5, 0.001, 0.001};
+  int segments = 1;
+  double transient = 1000.0, block = 5000.0, limit = 100000.0, sweep_limit = 5000.0, period_tolerance = 1e-5;
+  int max_period = 64;
+  double horizon = 100.0;
+  int horizon_starts = 16;
+  std::vector<double> orbits;
+  double orbit_tolerance = 1e-8;
+  std::vector<int> modes;
+  double lyapunov_duration = 20000.0, cost_duration = 10000.0;
+  int cost_repeats = 5;
+
+  static constexpr auto fields() {
+    using Own = ValidationSpec;
+    return std::tuple{
+        optional("speeds", &Own::speeds, "m/s", "belt speeds of the bifurcation diagram"),
+        optional("segments", &Own::segments, "", "chains the sweep is cut into; each starts anew", kCount),
+        optional("transient", &Own::transient, "s", "run first at each speed, nothing kept", kNonNegative),
+        optional("block", &Own::block, "s", "then blocks of this length, each judged", kPositive),
+        optional("limit", &Own::limit, "s", "until periodic or so long, >= block: attractors and orbits", kPositive),
+        optional("sweep_limit", &Own::sweep_limit, "s", "the same at each value of a sweep", kPositive),
+        optional("period_tolerance", &Own::period_tolerance, "1",
+                 "slip states closer than this, relative to their range, count as the same", kPositive),
+        optional("max_period", &Own::max_period, "", "longest period looked for, in slips", kCount),
+        optional("horizon", &Own::horizon, "s", "full against reduced from shared starts, on the scene's own drive",
+                 kPositive),
+        optional("horizon_starts", &Own::horizon_starts, "", "how many shared starts are averaged", kCount),
+        optional("orbits", &Own::orbits, "m/s", "belt speeds at which periodic orbits are compared"),
+        optional("orbit_tolerance", &Own::orbit_tolerance, "1", "to which such an orbit must repeat", kPositive),
+        optional("modes", &Own::modes, "", "sizes of the reduced models compared; empty: 1..N", kCount),
+        optional("lyapunov_duration", &Own::lyapunov_duration, "s", "over which the largest exponent is measured",
+                 kPositive),
+        optional("cost_duration", &Own::cost_duration, "s", "simulated by the timed runs; 0: no timing", kNonNegative),
+        optional("cost_repeats", &Own::cost_repeats, "", "cost is the median of this many runs", kCount)};
+  }
 };
 
 /// How full and reduced models are compared under a shaker ([validation]).
@@ -165,17 +238,34 @@ struct ShakenValidationSpec {
     kBoth,     ///< and back
   };
 
-  std::optional<Range> frequencies;  ///< of the sweep [Hz]; the amplitude curve covers them; absent: no sweep
-  double cycles = 600.0;             ///< run at each frequency, > kept
-  double kept = 100.0;               ///< cycles kept, the last ones, > 0 (S4 6.3.2)
-  std::optional<double> gauge;       ///< x of the strain in Poincaré sections [m]; absent: see gauge_position
-  std::vector<int> modes;            ///< sizes of the reduced models compared; empty: 1..N
-  std::vector<BasisChoice> bases;    ///< bases compared; default: what the scene's structure and sensors allow
+  std::optional<Range> frequencies;
+  double cycles = 600.0, kept = 100.0;
+  std::optional<double> gauge;
+  std::vector<int> modes;
+  std::vector<BasisChoice> bases;
   Follow follow = Follow::kNone;
-  double period_tolerance = 1e-5;  ///< section states closer than this, relative to their range, are the same
-  int max_period = 64;             ///< longest period looked for, in cycles
-  double cost_cycles = 600.0;      ///< simulated by the timed runs; 0: no timing
-  int cost_repeats = 5;            ///< cost is the median of this many runs
+  double period_tolerance = 1e-5;
+  int max_period = 64;
+  double cost_cycles = 600.0;
+  int cost_repeats = 5;
+
+  static constexpr auto fields() {
+    using Own = ShakenValidationSpec;
+    return std::tuple{
+        optional("frequencies", &Own::frequencies, "Hz",
+                 "of the sweep; the amplitude curve covers them; absent: no sweep", kPositive),
+        optional("cycles", &Own::cycles, "", "run at each frequency", kPositive),
+        optional("kept", &Own::kept, "", "cycles kept, the last ones (S4 6.3.2)", kPositive),
+        optional("gauge", &Own::gauge, "m", "x of the strain in Poincare sections; absent: see gauge_position"),
+        optional("modes", &Own::modes, "", "sizes of the reduced models compared; empty: 1..N", kCount),
+        optional("bases", &Own::bases, "", "bases compared; default: what the scene's structure and sensors allow"),
+        optional("follow", &Own::follow, "", "which ways a sweep goes on from value to value"),
+        optional("period_tolerance", &Own::period_tolerance, "1",
+                 "section states closer than this, relative to their range, are the same", kPositive),
+        optional("max_period", &Own::max_period, "", "longest period looked for, in cycles", kCount),
+        optional("cost_cycles", &Own::cost_cycles, "", "simulated by the timed runs; 0: no timing", kNonNegative),
+        optional("cost_repeats", &Own::cost_repeats, "", "cost is the median of this many runs", kCount)};
+  }
 };
 
 }  // namespace slipmode::scene

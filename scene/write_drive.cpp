@@ -1,5 +1,5 @@
 #include <slipmode/core/overloaded.hpp>
-#include "scene/internal/toml_text.hpp"
+#include "scene/internal/toml_fields.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,11 +10,7 @@ namespace {
 
 std::string belt_toml(const friction::Belt& belt) {
   const bool ramp = belt.ramp_end > belt.ramp_begin;
-  const std::string speed =
-      ramp ? fmt::format("{{ from = {}, to = {}, begin = {}, end = {} }}", number_text(belt.speed),
-                         number_text(belt.end_speed), number_text(belt.ramp_begin), number_text(belt.ramp_end))
-           : number_text(belt.speed);
-  return fmt::format("\n[drive]\nkind = \"belt\"\nspeed = {}\n", speed);
+  return fmt::format("\n[drive]\nkind = \"belt\"\nspeed = {}\n", ramp ? inline_table(belt) : number_text(belt.speed));
 }
 
 std::string force_place_toml(const ForcePlace& place) {
@@ -26,13 +22,12 @@ std::string force_toml(const ForceSpec& force) {
   const ForceSpec::Harmonic& first = force.harmonics.front();
   std::string out = "\n[drive]\nkind = \"force\"\n";
   out += force.frequency_hz ? number_line("frequency", *force.frequency_hz) : number_line("omega", force.omega);
-  out += number_line("amplitude", first.amplitude) + number_line("phase", first.phase) + force_place_toml(first.at);
+  out += lines_toml(first, {"order"}) + force_place_toml(first.at);
   const double* mean = std::get_if<double>(&force.mean);
   out += fmt::format("mean = {}\n", mean != nullptr ? number_text(*mean) : numbers_text(std::get<1>(force.mean)));
   for (std::size_t k = 1; k < force.harmonics.size(); ++k) {
     const ForceSpec::Harmonic& own = force.harmonics[k];
-    out += fmt::format("\n[[drive.harmonic]]\norder = {}\n", own.order) + number_line("amplitude", own.amplitude) +
-           number_line("phase", own.phase) + force_place_toml(own.at);
+    out += "\n[[drive.harmonic]]\n" + lines_toml(own) + force_place_toml(own.at);
   }
   return out;
 }
@@ -50,9 +45,7 @@ std::string amplitude_toml(const friction::AmplitudeCurve& curve) {
                                  return fmt::format("{{ table = [{}] }}", fmt::join(points, ", "));
                                },
                                [](const Curve::Exponential& exponential) {
-                                 return fmt::format("{{ exponential = {{ at = {}, amplitude = {}, decay = {} }} }}",
-                                                    number_text(exponential.at), number_text(exponential.amplitude),
-                                                    number_text(exponential.decay));
+                                 return fmt::format("{{ exponential = {} }}", inline_table(exponential));
                                }},
                     curve.kind);
 }
@@ -71,8 +64,8 @@ std::string drive_toml(const Scene& scene) {
   if (const friction::Belt* belt = scene.drive.belt()) return belt_toml(*belt);
   if (scene.force) return force_toml(*scene.force);
   const friction::Shaker& shaker = *scene.drive.shaker();
-  return "\n[drive]\nkind = \"shaker\"\n" + number_line("frequency", shaker.frequency_hz) +
-         number_line("phase", shaker.phase) + fmt::format("amplitude = {}\n", amplitude_toml(scene.amplitude));
+  return "\n[drive]\nkind = \"shaker\"\n" + lines_toml(shaker, {"amplitude"}) +
+         fmt::format("amplitude = {}\n", amplitude_toml(scene.amplitude));
 }
 
 }  // namespace slipmode::scene

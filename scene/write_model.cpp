@@ -1,42 +1,22 @@
 #include <slipmode/core/overloaded.hpp>
-#include <slipmode/scene/scene_words.hpp>
-#include "scene/internal/toml_text.hpp"
+#include "scene/internal/scene_parts.hpp"
+#include "scene/internal/scene_words.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <tuple>
 
 namespace slipmode::scene {
 
 namespace {
 
 std::string chain_toml(const fem::ChainOptions& chain) {
-  const auto ends = std::ranges::find_if(kEnds, [&](const Ends& entry) {
-    return entry.left_fixed == chain.left_fixed && entry.right_fixed == chain.right_fixed;
-  });
-  std::string out =
-      fmt::format("\n[structure]\nkind = \"chain\"\nmasses = {}\nends = \"{}\"\nmass = {}\nstiffness = {}\n",
-                  chain.masses, ends->word, one_or_many_text(chain.mass), one_or_many_text(chain.stiffness));
-  if (!chain.ground_stiffness.empty()) {
-    out += fmt::format("ground_stiffness = {}\n", one_or_many_text(chain.ground_stiffness));
-  }
-  return out + number_line("damping", chain.damping) + number_line("mass_damping", chain.mass_damping);
-}
-
-std::string span_toml(const fem::BeamSpan& span, fem::BeamTheory theory) {
-  std::string out = number_line("length", span.length) + number_line("width", span.width) +
-                    number_line("thickness", span.thickness) + number_line("youngs_modulus", span.youngs_modulus) +
-                    number_line("density", span.density) + fmt::format("elements = {}\n", span.elements);
-  if (theory == fem::BeamTheory::kEulerBernoulli) return out;
-  return out + number_line("poisson_ratio", span.poisson_ratio) +
-         number_line("shear_coefficient", span.shear_coefficient);
+  return fmt::format("\n[structure]\nkind = \"chain\"\nmasses = {}\nends = \"{}-{}\"\n", chain.masses,
+                     chain.left_fixed ? "fixed" : "free", chain.right_fixed ? "fixed" : "free") +
+         lines_toml(chain, {"masses"});
 }
 
 std::string damping_toml(const fem::BeamDamping& damping) {
-  return std::visit(Overloaded{[](const fem::Rayleigh& rayleigh) {
-                                 return number_line("coefficient", rayleigh.stiffness) +
-                                        number_line("mass_coefficient", rayleigh.mass);
-                               },
+  return std::visit(Overloaded{[](const fem::Rayleigh& rayleigh) { return lines_toml(rayleigh); },
                                [](const fem::ProportionalRatios& proportional) {
                                  std::vector<double> ratios, frequencies;
                                  for (const fem::RatioAt& point : proportional.at) {
@@ -46,33 +26,27 @@ std::string damping_toml(const fem::BeamDamping& damping) {
                                  return fmt::format("ratio = {}\nfrequency = {}\n", one_or_many_text(ratios),
                                                     one_or_many_text(frequencies));
                                },
-                               [](const fem::ModalRatios& modal) {
-                                 return fmt::format("modal_ratio = {}\n", one_or_many_text(modal.ratios));
-                               }},
+                               [](const fem::ModalRatios& modal) { return lines_toml(modal); }},
                     damping);
 }
 
 std::string beam_toml(const fem::BeamOptions& beam) {
-  std::string out = fmt::format("\n[structure]\nkind = \"beam\"\ntheory = \"{}\"\n",
-                                std::ranges::find(kTheories, beam.theory, &TheoryWord::theory)->word);
+  const Without shear = without_shear(beam.theory);
+  std::string out = "\n[structure]\nkind = \"beam\"\n" + lines_toml(beam);
   if (beam.spans.size() == 1) {
-    out += span_toml(beam.spans.front(), beam.theory);
+    out += lines_toml(beam.spans.front(), shear);
   } else {
-    for (const fem::BeamSpan& span : beam.spans) out += "\n[[structure.span]]\n" + span_toml(span, beam.theory);
+    for (const fem::BeamSpan& span : beam.spans) out += "\n[[structure.span]]\n" + lines_toml(span, shear);
   }
-  out += "\n[structure.tip]\n" + number_line("mass", beam.tip.mass) + number_line("inertia", beam.tip.inertia) +
-         number_line("offset", beam.tip.offset) + number_line("extension", beam.tip.extension);
-  return out + "\n[structure.damping]\n" + damping_toml(beam.damping);
+  return out + "\n[structure.tip]\n" + lines_toml(beam.tip) + "\n[structure.damping]\n" + damping_toml(beam.damping);
 }
 
 std::string masses_toml(const fem::MassesOptions& masses) {
-  std::string out = fmt::format("\n[structure]\nkind = \"masses\"\nmass = {}\n",
-                                masses.mass.size() == 1 ? number_text(masses.mass.front()) : numbers_text(masses.mass));
+  std::string out = "\n[structure]\nkind = \"masses\"\n" + lines_toml(masses);
   for (const fem::Link& link : masses.links) {
     const ContactPlace ends =
         link.first == 0 ? ContactPlace{link.second} : ContactPlace{Between{link.first, link.second}};
-    out += "\n[[structure.link]]\n" + place_toml(ends) + number_line("stiffness", link.stiffness) +
-           number_line("damping", link.damping);
+    out += "\n[[structure.link]]\n" + place_toml(ends) + lines_toml(link);
   }
   return out;
 }
@@ -93,53 +67,16 @@ std::string matrices_toml(const MatricesSpec& spec) {
 
 std::string load_toml(const friction::NormalLoad& load) {
   if (load.is_constant()) return number_text(load.constant);
-  if (!load.oscillator) {
-    return fmt::format("{{ constant = {}, slope = {} }}", number_text(load.constant), number_text(load.slope));
-  }
-  const friction::NormalOscillator& own = *load.oscillator;
-  return fmt::format(
-      "{{ constant = {}, oscillator = {{ mass = {}, support_stiffness = {}, support_damping = {}, spring_stiffness = "
-      "{}, spring_damping = {}, slope = {} }} }}",
-      number_text(load.constant), number_text(own.mass), number_text(own.support_stiffness),
-      number_text(own.support_damping), number_text(own.spring_stiffness), number_text(own.spring_damping),
-      number_text(own.slope));
+  return inline_table(load, load.oscillator ? Without{"slope"} : Without{});
 }
 
-std::string coefficients_toml(const auto& law) { return number_line("mu_s", law.mu_s) + number_line("mu_k", law.mu_k); }
+std::string law_toml(const auto& law) { return lines_toml(law); }
 
-std::string stop_toml(const char* key, const friction::Stop& stop) {
-  return fmt::format("{} = {{ stiffness = {}, damping = {}, gap = {} }}\n", key, number_text(stop.stiffness),
-                     number_text(stop.damping), number_text(stop.gap));
-}
-
-std::string clearance_toml(const friction::Clearance& law) {
-  const auto numbers = [](const friction::Stop& stop) { return std::tuple(stop.stiffness, stop.damping, stop.gap); };
-  std::string out = fmt::format("loss = \"{}\"\n", kLosses[static_cast<std::size_t>(law.loss)]);
-  if (law.left && law.right && numbers(*law.left) == numbers(*law.right)) return out + stop_toml("stop", *law.left);
-  if (law.left) out += stop_toml("left", *law.left);
-  if (law.right) out += stop_toml("right", *law.right);
-  return out;
-}
-
-std::string law_toml(const friction::Law& any) {
-  return std::visit(
-      Overloaded{
-          [](const friction::Coulomb& law) { return coefficients_toml(law); },
-          [](const friction::Stribeck& law) { return coefficients_toml(law) + number_line("alpha", law.alpha); },
-          [](const friction::TanhRegularised& law) {
-            return coefficients_toml(law) + number_line("alpha", law.alpha) + number_line("epsilon", law.epsilon);
-          },
-          [](const friction::CompliantCoulomb& law) {
-            return coefficients_toml(law) + number_line("stiffness", law.stiffness);
-          },
-          [](const friction::Dahl& law) { return number_line("mu", law.mu) + number_line("stiffness", law.stiffness); },
-          [](const friction::LuGre& law) {
-            return coefficients_toml(law) + number_line("stribeck_speed", law.stribeck_speed) +
-                   number_line("stiffness", law.stiffness) + number_line("damping", law.damping) +
-                   number_line("viscous", law.viscous);
-          },
-          [](const friction::Clearance& law) { return clearance_toml(law); }},
-      any);
+/// Stops that are alike are said once.
+std::string law_toml(const friction::Clearance& law) {
+  const bool alike = law.left && law.right && inline_table(*law.left) == inline_table(*law.right);
+  if (!alike) return lines_toml(law);
+  return lines_toml(law, {"left", "right"}) + fmt::format("stop = {}\n", inline_table(*law.left));
 }
 
 }  // namespace
@@ -154,10 +91,10 @@ std::string structure_toml(const Scene& scene) {
 
 std::string contact_toml(const ContactSpec& contact, const Scene& scene) {
   std::string out = fmt::format("\n[[contact]]\nname = {}\n{}law = \"{}\"\n", quoted_text(contact.name),
-                                place_toml(contact.at), kLaws[contact.law.index()]);
+                                place_toml(contact.at), friction::law_words()[contact.law.index()]);
   const bool clearance = std::holds_alternative<friction::Clearance>(contact.law);
   if (!clearance) out += fmt::format("normal_load = {}\n", load_toml(contact.normal_load));
-  out += law_toml(contact.law);
+  out += std::visit([](const auto& law) { return law_toml(law); }, contact.law);
   if (clearance) return out;
   if (contact.tilt_deg != 0.0 || scene.beam() != nullptr) out += number_line("tilt_deg", contact.tilt_deg);
   return out;

@@ -1,124 +1,86 @@
 #include "results/internal/contact_record.hpp"
 
 #include <slipmode/core/none.hpp>
-#include <slipmode/core/overloaded.hpp>
-#include <slipmode/scene/scene_words.hpp>
+#include "results/internal/field_record.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <array>
+#include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace slipmode::results {
 
 namespace {
 
-/// The numbers of all laws; NaN where a law has none.
-struct LawNumbers {
-  double mu_s = kNone, mu_k = kNone, alpha = kNone, epsilon = kNone;
-  double stiffness = kNone, stribeck_speed = kNone, damping = kNone, viscous = kNone;
-};
+const std::vector<std::string> kLosses(kWords<friction::ContactLoss>.begin(), kWords<friction::ContactLoss>.end());
 
-LawNumbers numbers_of(const friction::Law& law) {
-  LawNumbers n{.mu_s = friction::static_coefficient(law), .mu_k = friction::limit_coefficient(law)};
-  std::visit(Overloaded{[](const friction::Coulomb&) {}, [&n](const friction::Stribeck& own) { n.alpha = own.alpha; },
-                        [&n](const friction::TanhRegularised& own) {
-                          n.alpha = own.alpha;
-                          n.epsilon = own.epsilon;
-                        },
-                        [&n](const friction::CompliantCoulomb& own) { n.stiffness = own.stiffness; },
-                        [&n](const friction::Dahl& own) { n.stiffness = own.stiffness; },
-                        [&n](const friction::LuGre& own) {
-                          n.stribeck_speed = own.stribeck_speed;
-                          n.stiffness = own.stiffness;
-                          n.damping = own.damping;
-                          n.viscous = own.viscous;
-                        },
-                        [](const friction::Clearance&) {}},
-             law);
-  return n;
+/// Calls visit(field) for the number of any law that is kept in each dataset, in the order in which laws first have it.
+template <class Visit>
+void for_each_column(const Visit& visit) {
+  std::vector<std::string> seen;
+  for (std::size_t kind = 0; kind < std::variant_size_v<friction::Law>; ++kind) {
+    std::visit(
+        [&]<class Law>(const Law&) {
+          for_each_number<Law>([&](const auto& field) {
+            if (std::ranges::find(seen, field.stored) != seen.end()) return;
+            seen.emplace_back(field.stored);
+            visit(field);
+          });
+        },
+        alternative<friction::Law>(kind));
+  }
 }
 
-constexpr Eigen::Index kStopNumbers = 3;
-
-Eigen::VectorXd stop_numbers(const std::optional<friction::Stop>& stop) {
-  if (!stop) return Eigen::VectorXd::Constant(kStopNumbers, kNone);
-  return Eigen::VectorXd{{stop->stiffness, stop->damping, stop->gap}};
+/// The number of a law kept in a dataset; NaN where it has none. Every law has coefficients.
+double law_number(const friction::Law& any, const std::string& dataset) {
+  if (dataset == "mu_s") return friction::static_coefficient(any);
+  if (dataset == "mu_k") return friction::limit_coefficient(any);
+  double number = kNone;
+  std::visit(
+      [&]<class Law>(const Law& law) {
+        for_each_number<Law>([&](const auto& field) {
+          if (dataset == field.stored) number = law.*field.member;
+        });
+      },
+      any);
+  return number;
 }
 
-std::optional<friction::Stop> stop_of(const Eigen::VectorXd& own) {
-  if (std::isnan(own(0))) return std::nullopt;
-  return friction::Stop{own(0), own(1), own(2)};
+/// The numbers of a struct that may be absent: then all NaN.
+template <class S>
+Eigen::VectorXd numbers_or_none(const std::optional<S>& own) {
+  return own ? to_numbers(*own) : Eigen::VectorXd::Constant(kNumbers<S>, kNone);
 }
+
+template <class S>
+std::optional<S> if_numbers(const Eigen::VectorXd& numbers) {
+  return std::isnan(numbers(0)) ? std::nullopt : std::optional(from_numbers<S>(numbers));
+}
+
+constexpr Eigen::Index kStopNumbers = kNumbers<friction::Stop>;
+constexpr Eigen::Index kOscillatorNumbers = kNumbers<friction::NormalOscillator>;
 
 /// Both stops of a contact, left first; all NaN for another law.
-Eigen::VectorXd stops_numbers(const friction::Law& law) {
-  const auto* clearance = std::get_if<friction::Clearance>(&law);
+Eigen::VectorXd stops_numbers(const friction::Clearance& clearance) {
   Eigen::VectorXd both(2 * kStopNumbers);
-  both << stop_numbers(clearance != nullptr ? clearance->left : std::nullopt),
-      stop_numbers(clearance != nullptr ? clearance->right : std::nullopt);
+  both << numbers_or_none(clearance.left), numbers_or_none(clearance.right);
   return both;
 }
 
-std::string loss_word(const friction::Law& law) {
-  const auto* clearance = std::get_if<friction::Clearance>(&law);
-  return clearance != nullptr ? scene::kLosses[static_cast<std::size_t>(clearance->loss)] : std::string();
-}
-
-friction::Law clearance_of(const Eigen::VectorXd& stops, const std::string& loss) {
-  const bool gap = loss == scene::kLosses[static_cast<std::size_t>(friction::ContactLoss::kGap)];
-  return friction::Clearance{stop_of(stops.head(kStopNumbers)), stop_of(stops.tail(kStopNumbers)),
-                             gap ? friction::ContactLoss::kGap : friction::ContactLoss::kZeroForce};
-}
-
-/// The law of that word made of those numbers.
-friction::Law law_of(const std::string& word, const LawNumbers& n, const StoreReader& store, const std::string& name) {
-  if (word == "coulomb") return friction::Coulomb{n.mu_s, n.mu_k};
-  if (word == "stribeck") return friction::Stribeck{n.mu_s, n.mu_k, n.alpha};
-  if (word == "tanh") return friction::TanhRegularised{n.mu_s, n.mu_k, n.alpha, n.epsilon};
-  if (word == "compliant") return friction::CompliantCoulomb{n.mu_s, n.mu_k, n.stiffness};
-  if (word == "dahl") return friction::Dahl{n.mu_s, n.stiffness};
-  if (word == "lugre") return friction::LuGre{n.mu_s, n.mu_k, n.stribeck_speed, n.stiffness, n.damping, n.viscous};
-  store.fail(name, fmt::format("'{}'; expected {}", word, fmt::join(scene::kLaws, ", ")));
-}
-
-/// A dataset with one number per contact.
-struct LawColumn {
-  const char* name;
-  Meaning meaning;
-  double LawNumbers::*number;
-};
-
-const std::array<LawColumn, 8>& law_columns() {
-  static const std::array<LawColumn, 8> kColumns = {
-      {{"mu_s", {"1", "static coefficient"}, &LawNumbers::mu_s},
-       {"mu_k", {"1", "kinetic coefficient"}, &LawNumbers::mu_k},
-       {"alpha", {"s/m", "decay with sliding speed; NaN where the law has none"}, &LawNumbers::alpha},
-       {"epsilon", {"m/s", "regularisation speed; NaN where the law has none"}, &LawNumbers::epsilon},
-       {"stiffness", {"N/m", "of contact spring or bristle; NaN where the law has none"}, &LawNumbers::stiffness},
-       {"stribeck_speed", {"m/s", "Stribeck speed; NaN where the law has none"}, &LawNumbers::stribeck_speed},
-       {"bristle_damping", {"N s/m", "of the bristle; NaN where the law has none"}, &LawNumbers::damping},
-       {"viscous", {"N s/m", "viscous friction; NaN where the law has none"}, &LawNumbers::viscous}}};
-  return kColumns;
-}
-
-constexpr Eigen::Index kOscillatorNumbers = 6;
-
-Eigen::VectorXd oscillator_numbers(const friction::NormalLoad& load) {
-  if (!load.oscillator) return Eigen::VectorXd::Constant(kOscillatorNumbers, kNone);
-  const friction::NormalOscillator& own = *load.oscillator;
-  return Eigen::VectorXd{
-      {own.mass, own.support_stiffness, own.support_damping, own.spring_stiffness, own.spring_damping, own.slope}};
-}
-
-friction::NormalLoad load_of(double constant, double slope, const Eigen::VectorXd& own) {
-  if (std::isnan(own(0))) return {constant, slope};
-  return {constant, friction::NormalOscillator{own(0), own(1), own(2), own(3), own(4), own(5)}};
-}
-
-/// One number per contact; `otherwise` in files of versions that did not have it.
-Eigen::VectorXd numbers_or(const StoreReader& store, const std::string& name, Eigen::Index count, double otherwise) {
-  return store.has(name) ? store.vector(name, count) : Eigen::VectorXd::Constant(count, otherwise);
+/// The law of that word with contact c's numbers.
+friction::Law law_of(const StoreReader& store, const std::string& name, const std::string& word,
+                     const std::map<std::string, Eigen::VectorXd>& numbers, Eigen::Index c) {
+  const std::vector<std::string> words = friction::law_words();
+  const auto found = std::ranges::find(words, word);
+  if (found == words.end()) store.fail(name, fmt::format("'{}'; expected {}", word, fmt::join(words, ", ")));
+  auto any = alternative<friction::Law>(static_cast<std::size_t>(found - words.begin()));
+  std::visit(
+      [&]<class Law>(Law& law) {
+        for_each_number<Law>([&](const auto& field) { law.*field.member = numbers.at(field.stored)(c); });
+      },
+      any);
+  return any;
 }
 
 }  // namespace
@@ -126,34 +88,32 @@ Eigen::VectorXd numbers_or(const StoreReader& store, const std::string& name, Ei
 void save_contacts(StoreWriter& store, const std::string& group, const std::vector<friction::Contact>& contacts,
                    Eigen::Index n) {
   const auto count = static_cast<Eigen::Index>(contacts.size());
+  const std::vector<std::string> words = friction::law_words();
   std::vector<std::string> names, laws, losses;
-  Eigen::VectorXd load(count), slope(count), tilt(count), offset(count);
+  std::vector<friction::NormalLoad> loads;
   Eigen::MatrixXd oscillator(kOscillatorNumbers, count), stops(2 * kStopNumbers, count), direction(n, count);
-  std::vector<LawNumbers> numbers;
   for (Eigen::Index c = 0; c < count; ++c) {
     const friction::Contact& contact = contacts[static_cast<std::size_t>(c)];
+    const auto* clearance = std::get_if<friction::Clearance>(&contact.law);
     names.push_back(contact.name);
-    laws.push_back(scene::kLaws[contact.law.index()]);
-    numbers.push_back(numbers_of(contact.law));
-    load(c) = contact.normal_load.constant;
-    slope(c) = contact.normal_load.slope;
-    oscillator.col(c) = oscillator_numbers(contact.normal_load);
-    stops.col(c) = stops_numbers(contact.law);
-    losses.push_back(loss_word(contact.law));
-    tilt(c) = contact.tilt;
-    offset(c) = contact.offset;
+    laws.push_back(words[contact.law.index()]);
+    loads.push_back(contact.normal_load);
+    oscillator.col(c) = numbers_or_none(contact.normal_load.oscillator);
+    stops.col(c) = stops_numbers(clearance != nullptr ? *clearance : friction::Clearance{});
+    losses.push_back(clearance != nullptr ? kLosses[static_cast<std::size_t>(clearance->loss)] : "");
     direction.col(c) = contact.direction;
   }
   store.describe_group(group, "contacts, one entry of each dataset per contact");
   store.write(group + "/name", names, {"", "name"});
-  store.write(group + "/law", laws, {"", fmt::format("{}", fmt::join(scene::kLaws, ", "))});
-  for (const LawColumn& column : law_columns()) {
+  store.write(group + "/law", laws, {"", fmt::format("{}", fmt::join(words, ", "))});
+  for_each_column([&](const auto& field) {
+    const std::string name = field.stored;
     std::vector<double> values;
-    for (const LawNumbers& own : numbers) values.push_back(own.*column.number);
-    store.write(group + "/" + column.name, values, column.meaning);
-  }
-  store.write(group + "/normal_load", load, {"N", "normal load, constant part"});
-  store.write(group + "/normal_load_slope", slope, {"N/m", "normal load per contact displacement"});
+    for (const friction::Contact& contact : contacts) values.push_back(law_number(contact.law, name));
+    const char* gaps = name.starts_with("mu_") ? "" : "; NaN where the law has none";
+    store.write(group + "/" + name, values, {field.unit, std::string(field.meaning) + gaps});
+  });
+  save_rows(store, group, loads);
   store.write_columns(group + "/oscillator", oscillator,
                       {"",
                        "normal oscillator, contact x (mass [kg], support stiffness [N/m] and damping [N s/m], "
@@ -163,9 +123,8 @@ void save_contacts(StoreWriter& store, const std::string& group, const std::vect
       {"",
        "stops of a clearance, contact x (left stiffness [N/m], damping [N s/m] and gap [m], the same of "
        "the right one); NaN: none"});
-  store.write(group + "/loss", losses, {"", fmt::format("when a stop lets go: {}", fmt::join(scene::kLosses, ", "))});
-  store.write(group + "/tilt", tilt, {"rad", "of the slider's face"});
-  store.write(group + "/offset", offset, {"m", "added to the contact displacement"});
+  store.write(group + "/loss", losses, {"", fmt::format("when a stop lets go: {}", fmt::join(kLosses, ", "))});
+  save_rows(store, group, contacts);
   store.write_columns(group + "/direction", direction, {"1", "contact directions w, contact x dof"});
 }
 
@@ -173,15 +132,12 @@ std::vector<friction::Contact> load_contacts(const StoreReader& store, const std
   const std::vector<std::string> names = store.texts(group + "/name");
   const auto count = static_cast<Eigen::Index>(names.size());
   const std::vector<std::string> laws = store.texts(group + "/law", count);
-  std::vector<LawNumbers> numbers(names.size());
-  for (const LawColumn& column : law_columns()) {
-    const Eigen::VectorXd values = numbers_or(store, group + "/" + column.name, count, kNone);
-    for (std::size_t c = 0; c < numbers.size(); ++c) {
-      numbers[c].*column.number = values(static_cast<Eigen::Index>(c));
-    }
-  }
-  const Eigen::VectorXd load = store.vector(group + "/normal_load", count);
-  const Eigen::VectorXd slope = numbers_or(store, group + "/normal_load_slope", count, 0.0);
+  std::map<std::string, Eigen::VectorXd> numbers;
+  for_each_column([&](const auto& field) {  // not in files of versions that did not have it
+    const std::string name = group + "/" + field.stored;
+    numbers[field.stored] = store.has(name) ? store.vector(name, count) : Eigen::VectorXd::Constant(count, kNone);
+  });
+  const auto loads = load_rows<friction::NormalLoad>(store, group, count);
   const Eigen::MatrixXd oscillator = store.has(group + "/oscillator")
                                          ? store.columns(group + "/oscillator", kOscillatorNumbers, count)
                                          : Eigen::MatrixXd::Constant(kOscillatorNumbers, count, kNone);
@@ -190,19 +146,21 @@ std::vector<friction::Contact> load_contacts(const StoreReader& store, const std
                                         : Eigen::MatrixXd::Constant(2 * kStopNumbers, count, kNone);
   const std::vector<std::string> losses =
       stopped ? store.texts(group + "/loss", count) : std::vector<std::string>(names.size());
-  const Eigen::VectorXd tilt = numbers_or(store, group + "/tilt", count, 0.0);
-  const Eigen::VectorXd offset = store.vector(group + "/offset", count);
   const Eigen::MatrixXd direction = store.columns(group + "/direction", n, count);
-  std::vector<friction::Contact> contacts;
+  auto contacts = load_rows<friction::Contact>(store, group, count);
   for (Eigen::Index c = 0; c < count; ++c) {
     const auto at = static_cast<std::size_t>(c);
-    contacts.push_back({.direction = direction.col(c),
-                        .law = laws[at] == "clearance" ? clearance_of(stops.col(c), losses[at])
-                                                       : law_of(laws[at], numbers[at], store, group + "/law"),
-                        .normal_load = load_of(load(c), slope(c), oscillator.col(c)),
-                        .offset = offset(c),
-                        .tilt = tilt(c),
-                        .name = names[at]});
+    friction::Contact& contact = contacts[at];
+    contact.direction = direction.col(c);
+    contact.law = law_of(store, group + "/law", laws[at], numbers, c);
+    contact.normal_load = loads[at];
+    contact.normal_load.oscillator = if_numbers<friction::NormalOscillator>(oscillator.col(c));
+    contact.name = names[at];
+    if (auto* clearance = std::get_if<friction::Clearance>(&contact.law)) {
+      clearance->left = if_numbers<friction::Stop>(stops.col(c).head(kStopNumbers));
+      clearance->right = if_numbers<friction::Stop>(stops.col(c).tail(kStopNumbers));
+      if (losses[at] == kLosses.back()) clearance->loss = friction::ContactLoss::kGap;
+    }
   }
   return contacts;
 }

@@ -10,10 +10,6 @@
 
 namespace slipmode::results {
 
-inline constexpr const char* kModeWords =
-    "-1 slip-, 0 stick, 1 slip+, 2 smooth, 3 contact lost, 4 gap, 5 left stop, 6 right stop, 7 and 8 in flight beyond "
-    "the left and the right stop";
-
 void save_events(StoreWriter& store, const std::string& group, const std::vector<dynamics::Event>& events);
 [[nodiscard]] std::vector<dynamics::Event> load_events(const StoreReader& store, const std::string& group);
 

@@ -3,19 +3,20 @@
 // The readers of a scene's tables. Each throws as TomlReader does.
 
 #include <slipmode/scene/scene.hpp>
-#include "scene/internal/toml_reader.hpp"
-
-#include <limits>
+#include "scene/internal/toml_fields.hpp"
 
 namespace slipmode::scene {
 
-inline constexpr int kMostCount = std::numeric_limits<int>::max();
 /// A position computed by hand may miss an end by rounding; fem::Beam takes as much.
 inline constexpr double kEndSlack = 1e-12;
 
 /// Length of a beam's spans; with its rigid extension [m].
 [[nodiscard]] double beam_length(const fem::BeamOptions& beam);
 [[nodiscard]] double beam_reach(const fem::BeamOptions& beam);
+
+/// The fields of a span that a theory has not, and those of [ensemble] that a drive has not.
+[[nodiscard]] Without without_shear(fem::BeamTheory theory);
+[[nodiscard]] Without without_other_drives(const friction::Drive& drive);
 
 /// [structure] of any kind.
 [[nodiscard]] StructureSpec read_structure(TomlReader in, const std::string& units);
@@ -44,8 +45,6 @@ void read_drive(TomlReader in, Scene& scene);
 /// [validation] on a belt, and under a shaker.
 [[nodiscard]] ValidationSpec read_validation(TomlReader in, const Scene& scene);
 [[nodiscard]] ShakenValidationSpec read_shaken_validation(TomlReader in, const Scene& scene);
-/// A range { from, to, step }.
-[[nodiscard]] Range read_range(TomlReader in, const Limits& ends);
 
 /// The time in seconds of a time in cycles.
 [[nodiscard]] TimeSpec in_seconds(const TimeSpec::Cycles& cycles, double frequency_hz);

@@ -11,11 +11,10 @@ namespace slipmode::scene {
 
 namespace {
 
-std::string integer_range_text(std::int64_t low, std::int64_t high) {
-  if (high == std::numeric_limits<std::int64_t>::max() || high == std::numeric_limits<int>::max()) {
-    return fmt::format("an integer >= {}", low);
-  }
-  return fmt::format("an integer from {} to {}", low, high);
+std::string integer_range_text(const Limits& limits) {
+  const auto low = static_cast<std::int64_t>(limits.low);
+  if (limits.high >= std::numeric_limits<int>::max()) return fmt::format("an integer >= {}", low);
+  return fmt::format("an integer from {} to {}", low, static_cast<std::int64_t>(limits.high));
 }
 
 }  // namespace
@@ -90,11 +89,13 @@ double TomlReader::checked_number(const std::string& key, const toml::node& node
   return value;
 }
 
-std::int64_t TomlReader::checked_integer(const std::string& key, const toml::node& node, std::int64_t low,
-                                         std::int64_t high) {
-  if (!node.is_integer()) fail(key, "wrong type", integer_range_text(low, high));
+std::int64_t TomlReader::checked_integer(const std::string& key, const toml::node& node, const Limits& limits,
+                                         std::int64_t most) {
+  if (!node.is_integer()) fail(key, "wrong type", integer_range_text(limits));
   const std::int64_t value = node.as_integer()->get();
-  if (value < low || value > high) fail(key, "impossible value", integer_range_text(low, high));
+  if (!limits.hold(static_cast<double>(value)) || value > most) {
+    fail(key, "impossible value", integer_range_text(limits));
+  }
   return value;
 }
 
@@ -107,28 +108,11 @@ double TomlReader::number_or(const std::string& key, double otherwise, const Lim
   return node != nullptr ? checked_number(key, *node, limits) : otherwise;
 }
 
-std::int64_t TomlReader::integer(const std::string& key, std::int64_t low, std::int64_t high) {
-  return checked_integer(key, need(key), low, high);
-}
-
-std::int64_t TomlReader::integer_or(const std::string& key, std::int64_t otherwise, std::int64_t low,
-                                    std::int64_t high) {
-  const toml::node* node = find(key);
-  return node != nullptr ? checked_integer(key, *node, low, high) : otherwise;
-}
-
 std::string TomlReader::text_or(const std::string& key, const std::string& otherwise) {
   const toml::node* node = find(key);
   if (node == nullptr) return otherwise;
   if (!node->is_string()) fail(key, "wrong type", "a string in quotes");
   return node->as_string()->get();
-}
-
-bool TomlReader::flag_or(const std::string& key, bool otherwise) {
-  const toml::node* node = find(key);
-  if (node == nullptr) return otherwise;
-  if (!node->is_boolean()) fail(key, "wrong type", "true or false");
-  return node->as_boolean()->get();
 }
 
 std::vector<std::string> TomlReader::texts(const std::string& key) {
@@ -176,22 +160,17 @@ std::size_t TomlReader::choice_or(const std::string& key, std::size_t otherwise,
   return has(key) ? choice(key, words) : otherwise;
 }
 
-std::vector<double> TomlReader::per_item_or(const std::string& key, std::vector<double> otherwise, std::int64_t count,
-                                            const Limits& limits) {
-  const toml::node* node = find(key);
-  if (node == nullptr) return otherwise;
-  if (!node->is_array()) return {checked_number(key, *node, limits)};
-  return numbers_or(key, {}, limits, count);
+std::vector<double> TomlReader::per_item(const std::string& key, const Limits& limits, std::int64_t count) {
+  if (!is_array(key)) return {number(key, limits)};
+  return numbers(key, limits, count);
 }
 
-std::vector<double> TomlReader::numbers_or(const std::string& key, std::vector<double> otherwise, const Limits& limits,
-                                           std::int64_t count) {
-  const toml::node* node = find(key);
-  if (node == nullptr) return otherwise;
+std::vector<double> TomlReader::numbers(const std::string& key, const Limits& limits, std::int64_t count) {
+  const toml::node& node = need(key);
   const std::string valid = count < 0 ? fmt::format("an array, each {}", limits.text)
                                       : fmt::format("an array of {} values, each {}", count, limits.text);
-  if (!node->is_array()) fail(key, "wrong type", valid);
-  const toml::array& array = *node->as_array();
+  if (!node.is_array()) fail(key, "wrong type", valid);
+  const toml::array& array = *node.as_array();
   if (count >= 0 && static_cast<std::int64_t>(array.size()) != count) {
     fail(key, fmt::format("{} values", array.size()), valid);
   }
@@ -200,13 +179,17 @@ std::vector<double> TomlReader::numbers_or(const std::string& key, std::vector<d
   return values;
 }
 
-std::vector<int> TomlReader::integers_or(const std::string& key, std::vector<int> otherwise, int low, int high) {
-  const toml::node* node = find(key);
-  if (node == nullptr) return otherwise;
-  if (!node->is_array()) fail(key, "wrong type", "an array, each " + integer_range_text(low, high));
+std::vector<double> TomlReader::numbers_or(const std::string& key, std::vector<double> otherwise, const Limits& limits,
+                                           std::int64_t count) {
+  return has(key) ? numbers(key, limits, count) : otherwise;
+}
+
+std::vector<int> TomlReader::integers(const std::string& key, const Limits& limits) {
+  const toml::node& node = need(key);
+  if (!node.is_array()) fail(key, "wrong type", "an array, each " + integer_range_text(limits));
   std::vector<int> values;
-  for (const toml::node& item : *node->as_array()) {
-    values.push_back(static_cast<int>(checked_integer(key, item, low, high)));
+  for (const toml::node& item : *node.as_array()) {
+    values.push_back(static_cast<int>(checked_integer(key, item, limits, std::numeric_limits<int>::max())));
   }
   return values;
 }

@@ -2,8 +2,11 @@
 
 // The only header that shows toml++.
 
+#include <slipmode/core/fields.hpp>
+
 #include <toml++/toml.h>
 #include <Eigen/Core>
+#include <concepts>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -43,17 +46,6 @@ class TomlDocument {
 /// The candidate nearest to `word` by edit distance, if near enough to be a misspelling.
 [[nodiscard]] std::optional<std::string> nearest(const std::string& word, const std::vector<std::string>& candidates);
 
-/// The numbers a key may hold; NaN and infinities never pass.
-struct Limits {
-  double low = -std::numeric_limits<double>::max();
-  double high = std::numeric_limits<double>::max();
-  bool above = false;  ///< `low` itself is not allowed
-  const char* text = "any finite number";
-};
-inline constexpr Limits kFinite{};
-inline constexpr Limits kPositive{.low = 0.0, .above = true, .text = "a number > 0"};
-inline constexpr Limits kNonNegative{.low = 0.0, .text = "a number >= 0"};
-
 /// Reads one table key by key. Each key asked for becomes a known one; `finish` rejects all others. So a scene's schema
 /// is the code that reads it, and a new key is one line.
 ///
@@ -65,26 +57,31 @@ class TomlReader {
 
   [[nodiscard]] bool has(const std::string& key);
 
+  /// Reports a key that is not there.
+  void require(const std::string& key) { static_cast<void>(need(key)); }
+
   [[nodiscard]] double number(const std::string& key, const Limits& limits);
   [[nodiscard]] double number_or(const std::string& key, double otherwise, const Limits& limits);
-  [[nodiscard]] std::int64_t integer(const std::string& key, std::int64_t low, std::int64_t high);
-  [[nodiscard]] std::int64_t integer_or(const std::string& key, std::int64_t otherwise, std::int64_t low,
-                                        std::int64_t high);
+  template <std::integral T>
+  [[nodiscard]] T integer(const std::string& key, const Limits& limits) {
+    constexpr auto kMost = std::in_range<std::int64_t>(std::numeric_limits<T>::max())
+                               ? static_cast<std::int64_t>(std::numeric_limits<T>::max())
+                               : std::numeric_limits<std::int64_t>::max();
+    return static_cast<T>(checked_integer(key, need(key), limits, kMost));
+  }
   [[nodiscard]] std::string text_or(const std::string& key, const std::string& otherwise);
-  [[nodiscard]] bool flag_or(const std::string& key, bool otherwise);
   /// An array of strings.
   [[nodiscard]] std::vector<std::string> texts(const std::string& key);
   /// Index of the word among `words`.
   [[nodiscard]] std::size_t choice(const std::string& key, const std::vector<std::string>& words);
   [[nodiscard]] std::size_t choice_or(const std::string& key, std::size_t otherwise,
                                       const std::vector<std::string>& words);
-  /// A number (then one value) or an array of exactly `count` numbers.
-  [[nodiscard]] std::vector<double> per_item_or(const std::string& key, std::vector<double> otherwise,
-                                                std::int64_t count, const Limits& limits);
-  /// An array of numbers of any length, or of `count` when that is not negative.
+  /// A number (then one value) or an array of numbers, of any length, or of `count` when that is not negative.
+  [[nodiscard]] std::vector<double> per_item(const std::string& key, const Limits& limits, std::int64_t count = -1);
+  [[nodiscard]] std::vector<double> numbers(const std::string& key, const Limits& limits, std::int64_t count = -1);
   [[nodiscard]] std::vector<double> numbers_or(const std::string& key, std::vector<double> otherwise,
                                                const Limits& limits, std::int64_t count = -1);
-  [[nodiscard]] std::vector<int> integers_or(const std::string& key, std::vector<int> otherwise, int low, int high);
+  [[nodiscard]] std::vector<int> integers(const std::string& key, const Limits& limits);
   /// An array of pairs of numbers, [[first, second], ...].
   [[nodiscard]] std::vector<std::pair<double, double>> pairs(const std::string& key, const Limits& first,
                                                              const Limits& second);
@@ -119,8 +116,8 @@ class TomlReader {
   [[nodiscard]] double checked_number(const std::string& key, const toml::node& node, const Limits& limits);
   [[nodiscard]] std::size_t checked_word(const std::string& key, const toml::node& node,
                                          const std::vector<std::string>& words);
-  [[nodiscard]] std::int64_t checked_integer(const std::string& key, const toml::node& node, std::int64_t low,
-                                             std::int64_t high);
+  [[nodiscard]] std::int64_t checked_integer(const std::string& key, const toml::node& node, const Limits& limits,
+                                             std::int64_t most);
 
   const TomlDocument* document_;
   const toml::table* table_;

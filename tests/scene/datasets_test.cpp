@@ -45,7 +45,7 @@ Expectation read_expectation(scene::TomlReader& in, const std::string& dataset, 
   e.dataset = dataset;
   e.measure = in.text_or("measure", "");
   e.speed = in.number_or("speed", own_speed, scene::kFinite);
-  e.modes = in.integers_or("modes", {}, 1, 1'000'000);
+  if (in.has("modes")) e.modes = in.integers("modes", {.low = 1.0, .high = 1e6});
   e.value = in.numbers_or("value", {}, scene::kFinite);
   e.tolerance = in.numbers_or("tolerance", {}, scene::kPositive, static_cast<std::int64_t>(e.value.size()));
   e.displacement = in.numbers_or("displacement", {}, scene::kFinite);
