@@ -27,12 +27,13 @@ std::vector<double> damping_of(const Eigen::MatrixXd& D) {
 
 ShakenCoordinates::ShakenCoordinates(const dynamics::HybridSystem& system) {
   const friction::Shaker* shaker = system.drive().shaker();
-  const auto* law =
-      system.contacts().size() == 1 ? std::get_if<friction::CompliantCoulomb>(&system.contacts().front().law) : nullptr;
-  if (shaker == nullptr || law == nullptr || system.contacts().front().normal_load.oscillator) {
+  const bool compliant =
+      system.contacts().size() == 1 && friction::kind(system.contacts().front().law) == friction::LawKind::kCompliant;
+  if (shaker == nullptr || !compliant || system.contacts().front().normal_load.oscillator) {
     throw InvalidInput("the peers integrate one compliant contact on a shaker, its normal load without an oscillator");
   }
   const friction::Contact& contact = system.contacts().front();
+  const double mu_s = friction::static_coefficient(contact.law), mu_k = friction::limit_coefficient(contact.law);
   const auto coefficient = [&](double mu, double sign) {
     return friction::effective_coefficient(mu, contact.tilt, sign);
   };
@@ -47,11 +48,11 @@ ShakenCoordinates::ShakenCoordinates(const dynamics::HybridSystem& system) {
               .load = numbers_of(load),
               .direction = numbers_of(modes.shapes.transpose() * contact.direction),
               .offset = contact.offset,
-              .stiffness = law->stiffness,
-              .static_plus = coefficient(law->mu_s, 1.0),
-              .static_minus = coefficient(law->mu_s, -1.0),
-              .kinetic_plus = coefficient(law->mu_k, 1.0),
-              .kinetic_minus = coefficient(law->mu_k, -1.0),
+              .stiffness = friction::spring_stiffness(contact.law),
+              .static_plus = coefficient(mu_s, 1.0),
+              .static_minus = coefficient(mu_s, -1.0),
+              .kinetic_plus = coefficient(mu_k, 1.0),
+              .kinetic_minus = coefficient(mu_k, -1.0),
               .load_constant = contact.normal_load.constant,
               .load_slope = contact.normal_load.slope,
               .amplitude = shaker->amplitude,

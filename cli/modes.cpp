@@ -36,11 +36,8 @@ Eigen::MatrixXd contact_directions(const dynamics::HybridSystem& system) {
 
 /// Stiffness that holds a stuck contact, or one at its stop; 0 for a law without a spring.
 double contact_stiffness(const friction::Law& law) {
-  if (const auto* own = std::get_if<friction::Clearance>(&law)) return (own->right ? own->right : own->left)->stiffness;
-  if (const auto* own = std::get_if<friction::CompliantCoulomb>(&law)) return own->stiffness;
-  if (const auto* own = std::get_if<friction::Dahl>(&law)) return own->stiffness;
-  if (const auto* own = std::get_if<friction::LuGre>(&law)) return own->stiffness;
-  return 0.0;
+  const friction::Clearance* clearance = friction::clearance(law);
+  return clearance != nullptr ? clearance->stops().back().stiffness : friction::spring_stiffness(law);
 }
 
 ModeSets compute(const scene::Scene& scene, const dynamics::HybridSystem& system, Eigen::Index count) {

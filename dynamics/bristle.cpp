@@ -1,37 +1,10 @@
 #include <slipmode/dynamics/bristle.hpp>
 
 #include <Eigen/Dense>
-#include <cmath>
 
 namespace slipmode::dynamics {
 
-BristleForces::Decay BristleForces::decay(double direction, double s) const {
-  const double share = s / stribeck_speed, e = drop * std::exp(-share * share);
-  const double g = kinetic + e, g_slope = -2.0 * share / stribeck_speed * e;
-  const double scale = direction * stiffness / g;
-  return {scale * s, scale * (1.0 - s * g_slope / g)};
-}
-
-double BristleForces::force_rate(double direction, double s, double z, double s_rate) const {
-  // d²z/dt² = (1 − κ′z) ṡ − κ ż
-  const Decay at = decay(direction, s);
-  const double z_rate = s - at.value * z;
-  return (stiffness - damping * at.value) * z_rate + (damping * (1.0 - at.slope * z) + viscous) * s_rate;
-}
-
-BristleForces bristle_forces(const friction::Law& law, double normal_load) {
-  if (const auto* dahl = std::get_if<friction::Dahl>(&law))
-    return {.stiffness = dahl->stiffness, .kinetic = dahl->mu * normal_load};
-  const auto& lugre = std::get<friction::LuGre>(law);
-  return {.stiffness = lugre.stiffness,
-          .damping = lugre.damping,
-          .viscous = lugre.viscous,
-          .kinetic = lugre.mu_k * normal_load,
-          .drop = (lugre.mu_s - lugre.mu_k) * normal_load,
-          .stribeck_speed = lugre.stribeck_speed};
-}
-
-BristleStep solve_bristle(const BristleForces& law, double direction, double start, double h,
+BristleStep solve_bristle(const friction::BristleForces& law, double direction, double start, double h,
                           const RadauTables::Vector8& speed) {
   // z = z₀ + hA(s − κz), hence (I + hA κ) z = z₀ + hA s and (I + hA κ) δz = hA (1 − κ′z) δs.
   using Matrix8 = RadauTables::Matrix8;
@@ -39,7 +12,7 @@ BristleStep solve_bristle(const BristleForces& law, double direction, double sta
   const Matrix8 integral = h * radau().integral;
   Vector8 decay, decay_slope;
   for (int j = 0; j < kNodes; ++j) {
-    const BristleForces::Decay at = law.decay(direction, speed(j));
+    const friction::BristleForces::Decay at = law.decay(direction, speed(j));
     decay(j) = at.value;
     decay_slope(j) = at.slope;
   }

@@ -1,41 +1,9 @@
 #pragma once
 
 #include <slipmode/dynamics/nodes.hpp>
-#include <slipmode/friction/contact.hpp>
+#include <slipmode/friction/bristle_forces.hpp>
 
 namespace slipmode::dynamics {
-
-/// Dahl's and the LuGre law times the normal load. With s = v_rel and the bristle's deflection z,
-///
-///     λ = σ0 z + σ1 ż + σ2 s,    ż = s − κ(s) z,    κ = σ0 |s| / g(s),    g(s) = kinetic + drop e^{−(s/v_s)²}.
-///
-/// Dahl: σ1 = σ2 = 0, g constant. |s| is written as direction · s, so that a law continues smoothly past s = 0, where
-/// the direction changes by an event. Theory: docs/theory/bristle-laws.md.
-struct BristleForces {
-  double stiffness = 0.0;       ///< σ0 [N/m]
-  double damping = 0.0;         ///< σ1 [N s/m]
-  double viscous = 0.0;         ///< σ2 [N s/m]
-  double kinetic = 0.0;         ///< μ_k N [N]
-  double drop = 0.0;            ///< (μ_s − μ_k) N [N]
-  double stribeck_speed = 1.0;  ///< v_s [m/s]
-
-  /// κ [1/s] and dκ/ds [1/m].
-  struct Decay {
-    double value, slope;
-  };
-  [[nodiscard]] Decay decay(double direction, double s) const;
-  /// ż [m/s]
-  [[nodiscard]] double rate(double direction, double s, double z) const { return s - decay(direction, s).value * z; }
-  /// λ [N]
-  [[nodiscard]] double force(double direction, double s, double z) const {
-    return stiffness * z + damping * rate(direction, s, z) + viscous * s;
-  }
-  /// dλ/dt [N/s], for ds/dt [m/s²]
-  [[nodiscard]] double force_rate(double direction, double s, double z, double s_rate) const;
-};
-
-/// @param law  Dahl or LuGre
-[[nodiscard]] BristleForces bristle_forces(const friction::Law& law, double normal_load);
 
 /// A step's bristle, eliminated: z and λ at the nodes for given sliding speeds there.
 struct BristleStep {
@@ -49,7 +17,7 @@ struct BristleStep {
 /// @param h      length of the step [s]
 /// @param speed  s at the nodes [m/s]
 /// @return       entries that are not finite when the equations are singular (only past s = 0)
-[[nodiscard]] BristleStep solve_bristle(const BristleForces& law, double direction, double start, double h,
+[[nodiscard]] BristleStep solve_bristle(const friction::BristleForces& law, double direction, double start, double h,
                                         const RadauTables::Vector8& speed);
 
 /// z at a share of the step by the polynomial of degree 8 through its start and its nodes.

@@ -2,7 +2,6 @@
 
 #include <slipmode/core/decompositions.hpp>
 #include <slipmode/core/errors.hpp>
-#include <slipmode/dynamics/load_form.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -90,92 +89,6 @@ bool enumerate(const Instant& now, const std::vector<bool>& at_rest, const std::
 
 }  // namespace
 
-double ContactForces::smooth(double v, double& slope) const {
-  if (kind == Kind::kFree || kind == Kind::kBristle || kind == Kind::kClearance) return slope = 0.0;
-  const double th = std::tanh(v / epsilon), dth = (1 - th * th) / epsilon;
-  const double magnitude = v * th, d_magnitude = th + v * dth;
-  const double e = drop * std::exp(-alpha * magnitude);
-  slope = (kinetic + e) * dth - alpha * d_magnitude * e * th;
-  return (kinetic + e) * th;
-}
-
-double ContactForces::stop_force(ContactMode mode, double displacement, double velocity) const {
-  if (mode == ContactMode::kRightStop)
-    return -clearance.right->stiffness * (displacement - clearance.right->gap) - clearance.right->damping * velocity;
-  if (mode == ContactMode::kLeftStop)
-    return -clearance.left->stiffness * (displacement + clearance.left->gap) - clearance.left->damping * velocity;
-  return 0.0;
-}
-
-double ContactForces::stop_force_rate(ContactMode mode, double velocity, double acceleration) const {
-  if (mode == ContactMode::kRightStop)
-    return -clearance.right->stiffness * velocity - clearance.right->damping * acceleration;
-  if (mode == ContactMode::kLeftStop)
-    return -clearance.left->stiffness * velocity - clearance.left->damping * acceleration;
-  return 0.0;
-}
-
-double ContactForces::sliding(ContactMode mode, double v) const {
-  double slope;
-  if (!sticks()) return smooth(v, slope);
-  if (kind != Kind::kStribeck) return sign_of(mode) * onset(sign_of(mode));
-  return sign_of(mode) * (kinetic + drop * std::exp(-alpha * std::abs(v)));
-}
-
-ContactForces contact_forces(const friction::Contact& contact) {
-  ContactForces f;
-  const double N = contact.normal_load.constant;
-  f.load = N;
-  f.varies = LoadForm(contact).varies();
-  const double mu_s = friction::static_coefficient(contact.law), mu_k = friction::limit_coefficient(contact.law);
-  for (const int k : {0, 1}) {
-    f.mu_s[static_cast<std::size_t>(k)] = friction::effective_coefficient(mu_s, contact.tilt, 2.0 * k - 1.0);
-    f.mu_k[static_cast<std::size_t>(k)] = friction::effective_coefficient(mu_k, contact.tilt, 2.0 * k - 1.0);
-  }
-  f.static_limit = std::max(f.limit(-1.0), f.limit(1.0));
-  if (const auto* coulomb = std::get_if<friction::Coulomb>(&contact.law)) {
-    f.kinetic = coulomb->mu_k * N;
-  } else if (const auto* compliant = std::get_if<friction::CompliantCoulomb>(&contact.law)) {
-    f.kind = ContactForces::Kind::kCompliant;
-    f.kinetic = compliant->mu_k * N;
-    f.stiffness = compliant->stiffness;
-  } else if (const auto* stribeck = std::get_if<friction::Stribeck>(&contact.law)) {
-    f.kinetic = stribeck->mu_k * N;
-    f.drop = (stribeck->mu_s - stribeck->mu_k) * N;
-    f.alpha = stribeck->alpha;
-    if (friction::is_piecewise_linear(contact.law)) {
-      f.kinetic = friction::kinetic_coefficient(contact.law, 0.0) * N;
-      f.mu_k.fill(friction::kinetic_coefficient(contact.law, 0.0));
-      f.drop = 0.0;
-    } else {
-      f.kind = ContactForces::Kind::kStribeck;
-    }
-  } else if (const auto* tanh = std::get_if<friction::TanhRegularised>(&contact.law)) {
-    f.kind = ContactForces::Kind::kSmooth;
-    f.kinetic = tanh->mu_k * N;
-    f.drop = (tanh->mu_s - tanh->mu_k) * N;
-    f.alpha = tanh->alpha;
-    f.epsilon = tanh->epsilon;
-  } else if (const auto* clearance = std::get_if<friction::Clearance>(&contact.law)) {
-    f.kind = ContactForces::Kind::kClearance;
-    f.clearance = *clearance;
-    return f;
-  } else {
-    f.kind = ContactForces::Kind::kBristle;
-    f.bristle = bristle_forces(contact.law, N);
-  }
-  if (mu_s == 0.0 || (N == 0.0 && !f.varies)) f.kind = ContactForces::Kind::kFree;
-  return f;
-}
-
-ContactForces ContactForces::under(double normal_load) const {
-  ContactForces now = *this;
-  now.load = normal_load;
-  now.static_limit = std::max(now.limit(-1.0), now.limit(1.0));
-  now.kinetic = now.mu_k[1] * normal_load;
-  return now;
-}
-
 SingleResolution resolve_single(const Instant& now, bool released, double release_sign) {
   const ModalModel& m = now.model;
   const ContactForces& law = now.laws[0];
@@ -216,7 +129,7 @@ Resolution resolve(const Instant& now, const std::vector<ContactMode>& modes, co
     if (now.applied && !at_rest[c])
       trial.force(i) = (*now.applied)(i);
     else if (!law.sticks() || !at_rest[c])
-      trial.force(i) = law.sliding(modes[c], now.belt_velocity - now.model.velocity_row.col(i).dot(x));
+      trial.force(i) = law.sliding(sign_of(modes[c]), now.belt_velocity - now.model.velocity_row.col(i).dot(x));
     else
       trial.modes[c] = ContactMode::kStick;
   }
@@ -290,13 +203,13 @@ Eigen::VectorXd stick_force_rates(const Instant& now, const std::vector<ContactM
   std::vector<Eigen::Index> stuck;
   for (int c = 0; c < m.contacts; ++c) {
     const ContactForces& law = now.laws[static_cast<std::size_t>(c)];
-    if (law.kind == ContactForces::Kind::kClearance) {
-      force_rate(c) = law.stop_force_rate(modes[static_cast<std::size_t>(c)], m.velocity_row.col(c).dot(x),
-                                          m.velocity_row.col(c).dot(rate));
+    if (law.kind == LawKind::kClearance) {
+      force_rate(c) = law.clearance.force_rate(stop_side(modes[static_cast<std::size_t>(c)]),
+                                               m.velocity_row.col(c).dot(x), m.velocity_row.col(c).dot(rate));
       continue;
     }
     const bool sticks = modes[static_cast<std::size_t>(c)] == ContactMode::kStick;
-    if (sticks && law.kind != ContactForces::Kind::kCompliant) {
+    if (sticks && law.kind != LawKind::kCompliant) {
       stuck.push_back(c);
       continue;
     }
@@ -306,16 +219,12 @@ Eigen::VectorXd stick_force_rates(const Instant& now, const std::vector<ContactM
       continue;
     }
     const double v_rel_rate = now.belt_acceleration - m.velocity_row.col(c).dot(rate);
-    if (law.kind == ContactForces::Kind::kBristle) {
+    if (law.kind == LawKind::kBristle) {
       force_rate(c) =
           law.bristle.force_rate(sign_of(modes[static_cast<std::size_t>(c)]), v_rel, deflection(c), v_rel_rate);
       continue;
     }
-    double slope = 0.0;  // dλ/dv_rel
-    if (law.kind == ContactForces::Kind::kSmooth) static_cast<void>(law.smooth(v_rel, slope));
-    if (law.kind == ContactForces::Kind::kStribeck)
-      slope = -law.alpha * law.drop * std::exp(-law.alpha * std::abs(v_rel));
-    force_rate(c) = slope * v_rel_rate;
+    force_rate(c) = law.slope(std::copysign(1.0, v_rel), v_rel) * v_rel_rate;
   }
   Eigen::VectorXd missing = Eigen::VectorXd::Constant(m.contacts, now.belt_jerk) -
                             m.acceleration_row.transpose() * rate - m.mobility * force_rate;

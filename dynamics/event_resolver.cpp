@@ -35,13 +35,13 @@ EventResolver::EventResolver(const HybridSystem& system, const ModalModel& model
       zeno_window_(options.zeno_window) {
   for (int c = 0; c < model.contacts; ++c) {
     const friction::Contact& contact = system.contacts()[static_cast<std::size_t>(c)];
-    laws_.push_back(contact_forces(contact));
+    laws_.push_back(friction::contact_forces(contact));
     loads_.emplace_back(contact);
     internal_.push_back(system.internal_begin(c));
     oscillator_.push_back(internal_.back() + friction::internal_states(contact) - 2);
   }
-  for (const ContactForces& law : laws_) clearances_only_ &= law.kind == ContactForces::Kind::kClearance;
-  lone_spring_ = laws_.size() == 1 && laws_[0].kind == ContactForces::Kind::kCompliant;
+  for (const ContactForces& law : laws_) clearances_only_ &= law.kind == LawKind::kClearance;
+  lone_spring_ = laws_.size() == 1 && laws_[0].kind == LawKind::kCompliant;
   plain_ = laws_.size() == 1 && !laws_[0].needs_closed_form();
 }
 
@@ -54,7 +54,7 @@ const double* EventResolver::own_states(const HybridPoint& point, int c) const {
 }
 
 double EventResolver::normal_load(const HybridPoint& point, int c) const {
-  const LoadForm& load = loads_[static_cast<std::size_t>(c)];
+  const friction::LoadForm& load = loads_[static_cast<std::size_t>(c)];
   if (!load.varies()) return load.constant;
   return load.load(contact_displacement(c, point.x.data()), contact_velocity(c, point.x.data()),
                    load.oscillates() ? own_states(point, c) : nullptr);
@@ -71,20 +71,20 @@ double EventResolver::applied_force(const HybridPoint& point, int c) const {
   const auto i = static_cast<std::size_t>(c);
   const ContactMode mode = point.modes[i];
   if (mode == ContactMode::kSeparated) return 0.0;
-  if (laws_[i].kind == ContactForces::Kind::kBristle) return point.force(c);
-  if (laws_[i].kind == ContactForces::Kind::kClearance)
-    return laws_[i].stop_force(mode, contact_displacement(c, point.x.data()) + loads_[i].offset,
-                               contact_velocity(c, point.x.data()));
+  if (laws_[i].kind == LawKind::kBristle) return point.force(c);
+  if (laws_[i].kind == LawKind::kClearance)
+    return laws_[i].clearance.force(stop_side(mode), contact_displacement(c, point.x.data()) + loads_[i].offset,
+                                    contact_velocity(c, point.x.data()));
   if (mode == ContactMode::kStick)
-    return laws_[i].kind == ContactForces::Kind::kCompliant ? laws_[i].stiffness * point.internal(internal_[i]) : 0.0;
-  if (laws_[i].varies) return laws_[i].under(std::max(normal_load(point, c), 0.0)).sliding(mode, 0.0);
-  return laws_[i].sliding(mode, drive_.velocity(point.time) - contact_velocity(c, point.x.data()));
+    return laws_[i].kind == LawKind::kCompliant ? laws_[i].stiffness * point.internal(internal_[i]) : 0.0;
+  if (laws_[i].varies) return laws_[i].under(std::max(normal_load(point, c), 0.0)).sliding(sign_of(mode), 0.0);
+  return laws_[i].sliding(sign_of(mode), drive_.velocity(point.time) - contact_velocity(c, point.x.data()));
 }
 
 double EventResolver::slide_velocity(const HybridPoint& point, int c, double direction) const {
   // y_c = y ± μ_k N / K_c: the contact point follows y and the load.
   const auto i = static_cast<std::size_t>(c);
-  const LoadForm& load = loads_[i];
+  const friction::LoadForm& load = loads_[i];
   const double* x = point.x.data();
   const double velocity = contact_velocity(c, x), sliding = drive_.velocity(point.time) - velocity;
   if (!load.varies()) return sliding;
@@ -108,7 +108,7 @@ double EventResolver::slide_velocity(const HybridPoint& point, int c, double dir
 std::vector<ContactRole> EventResolver::roles(const std::vector<ContactMode>& modes) const {
   std::vector<ContactRole> roles;
   for (std::size_t c = 0; c < modes.size(); ++c) {
-    const bool compliant = laws_[c].kind == ContactForces::Kind::kCompliant;
+    const bool compliant = laws_[c].kind == LawKind::kCompliant;
     switch (modes[c]) {
       case ContactMode::kStick:
         roles.push_back(compliant ? ContactRole::kSprung : ContactRole::kHeld);
@@ -149,9 +149,9 @@ double EventResolver::regime_input(const HybridPoint& point, int c) const {
   const auto i = static_cast<std::size_t>(c);
   const ContactMode mode = point.modes[i];
   if (mode == ContactMode::kSeparated) return 0.0;
-  if (laws_[i].kind == ContactForces::Kind::kClearance) return laws_[i].stop_force(mode, loads_[i].offset, 0.0);
+  if (laws_[i].kind == LawKind::kClearance) return laws_[i].clearance.force(stop_side(mode), loads_[i].offset, 0.0);
   if (mode == ContactMode::kStick) {
-    const double stretch = laws_[i].kind == ContactForces::Kind::kCompliant ? point.internal(internal_[i]) : 0.0;
+    const double stretch = laws_[i].kind == LawKind::kCompliant ? point.internal(internal_[i]) : 0.0;
     return contact_displacement(c, point.x.data()) + stretch;
   }
   if (!laws_[i].varies) return point.force(c);
@@ -216,7 +216,7 @@ void EventResolver::start(HybridPoint& point) const {
   for (std::size_t c = 0; c < laws_.size(); ++c) {
     const auto i = static_cast<int>(c);
     if (laws_[c].varies && normal_load(point, i) < 0.0) point.modes[c] = ContactMode::kSeparated;
-    if (laws_[c].kind != ContactForces::Kind::kCompliant) continue;
+    if (laws_[c].kind != LawKind::kCompliant) continue;
     double& stretch = point.internal(internal_[c]);
     if (point.modes[c] == ContactMode::kSeparated) {
       stretch = 0.0;
@@ -227,13 +227,13 @@ void EventResolver::start(HybridPoint& point) const {
     if (point.modes[c] == ContactMode::kStick && std::abs(force) > law.limit(force))
       point.modes[c] = force > 0 ? ContactMode::kSlipPositive : ContactMode::kSlipNegative;
     if (point.modes[c] == ContactMode::kStick) continue;
-    stretch = law.sliding(point.modes[c], 0.0) / law.stiffness;
+    stretch = law.sliding(sign_of(point.modes[c]), 0.0) / law.stiffness;
     if (sign_of(point.modes[c]) * slide_velocity(point, i, sign_of(point.modes[c])) < 0.0)
       point.modes[c] = ContactMode::kStick;
   }
   std::vector<bool> at_rest;
   for (std::size_t c = 0; c < laws_.size(); ++c)
-    at_rest.push_back(point.modes[c] == ContactMode::kStick && laws_[c].kind != ContactForces::Kind::kCompliant);
+    at_rest.push_back(point.modes[c] == ContactMode::kStick && laws_[c].kind != LawKind::kCompliant);
   const std::vector<bool> none(at_rest.size(), false);
   const std::vector<ContactForces> laws = laws_at(point);
   Eigen::VectorXd applied(model_.contacts);
@@ -253,8 +253,7 @@ void EventResolver::start(HybridPoint& point) const {
 }
 
 bool EventResolver::decides_by_acceleration(const HybridPoint& point, std::size_t c) const {
-  return laws_[c].sticks() && laws_[c].kind != ContactForces::Kind::kCompliant &&
-         point.modes[c] != ContactMode::kSeparated;
+  return laws_[c].sticks() && laws_[c].kind != LawKind::kCompliant && point.modes[c] != ContactMode::kSeparated;
 }
 
 void EventResolver::hold(double time, const std::vector<ContactMode>& modes, double* x) const {
@@ -282,7 +281,7 @@ Eigen::VectorXd EventResolver::forces(double time, const std::vector<ContactMode
     const auto i = static_cast<Eigen::Index>(c);
     stuck[c] = modes[c] == ContactMode::kStick;
     if (!stuck[c])
-      force(i) = laws_[c].sliding(modes[c], drive_.velocity(time) - contact_velocity(static_cast<int>(c), x));
+      force(i) = laws_[c].sliding(sign_of(modes[c]), drive_.velocity(time) - contact_velocity(static_cast<int>(c), x));
   }
   stick_forces(instant(time, x), stuck, force);
   return force;
@@ -292,7 +291,7 @@ Eigen::VectorXd EventResolver::deflections(const HybridPoint& point) const {
   Eigen::VectorXd z = Eigen::VectorXd::Zero(model_.contacts);
   for (int c = 0; c < model_.contacts; ++c) {
     const auto i = static_cast<std::size_t>(c);
-    if (laws_[i].kind == ContactForces::Kind::kBristle) z(c) = point.internal(internal_[i]);
+    if (laws_[i].kind == LawKind::kBristle) z(c) = point.internal(internal_[i]);
   }
   return z;
 }

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <slipmode/dynamics/consistency.hpp>
-#include <slipmode/dynamics/load_form.hpp>
 #include <slipmode/dynamics/regime.hpp>
 #include <slipmode/dynamics/simulate.hpp>
+#include <slipmode/friction/load_form.hpp>
 
 #include <Eigen/Core>
 #include <vector>
@@ -128,7 +128,7 @@ class EventResolver {
   const ModalModel& model_;
   friction::Drive drive_;
   std::vector<ContactForces> laws_;
-  std::vector<LoadForm> loads_;
+  std::vector<friction::LoadForm> loads_;
   std::vector<Eigen::Index> internal_;    ///< of each contact's first own state
   std::vector<Eigen::Index> oscillator_;  ///< of its normal oscillator's, if it has one
   bool plain_ = true;                     ///< one rigid contact, untilted, under constant load

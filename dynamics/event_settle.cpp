@@ -94,14 +94,14 @@ void EventResolver::turn_compliant(HybridPoint& point, int c) const {
   const ContactForces law = laws_[i].varies ? laws_[i].under(std::max(normal_load(point, c), 0.0)) : laws_[i];
   double& stretch = point.internal(internal_[i]);
   if (point.modes[i] != ContactMode::kStick) {
-    stretch = law.sliding(point.modes[i], 0.0) / law.stiffness;
+    stretch = law.sliding(sign_of(point.modes[i]), 0.0) / law.stiffness;
     point.modes[i] = ContactMode::kStick;
     return;
   }
   // The contact point jumps to where the spring pulls with μ_k N, and slides on if it moves that way; else it is held
   // there.
   const ContactMode slip = stretch > 0 ? ContactMode::kSlipPositive : ContactMode::kSlipNegative;
-  stretch = law.sliding(slip, 0.0) / law.stiffness;
+  stretch = law.sliding(sign_of(slip), 0.0) / law.stiffness;
   if (sign_of(slip) * slide_velocity(point, c, sign_of(slip)) > 0.0) point.modes[i] = slip;
 }
 
@@ -111,7 +111,7 @@ bool EventResolver::has_event(int c) const {
 
 Eigen::RowVectorXd EventResolver::slide_stretch_gradient(const HybridPoint& point, int c) const {
   const auto i = static_cast<std::size_t>(c);
-  const LoadForm& load = loads_[i];
+  const friction::LoadForm& load = loads_[i];
   Eigen::RowVectorXd gradient = Eigen::RowVectorXd::Zero(2 * model_.np + point.internal.size());
   if (!load.varies()) return gradient;
   const double sign = point.internal(internal_[i]) > 0 ? 1.0 : -1.0;
@@ -125,7 +125,7 @@ Eigen::RowVectorXd EventResolver::slide_stretch_gradient(const HybridPoint& poin
 
 void EventResolver::turn_load(HybridPoint& point, int c) const {
   const auto i = static_cast<std::size_t>(c);
-  const bool compliant = laws_[i].kind == ContactForces::Kind::kCompliant;
+  const bool compliant = laws_[i].kind == LawKind::kCompliant;
   if (compliant) point.internal(internal_[i]) = 0.0;
   if (point.modes[i] != ContactMode::kSeparated) {
     point.modes[i] = ContactMode::kSeparated;
@@ -147,7 +147,7 @@ void EventResolver::settle_coupled(HybridPoint& point, const Reached& reached) {
     turn_load(point, contact);
   else if (contact >= 0 && kind == GuardKind::kStop)
     point.modes[static_cast<std::size_t>(contact)] = next;
-  else if (contact >= 0 && laws_[static_cast<std::size_t>(contact)].kind == ContactForces::Kind::kCompliant)
+  else if (contact >= 0 && laws_[static_cast<std::size_t>(contact)].kind == LawKind::kCompliant)
     turn_compliant(point, contact);
 
   // Rigid contacts at rest on the drive, to be decided together: the sticking ones, the one whose guard was reached,
@@ -189,13 +189,13 @@ void EventResolver::record(const HybridPoint& point, int contact, EventKind kind
 void EventResolver::record_change(const HybridPoint& point, int contact, ContactMode before) {
   const auto i = static_cast<std::size_t>(contact);
   const ContactMode after = point.modes[i];
-  if (laws_[i].kind == ContactForces::Kind::kClearance) {
+  if (laws_[i].kind == LawKind::kClearance) {
     // A stop that has let go is passed again without anything happening.
     if (presses(before) || presses(after))
       record(point, contact, presses(after) ? EventKind::kContact : EventKind::kSeparation, before);
     return;
   }
-  const bool jumped = laws_[i].kind == ContactForces::Kind::kCompliant && after == ContactMode::kStick;
+  const bool jumped = laws_[i].kind == LawKind::kCompliant && after == ContactMode::kStick;
   record(point, contact,
          after == before                     ? (jumped ? EventKind::kJump : EventKind::kGrazing)
          : before == ContactMode::kSeparated ? EventKind::kContact

@@ -1,7 +1,7 @@
 #include <slipmode/dynamics/prepare.hpp>
 
 #include <slipmode/core/errors.hpp>
-#include <slipmode/dynamics/load_form.hpp>
+#include <slipmode/friction/load_form.hpp>
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -122,7 +122,7 @@ std::vector<ContactMode> start_modes(const HybridSystem& system, const State& st
   const double V = system.drive().velocity(start.time);
   for (std::size_t c = 0; c < modes.size(); ++c) {
     const auto& contact = system.contacts()[c];
-    if (const auto* clearance = std::get_if<friction::Clearance>(&contact.law)) {
+    if (const auto* clearance = friction::clearance(contact.law)) {
       modes[c] = start_mode(*clearance, contact, start, c);
       continue;
     }
@@ -136,7 +136,7 @@ std::vector<ContactMode> start_modes(const HybridSystem& system, const State& st
     const ContactMode by_sign = std::abs(sliding) <= 1e-12 * scale ? ContactMode::kStick
                                 : sliding > 0                      ? ContactMode::kSlipPositive
                                                                    : ContactMode::kSlipNegative;
-    const bool compliant = contact_forces(contact).kind == ContactForces::Kind::kCompliant;
+    const bool compliant = friction::kind(contact.law) == LawKind::kCompliant;
     if (start.modes.empty()) {
       modes[c] = compliant ? ContactMode::kStick : by_sign;
       continue;
@@ -164,7 +164,7 @@ Eigen::VectorXd start_internal(const HybridSystem& system, const State& start) {
   Eigen::VectorXd internal = Eigen::VectorXd::Zero(system.internal_size());
   for (std::size_t c = 0; c < system.contacts().size(); ++c) {
     const friction::Contact& contact = system.contacts()[c];
-    const LoadForm load(contact);
+    const friction::LoadForm load(contact);
     if (!load.oscillates()) continue;
     const Eigen::Index own = system.internal_begin(static_cast<int>(c)) + friction::internal_states(contact) - 2;
     internal(own) = load.lift * (contact.direction.dot(start.q) + contact.offset) / load.stiffness;
@@ -180,7 +180,7 @@ FlowMethod choose_method(const HybridSystem& system, FlowMethod asked) {
   for (std::size_t c = 0; c < system.contacts().size(); ++c) {
     const ContactForces law = contact_forces(system.contacts()[c]);
     if (law.needs_closed_form()) special = static_cast<int>(c) + 1;
-    if (!law.is_piecewise_linear()) nonlinear = static_cast<int>(c) + 1;
+    if (!is_piecewise_linear(law.kind)) nonlinear = static_cast<int>(c) + 1;
   }
   const auto name = [](int contact) { return "contact " + std::to_string(contact); };
   require_or_say(!forced || nonlinear == 0, [&] {
@@ -219,10 +219,9 @@ double fastest_rate(const HybridSystem& system, const ModalModel& m) {
       fastest = std::max({fastest, std::sqrt(stiffness * mobility), damping * mobility});
     };
     const friction::Law& law = system.contacts()[c].law;
-    if (const auto* spring = std::get_if<friction::CompliantCoulomb>(&law)) look(spring->stiffness, 0.0);
-    if (const auto* clearance = std::get_if<friction::Clearance>(&law))
-      for (const auto& stop : {clearance->left, clearance->right})
-        if (stop) look(stop->stiffness, stop->damping);
+    if (friction::kind(law) == LawKind::kCompliant) look(friction::spring_stiffness(law), 0.0);
+    if (const auto* clearance = friction::clearance(law))
+      for (const friction::Stop& stop : clearance->stops()) look(stop.stiffness, stop.damping);
   }
   return fastest;
 }

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <slipmode/dynamics/lazy_levels.hpp>
-#include <slipmode/dynamics/load_form.hpp>
 #include <slipmode/dynamics/modal_model.hpp>
 #include <slipmode/dynamics/nodes.hpp>
 #include <slipmode/dynamics/pair_motion.hpp>
+#include <slipmode/friction/load_form.hpp>
 
 #include <Eigen/Core>
 #include <array>
@@ -47,7 +47,7 @@ struct RegimeOutput {
 struct ContactAnswer {
   double stiffness = 0.0, damping = 0.0;
   double friction = 0.0;  ///< ±μ_k, sliding under a load that varies
-  LoadForm load;
+  friction::LoadForm load;
 };
 
 /// The structure with its contacts in certain roles, as decoupled pairs driven by inputs that are polynomials of time

@@ -174,7 +174,7 @@ void RegimeBuilder::make_outputs(Regime& out) const {
     coefficients.push_back(std::move(coefficient));
   };
   for (Eigen::Index c = 0; c < nc_; ++c) {
-    if (law(c).kind == ContactForces::Kind::kClearance) add_clearance_outputs(c, out, add);
+    if (law(c).kind == LawKind::kClearance) add_clearance_outputs(c, out, add);
     if (!law(c).sticks()) continue;
     const auto w = modal_.directions.col(c);
     const bool varies = load(c).varies();

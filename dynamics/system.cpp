@@ -98,9 +98,8 @@ double HybridSystem::energy(const State& state) const {
 }
 
 bool can_stick(const HybridSystem& system) {
-  return std::ranges::none_of(system.contacts(), [](const friction::Contact& contact) {
-    return std::holds_alternative<friction::Clearance>(contact.law);
-  });
+  return std::ranges::none_of(
+      system.contacts(), [](const friction::Contact& contact) { return friction::clearance(contact.law) != nullptr; });
 }
 
 const ModelTables& ModelCache::tables(const HybridSystem& system, bool rows_only) {

@@ -49,7 +49,7 @@ Figure orbit_portrait(const StoreReader& store) {
     const scene::ContactSpec& contact = scene.contacts[static_cast<std::size_t>(c)];
     const Eigen::VectorXd y = run.contact_q.row(c), v = run.contact_v.row(c);
     Panel panel{.title = contact.name, .series = {}};
-    if (const auto* law = std::get_if<friction::Clearance>(&contact.law)) {
+    if (const auto* law = friction::clearance(contact.law)) {
       const double top = v.cwiseAbs().maxCoeff(), widest = y.cwiseAbs().maxCoeff();
       const auto beyond = [widest](const friction::Stop& stop) { return std::max(0.0, widest - stop.gap); };
       if (law->left) add_stop(panel, *law->left, law->loss, -1.0, top, beyond(*law->left));

@@ -1,9 +1,10 @@
 #include <slipmode/friction/contact.hpp>
 
 #include <slipmode/core/errors.hpp>
-#include <slipmode/core/overloaded.hpp>
+#include <slipmode/friction/load_form.hpp>
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -85,7 +86,7 @@ void validate(const Contact& contact) {
   check.within("offset", contact.offset, kFinite);
   std::visit([&check](const auto& law) { check.law(law); }, contact.law);
   check.within("tilt", contact.tilt, kFinite);
-  if (std::holds_alternative<Clearance>(contact.law)) return;
+  if (clearance(contact.law) != nullptr) return;
   if (!is_piecewise_linear(contact.law)) {
     if (contact.tilt != 0.0)
       check.fail(fmt::format("tilt = {} rad with a law that is not Coulomb", contact.tilt),
@@ -101,45 +102,46 @@ void validate(const Contact& contact) {
   }
 }
 
+std::string law_word(const Law& law) {
+  return std::visit([](const auto& own) { return std::string(own.word); }, law);
+}
+
+LawKind kind(const Law& law) {
+  return std::visit([](const auto& own) { return own.kind(); }, law);
+}
+
 double kinetic_coefficient(const Law& law, double speed) {
-  return std::visit(Overloaded{[](const Coulomb& coulomb) { return coulomb.mu_k; },
-                               [speed](const Stribeck& stribeck) {
-                                 return stribeck.mu_k +
-                                        (stribeck.mu_s - stribeck.mu_k) * std::exp(-stribeck.alpha * speed);
-                               },
-                               [](const CompliantCoulomb& compliant) { return compliant.mu_k; },
-                               [](const Dahl& dahl) { return dahl.mu; }, [](const Clearance&) { return 0.0; },
-                               [speed](const LuGre& lugre) {
-                                 const double share = speed / lugre.stribeck_speed;
-                                 return lugre.mu_k + (lugre.mu_s - lugre.mu_k) * std::exp(-share * share);
-                               },
-                               [](const TanhRegularised&) -> double {
-                                 throw InvalidInput(
-                                     "kinetic coefficient: the tanh law has no slip state; evaluate its force over "
-                                     "the whole range of velocity");
-                               }},
-                    law);
+  return std::visit([speed](const auto& own) { return own.kinetic_coefficient(speed); }, law);
 }
 
 double limit_coefficient(const Law& law) {
-  return std::visit(Overloaded{[](const Dahl& dahl) { return dahl.mu; }, [](const Clearance&) { return 0.0; },
-                               [](const auto& any) { return any.mu_k; }},
-                    law);
+  return std::visit([](const auto& own) { return own.limit_coefficient(); }, law);
 }
 
 double static_coefficient(const Law& law) {
-  return std::visit(Overloaded{[](const Dahl& dahl) { return dahl.mu; }, [](const Clearance&) { return 0.0; },
-                               [](const auto& any) { return any.mu_s; }},
-                    law);
+  return std::visit([](const auto& own) { return own.static_coefficient(); }, law);
 }
 
-bool is_piecewise_linear(const Law& law) {
+double spring_stiffness(const Law& law) {
   return std::visit(
-      Overloaded{[](const Coulomb&) { return true; },
-                 [](const Stribeck& stribeck) { return stribeck.alpha == 0.0 || stribeck.mu_s == stribeck.mu_k; },
-                 [](const CompliantCoulomb&) { return true; }, [](const Clearance&) { return true; },
-                 [](const auto&) { return false; }},
+      [](const auto& own) {
+        if constexpr (requires { own.stiffness; })
+          return own.stiffness;
+        else
+          return 0.0;
+      },
       law);
+}
+
+double fastest_rate(const Law& law, const Pace& pace) {
+  return std::visit([&pace](const auto& own) { return own.fastest_rate(pace); }, law);
+}
+
+bool is_piecewise_linear(const Law& law) { return is_piecewise_linear(kind(law)); }
+
+bool is_symmetric(const Law& law) {
+  const Clearance* play = clearance(law);
+  return play == nullptr || (play->left && play->left == play->right);
 }
 
 double effective_coefficient(double mu, double tilt, double direction) {
@@ -148,10 +150,23 @@ double effective_coefficient(double mu, double tilt, double direction) {
 }
 
 int internal_states(const Contact& contact) {
-  const int own = std::visit(Overloaded{[](const CompliantCoulomb&) { return 1; }, [](const Dahl&) { return 1; },
-                                        [](const LuGre&) { return 1; }, [](const auto&) { return 0; }},
-                             contact.law);
-  return own + (contact.normal_load.oscillator ? 2 : 0);
+  return (remembers(kind(contact.law)) ? 1 : 0) + (contact.normal_load.oscillator ? 2 : 0);
+}
+
+ContactForces contact_forces(const Contact& contact) {
+  const double N = contact.normal_load.constant;
+  ContactForces f = std::visit([N](const auto& own) { return own.forces(N); }, contact.law);
+  f.load = N;
+  f.varies = LoadForm(contact).varies();
+  const double mu_s = static_coefficient(contact.law), mu_k = kinetic_coefficient(contact.law, 0.0);
+  for (const int k : {0, 1}) {
+    f.mu_s[static_cast<std::size_t>(k)] = effective_coefficient(mu_s, contact.tilt, 2.0 * k - 1.0);
+    f.mu_k[static_cast<std::size_t>(k)] = effective_coefficient(mu_k, contact.tilt, 2.0 * k - 1.0);
+  }
+  f.static_limit = std::max(f.limit(-1.0), f.limit(1.0));
+  const bool idle = mu_s == 0.0 || (N == 0.0 && !f.varies);
+  if (idle && f.kind != LawKind::kClearance) f.kind = LawKind::kFree;
+  return f;
 }
 
 }  // namespace slipmode::friction

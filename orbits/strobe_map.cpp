@@ -77,7 +77,7 @@ void measure_amplitudes(const Eigen::MatrixXd& q, const Eigen::MatrixXd& v, doub
 dynamics::State carried(const dynamics::HybridSystem& system, const dynamics::State& end) {
   dynamics::State begin{.time = 0.0, .q = end.q, .v = end.v, .internal = end.internal};
   const auto is_compliant = [](const friction::Contact& contact) {
-    return std::holds_alternative<friction::CompliantCoulomb>(contact.law);
+    return friction::kind(contact.law) == friction::LawKind::kCompliant;
   };
   if (end.modes.empty() || std::ranges::none_of(system.contacts(), is_compliant)) return begin;
   begin.modes = dynamics::simulate(system, begin, {.flow = {.audit = false}}).final_state.modes;

@@ -8,11 +8,7 @@ namespace {
 
 bool presses_equally(const friction::Contact& contact) {
   if (contact.offset != 0.0 || contact.tilt != 0.0 || !contact.normal_load.is_constant()) return false;
-  const auto* clearance = std::get_if<friction::Clearance>(&contact.law);
-  if (clearance == nullptr) return true;
-  if (!clearance->left || !clearance->right) return false;
-  const friction::Stop &left = *clearance->left, &right = *clearance->right;
-  return left.stiffness == right.stiffness && left.damping == right.damping && left.gap == right.gap;
+  return friction::is_symmetric(contact.law);
 }
 
 bool reverses_after_half_a_period(const friction::Drive& drive) {

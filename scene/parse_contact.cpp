@@ -36,7 +36,7 @@ double read_tilt(TomlReader& in) {
 void check_combination(TomlReader& in, const ContactSpec& spec) {
   if (!friction::is_piecewise_linear(spec.law)) {
     constexpr const char* kValid = "law = \"coulomb\" or \"compliant\"";
-    const std::string what = fmt::format("does not go with law \"{}\"", friction::law_words()[spec.law.index()]);
+    const std::string what = fmt::format("does not go with law \"{}\"", friction::law_word(spec.law));
     if (spec.tilt_deg != 0.0) in.fail("tilt_deg", what, fmt::format("0, or {}", kValid));
     if (!spec.normal_load.is_constant()) in.fail("normal_load", what, fmt::format("a number, or {}", kValid));
     return;
@@ -111,7 +111,7 @@ std::vector<ContactSpec> read_contacts(TomlReader& in, const Scene& scene) {
     check_alone(table, contact.at, contacts, scene);
     contact.name = table.text_or("name", fmt::format("contact {}", contacts.size() + 1));
     contact.law = read_law(table);
-    if (!std::holds_alternative<friction::Clearance>(contact.law)) {
+    if (friction::clearance(contact.law) == nullptr) {
       contact.normal_load = read_load(table);
       contact.tilt_deg = read_tilt(table);
       check_combination(table, contact);

@@ -50,7 +50,7 @@ Equilibrium sliding_equilibrium(const Scene& scene, const dynamics::HybridSystem
         "give ground_stiffness");
   }
   for (const friction::Contact& contact : system.contacts()) {
-    if (!std::holds_alternative<friction::Clearance>(contact.law)) continue;
+    if (friction::clearance(contact.law) == nullptr) continue;
     refuse(
         fmt::format("contact '{}' is a clearance, whose equilibrium depends on which stops are touched; valid: "
                     "\"rest\", or displacement and velocity",
@@ -94,10 +94,7 @@ Eigen::VectorXd internal_states(const dynamics::HybridSystem& system, const Equi
   for (std::size_t c = 0; c < system.contacts().size(); ++c) {
     const friction::Contact& contact = system.contacts()[c];
     const auto index = static_cast<Eigen::Index>(c);
-    double stiffness = 0.0;
-    if (const auto* law = std::get_if<friction::CompliantCoulomb>(&contact.law)) stiffness = law->stiffness;
-    if (const auto* law = std::get_if<friction::Dahl>(&contact.law)) stiffness = law->stiffness;
-    if (const auto* law = std::get_if<friction::LuGre>(&contact.law)) stiffness = law->stiffness;
+    const double stiffness = friction::spring_stiffness(contact.law);
     if (stiffness > 0.0) internal(next++) = at.force(index) / stiffness;
     if (const auto& own = contact.normal_load.oscillator) {
       internal(next) =

@@ -91,8 +91,8 @@ std::string structure_toml(const Scene& scene) {
 
 std::string contact_toml(const ContactSpec& contact, const Scene& scene) {
   std::string out = fmt::format("\n[[contact]]\nname = {}\n{}law = \"{}\"\n", quoted_text(contact.name),
-                                place_toml(contact.at), friction::law_words()[contact.law.index()]);
-  const bool clearance = std::holds_alternative<friction::Clearance>(contact.law);
+                                place_toml(contact.at), friction::law_word(contact.law));
+  const bool clearance = friction::clearance(contact.law) != nullptr;
   if (!clearance) out += fmt::format("normal_load = {}\n", load_toml(contact.normal_load));
   out += std::visit([](const auto& law) { return law_toml(law); }, contact.law);
   if (clearance) return out;

@@ -1,7 +1,5 @@
 #include "selftest/contact_guards.hpp"
 
-#include <slipmode/core/overloaded.hpp>
-
 #include <algorithm>
 #include <cmath>
 
@@ -48,10 +46,9 @@ LawCheck check_friction(const friction::Contact& contact, const Sticking& law, C
   return result;
 }
 
-LawCheck check_tanh(const friction::TanhRegularised& law, const ContactInstant& now, const ContactScales& scales) {
-  const double t = std::tanh(now.slip / law.epsilon);
-  const double coefficient = law.mu_k + (law.mu_s - law.mu_k) * std::exp(-law.alpha * now.slip * t);
-  return {.guard = 1.0, .law = std::abs(now.lambda - now.load * coefficient * t) / scales.force};
+LawCheck check_smooth(const friction::Law& law, const ContactInstant& now, const ContactScales& scales) {
+  const double coefficient = std::copysign(friction::kinetic_coefficient(law, std::abs(now.slip)), now.slip);
+  return {.guard = 1.0, .law = std::abs(now.lambda - now.load * coefficient) / scales.force};
 }
 
 LawCheck check_bristle(ContactMode mode, const ContactInstant& now, const ContactScales& scales) {
@@ -92,29 +89,27 @@ LawCheck check_clearance(const friction::Clearance& law, ContactMode mode, const
 
 LawCheck check_law(const friction::Contact& contact, ContactMode mode, const ContactInstant& now,
                    const ContactScales& scales) {
-  const auto friction_of = [&](const Sticking& law) { return check_friction(contact, law, mode, now, scales); };
+  switch (friction::kind(contact.law)) {
+    case friction::LawKind::kClearance:
+      return check_clearance(*friction::clearance(contact.law), mode, now, scales);
+    case friction::LawKind::kSmooth:
+      return check_smooth(contact.law, now, scales);
+    case friction::LawKind::kBristle:
+      return check_bristle(mode, now, scales);
+    default:
+      break;
+  }
   // Sliding speeds keep the sign of their mode; rounding may not.
   const double speed = (mode == ContactMode::kSlipPositive ? 1.0 : -1.0) * now.slip;
-  return std::visit(
-      Overloaded{[&](const friction::Coulomb& law) {
-                   return friction_of({law.mu_s, law.mu_k, 0.0});
-                 },
-                 [&](const friction::Stribeck& law) {
-                   return friction_of({law.mu_s, law.mu_k + (law.mu_s - law.mu_k) * std::exp(-law.alpha * speed), 0.0});
-                 },
-                 [&](const friction::CompliantCoulomb& law) {
-                   return friction_of({law.mu_s, law.mu_k, law.stiffness});
-                 },
-                 [&](const friction::TanhRegularised& law) { return check_tanh(law, now, scales); },
-                 [&](const friction::Dahl&) { return check_bristle(mode, now, scales); },
-                 [&](const friction::LuGre&) { return check_bristle(mode, now, scales); },
-                 [&](const friction::Clearance& law) { return check_clearance(law, mode, now, scales); }},
-      contact.law);
+  const Sticking law{.mu_s = friction::static_coefficient(contact.law),
+                     .sliding = friction::kinetic_coefficient(contact.law, speed),
+                     .spring = friction::spring_stiffness(contact.law)};
+  return check_friction(contact, law, mode, now, scales);
 }
 
 bool is_idle(const friction::Contact& contact) {
-  return !std::holds_alternative<friction::Clearance>(contact.law) &&
-         friction::static_coefficient(contact.law) == 0.0 && contact.tilt == 0.0;
+  return friction::clearance(contact.law) == nullptr && friction::static_coefficient(contact.law) == 0.0 &&
+         contact.tilt == 0.0;
 }
 
 }  // namespace slipmode::selftest

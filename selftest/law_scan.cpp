@@ -217,11 +217,10 @@ class Scan {
     const double static_limit = friction::static_coefficient(law.law) * law.normal_load.constant;
     scales.force = std::max(static_limit, run_.lambda.row(c).cwiseAbs().maxCoeff());
     if (!law.normal_load.is_constant()) scales.force = std::max(scales.force, law.normal_load.constant);
-    if (const auto* stops = std::get_if<friction::Clearance>(&law.law)) {
-      for (const auto& stop : {stops->left, stops->right}) {
-        if (!stop) continue;
-        scales.way = std::max(scales.way, std::abs(stop->gap));
-        scales.force = std::max(scales.force, stop->stiffness * scales.way + stop->damping * scales.speed);
+    if (const friction::Clearance* clearance = friction::clearance(law.law)) {
+      for (const friction::Stop& stop : clearance->stops()) {
+        scales.way = std::max(scales.way, std::abs(stop.gap));
+        scales.force = std::max(scales.force, stop.stiffness * scales.way + stop.damping * scales.speed);
       }
     }
     for (double* scale : {&scales.way, &scales.speed, &scales.force})

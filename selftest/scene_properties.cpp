@@ -61,21 +61,8 @@ double fastest_rate(const dynamics::HybridSystem& system, const dynamics::State&
     const friction::Contact& contact = system.contacts()[c];
     const auto at = static_cast<Index>(c);
     const double mobility = model.mobility(at, at), load = contact.normal_load.constant;
-    const auto spring = [&](double k) { return std::sqrt(k * mobility); };
-    if (const auto* law = std::get_if<friction::Stribeck>(&contact.law))
-      rate += law->alpha * ((law->mu_s - law->mu_k) * load * mobility + speed * model.fastest);
-    if (const auto* law = std::get_if<friction::TanhRegularised>(&contact.law))
-      rate += (1.0 / law->epsilon + law->alpha) * (law->mu_s * load * mobility + speed * model.fastest);
-    if (const auto* law = std::get_if<friction::CompliantCoulomb>(&contact.law)) rate += spring(law->stiffness);
-    if (const auto* law = std::get_if<friction::Dahl>(&contact.law))
-      rate += spring(law->stiffness) + law->stiffness * speed / (law->mu * load);
-    if (const auto* law = std::get_if<friction::LuGre>(&contact.law))
-      rate += spring(law->stiffness) + (law->damping + law->viscous) * mobility +
-              law->stiffness * speed / (law->mu_k * load) + speed * model.fastest / law->stribeck_speed;
-    if (const auto* law = std::get_if<friction::Clearance>(&contact.law)) {
-      for (const auto& stop : {law->left, law->right})
-        if (stop) rate += spring(stop->stiffness) + stop->damping * mobility;
-    }
+    rate += friction::fastest_rate(
+        contact.law, {.load = load, .mobility = mobility, .speed = speed, .acceleration = speed * model.fastest});
     rate += std::sqrt(std::abs(contact.normal_load.slope) * mobility);
     if (const auto& own = contact.normal_load.oscillator)
       rate += std::sqrt((own->support_stiffness + own->spring_stiffness) / own->mass);

@@ -2,6 +2,7 @@
 
 #include <slipmode/core/errors.hpp>
 #include <slipmode/diagnostics/attractors/model.hpp>
+#include <slipmode/friction/simplified.hpp>
 #include <slipmode/rom/reduce.hpp>
 #include <slipmode/trade/advice.hpp>
 #include "trade/internal/laws.hpp"
@@ -9,12 +10,11 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace slipmode::trade {
 
 namespace {
-
-using friction::Law;
 
 constexpr Eigen::Index kModesTried = 10;
 constexpr Eigen::Index kMostModes = 60;
@@ -36,12 +36,6 @@ class Effects {
   void offer(const std::string& name, const std::optional<scene::Scene>& without) {
     if (!without || !can_run(*without)) return;
     all_.push_back({name, {.name = "without " + name, .axis = Axis::kEffect, .scene = *without}});
-  }
-
-  /// @param change  of a contact; says whether the contact had the effect
-  template <class Change>
-  void offer_contacts(const std::string& name, const Change& change) {
-    offer(name, with_contacts(scene_, change));
   }
 
   void of_beam() {
@@ -71,57 +65,20 @@ class Effects {
   }
 
   void of_contacts() {
-    const auto has = [this](const auto& is) {
-      return std::ranges::any_of(scene_.contacts, [&](const scene::ContactSpec& contact) { return is(contact.law); });
+    const auto has = [this](friction::LawKind kind) {
+      return std::ranges::any_of(scene_.contacts,
+                                 [kind](const scene::ContactSpec& own) { return friction::kind(own.law) == kind; });
     };
-    if (has([](const Law& law) { return std::holds_alternative<friction::CompliantCoulomb>(law); })) {
-      offer("contact compliance", with_rigid_contacts(scene_));
-    }
-    if (has([](const Law& law) {
-          return std::holds_alternative<friction::Dahl>(law) || std::holds_alternative<friction::LuGre>(law);
-        })) {
-      offer("bristles", with_rigid_contacts(scene_));
-    }
-    offer_contacts("static friction peak", [](scene::ContactSpec& contact) { return level(contact.law); });
-    offer_contacts("Stribeck slope", [](scene::ContactSpec& contact) {
-      const auto* stribeck = std::get_if<friction::Stribeck>(&contact.law);
-      if (stribeck == nullptr || stribeck->alpha == 0.0 || stribeck->mu_s == stribeck->mu_k) return false;
-      contact.law = friction::Coulomb{stribeck->mu_s, stribeck->mu_k};
-      return true;
-    });
+    if (has(friction::LawKind::kCompliant)) offer("contact compliance", with_rigid_contacts(scene_));
+    if (has(friction::LawKind::kBristle)) offer("bristles", with_rigid_contacts(scene_));
+    offer("static friction peak", with_laws(scene_, friction::without_static_peak));
+    offer("Stribeck slope", with_laws(scene_, friction::without_stribeck_slope));
     offer("position-dependent load", with_constant_load(scene_));
     offer("normal vibration", without_normal_vibration(scene_));
-    offer_contacts("tilt of the slider", [](scene::ContactSpec& contact) {
-      if (contact.tilt_deg == 0.0) return false;
-      contact.tilt_deg = 0.0;
-      return true;
-    });
-    offer_contacts("damping of the stops", [](scene::ContactSpec& contact) {
-      auto* play = std::get_if<friction::Clearance>(&contact.law);
-      if (play == nullptr) return false;
-      bool any = false;
-      for (std::optional<friction::Stop>* stop : {&play->left, &play->right}) {
-        if (!*stop || (*stop)->damping == 0.0) continue;
-        (*stop)->damping = 0.0;
-        any = true;
-      }
-      return any;
-    });
-  }
-
-  /// μ_s = μ_k. @return false where it is so already
-  static bool level(Law& law) {
-    return std::visit(
-        [](auto& own) {
-          if constexpr (requires { own.mu_s; }) {
-            const bool peak = own.mu_s > own.mu_k;
-            own.mu_s = own.mu_k;
-            return peak;
-          } else {
-            return false;
-          }
-        },
-        law);
+    offer("tilt of the slider", with_contacts(scene_, [](scene::ContactSpec& contact) {
+            return std::exchange(contact.tilt_deg, 0.0) != 0.0;
+          }));
+    offer("damping of the stops", with_laws(scene_, friction::without_stop_damping));
   }
 
   void of_damping() {

@@ -9,24 +9,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <variant>
 #include <vector>
 
 namespace slipmode::diagnostics {
-
-namespace {
-
-/// Friction coefficient in steady sliding; for the smooth law its own formula, which kinetic_coefficient does not
-/// serve.
-double sliding_coefficient(const friction::Law& law, double speed) {
-  const auto* smooth = std::get_if<friction::TanhRegularised>(&law);
-  if (smooth == nullptr) return friction::kinetic_coefficient(law, speed);
-  const double sign = std::tanh(speed / smooth->epsilon);
-  const friction::Stribeck curve{.mu_s = smooth->mu_s, .mu_k = smooth->mu_k, .alpha = smooth->alpha};
-  return sign * friction::kinetic_coefficient(curve, speed * sign);
-}
-
-}  // namespace
 
 Model belt_model(const dynamics::HybridSystem& full) {
   return {.system = [full](double speed) { return full.with_drive(friction::Belt::constant(speed)); }};
@@ -69,7 +54,7 @@ dynamics::State continued(const dynamics::HybridSystem& system, const dynamics::
     const auto sign = static_cast<double>(state.modes[c]);
     const bool sticks = state.modes[c] == dynamics::ContactMode::kStick;
     const bool slips = std::abs(sign) == 1.0;
-    const bool rigid = !std::holds_alternative<friction::CompliantCoulomb>(system.contacts()[c].law);
+    const bool rigid = friction::kind(system.contacts()[c].law) != friction::LawKind::kCompliant;
     const bool off_guard = rigid && (sticks || (slips && sliding * sign < 0.0));
     if (off_guard && std::abs(sliding) <= kLargestRepair * std::max(1.0, scale)) {
       held.push_back(static_cast<Eigen::Index>(c));
@@ -101,7 +86,7 @@ dynamics::State sliding_equilibrium(const dynamics::HybridSystem& system) {
   Eigen::VectorXd force = system.load().size() > 0 ? system.load() : Eigen::VectorXd::Zero(system.size());
   for (const friction::Contact& contact : system.contacts()) {
     if (speed == 0.0) continue;
-    const double lambda = contact.normal_load.constant * sliding_coefficient(contact.law, std::abs(speed));
+    const double lambda = contact.normal_load.constant * friction::kinetic_coefficient(contact.law, std::abs(speed));
     force += contact.direction * std::copysign(lambda, speed);
   }
   dynamics::State state = system.rest();

@@ -36,6 +36,10 @@ double floored(double distance, double size) {
   return std::max(distance, std::numeric_limits<double>::epsilon() * std::max(size, 1e-300));
 }
 
+bool is_compliant(const friction::Contact& contact) {
+  return friction::kind(contact.law) == friction::LawKind::kCompliant;
+}
+
 /// Difference of two states, contacts' own states included.
 struct Separation {
   Eigen::VectorXd q, v, internal;
@@ -44,10 +48,9 @@ struct Separation {
   [[nodiscard]] double norm(const dynamics::HybridSystem& system) const {
     double energy = system.structure().energy(q, v);
     for (std::size_t c = 0; c < system.contacts().size() && internal.size() > 0; ++c) {
-      const auto* spring = std::get_if<friction::CompliantCoulomb>(&system.contacts()[c].law);
-      if (spring == nullptr) continue;
+      if (!is_compliant(system.contacts()[c])) continue;
       const double stretch = internal(system.internal_begin(static_cast<int>(c)));
-      energy += 0.5 * spring->stiffness * stretch * stretch;
+      energy += 0.5 * friction::spring_stiffness(system.contacts()[c].law) * stretch * stretch;
     }
     return std::sqrt(energy);
   }
@@ -57,10 +60,6 @@ struct Separation {
     internal *= factor;
   }
 };
-
-bool is_compliant(const friction::Contact& contact) {
-  return std::holds_alternative<friction::CompliantCoulomb>(contact.law);
-}
 
 /// A state beside the reference. Behind a contact spring the modes cannot be told from the sliding speed: there they
 /// are the reference's; a rigid contact that slides the other way is given that way.

@@ -6,13 +6,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <variant>
 
 namespace slipmode::diagnostics {
 namespace {
 
-using dynamics::ContactForces;
 using dynamics::ContactMode;
+using friction::ContactForces;
+using friction::LawKind;
 
 bool is_stop(ContactMode mode) { return mode == ContactMode::kLeftStop || mode == ContactMode::kRightStop; }
 
@@ -39,14 +39,14 @@ PhaseVolume::PhaseVolume(const dynamics::HybridSystem& system)
       damping_(fem::to_dense(system.structure().C())),
       stiffness_(fem::to_dense(system.structure().K())),
       fastest_(EnergyMetric(system).fastest()) {
-  for (const friction::Contact& contact : system.contacts()) laws_.push_back(dynamics::contact_forces(contact));
+  for (const friction::Contact& contact : system.contacts()) laws_.push_back(friction::contact_forces(contact));
   const Eigen::LLT<Eigen::MatrixXd> mass(fem::to_dense(system.structure().M()));
   inverse_mass_ = mass.solve(Eigen::MatrixXd::Identity(system.size(), system.size()));
 }
 
 bool PhaseVolume::applies(const dynamics::HybridSystem& system) {
   return system.internal_size() == 0 && std::ranges::all_of(system.contacts(), [](const friction::Contact& contact) {
-           return std::holds_alternative<friction::Clearance>(contact.law) || contact.normal_load.is_constant();
+           return friction::clearance(contact.law) != nullptr || contact.normal_load.is_constant();
          });
 }
 
@@ -64,12 +64,7 @@ Eigen::MatrixXd PhaseVolume::mobility_of(const std::vector<ContactMode>& modes) 
 }
 
 double PhaseVolume::slope(int contact, double relative_velocity) const {
-  const ContactForces& law = laws_[static_cast<std::size_t>(contact)];
-  if (law.is_constant() || law.kind == ContactForces::Kind::kClearance) return 0.0;
-  if (law.sticks()) return law.alpha * law.drop * std::exp(-law.alpha * std::abs(relative_velocity));
-  double slope = 0.0;
-  static_cast<void>(law.smooth(relative_velocity, slope));
-  return -slope;
+  return -laws_[static_cast<std::size_t>(contact)].slope(std::copysign(1.0, relative_velocity), relative_velocity);
 }
 
 PhaseContraction PhaseVolume::along(const dynamics::State& start, double duration,
@@ -85,7 +80,7 @@ PhaseContraction PhaseVolume::along(const dynamics::State& start, double duratio
     const Eigen::VectorXd& w = system_.contacts()[static_cast<std::size_t>(c)].direction;
     const double own = w.dot(mobility * w);
     out.viscous -= duration * own * stop_damping(law, mode);
-    const bool depends = law.kind == ContactForces::Kind::kStribeck || law.kind == ContactForces::Kind::kSmooth;
+    const bool depends = law.kind == LawKind::kSpeedDependent || law.kind == LawKind::kSmooth;
     if (depends && mode != ContactMode::kStick) sliding.emplace_back(c, own);
   }
   if (sliding.empty() || !(duration > 0.0)) return out;
@@ -136,9 +131,10 @@ double PhaseVolume::relative_acceleration(const dynamics::State& at, const std::
     if (modes[c] == ContactMode::kStick) continue;
     const friction::Contact& other = system_.contacts()[c];
     const double v = other.direction.dot(at.v);
-    const double lambda = laws_[c].kind == ContactForces::Kind::kClearance
-                              ? laws_[c].stop_force(modes[c], other.direction.dot(at.q) + other.offset, v)
-                              : laws_[c].sliding(modes[c], drive.velocity(at.time) - v);
+    const double lambda =
+        laws_[c].kind == LawKind::kClearance
+            ? laws_[c].clearance.force(dynamics::stop_side(modes[c]), other.direction.dot(at.q) + other.offset, v)
+            : laws_[c].sliding(dynamics::sign_of(modes[c]), drive.velocity(at.time) - v);
     force += lambda * other.direction;
   }
   const Eigen::VectorXd& w = system_.contacts()[static_cast<std::size_t>(contact)].direction;

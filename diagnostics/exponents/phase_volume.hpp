@@ -52,7 +52,7 @@ class PhaseVolume {
                                              int contact) const;
 
   dynamics::HybridSystem system_;
-  std::vector<dynamics::ContactForces> laws_;
+  std::vector<friction::ContactForces> laws_;
   Eigen::MatrixXd inverse_mass_, damping_, stiffness_;
   double fastest_;
 };

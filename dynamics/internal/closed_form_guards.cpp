@@ -155,7 +155,7 @@ void ClosedFormFlow::foresee_starts() {
     const auto i = static_cast<std::size_t>(guard.contact), k = static_cast<std::size_t>(guard.output);
     const ContactForces& law = resolver_.laws()[i];
     const bool rigid_speed =
-        r.outputs[k].kind == RegimeOutput::Kind::kSpeed && law.kind == ContactForces::Kind::kConstant && !law.varies;
+        r.outputs[k].kind == RegimeOutput::Kind::kSpeed && law.kind == LawKind::kConstant && !law.varies;
     const auto [g0, g1] = evaluate(guard, point_.time);
     const double size = scale(guard);
     if (rigid_speed ? point_.multiplicity[i] == 0 : g0 > kStarting * size) continue;

@@ -1,5 +1,7 @@
 #include "dynamics/internal/collocation_flow.hpp"
 
+#include <slipmode/dynamics/bristle.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -46,7 +48,7 @@ void CollocationFlow::bristle_force_at(double t, const std::vector<ContactMode>&
     if (bristled(c))
       out_force(c) = laws()[i].bristle.force(sign_of(modes[i]), s, internal(bristle_at_[i]));
     else if (!stuck[i])
-      out_force(c) = laws()[i].sliding(modes[i], s);
+      out_force(c) = laws()[i].sliding(sign_of(modes[i]), s);
   }
   stick_forces(resolver_.instant(t, x), stuck, out_force);
 }

@@ -77,9 +77,7 @@ class CollocationFlow {
   [[nodiscard]] double driven_work(double h, double tau) const;
   void restart_steps();
 
-  [[nodiscard]] bool bristled(int c) const {
-    return laws()[static_cast<std::size_t>(c)].kind == ContactForces::Kind::kBristle;
-  }
+  [[nodiscard]] bool bristled(int c) const { return laws()[static_cast<std::size_t>(c)].kind == LawKind::kBristle; }
   void start_bristles();
   /// Forces of bristle contacts, and which of them are at rest, after the resolver has decided about the others.
   void refresh_bristles();

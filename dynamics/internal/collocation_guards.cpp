@@ -92,7 +92,7 @@ double CollocationFlow::deepest_overshoot() const {
   double deepest = 0.0;
   for (int c = 0; c < nc_; ++c) {
     const auto i = static_cast<std::size_t>(c);
-    if (laws()[i].kind != ContactForces::Kind::kStribeck || point_.modes[i] == ContactMode::kStick) continue;
+    if (laws()[i].kind != LawKind::kSpeedDependent || point_.modes[i] == ContactMode::kStick) continue;
     const double sign = sign_of(point_.modes[i]);
     for (int j = kNodes * c; j < kNodes * (c + 1); ++j)
       deepest = std::max(deepest, laws()[i].alpha * sign * (velocity_(j) - drive_nodes_(j)));

@@ -1,6 +1,8 @@
 #include <slipmode/core/decompositions.hpp>
 #include "dynamics/internal/collocation_flow.hpp"
 
+#include <slipmode/dynamics/bristle.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -31,7 +33,7 @@ void CollocationFlow::guess_forces(int level, bool retry) {
     } else if (solved_ && finer >= -1 && finer + 1 < static_cast<int>(t.following.size())) {
       const double* ahead = t.following[static_cast<std::size_t>(finer + 1)].data();
       const auto i = static_cast<std::size_t>(c);
-      if (laws()[i].kind == ContactForces::Kind::kStribeck && single_ && point_.modes[i] != ContactMode::kStick)
+      if (laws()[i].kind == LawKind::kSpeedDependent && single_ && point_.modes[i] != ContactMode::kStick)
         ahead_ = ahead;  // sliding speed is smoother than the force, and continues better
       else
         kernels_.matrix8(ahead, forces, forces);
@@ -55,7 +57,7 @@ int CollocationFlow::foreseen_level(int level) const {
   for (int c = 0; c < nc_; ++c) {
     const auto i = static_cast<std::size_t>(c);
     const ContactForces& law = laws()[i];
-    if (law.kind != ContactForces::Kind::kStribeck || point_.modes[i] == ContactMode::kStick) continue;
+    if (law.kind != LawKind::kSpeedDependent || point_.modes[i] == ContactMode::kStick) continue;
     const double sign = sign_of(point_.modes[i]);
     const auto speed = [&](int j) { return sign * (drive_nodes_(kNodes * c + j) - velocity_(kNodes * c + j)); };
     const double s1 = speed(2), s2 = speed(5), s3 = speed(7);
@@ -79,7 +81,7 @@ bool CollocationFlow::solve_forces(const Collocation& table, double h) {
 
 bool CollocationFlow::solve_single(const Collocation& table) {
   const ContactForces& law = laws()[0];
-  if (law.kind == ContactForces::Kind::kSmooth) return solve_single_smooth(table);
+  if (law.kind == LawKind::kSmooth) return solve_single_smooth(table);
   const double sign = sign_of(point_.modes[0]);
   const kernels::Trial trial{model_.n,
                              model_.np,
@@ -207,11 +209,11 @@ bool CollocationFlow::solve_coupled(const Collocation& table, double h) {
     velocity_ += dv;
     for (int c = 0; c < nc_; ++c) {
       const ContactForces& law = laws()[static_cast<std::size_t>(c)];
-      if (law.kind == ContactForces::Kind::kStribeck || law.kind == ContactForces::Kind::kSmooth) {
-        const double rate = law.kind == ContactForces::Kind::kSmooth ? 1.0 / law.epsilon : law.alpha;
+      if (law.kind == LawKind::kSpeedDependent || law.kind == LawKind::kSmooth) {
+        const double rate = law.kind == LawKind::kSmooth ? 1.0 / law.epsilon : law.alpha;
         if (!stuck[static_cast<std::size_t>(c)])
           curvature = std::max(curvature, rate * block(dv, c).cwiseAbs().maxCoeff());
-      } else if (law.kind == ContactForces::Kind::kBristle) {
+      } else if (law.kind == LawKind::kBristle) {
         if (law.bristle.drop > 0.0)
           curvature = std::max(curvature, block(dv, c).cwiseAbs().maxCoeff() / law.bristle.stribeck_speed);
         curvature = std::max(curvature, block(delta, c).cwiseAbs().maxCoeff() / law.static_limit);
@@ -229,7 +231,7 @@ double CollocationFlow::force_error() const {
   double worst = 0.0;
   for (int c = 0; c < nc_; ++c) {
     const auto i = static_cast<std::size_t>(c);
-    if (laws()[i].kind == ContactForces::Kind::kFree) continue;
+    if (laws()[i].kind == LawKind::kFree) continue;
     double sixth, seventh;
     kernels_.two_dots(nodes_.legendre6.data(), nodes_.legendre7.data(), forces_.data() + kNodes * c, sixth, seventh);
     sixth = std::abs(sixth);

@@ -8,14 +8,7 @@ namespace slipmode::dynamics {
 
 double CollocationFlow::force_slope(int c, ContactMode mode, double velocity, double drive_velocity) const {
   const ContactForces& law = laws()[static_cast<std::size_t>(c)];
-  if (mode == ContactMode::kStick || law.is_constant()) return 0.0;
-  if (!law.sticks()) {
-    double slope;
-    static_cast<void>(law.smooth(drive_velocity - velocity, slope));
-    return -slope;
-  }
-  const double speed = static_cast<double>(static_cast<int>(mode)) * (drive_velocity - velocity);
-  return law.alpha * law.drop * std::exp(-law.alpha * speed);
+  return mode == ContactMode::kStick ? 0.0 : -law.slope(sign_of(mode), drive_velocity - velocity);
 }
 
 void CollocationFlow::set_tangents(Eigen::MatrixXd tangents) {

@@ -32,7 +32,7 @@ Eigen::MatrixXcd receptances(const ModalModel& m, double omega, const Eigen::Mat
 }
 
 /// ζ of a normal oscillator per wᵀq.
-Complex oscillator_gain(const LoadForm& load, double omega) {
+Complex oscillator_gain(const friction::LoadForm& load, double omega) {
   return Complex(load.lift, omega * load.lift_rate) / Complex(load.stiffness - omega * omega, omega * load.damping);
 }
 
@@ -58,7 +58,7 @@ HarmonicResponse harmonic_response(const Regime& r, const ModalModel& slipping, 
       continue;
     }
     Complex impedance(r.answers[i].stiffness, omega * r.answers[i].damping);
-    const LoadForm& load = r.answers[i].load;
+    const friction::LoadForm& load = r.answers[i].load;
     if (load.oscillates())
       impedance -= r.answers[i].friction * Complex(load.z, omega * load.z_rate) * oscillator_gain(load, omega);
     const double size = std::max(1.0, std::abs(impedance) * own);
@@ -72,7 +72,7 @@ HarmonicResponse harmonic_response(const Regime& r, const ModalModel& slipping, 
   out.oscillators.resize(r.from_oscillators.cols());
   Eigen::Index j = 0;
   for (Eigen::Index c = 0; c < nc; ++c) {
-    const LoadForm& load = r.answers[static_cast<std::size_t>(c)].load;
+    const friction::LoadForm& load = r.answers[static_cast<std::size_t>(c)].load;
     if (!load.oscillates()) continue;
     const Complex zeta =
         oscillator_gain(load, omega) * slipping.displacement_row.col(c).cast<Complex>().dot(out.slipping);

@@ -223,7 +223,7 @@ void RegimeBuilder::make_general_pairs(Regime& out) {
       A.block(N, 0, m, m) -= spring_(c) * W.col(c) * W.col(c).cwiseQuotient(state.scale.head(m)).transpose();
   for (Eigen::Index j = 0; j < k; ++j) {
     const Eigen::Index c = oscillators_[static_cast<std::size_t>(j)];
-    const LoadForm& own = load(c);
+    const friction::LoadForm& own = load(c);
     const auto w = W.col(c);
     A(N + m + j, N + m + j) = -own.damping;
     A.block(N + m + j, 0, 1, m) += own.lift * w.cwiseQuotient(state.scale.head(m)).transpose();

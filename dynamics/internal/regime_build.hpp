@@ -1,9 +1,9 @@
 #pragma once
 
 #include <slipmode/dynamics/consistency.hpp>
-#include <slipmode/dynamics/load_form.hpp>
 #include <slipmode/dynamics/regime.hpp>
 #include <slipmode/fem/modes.hpp>
+#include <slipmode/friction/load_form.hpp>
 
 #include <functional>
 #include <vector>
@@ -49,14 +49,14 @@ class RegimeBuilder {
   [[nodiscard]] const ContactForces& law(Eigen::Index c) const { return laws_[static_cast<std::size_t>(c)]; }
   /// The stop that presses, or would in flight; null for any other contact.
   [[nodiscard]] const friction::Stop* stop(Eigen::Index c) const;
-  [[nodiscard]] const LoadForm& load(Eigen::Index c) const { return loads_[static_cast<std::size_t>(c)]; }
+  [[nodiscard]] const friction::LoadForm& load(Eigen::Index c) const { return loads_[static_cast<std::size_t>(c)]; }
 
   const ModalModel& slipping_;
   const ModalCoordinates& modal_;
   const std::vector<ContactRole>& roles_;
   std::optional<fem::Rayleigh> rayleigh_;
   std::vector<ContactForces> laws_;
-  std::vector<LoadForm> loads_;
+  std::vector<friction::LoadForm> loads_;
   Eigen::Index n_, nc_, nk_, ni_, V_, one_;
   std::vector<Eigen::Index> held_, oscillators_;  ///< contacts
   Eigen::VectorXd friction_;                      ///< ±μ_k of contacts that slide under a varying load, else 0

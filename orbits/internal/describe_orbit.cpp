@@ -20,7 +20,7 @@ void name_gaps(const dynamics::HybridSystem& system, State& state) {
     const bool left = state.modes[c] == dynamics::ContactMode::kLeftFlight;
     if (!left && state.modes[c] != dynamics::ContactMode::kRightFlight) continue;
     const friction::Contact& contact = system.contacts()[c];
-    const auto& law = std::get<friction::Clearance>(contact.law);
+    const friction::Clearance& law = *friction::clearance(contact.law);
     const double y = contact.direction.dot(state.q) + contact.offset;
     const bool beyond = left ? -y >= law.left->gap : y >= law.right->gap;
     if (!beyond) state.modes[c] = dynamics::ContactMode::kGap;

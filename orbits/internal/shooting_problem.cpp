@@ -15,16 +15,12 @@ using dynamics::State;
 
 double largest(const Eigen::VectorXd& x) { return x.size() > 0 ? x.cwiseAbs().maxCoeff() : 0.0; }
 
-bool sticks_rigidly(const friction::Law& law) {
-  return std::holds_alternative<friction::Coulomb>(law) || std::holds_alternative<friction::Stribeck>(law);
-}
-
 }  // namespace
 
 ShootingProblem::ShootingProblem(const dynamics::HybridSystem& system, const ShootingOptions& options, OrbitKind kind)
     : system_(system), options_(options), kind_(kind), flow_(system, options.flow) {
   for (const friction::Contact& contact : system.contacts())
-    keeps_modes_ |= std::holds_alternative<friction::CompliantCoulomb>(contact.law);
+    keeps_modes_ |= friction::kind(contact.law) == friction::LawKind::kCompliant;
   in_halves_ = kind == OrbitKind::kDriven && options.segments == 1 && !options.half_period && options.order % 2 == 1 &&
                is_symmetric(system);
 }
@@ -160,7 +156,8 @@ State ShootingProblem::runnable(State node) const {
     return node;
   }
   for (std::size_t c = 0; c < node.modes.size(); ++c) {
-    if (!sticks_rigidly(system_.contacts()[c].law) || node.modes[c] == ContactMode::kStick) continue;
+    if (!friction::sticks_rigidly(friction::kind(system_.contacts()[c].law)) || node.modes[c] == ContactMode::kStick)
+      continue;
     const double sliding = system_.drive().velocity(node.time) - system_.contacts()[c].direction.dot(node.v);
     node.modes[c] = sliding > 0 ? ContactMode::kSlipPositive : ContactMode::kSlipNegative;
   }
@@ -170,7 +167,8 @@ State ShootingProblem::runnable(State node) const {
 void ShootingProblem::put_on_constraint(State& node) const {
   std::vector<std::size_t> stuck;
   for (std::size_t c = 0; c < node.modes.size(); ++c)
-    if (node.modes[c] == ContactMode::kStick && sticks_rigidly(system_.contacts()[c].law)) stuck.push_back(c);
+    if (node.modes[c] == ContactMode::kStick && friction::sticks_rigidly(friction::kind(system_.contacts()[c].law)))
+      stuck.push_back(c);
   if (stuck.empty()) return;
   Eigen::MatrixXd W(system_.size(), static_cast<Eigen::Index>(stuck.size()));
   for (std::size_t k = 0; k < stuck.size(); ++k)

@@ -88,15 +88,14 @@ friction::Law law_of(const StoreReader& store, const std::string& name, const st
 void save_contacts(StoreWriter& store, const std::string& group, const std::vector<friction::Contact>& contacts,
                    Eigen::Index n) {
   const auto count = static_cast<Eigen::Index>(contacts.size());
-  const std::vector<std::string> words = friction::law_words();
   std::vector<std::string> names, laws, losses;
   std::vector<friction::NormalLoad> loads;
   Eigen::MatrixXd oscillator(kOscillatorNumbers, count), stops(2 * kStopNumbers, count), direction(n, count);
   for (Eigen::Index c = 0; c < count; ++c) {
     const friction::Contact& contact = contacts[static_cast<std::size_t>(c)];
-    const auto* clearance = std::get_if<friction::Clearance>(&contact.law);
+    const friction::Clearance* clearance = friction::clearance(contact.law);
     names.push_back(contact.name);
-    laws.push_back(words[contact.law.index()]);
+    laws.push_back(friction::law_word(contact.law));
     loads.push_back(contact.normal_load);
     oscillator.col(c) = numbers_or_none(contact.normal_load.oscillator);
     stops.col(c) = stops_numbers(clearance != nullptr ? *clearance : friction::Clearance{});
@@ -105,7 +104,7 @@ void save_contacts(StoreWriter& store, const std::string& group, const std::vect
   }
   store.describe_group(group, "contacts, one entry of each dataset per contact");
   store.write(group + "/name", names, {"", "name"});
-  store.write(group + "/law", laws, {"", fmt::format("{}", fmt::join(words, ", "))});
+  store.write(group + "/law", laws, {"", fmt::format("{}", fmt::join(friction::law_words(), ", "))});
   for_each_column([&](const auto& field) {
     const std::string name = field.stored;
     std::vector<double> values;

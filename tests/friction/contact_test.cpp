@@ -68,10 +68,46 @@ TEST(Laws, PiecewiseLinearOnesAreRecognised) {
   EXPECT_FALSE(is_piecewise_linear(TanhRegularised{.mu_s = 0.4, .mu_k = 0.2}));
 }
 
-TEST(Laws, TanhHasNoSlipState) {
-  const Law law = TanhRegularised{.mu_s = 0.4, .mu_k = 0.2};
+TEST(Laws, TanhCreepsFromZero) {
+  const Law law = TanhRegularised{.mu_s = 0.4, .mu_k = 0.2, .alpha = 8.0, .epsilon = 0.1};
   EXPECT_EQ(static_coefficient(law), 0.4);
-  EXPECT_THAT([&] { (void)kinetic_coefficient(law, 0.1); }, ThrowsMessage<InvalidInput>(HasSubstr("no slip state")));
+  EXPECT_EQ(kinetic_coefficient(law, 0.0), 0.0);
+  const double th = std::tanh(2.0);  // v/ε; by its formula, |v| ≈ v tanh(v/ε)
+  EXPECT_DOUBLE_EQ(kinetic_coefficient(law, 0.2), (0.2 + 0.2 * std::exp(-1.6 * th)) * th);
+}
+
+TEST(Laws, AreWhatTheyAreToAFlow) {
+  EXPECT_EQ(kind(Coulomb{0.4, 0.2}), LawKind::kConstant);
+  EXPECT_EQ(kind(Stribeck{0.4, 0.2, 8.0}), LawKind::kSpeedDependent);
+  EXPECT_EQ(kind(Stribeck{0.4, 0.2, 0.0}), LawKind::kConstant);
+  EXPECT_EQ(kind(TanhRegularised{}), LawKind::kSmooth);
+  EXPECT_EQ(kind(CompliantCoulomb{}), LawKind::kCompliant);
+  EXPECT_EQ(kind(Dahl{}), LawKind::kBristle);
+  EXPECT_EQ(kind(LuGre{}), LawKind::kBristle);
+  EXPECT_EQ(kind(Clearance{}), LawKind::kClearance);
+}
+
+TEST(Laws, ForcesHaveTheirOwnSlope) {
+  // Central differences, error h²/6 of the third derivative.
+  const Law laws[] = {Stribeck{0.4, 0.2, 8.0}, TanhRegularised{0.4, 0.2, 8.0, 0.1}};
+  for (const Law& law : laws) {
+    const ContactForces f = contact_forces({.direction = Eigen::VectorXd::Ones(1), .law = law, .normal_load = 3.0});
+    for (const double direction : {1.0, -1.0}) {
+      const double v = 0.3 * direction, h = 1e-5;
+      const double expected = (f.sliding(direction, v + h) - f.sliding(direction, v - h)) / (2.0 * h);
+      EXPECT_NEAR(f.slope(direction, v), expected, 1e-7);
+      EXPECT_NEAR(f.sliding(direction, v), 3.0 * direction * kinetic_coefficient(law, 0.3), 1e-15);
+    }
+  }
+}
+
+TEST(Laws, AFlatStribeckLawIsCoulombOnATiltToo) {
+  const auto on_tilt = [](Law law) {
+    return contact_forces({.direction = Eigen::VectorXd::Ones(1), .law = law, .normal_load = 3.0, .tilt = 0.1});
+  };
+  const ContactForces flat = on_tilt(Stribeck{0.4, 0.2, 0.0}), coulomb = on_tilt(Coulomb{0.4, 0.4});
+  EXPECT_EQ(flat.mu_s, coulomb.mu_s);
+  EXPECT_EQ(flat.mu_k, coulomb.mu_k);
 }
 
 TEST(ContactValidation, AcceptsTheExtremesOfTheValidRange) {

@@ -26,6 +26,17 @@ std::optional<scene::Scene> with_contacts(const scene::Scene& scene, const Chang
   return any ? std::optional(std::move(other)) : std::nullopt;
 }
 
+/// The scene with every law replaced for which `other` gives another one; empty when it gives none.
+/// @param other  friction::Law → std::optional<friction::Law>
+template <class Other>
+std::optional<scene::Scene> with_laws(const scene::Scene& scene, const Other& other) {
+  return with_contacts(scene, [&other](scene::ContactSpec& contact) {
+    const auto law = other(contact.law);
+    if (law) contact.law = *law;
+    return law.has_value();
+  });
+}
+
 /// True when a flow can run the scene; some laws go with no tilt, no varying load, or no force drive.
 [[nodiscard]] bool can_run(const scene::Scene& scene);
 

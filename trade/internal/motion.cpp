@@ -19,9 +19,7 @@ constexpr double kPiece = 2e6;
 
 bool tells_stick(const dynamics::HybridSystem& system) {
   return std::ranges::all_of(system.contacts(), [](const friction::Contact& contact) {
-    return std::holds_alternative<friction::Coulomb>(contact.law) ||
-           std::holds_alternative<friction::Stribeck>(contact.law) ||
-           std::holds_alternative<friction::CompliantCoulomb>(contact.law);
+    return friction::sticks(friction::kind(contact.law));
   });
 }
 

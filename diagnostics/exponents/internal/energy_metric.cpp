@@ -5,18 +5,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <variant>
 
 namespace slipmode::diagnostics {
 namespace {
 
 /// Stiffness that a contact adds while it is engaged.
 double contact_stiffness(const friction::Law& law) {
-  if (const auto* spring = std::get_if<friction::CompliantCoulomb>(&law)) return spring->stiffness;
-  const auto* clearance = std::get_if<friction::Clearance>(&law);
-  if (clearance == nullptr) return 0.0;
-  return std::max(clearance->left ? clearance->left->stiffness : 0.0,
-                  clearance->right ? clearance->right->stiffness : 0.0);
+  double stiffness = friction::spring_stiffness(law);
+  if (const auto* clearance = friction::clearance(law))
+    for (const friction::Stop& stop : clearance->stops()) stiffness = std::max(stiffness, stop.stiffness);
+  return stiffness;
 }
 
 /// ω² of K against M = L Lᵀ, ascending.
@@ -40,12 +38,12 @@ Eigen::VectorXd own_weights(const dynamics::HybridSystem& system) {
   Eigen::VectorXd weights(system.internal_size());
   Eigen::Index at = 0;
   for (const friction::Contact& contact : system.contacts()) {
-    if (std::holds_alternative<friction::Dahl>(contact.law) || std::holds_alternative<friction::LuGre>(contact.law))
+    const friction::LawKind kind = friction::kind(contact.law);
+    if (kind == friction::LawKind::kBristle)
       throw InvalidInput(
           "exponents from the tangent flow: expected contacts without bristles, found a Dahl or LuGre law, whose "
           "deflection the tangent flow does not carry; take the largest exponent by two trajectories instead");
-    if (const auto* spring = std::get_if<friction::CompliantCoulomb>(&contact.law))
-      weights[at++] = std::sqrt(spring->stiffness);
+    if (kind == friction::LawKind::kCompliant) weights[at++] = std::sqrt(friction::spring_stiffness(contact.law));
     if (!contact.normal_load.oscillator) continue;
     const friction::NormalOscillator& load = *contact.normal_load.oscillator;
     const double stiffness = load.support_stiffness + load.spring_stiffness;

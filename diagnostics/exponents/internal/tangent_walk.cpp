@@ -43,7 +43,7 @@ Eigen::Index directions_of(const dynamics::HybridSystem& system) { return 2 * sy
 Eigen::Index confined(const dynamics::HybridSystem& system, const std::vector<ContactMode>& modes) {
   Eigen::Index count = 0;
   for (std::size_t c = 0; c < modes.size(); ++c) {
-    const bool compliant = std::holds_alternative<friction::CompliantCoulomb>(system.contacts()[c].law);
+    const bool compliant = friction::kind(system.contacts()[c].law) == friction::LawKind::kCompliant;
     const bool slides = std::abs(static_cast<int>(modes[c])) == 1 || modes[c] == ContactMode::kSeparated;
     if (compliant ? slides : modes[c] == ContactMode::kStick) ++count;
   }

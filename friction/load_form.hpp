@@ -4,13 +4,13 @@
 
 #include <Eigen/Core>
 
-namespace slipmode::dynamics {
+namespace slipmode::friction {
 
 /// A contact's normal load as a linear function of its own motion,
 /// N = constant + y wᵀq + v wᵀq̇ + z ζ + z_rate ζ̇, with ζ the displacement of its normal oscillator, if it has one:
 /// ζ̈ = −stiffness ζ − damping ζ̇ + lift (wᵀq + offset) + lift_rate wᵀq̇.
 struct LoadForm {
-  explicit LoadForm(const friction::Contact& contact)
+  explicit LoadForm(const Contact& contact)
       : constant(contact.normal_load.constant), y(contact.normal_load.slope), offset(contact.offset) {
     if (const auto& own = contact.normal_load.oscillator) {
       y = own->spring_stiffness * own->slope;
@@ -39,4 +39,4 @@ struct LoadForm {
   double offset = 0.0;
 };
 
-}  // namespace slipmode::dynamics
+}  // namespace slipmode::friction
