@@ -4,6 +4,7 @@
 #include <slipmode/friction/load_form.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -63,6 +64,17 @@ struct Checker {
       fail("a normal load that varies, with a clearance", "no normal load: a clearance has no friction");
   }
 
+  void law(const Characteristic& law) const {
+    constexpr double kRounding = 1e-12;
+    if (!law.mu || !law.slope) fail("a characteristic without its functions", "mu and slope, of the sliding speed");
+    within("mu_s", law.mu_s, kNonNegative);
+    within("mu(0)", law.mu(0.0), kNonNegative);
+    within("slope(0)", law.slope(0.0), kFinite);
+    if (law.mu_s < law.mu(0.0) * (1.0 - kRounding))
+      fail(fmt::format("mu_s = {} is below mu(0) = {}", law.mu_s, law.mu(0.0)),
+           "mu_s >= mu(0) (static friction holds at least as much as sliding friction)");
+  }
+
   void law(const auto& law) const {
     fields(law);
     if constexpr (requires { law.mu_s < law.mu_k; }) {
@@ -102,8 +114,29 @@ void validate(const Contact& contact) {
   }
 }
 
+std::vector<std::string> law_words() {
+  std::vector<std::string> words;
+  [&]<class... Laws>(const std::variant<Laws...>& /*any*/) {
+    const auto add = [&]<class Own>(const Own* /*any*/) {
+      if constexpr (requires { Own::word; }) words.emplace_back(Own::word);
+    };
+    (add(static_cast<const Laws*>(nullptr)), ...);
+  }(Law());
+  return words;
+}
+
 std::string law_word(const Law& law) {
-  return std::visit([](const auto& own) { return std::string(own.word); }, law);
+  return std::visit(
+      []<class Own>(const Own& /*law*/) -> std::string {
+        if constexpr (requires { Own::word; })
+          return Own::word;
+        else
+          throw InvalidInput(fmt::format(
+              "a friction characteristic is made of the program's own functions, which a file cannot hold; expected a "
+              "law made of numbers: {}",
+              fmt::join(law_words(), ", ")));
+      },
+      law);
 }
 
 LawKind kind(const Law& law) {

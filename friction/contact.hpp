@@ -1,6 +1,7 @@
 #pragma once
 
 #include <slipmode/core/fields.hpp>
+#include <slipmode/friction/characteristic.hpp>
 #include <slipmode/friction/clearance.hpp>
 #include <slipmode/friction/compliant.hpp>
 #include <slipmode/friction/contact_forces.hpp>
@@ -28,11 +29,14 @@ namespace slipmode::friction {
 ///     kinetic_coefficient(speed)  |λ|/N in steady slip
 ///     fastest_rate(pace)          how fast it can make its contact change [1/s]
 ///     forces(normal_load)         its numbers times the normal load, for the flows
-using Law = std::variant<Coulomb, Stribeck, TanhRegularised, CompliantCoulomb, Dahl, LuGre, Clearance>;
+///
+/// Laws without a word, which files cannot hold, come last.
+using Law = std::variant<Coulomb, Stribeck, TanhRegularised, CompliantCoulomb, Dahl, LuGre, Clearance, Characteristic>;
 
-/// The words of the laws, in the order of Law's alternatives.
-[[nodiscard]] inline std::vector<std::string> law_words() { return words_of(Law()); }
+/// The words of the laws that have one, in the order of Law's alternatives.
+[[nodiscard]] std::vector<std::string> law_words();
 /// The word of this one.
+/// @throws InvalidInput  for a law that has none
 [[nodiscard]] std::string law_word(const Law& law);
 
 /// The normal load's own vibration: a mass on the beam's normal stiffness, pressed on the inclined slider by a leaf
@@ -101,7 +105,8 @@ struct Contact {
 /// @throws InvalidInput  naming the contact, the value and the valid range: 0 ≤ μ_k ≤ μ_s, N0 ≥ 0, α ≥ 0, ε > 0,
 ///                       stiffnesses > 0, all finite, w not zero; tilt or a varying load with a law that is not
 ///                       Coulomb, rigid or compliant; a tilt at which an effective coefficient is negative or without
-///                       bound; a clearance without stops, with a tilt, or whose stops overlap
+///                       bound; a clearance without stops, with a tilt, or whose stops overlap; a characteristic
+///                       without its functions or with μ(0) > μ_s
 void validate(const Contact& contact);
 
 /// The coefficient that acts along ±w on a slider of this tilt. @param direction  +1 or −1
@@ -119,7 +124,7 @@ void validate(const Contact& contact);
 /// Force in steady slip at |v_rel| = speed ≥ 0, in units of the normal load (the friction coefficient), without tilt.
 /// LuGre: without its viscous part, which does not scale with the load. 0 for a clearance.
 [[nodiscard]] double kinetic_coefficient(const Law& law, double speed);
-/// μ_k of any law (μ of Dahl's, 0 of a clearance): what remains at large sliding speed.
+/// μ_k of any law (μ of Dahl's, μ(0) of a characteristic, 0 of a clearance): what remains at large sliding speed.
 [[nodiscard]] double limit_coefficient(const Law& law);
 /// μ_s of any law (μ of Dahl's, 0 of a clearance).
 [[nodiscard]] double static_coefficient(const Law& law);

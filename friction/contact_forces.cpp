@@ -1,5 +1,7 @@
 #include <slipmode/friction/contact_forces.hpp>
 
+#include <slipmode/friction/characteristic.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -26,10 +28,16 @@ double ContactForces::sliding(double direction, double v) const {
   double slope;
   if (!sticks()) return smooth(v, slope);
   if (kind != LawKind::kSpeedDependent) return direction * onset(direction);
+  if (characteristic != nullptr) return direction * load * characteristic->mu(std::abs(v));
   return direction * (kinetic + drop * std::exp(-alpha * std::abs(v)));
 }
 
+double ContactForces::onset_slope() const {
+  return characteristic != nullptr ? std::abs(slope(1.0, 0.0)) : alpha * drop;
+}
+
 double ContactForces::slope(double direction, double v) const {
+  if (characteristic != nullptr && sticks()) return load * characteristic->slope(direction * v);
   if (kind == LawKind::kSpeedDependent) return -alpha * drop * std::exp(-alpha * (direction * v));
   double slope;
   static_cast<void>(smooth(v, slope));

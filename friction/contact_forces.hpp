@@ -5,8 +5,11 @@
 #include <slipmode/friction/law_kind.hpp>
 
 #include <array>
+#include <memory>
 
 namespace slipmode::friction {
+
+struct Characteristic;
 
 /// A contact's law in the numbers a flow needs, times the normal load: copied out of the law once, so that inner loops
 /// ask no variant.
@@ -20,7 +23,8 @@ struct ContactForces {
   double stiffness = 0.0;     ///< K_c of a compliant contact, else 0 [N/m]
   BristleForces bristle = {};
   Clearance clearance = {};
-  double load = 0.0;    ///< N these forces belong to [N]
+  std::shared_ptr<const Characteristic> characteristic = {};  ///< the law itself, if it is made of functions
+  double load = 0.0;                                          ///< N these forces belong to [N]
   bool varies = false;  ///< the normal load varies: `under` gives the forces of an instant
   /// Coefficients for a force along −w and along +w; they differ on a tilted slider.
   std::array<double, 2> mu_s = {}, mu_k = {};
@@ -29,7 +33,7 @@ struct ContactForces {
   [[nodiscard]] double kinetic_coefficient(double direction) const { return mu_k[direction > 0]; }
   /// Largest |λ| in stick along this direction: μ_s N.
   [[nodiscard]] double limit(double direction) const { return static_coefficient(direction) * load; }
-  /// |λ| just after sliding begins: μ_k N, for a Stribeck law μ_s N.
+  /// |λ| just after sliding begins: μ_k N, for a Stribeck law μ_s N, for a characteristic μ(0) N.
   [[nodiscard]] double onset(double direction) const {
     return kind == LawKind::kSpeedDependent ? kinetic + drop : kinetic_coefficient(direction) * load;
   }
@@ -45,6 +49,8 @@ struct ContactForces {
   }
   /// λ while sliding with relative velocity v in a direction (±1; not read by a law without stick).
   [[nodiscard]] double sliding(double direction, double v) const;
+  /// |dλ/dv| of a speed-dependent law where sliding begins [N s/m].
+  [[nodiscard]] double onset_slope() const;
   /// dλ/dv while sliding. Where v has passed zero against the direction, the law goes on as its formula does.
   [[nodiscard]] double slope(double direction, double v) const;
   /// λ of the smooth law (0 for a free contact, and for a bristle, whose force is not a function of v) at relative

@@ -65,7 +65,7 @@ CollocationFlow::CollocationFlow(const HybridSystem& system, const StepTables& t
         std::log(laws()[c].alpha * laws()[c].drop * model_.mobility(i, i) * tables_.step(0) / kGrowthPerStep) /
         laws()[c].alpha);
     steep_fall_.push_back(std::numbers::ln2 / laws()[c].alpha);
-    const double growth = laws()[c].alpha * laws()[c].drop * model_.mobility(i, i) * tables_.step(0);
+    const double growth = laws()[c].onset_slope() * model_.mobility(i, i) * tables_.step(0);
     slow_start_level_.push_back(growth > kGrowthAtStart ? std::ilogb(growth / kGrowthAtStart) + 1 : 0);
     over_limit_.push_back(1.0 / laws()[c].static_limit);
   }
@@ -78,7 +78,7 @@ CollocationFlow::CollocationFlow(const HybridSystem& system, const StepTables& t
   if (any_bristle_) start_bristles();
   resolver_.start(point_);
   if (any_bristle_) refresh_bristles();
-  single_ = nc_ == 1 && !any_bristle_;
+  single_ = nc_ == 1 && !any_bristle_ && laws()[0].characteristic == nullptr;
   restart_steps();
 }
 
@@ -211,6 +211,11 @@ bool CollocationFlow::step(double t_limit) {
     if (tangents_.size() > 0) salt_tangents(force_before, contact);
   }
   return true;
+}
+
+bool CollocationFlow::too_steep(int c, double speed, int level) const {
+  const double slope = laws()[static_cast<std::size_t>(c)].slope(1.0, speed);
+  return std::abs(slope) * model_.mobility(c, c) * tables_.step(level) > kGrowthPerStep;
 }
 
 double CollocationFlow::drive_velocity(double begin, double tau) const {

@@ -46,6 +46,7 @@ class CollocationFlow {
   /// that is below this share of the tolerance.
   static constexpr double kNewtonShare = 0.03;
   /// A trial step may follow the law past zero relative velocity this far (in units of 1/α): beyond, e^{−αv} runs away.
+  /// A characteristic: until it has changed by this share of μ_s.
   static constexpr double kLargestOvershoot = 0.7;
   /// Speeds below this share of the velocities at play are rounding.
   static constexpr double kUnmoved = 1e-14;
@@ -58,8 +59,10 @@ class CollocationFlow {
 
   void guess_forces(int level, bool retry);
   [[nodiscard]] int foreseen_level(int level) const;
+  /// A characteristic at this speed is steeper than a step of the level resolves.
+  [[nodiscard]] bool too_steep(int c, double speed, int level) const;
   bool solve_forces(const Collocation& table, double h);
-  /// One rigid contact, without bristles.
+  /// One contact of a law the kernels know.
   bool solve_single(const Collocation& table);
   bool solve_single_smooth(const Collocation& table);
   bool solve_coupled(const Collocation& table, double h);
@@ -112,7 +115,7 @@ class CollocationFlow {
   FlowOptions options_;
   WithinStep within_;
   int nc_;
-  bool single_ = false;              ///< one rigid contact, without bristles
+  bool single_ = false;              ///< one contact, of a law the kernels know: no bristles, no characteristic
   const double* ahead_ = nullptr;    ///< takes the last step's velocities to this one's nodes, where that is the guess
   double over_top_;                  ///< 1 / the largest step [1/s]
   std::vector<double> steep_speed_;  ///< sliding speed at which a law is just resolved by the largest step [m/s]

@@ -1,5 +1,7 @@
 #include "dynamics/internal/collocation_flow.hpp"
 
+#include <slipmode/friction/characteristic.hpp>
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
@@ -94,8 +96,14 @@ double CollocationFlow::deepest_overshoot() const {
     const auto i = static_cast<std::size_t>(c);
     if (laws()[i].kind != LawKind::kSpeedDependent || point_.modes[i] == ContactMode::kStick) continue;
     const double sign = sign_of(point_.modes[i]);
-    for (int j = kNodes * c; j < kNodes * (c + 1); ++j)
-      deepest = std::max(deepest, laws()[i].alpha * sign * (velocity_(j) - drive_nodes_(j)));
+    const friction::Characteristic* own = laws()[i].characteristic.get();
+    for (int j = kNodes * c; j < kNodes * (c + 1); ++j) {
+      const double past = sign * (velocity_(j) - drive_nodes_(j));
+      if (own == nullptr)
+        deepest = std::max(deepest, laws()[i].alpha * past);
+      else if (past > 0.0)
+        deepest = std::max(deepest, std::abs(own->mu(-past) - own->mu(0.0)) / own->mu_s);
+    }
   }
   return deepest;
 }

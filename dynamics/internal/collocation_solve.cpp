@@ -2,6 +2,7 @@
 #include "dynamics/internal/collocation_flow.hpp"
 
 #include <slipmode/dynamics/bristle.hpp>
+#include <slipmode/friction/characteristic.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +15,11 @@ constexpr int kNewtonLimit = 12;
 /// Of a single contact's forces Newton may leave this share of the tolerance wrong, and no more than the other of the
 /// static limit: errors of all steps add up, and where a law's steepness limits the steps they would be all there is.
 constexpr double kForceShare = 5e-3, kLargestForceError = 1e-8;
+
+/// λ of a characteristic, past zero speed too.
+double continued(const ContactForces& law, double direction, double v) {
+  return direction * law.load * law.characteristic->mu(direction * v);
+}
 
 }  // namespace
 
@@ -64,8 +70,10 @@ int CollocationFlow::foreseen_level(int level) const {
     const double d12 = (s2 - s1) * over12, d23 = (s3 - s2) * over23;
     const double bend = (d23 - d12) * over13, slope = d23 + bend * (node(7) - node(5));
     double ahead = std::ldexp(1.0, step_level_ - level), enough = steep_speed_[i] - level * steep_fall_[i];
-    for (; level + 1 < StepTables::kLevels; ++level, ahead *= 0.5, enough -= steep_fall_[i])
-      if (std::max(0.0, s3 + ahead * (slope + bend * ahead)) >= enough) break;
+    for (; level + 1 < StepTables::kLevels; ++level, ahead *= 0.5, enough -= steep_fall_[i]) {
+      const double then = std::max(0.0, s3 + ahead * (slope + bend * ahead));
+      if (law.characteristic == nullptr ? then >= enough : !too_steep(c, then, level)) break;
+    }
     if (s3 + ahead * (slope + bend * ahead) <= 0.0) level = std::max(level, stop_level_);
   }
   return level;
@@ -190,6 +198,9 @@ bool CollocationFlow::solve_coupled(const Collocation& table, double h) {
         if (!law.sticks()) {
           lambda = law.smooth(s, slope);
           slope = -slope;
+        } else if (law.characteristic != nullptr) {
+          lambda = continued(law, sign_of(point_.modes[i]), s);
+          slope = -law.slope(sign_of(point_.modes[i]), s);
         } else {
           const double sign = sign_of(point_.modes[i]), scaled = law.alpha * sign * s;
           const bool inside = scaled > -2 * kLargestOvershoot;
@@ -209,7 +220,18 @@ bool CollocationFlow::solve_coupled(const Collocation& table, double h) {
     velocity_ += dv;
     for (int c = 0; c < nc_; ++c) {
       const ContactForces& law = laws()[static_cast<std::size_t>(c)];
-      if (law.kind == LawKind::kSpeedDependent || law.kind == LawKind::kSmooth) {
+      if (law.characteristic != nullptr) {
+        if (stuck[static_cast<std::size_t>(c)]) continue;
+        // What the law says at the new velocities is about what the next change would put right.
+        double squares = 0.0;
+        for (int j = kNodes * c; j < kNodes * (c + 1); ++j) {
+          const double sign = sign_of(point_.modes[static_cast<std::size_t>(c)]);
+          const double left = continued(law, sign, drive_nodes_(j) - velocity_(j)) - forces_(j);
+          squares += left * left;
+        }
+        if (!std::isfinite(squares)) return false;
+        curvature = std::max(curvature, std::sqrt(std::sqrt(squares) / law.static_limit));
+      } else if (law.kind == LawKind::kSpeedDependent || law.kind == LawKind::kSmooth) {
         const double rate = law.kind == LawKind::kSmooth ? 1.0 / law.epsilon : law.alpha;
         if (!stuck[static_cast<std::size_t>(c)])
           curvature = std::max(curvature, rate * block(dv, c).cwiseAbs().maxCoeff());

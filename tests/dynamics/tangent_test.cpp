@@ -124,6 +124,22 @@ TEST(Tangent, AgreesWithDifferencesOnARampAndWithSeveralContacts) {
   }
 }
 
+TEST(Tangent, AgreesWithDifferencesForACharacteristic) {
+  // Weakening that ends in a dip; a jump where sliding begins, so that releases saltate.
+  const friction::Characteristic law{
+      .mu_s = 0.35,
+      .mu = [](double v) { return 0.2 * (1.0 + 0.5 * std::sin(2.0 * v) * std::exp(-v)); },
+      .slope = [](double v) { return 0.1 * (2.0 * std::cos(2.0 * v) - std::sin(2.0 * v)) * std::exp(-v); }};
+  const HybridSystem one = belt_chain(law, Belt::constant(0.3), 4);
+  const HybridSystem two(fem::chain({.masses = 4, .damping = 0.02}),
+                         {{unit(4, 3), law, 1.5}, {unit(4, 1), Stribeck{0.3, 0.15, 2.0}, 0.7}},
+                         Belt::ramp(0.4, -0.2, 3.0, 9.0));
+  for (const std::uint64_t seed : {1u, 2u}) {
+    expect_differences(one, swinging(4, seed, 1.5), 14.0, FlowMethod::kCollocation, 2);
+    expect_differences(two, swinging(4, seed, 1.5), 12.0, FlowMethod::kCollocation, 3);
+  }
+}
+
 TEST(Tangent, EnteringStickProjectsOutOneDirection) {
   const HybridSystem chain = belt_chain(Coulomb{0.4, 0.2}, Belt::constant(0.2), 5);
   for (const FlowMethod method : {FlowMethod::kClosedForm, FlowMethod::kCollocation}) {

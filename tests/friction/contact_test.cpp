@@ -85,11 +85,14 @@ TEST(Laws, AreWhatTheyAreToAFlow) {
   EXPECT_EQ(kind(Dahl{}), LawKind::kBristle);
   EXPECT_EQ(kind(LuGre{}), LawKind::kBristle);
   EXPECT_EQ(kind(Clearance{}), LawKind::kClearance);
+  EXPECT_EQ(kind(Characteristic{}), LawKind::kSpeedDependent);
 }
 
 TEST(Laws, ForcesHaveTheirOwnSlope) {
   // Central differences, error h²/6 of the third derivative.
-  const Law laws[] = {Stribeck{0.4, 0.2, 8.0}, TanhRegularised{0.4, 0.2, 8.0, 0.1}};
+  const auto square = [](double v) { return 0.2 + 0.1 * v * v; };
+  const Law laws[] = {Stribeck{0.4, 0.2, 8.0}, TanhRegularised{0.4, 0.2, 8.0, 0.1},
+                      Characteristic{.mu_s = 0.3, .mu = square, .slope = [](double v) { return 0.2 * v; }}};
   for (const Law& law : laws) {
     const ContactForces f = contact_forces({.direction = Eigen::VectorXd::Ones(1), .law = law, .normal_load = 3.0});
     for (const double direction : {1.0, -1.0}) {
@@ -108,6 +111,13 @@ TEST(Laws, AFlatStribeckLawIsCoulombOnATiltToo) {
   const ContactForces flat = on_tilt(Stribeck{0.4, 0.2, 0.0}), coulomb = on_tilt(Coulomb{0.4, 0.4});
   EXPECT_EQ(flat.mu_s, coulomb.mu_s);
   EXPECT_EQ(flat.mu_k, coulomb.mu_k);
+}
+
+TEST(Laws, OnesWithoutNumbersHaveNoWord) {
+  EXPECT_THAT(law_words(),
+              testing::ElementsAre("coulomb", "stribeck", "tanh", "compliant", "dahl", "lugre", "clearance"));
+  EXPECT_EQ(law_word(LuGre{}), "lugre");
+  EXPECT_THAT([] { (void)law_word(Characteristic{}); }, ThrowsMessage<InvalidInput>(HasSubstr("a file cannot hold")));
 }
 
 TEST(ContactValidation, AcceptsTheExtremesOfTheValidRange) {
@@ -129,6 +139,9 @@ TEST(ContactValidation, NamesTheContactTheValueAndTheRange) {
   fails({.direction = w, .law = Coulomb{.mu_s = nan, .mu_k = 0.2}}, "mu_s = nan; expected a finite value >= 0");
   fails({.direction = w, .law = Stribeck{.mu_s = 0.4, .mu_k = 0.2, .alpha = -1.0}}, "alpha = -1");
   fails({.direction = w, .law = TanhRegularised{.mu_s = 0.4, .mu_k = 0.2, .epsilon = 0.0}}, "epsilon = 0");
+  const auto third = [](double) { return 1.0 / 3.0; };
+  fails({.direction = w, .law = Characteristic{.mu_s = 0.4, .mu = third}}, "without its functions");
+  fails({.direction = w, .law = Characteristic{.mu_s = 0.3, .mu = third, .slope = third}}, "below mu(0) = 0.3333");
   fails({.direction = w, .law = Coulomb{}, .normal_load = -3.0}, "normal_load = -3");
   fails({.direction = w, .law = Coulomb{}, .normal_load = std::numeric_limits<double>::infinity()},
         "normal_load = inf");

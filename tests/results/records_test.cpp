@@ -4,6 +4,7 @@
 #include "scene/messages.hpp"
 #include "scene/temporary_folder.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <functional>
 #include <limits>
@@ -187,6 +188,18 @@ void expect_same_chain(const dynamics::HybridSystem& a, const dynamics::HybridSy
     EXPECT_EQ(a.contacts()[c].offset, b.contacts()[c].offset);
     EXPECT_EQ(a.contacts()[c].name, b.contacts()[c].name);
   }
+}
+
+TEST(Records, ALawMadeOfFunctionsIsRefused) {
+  // A file that left it out, or put a description in its place, could not be read back as the system it is of.
+  const TemporaryFolder folder;
+  const auto chain = chain_system();
+  std::vector<friction::Contact> contacts = chain.contacts();
+  contacts[0].law =
+      friction::Characteristic{.mu_s = 0.4, .mu = [](double) { return 0.3; }, .slope = [](double) { return 0.0; }};
+  const dynamics::HybridSystem system(chain.structure(), contacts, chain.drive());
+  EXPECT_THAT([&] { (void)written(folder, [&](StoreWriter& out) { save(out, "system", system); }); },
+              testing::ThrowsMessage<InvalidInput>(testing::HasSubstr("a file cannot hold")));
 }
 
 TEST(Records, SystemReadsBackSparseAndDense) {
