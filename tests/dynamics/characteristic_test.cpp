@@ -26,11 +26,11 @@ Characteristic as_functions(const Stribeck& law) {
           .slope = [law](double v) { return -law.alpha * (law.mu_s - law.mu_k) * std::exp(-law.alpha * v); }};
 }
 
-/// A law nobody shipped: a jump at the start of sliding, then a bump and a dip that die out.
+/// A law nobody shipped: a jump at the start of sliding, then a dip and a bump that die out.
 Characteristic bumpy() {
   return {.mu_s = 0.35,
-          .mu = [](double v) { return 0.2 * (1.0 + 0.5 * std::sin(6.0 * v) * std::exp(-v)); },
-          .slope = [](double v) { return 0.1 * (6.0 * std::cos(6.0 * v) - std::sin(6.0 * v)) * std::exp(-v); }};
+          .mu = [](double v) { return 0.2 * (1.0 - 0.5 * std::sin(6.0 * v) * std::exp(-v)); },
+          .slope = [](double v) { return 0.1 * (std::sin(6.0 * v) - 6.0 * std::cos(6.0 * v)) * std::exp(-v); }};
 }
 
 void expect_same(const HybridSystem& a, const HybridSystem& b, const State& start, double duration) {
