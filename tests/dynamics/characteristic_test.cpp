@@ -17,7 +17,7 @@ using friction::Characteristic;
 using friction::Shaker;
 using friction::Stribeck;
 
-constexpr FlowOptions kTight{.tolerance = 1e-13};
+constexpr FlowOptions kTightest{.tolerance = 1e-13};
 
 /// Stribeck's law by its formula.
 Characteristic as_functions(const Stribeck& law) {
@@ -34,7 +34,7 @@ Characteristic bumpy() {
 }
 
 void expect_same(const HybridSystem& a, const HybridSystem& b, const State& start, double duration) {
-  const SimulateOptions options{.duration = duration, .sample = 0.1, .flow = kTight};
+  const SimulateOptions options{.duration = duration, .sample = 0.1, .flow = kTightest};
   const Trajectory run = simulate(a, start, options), other = simulate(b, start, options);
   ASSERT_EQ(run.events.size(), other.events.size());
   EXPECT_GE(run.events.size(), 4u);
@@ -70,7 +70,7 @@ TEST(Characteristic, ALawNobodyShippedFollowsRungeKutta) {
   const HybridSystem chain = belt_chain(bumpy(), Belt::constant(0.15), 3, 0.006, 1.0);
   const State start{.q = Eigen::VectorXd::Zero(3), .v = Eigen::VectorXd::Zero(3)};
   const double duration = 40.0;
-  const Trajectory run = simulate(chain, start, {.duration = duration, .flow = kTight});
+  const Trajectory run = simulate(chain, start, {.duration = duration, .flow = kTightest});
   RungeKuttaReference reference(chain, RungeKuttaReference::Mode::kPositive);
   reference.run(duration, 1e-3L);
   ASSERT_EQ(run.events.size(), reference.changes().size());
