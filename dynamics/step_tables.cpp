@@ -35,7 +35,7 @@ Eigen::MatrixXd chebyshev_interpolation(const Eigen::VectorXd& points, const Eig
 
 /// Of a rule for e^{iφt} times a polynomial of degree 7 over this phase φ ≤ 4: what it is not exact for, Taylor's terms
 /// from degree 2 points − 7 on, (φ/4)ⁿ/n! by Chebyshev polynomials, is below rounding.
-int gauss_points(double phase) { return 10 + static_cast<int>(std::ceil(phase)); }
+int gauss_points(double phase) { return 12 + static_cast<int>(std::ceil(phase)); }
 /// The same for interpolation of e^{iφt} at Chebyshev's points.
 int chebyshev_points(double phase) { return 14 + 2 * static_cast<int>(std::ceil(phase)); }
 
