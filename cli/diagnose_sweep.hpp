@@ -2,6 +2,7 @@
 
 #include <slipmode/studies/exponents.hpp>
 #include "cli/diagnose.hpp"
+#include "cli/session.hpp"
 
 #include <string>
 #include <vector>

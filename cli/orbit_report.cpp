@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <cmath>
+#include <complex>
 
 namespace slipmode::cli {
 namespace {

@@ -8,6 +8,7 @@
 #include "trade/internal/motion.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <mutex>
 
 namespace slipmode::trade {

@@ -4,6 +4,7 @@
 #include "fixtures/shaken_scenes.hpp"
 
 #include <gtest/gtest.h>
+#include <complex>
 #include <numbers>
 
 namespace slipmode::dynamics {
