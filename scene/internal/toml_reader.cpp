@@ -115,6 +115,13 @@ std::string TomlReader::text_or(const std::string& key, const std::string& other
   return node->as_string()->get();
 }
 
+bool TomlReader::flag_or(const std::string& key, bool otherwise) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return otherwise;
+  if (!node->is_boolean()) fail(key, "wrong type", "true or false");
+  return node->as_boolean()->get();
+}
+
 std::vector<std::string> TomlReader::texts(const std::string& key) {
   const toml::node& node = need(key);
   std::vector<std::string> found;

@@ -70,6 +70,7 @@ class TomlReader {
     return static_cast<T>(checked_integer(key, need(key), limits, kMost));
   }
   [[nodiscard]] std::string text_or(const std::string& key, const std::string& otherwise);
+  [[nodiscard]] bool flag_or(const std::string& key, bool otherwise);
   /// An array of strings.
   [[nodiscard]] std::vector<std::string> texts(const std::string& key);
   /// Index of the word among `words`.

@@ -34,9 +34,9 @@ std::map<std::string, BeamExpectation> expectations() {
   std::map<std::string, BeamExpectation> found;
   for (scene::TomlReader& item : in.tables("driven")) {
     BeamExpectation e;
-    e.value = item.numbers_or("value", {}, scene::kFinite);
-    e.tolerance = item.numbers_or("tolerance", {}, scene::kPositive);
-    e.frequencies = item.numbers_or("frequencies", {}, scene::kPositive);
+    e.value = item.numbers_or("value", {}, kFinite);
+    e.tolerance = item.numbers_or("tolerance", {}, kPositive);
+    e.frequencies = item.numbers_or("frequencies", {}, kPositive);
     EXPECT_FALSE(item.text_or("origin", "").empty());
     (void)item.text_or("units", "");
     found[item.text_or("measure", "")] = e;

@@ -44,12 +44,12 @@ Expectation read_expectation(scene::TomlReader& in, const std::string& dataset, 
   Expectation e;
   e.dataset = dataset;
   e.measure = in.text_or("measure", "");
-  e.speed = in.number_or("speed", own_speed, scene::kFinite);
+  e.speed = in.number_or("speed", own_speed, kFinite);
   if (in.has("modes")) e.modes = in.integers("modes", {.low = 1.0, .high = 1e6});
-  e.value = in.numbers_or("value", {}, scene::kFinite);
-  e.tolerance = in.numbers_or("tolerance", {}, scene::kPositive, static_cast<std::int64_t>(e.value.size()));
-  e.displacement = in.numbers_or("displacement", {}, scene::kFinite);
-  e.velocity = in.numbers_or("velocity", {}, scene::kFinite, static_cast<std::int64_t>(e.displacement.size()));
+  e.value = in.numbers_or("value", {}, kFinite);
+  e.tolerance = in.numbers_or("tolerance", {}, kPositive, static_cast<std::int64_t>(e.value.size()));
+  e.displacement = in.numbers_or("displacement", {}, kFinite);
+  e.velocity = in.numbers_or("velocity", {}, kFinite, static_cast<std::int64_t>(e.displacement.size()));
   e.origin = in.text_or("origin", "");
   (void)in.text_or("units", "");
   in.finish();

@@ -56,14 +56,14 @@ dynamics::State start_of(scene::TomlReader& entry, const scene::Scene& scene, co
     const double periods = std::round(scene.time.transient / *system.drive().period());
     return orbits::settle_guess(system, scene::initial_state(scene, system), periods);
   }
-  const std::vector<double> x = entry.numbers_or("start", {}, scene::kFinite, 2 * system.size());
+  const std::vector<double> x = entry.numbers_or("start", {}, kFinite, 2 * system.size());
   const Eigen::Map<const Eigen::VectorXd> values(x.data(), 2 * system.size());
   return {.q = values.head(system.size()), .v = values.tail(system.size())};
 }
 
 void check_multipliers(scene::TomlReader& entry, const orbits::PeriodicOrbit& orbit, double tolerance) {
   if (!entry.has("multipliers")) return;
-  for (const auto& [re, im] : entry.pairs("multipliers", scene::kFinite, scene::kFinite)) {
+  for (const auto& [re, im] : entry.pairs("multipliers", kFinite, kFinite)) {
     double nearest = INFINITY;
     for (const std::complex<double>& found : orbit.multipliers) {
       nearest = std::min({nearest, std::max(std::abs(found.real() - re), std::abs(found.imag() - im))});
@@ -75,17 +75,17 @@ void check_multipliers(scene::TomlReader& entry, const orbits::PeriodicOrbit& or
 void check_orbit(scene::TomlReader& entry, const std::string& file) {
   const scene::Scene scene = scene_of(entry, file);
   const dynamics::HybridSystem system = build_system(scene);
-  const int order = static_cast<int>(entry.integer_or("order", 1, 1, 1000));
+  const int order = entry.has("order") ? entry.integer<int>("order", kCount) : 1;
   const bool half = entry.flag_or("half", false);
   const orbits::ShootingResult found =
       orbits::shoot(system, start_of(entry, scene, system), {.order = order, .half_period = half});
   ASSERT_TRUE(found.converged()) << found.message;
   EXPECT_LE(found.orbit.residual, 1e-11);
   EXPECT_EQ(found.orbit.repeats, 1);
-  const double tolerance = entry.number_or("tolerance", 0.0, scene::kPositive);
+  const double tolerance = entry.number_or("tolerance", 0.0, kPositive);
   check_multipliers(entry, found.orbit, tolerance);
   if (entry.has("modulus")) {
-    EXPECT_NEAR(found.orbit.leading_modulus, entry.number("modulus", scene::kFinite), tolerance);
+    EXPECT_NEAR(found.orbit.leading_modulus, entry.number("modulus", kFinite), tolerance);
   }
   if (entry.has("stability")) {
     EXPECT_EQ(orbits::to_string(found.orbit.stability), entry.text_or("stability", ""));
@@ -94,14 +94,14 @@ void check_orbit(scene::TomlReader& entry, const std::string& file) {
     EXPECT_EQ(found.orbit.symmetric, entry.flag_or("symmetric", false));
   }
   if (entry.has("crossings")) {
-    EXPECT_EQ(found.orbit.crossings, entry.integer("crossings", 0, 1000));
+    EXPECT_EQ(found.orbit.crossings, entry.integer<int>("crossings", kFromZero));
   }
   if (entry.has("family")) {
-    EXPECT_EQ(found.orbit.family.cols(), entry.integer("family", 0, 1000));
+    EXPECT_EQ(found.orbit.family.cols(), entry.integer<int>("family", kFromZero));
   }
   if (entry.has("amplitude")) {
     const orbits::Amplitude size = orbits::amplitude(system, found.orbit, system.contacts().front().direction);
-    EXPECT_NEAR(size.alternating, entry.number("amplitude", scene::kFinite), tolerance);
+    EXPECT_NEAR(size.alternating, entry.number("amplitude", kFinite), tolerance);
   }
 }
 
@@ -127,10 +127,10 @@ int settled_period(const scene::Scene& scene, double cycles) {
 
 void check_settled(scene::TomlReader& entry, const std::string& file) {
   const scene::Scene scene = scene_of(entry, file);
-  const int period = settled_period(scene, entry.number("cycles", scene::kPositive));
+  const int period = settled_period(scene, entry.number("cycles", kPositive));
   EXPECT_EQ(period > 0, entry.flag_or("periodic", true)) << period;
   if (entry.has("period")) {
-    EXPECT_EQ(period, entry.integer("period", 1, 16));
+    EXPECT_EQ(period, entry.integer<int>("period", kCount));
   }
 }
 

@@ -4,6 +4,7 @@
 #include <slipmode/dynamics/simulate.hpp>
 #include <slipmode/rom/reduce.hpp>
 #include <slipmode/scene/own_times.hpp>
+#include <slipmode/scene/solver_options.hpp>
 #include <slipmode/studies/family.hpp>
 #include <slipmode/studies/sweep.hpp>
 
@@ -94,14 +95,21 @@ TEST(Family, RefusesAValueThatTheSceneRefuses) {
   EXPECT_THROW((void)family.at({-1.0}), InvalidInput);
 }
 
-// In memory, without files: as `slipmode sweep` keeps them, values in the order given.
+// In memory, without files. Expected: what the sweep of the chain's own model gives, to the last bit.
 TEST(Sweep, InMemoryGoesThroughItsValues) {
-  const Family family(scene::with_own_times(dataset("chain10")), {"drive.speed"});
-  const Sweep found = sweep(family, {0.5, 0.45}, {.follow = true});
+  const scene::Scene scene = scene::with_own_times(dataset("chain10"));
+  const dynamics::HybridSystem full = scene::build_system(scene);
+  const std::vector<double> values = {0.5, 0.45};
+  const Sweep found = sweep(Family(scene, {"drive.speed"}), values, {.follow = true});
+  const diagnostics::SweepResult expected =
+      diagnostics::sweep(diagnostics::belt_model(full), values, scene::initial_state(scene, full),
+                         {.mode = SweepMode::kFollow, .settle = scene::sweep_settle_options(scene)});
   ASSERT_EQ(found.belt.size(), 2U);
   EXPECT_TRUE(found.up.empty());
-  EXPECT_EQ(found.belt[1].parameter, 0.45);
-  EXPECT_EQ(found.belt[1].settled.period.period, 1);  // datasets/chain10: period 1 at 0.45
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    EXPECT_EQ(found.belt[i].parameter, values[i]);
+    EXPECT_EQ(found.belt[i].settled.end.q, expected.points[i].settled.end.q);
+  }
 }
 
 TEST(Sweep, RefusesWhatItsDriveDoesNotHave) {
