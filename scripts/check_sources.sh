@@ -1,10 +1,12 @@
 #!/usr/bin/env bash
-# What builds and tests do not show: scripts/check_sources.sh [format] [alone] [tidy]; default: all three
+# What builds and tests do not show: scripts/check_sources.sh [format] [alone] [everything-alone] [tidy]
 #   format  clang-format finds nothing to change in any tracked source
-#   alone   every source of library and executable, and every header without a source of its name, compiles by itself: the
-#           builds join a dozen sources, which hides an include that is missing
-#   tidy    clang-tidy on the sources that changed since the previous commit of main; what it has not reached after three
-#           minutes stays unread
+#   alone   every source of library and executable that changed since the previous commit, or includes a header that did,
+#           compiles by itself, and so does every such header without a source of its name: the builds join a dozen
+#           sources, which hides an include that is missing. everything-alone: all of them, some twelve minutes of processor
+#   tidy    clang-tidy on the sources that changed since the previous commit; what it has not reached after three minutes
+#           stays unread
+# By default format, alone and tidy.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 checks=("$@")
@@ -21,23 +23,47 @@ check_format() { git ls-files -z '*.hpp' '*.cpp' | xargs -0 clang-format --dry-r
 # The build's own compile commands without their outputs, one a line, SOURCE last.
 commands() { ninja -C "$build" -t commands slipmode_cli | sed -nE 's/ -MD -MT .* -c / -fsyntax-only /p'; }
 
-check_alone() {
+# What changed since the previous commit; nothing where that is not there.
+changed() {
+  git rev-parse -q --verify HEAD~1 >/dev/null || return 0
+  git diff --name-only --diff-filter=d HEAD~1 -- "$@" | { grep -vE '^(tests|bench|fuzz|examples)/|/kernels/' || true; }
+}
+
+# Sources and headers on standard input, each compiled by itself.
+compile_alone() {
   configure
-  local header like headers=()
-  while read -r header; do
-    [[ -e ${header%.hpp}.cpp ]] || headers+=("$header")
-  done < <(git ls-files '*.hpp' | grep -vE '^(tests|bench|fuzz)/|/kernels/')
+  local file like wanted=() headers=()
+  while read -r file; do
+    if [[ $file == *.cpp ]]; then
+      wanted+=("/$file")
+    elif [[ ! -e ${file%.hpp}.cpp ]]; then
+      headers+=("$file")
+    fi
+  done
   like=$(commands | grep '/cli/main.cpp$')
   {
-    commands
-    printf "echo '#include \"%s\"' | ${like% *} -x c++ -\n" "${headers[@]}"
-  } | (cd "$build" && tr '\n' '\0' | xargs -0 -P "$(nproc)" -I{} bash -c '{}')
+    [[ ${#wanted[@]} -eq 0 ]] || commands | grep -F -f <(printf '%s\n' "${wanted[@]}")
+    [[ ${#headers[@]} -eq 0 ]] || printf "echo '#include \"%s\"' | ${like% *} -x c++ -\n" "${headers[@]}"
+  } | (cd "$build" && tr '\n' '\0' | xargs -0 -r -P "$(nproc)" -I{} bash -c '{}')
+}
+
+check_everything-alone() { git ls-files '*.hpp' '*.cpp' | grep -vE '^(tests|bench|fuzz|examples)/|/kernels/' | compile_alone; }
+
+check_alone() {
+  local files headers
+  mapfile -t files < <(changed '*.cpp' '*.hpp')
+  mapfile -t headers < <(printf '%s\n' "${files[@]}" | grep 'hpp$' || true)
+  {
+    printf '%s\n' "${files[@]}"
+    [[ ${#headers[@]} -eq 0 ]] || git grep -lF -f <(printf '%s\n' "${headers[@]}") -- '*.cpp' |
+      { grep -vE '^(tests|bench|fuzz|examples)/|/kernels/' || true; }
+  } | sort -u | { grep . || true; } | compile_alone
 }
 
 check_tidy() {
   local sources
   configure
-  mapfile -t sources < <(git diff --name-only --diff-filter=d HEAD~1 -- '*.cpp' | grep -vE '^(tests|bench|fuzz|examples)/|/kernels/')
+  mapfile -t sources < <(changed '*.cpp')
   [[ ${#sources[@]} -eq 0 ]] && return
   command -v clang-tidy >/dev/null
   # Time out or not, what was found by then counts.
