@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -38,11 +37,12 @@ struct Tridiagonal16 {
   const double *diagonal, *squares;  ///< [n], [n − 1]
 };
 
-/// 2^−k for numbers of size 2^k.
-Part scale_of(const Part& a) {
+/// 2^−k for numbers of size 2^k. Vectors are neither returned nor passed by value: how, depends on the registers that
+/// are compiled for. A cast between them takes the bits as they are.
+void scale_of(const Part& a, Part& out_scale) {
   constexpr std::int64_t exponent = 0x7ff0000000000000, twice_bias = 0x7fe0000000000000;
-  const Bits own = std::bit_cast<Bits>(a) & exponent, back = twice_bias - own;
-  return std::bit_cast<Part>(back);
+  const Bits own = (Bits)a & exponent, back = twice_bias - own;
+  out_scale = (Part)back;
 }
 
 /// The characteristic polynomial's leading minors at x, by their three-term recurrence.
@@ -63,7 +63,7 @@ void minors(const Tridiagonal16& T, const Lanes& at, Minors& out) {
       p[i] = T.diagonal[0] - x[i];
       slope_before[i] = Part{};
       slope[i] = -before[i];
-      changes[i] = std::bit_cast<Bits>(p[i]) < 0;
+      changes[i] = (Bits)p[i] < 0;
     }
     for (Eigen::Index j = 1; j < T.n; ++j) {
       const double d = T.diagonal[j], square = T.squares[j - 1];
@@ -75,7 +75,7 @@ void minors(const Tridiagonal16& T, const Lanes& at, Minors& out) {
           slope_before[i] = slope[i];
           slope[i] = next_slope;
         } else {
-          changes[i] += (std::bit_cast<Bits>(next) ^ std::bit_cast<Bits>(p[i])) < 0;
+          changes[i] += ((Bits)next ^ (Bits)p[i]) < 0;
         }
         before[i] = p[i];
         p[i] = next;
@@ -83,7 +83,8 @@ void minors(const Tridiagonal16& T, const Lanes& at, Minors& out) {
       if (j % 8 != 0) continue;
 #pragma GCC unroll 2
       for (std::size_t i = 0; i < 2; ++i) {
-        const Part s = scale_of(p[i] * p[i] > before[i] * before[i] ? p[i] : before[i]);
+        Part s;
+        scale_of(p[i] * p[i] > before[i] * before[i] ? p[i] : before[i], s);
         p[i] *= s;
         before[i] *= s;
         slope[i] *= s;
