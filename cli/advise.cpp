@@ -9,7 +9,6 @@
 #include "cli/verbs.hpp"
 
 #include <fmt/format.h>
-#include <algorithm>
 #include <optional>
 
 namespace slipmode::cli {

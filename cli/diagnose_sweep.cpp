@@ -79,11 +79,12 @@ Report diagnose_over(const Session& session, const scene::Scene& scene, const Di
 
   std::string identity;
   for (const std::string& file : models.files) identity += studies::identity_of(std::filesystem::path(file));
-  studies::ResultFile file(request.output, scene,
-                           fmt::format("slipmode diagnose --over {}{} --exponents {} --duration {} --renormalise {} {}",
-                                       models.over, models.follow ? " --follow" : "", tangent.exponents,
-                                       tangent.duration, tangent.interval, swept.back().title),
-                           identity);
+  studies::ResultFile file(
+      request.output, scene,
+      fmt::format("slipmode diagnose --over {}{} --exponents {} --transient {} --duration {} --renormalise {} {}",
+                  models.over, models.follow ? " --follow" : "", tangent.exponents, tangent.transient, tangent.duration,
+                  tangent.interval, swept.back().title),
+      identity);
   std::vector<studies::Family> families;
   for (const SweptModel& model : swept) families.push_back(model.family);
   const std::vector<studies::ExponentSweep> sweeps = studies::exponent_sweeps(
@@ -106,6 +107,9 @@ Report diagnose_over(const Session& session, const scene::Scene& scene, const Di
     report.text += exponent_summary(swept[m].title, sweeps[m].points, summary);
     report.data["models"].push_back(std::move(summary));
   }
+  report.data["resumed"] = file.resumed();
+  if (file.resumed() > 0)
+    report.text += fmt::format("{} values were taken over from an interrupted run\n", file.resumed());
   report.text += fmt::format("Exponents: {}\n", request.output);
   return report;
 }

@@ -5,7 +5,6 @@
 #include "cli/text_table.hpp"
 
 #include <fmt/format.h>
-#include <algorithm>
 #include <cmath>
 
 namespace slipmode::cli {

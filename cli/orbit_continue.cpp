@@ -113,8 +113,9 @@ Report run(const Session& session, const OrbitContinueArguments& arguments) {
   if (!found.found.converged()) return not_found("orbit continue", found.found);
   const studies::Family model(scene, {range.key}, basis);
   results::StoreWriter writer(arguments.output, scene.units);
-  results::save(writer,
-                results::provenance_of(scene, fmt::format("slipmode orbit continue --over {}", arguments.over)));
+  const std::string command =
+      fmt::format("slipmode orbit continue --over {} --model {}", arguments.over, arguments.search.model);
+  results::save(writer, results::provenance_of(scene::set_key(scene, range.key, found.start), command));
   results::store_branches(writer, range.key, found.branches, model.systems());
   writer.commit();
 

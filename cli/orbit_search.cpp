@@ -41,7 +41,8 @@ dynamics::State given_state(const std::string& text, Eigen::Index n) {
 void add_search_options(CLI::App& command, OrbitSearchArguments& out_arguments) {
   studies::OrbitSearch& search = out_arguments.search;
   command.add_option("SCENE", out_arguments.scene, "scene file (TOML)")->required();
-  command.add_option("--model", out_arguments.model, "full, or rom:FILE with a result of 'slipmode reduce'");
+  command.add_option("--model", out_arguments.model,
+                     "full, or rom:FILE with a result of 'slipmode reduce'; under a shaker also BASIS:L, e.g. pomf:3");
   command.add_option("--order", search.order, "period in periods of the drive")->check(CLI::PositiveNumber);
   command.add_option("--period", search.period, "period: a multiple of the drive's; on a belt a guess")
       ->check(CLI::PositiveNumber);

@@ -1,12 +1,12 @@
 #include <slipmode/results/provenance.hpp>
 #include <slipmode/results/reduced_file.hpp>
 #include <slipmode/results/skeleton_store.hpp>
+#include <slipmode/studies/bases.hpp>
 #include <slipmode/studies/skeletons.hpp>
 #include "cli/skeleton_report.hpp"
 #include "cli/verbs.hpp"
 
 #include <fmt/format.h>
-#include <optional>
 
 namespace slipmode::cli {
 namespace {
@@ -15,16 +15,6 @@ struct OrbitSkeletonArguments {
   std::string scene, output, model = "full", compare_with;
   studies::SkeletonRequest request;
 };
-
-/// The basis of a reduced model's file. @param option  for messages
-pod::NamedBasis basis_of(const std::string& model, const std::string& option, Eigen::Index size) {
-  const std::optional<std::string> file = results::reduced_file(model);
-  if (!file) {
-    throw InvalidInput(fmt::format("{} {}: expected {}rom:FILE with a result of 'slipmode reduce'", option, model,
-                                   option == "--model" ? "full, or " : ""));
-  }
-  return {.name = "", .basis = results::reduced_basis(*file, size)};
-}
 
 results::StoreWriter begin_store(const OrbitSkeletonArguments& arguments, const scene::Scene& scene) {
   results::StoreWriter writer(arguments.output, scene.units);
@@ -74,16 +64,19 @@ Report run(const Session& session, const OrbitSkeletonArguments& arguments) {
   require_writable(arguments.output);
   const scene::Scene scene = session.load(arguments.scene);
   if (arguments.compare_with.empty()) {
-    std::optional<pod::NamedBasis> basis;
-    if (arguments.model != "full") basis = basis_of(arguments.model, "--model", scene.size());
-    return run_one(session, arguments, studies::Family(scene, {}, basis));
+    return run_one(session, arguments,
+                   studies::Family(scene, {}, studies::model_basis(scene, arguments.model, session.run_options())));
   }
   if (arguments.model != "full") {
     throw InvalidInput(
         fmt::format("--model {}: --compare-with compares with the full model; leave --model out", arguments.model));
   }
-  return run_pair(session, arguments,
-                  studies::Family(scene, {}, basis_of(arguments.compare_with, "--compare-with", scene.size())));
+  if (!results::reduced_file(arguments.compare_with)) {
+    throw InvalidInput(
+        fmt::format("--compare-with {}: expected rom:FILE with a result of 'slipmode reduce'", arguments.compare_with));
+  }
+  const auto basis = studies::model_basis(scene, arguments.compare_with, session.run_options());
+  return run_pair(session, arguments, studies::Family(scene, {}, basis));
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include "selftest/scene_properties.hpp"
 
 #include <fmt/format.h>
-#include <cmath>
 
 namespace slipmode::cli {
 namespace {

@@ -5,7 +5,6 @@
 #include "cli/validation_report.hpp"
 
 #include <fmt/format.h>
-#include <cmath>
 #include <map>
 #include <numbers>
 

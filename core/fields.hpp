@@ -88,12 +88,6 @@ constexpr void for_each_number(const Visit& visit) {
   });
 }
 
-/// The words of a variant's alternatives, in its order: each has `static constexpr const char* word`.
-template <class... Kinds>
-[[nodiscard]] std::vector<std::string> words_of(const std::variant<Kinds...>& /*any*/) {
-  return {Kinds::word...};
-}
-
 /// The alternative at `index`, as it starts.
 template <class Variant>
 [[nodiscard]] Variant alternative(std::size_t index) {

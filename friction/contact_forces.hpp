@@ -26,7 +26,8 @@ struct ContactForces {
   std::shared_ptr<const Characteristic> characteristic = {};  ///< the law itself, if it is made of functions
   double load = 0.0;                                          ///< N these forces belong to [N]
   bool varies = false;  ///< the normal load varies: `under` gives the forces of an instant
-  /// Coefficients for a force along −w and along +w; they differ on a tilted slider.
+  /// Coefficients for a force along −w and along +w; they differ on a tilted slider. Where μ depends on the speed,
+  /// mu_k is the one at v → ∞, for a characteristic μ(0).
   std::array<double, 2> mu_s = {}, mu_k = {};
 
   [[nodiscard]] double static_coefficient(double direction) const { return mu_s[direction > 0]; }

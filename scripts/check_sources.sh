@@ -32,7 +32,7 @@ changed() {
 # Sources and headers on standard input, each compiled by itself.
 compile_alone() {
   configure
-  local file like wanted=() headers=()
+  local file like all wanted=() headers=()
   while read -r file; do
     if [[ $file == *.cpp ]]; then
       wanted+=("/$file")
@@ -40,10 +40,13 @@ compile_alone() {
       headers+=("$file")
     fi
   done
-  like=$(commands | grep '/cli/main.cpp$')
+  all=$(commands)
   {
-    [[ ${#wanted[@]} -eq 0 ]] || commands | grep -F -f <(printf '%s\n' "${wanted[@]}")
-    [[ ${#headers[@]} -eq 0 ]] || printf "echo '#include \"%s\"' | ${like% *} -x c++ -\n" "${headers[@]}"
+    [[ ${#wanted[@]} -eq 0 ]] || grep -F -f <(printf '%s\n' "${wanted[@]}") <<<"$all"
+    for file in "${headers[@]}"; do  # as a source of its room: each room links what it needs
+      like=$(grep -m1 "/${file%%/*}/[^ ]*$" <<<"$all")
+      printf "echo '#include \"%s\"' | %s -x c++ -\n" "$file" "${like% *}"
+    done
   } | (cd "$build" && tr '\n' '\0' | xargs -0 -r -P "$(nproc)" -I{} bash -c '{}')
 }
 
@@ -65,7 +68,10 @@ check_tidy() {
   configure
   mapfile -t sources < <(changed '*.cpp')
   [[ ${#sources[@]} -eq 0 ]] && return
-  command -v clang-tidy >/dev/null
+  if ! command -v clang-tidy >/dev/null; then
+    echo "check_sources.sh: no clang-tidy; scripts/install_packages.sh clang-tidy installs it" >&2
+    return 1
+  fi
   # Time out or not, what was found by then counts.
   printf '%s\0' "${sources[@]}" |
     { timeout 180 xargs -0 -P "$(nproc)" -n 1 clang-tidy -p "$build" --quiet --warnings-as-errors='*' || true; } |

@@ -27,7 +27,9 @@ std::vector<diagnostics::SweepPoint> diagram_of(const Family& family, int number
   return std::move(result.points);
 }
 
-LeadingExponents exponents_at(const Family& family, const diagnostics::SweepPoint* settled, double value,
+/// @param start  where the family's motions begin, for a value that has not settled elsewhere
+LeadingExponents exponents_at(const Family& family, const dynamics::State& start,
+                              const diagnostics::SweepPoint* settled, double value,
                               diagnostics::TangentOptions tangent) {
   if (settled != nullptr && !settled->ok()) throw NumericalFailure(settled->failure, 0.0, {}, 0.0);
   if (settled != nullptr) tangent.transient = 0.0;
@@ -35,7 +37,7 @@ LeadingExponents exponents_at(const Family& family, const diagnostics::SweepPoin
   tangent.exponents = std::min(tangent.exponents, 2 * system.size() + system.internal_size());
   try {
     const diagnostics::LyapunovSpectrum spectrum =
-        diagnostics::lyapunov_spectrum(system, settled != nullptr ? settled->settled.end : family.start(), tangent);
+        diagnostics::lyapunov_spectrum(system, settled != nullptr ? settled->settled.end : start, tangent);
     return {.nats = spectrum.nats, .error = spectrum.error, .ended = spectrum.failure};
   } catch (const NumericalFailure& failure) {
     throw NumericalFailure(fmt::format("at time {:g}: {}", failure.time, failure.what()), failure.time, failure.state,
@@ -55,8 +57,9 @@ std::vector<ExponentSweep> exponent_sweeps(const std::vector<Family>& families, 
   results::ExponentSink sink;
   if (options.journal != nullptr) sink = results::exponent_sink(*options.journal);
   for (std::size_t m = 0; m < families.size(); ++m) {
+    const dynamics::State start = families[m].start();
     const auto settle = [&](std::size_t i, int, const std::monostate&) {
-      return exponents_at(families[m], out[m].diagram.empty() ? nullptr : &out[m].diagram[i], values[i],
+      return exponents_at(families[m], start, out[m].diagram.empty() ? nullptr : &out[m].diagram[i], values[i],
                           options.tangent);
     };
     auto found =

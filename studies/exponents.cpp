@@ -77,11 +77,12 @@ std::vector<results::ModelExponents> model_exponents(const Subjects& subjects,
   const std::size_t count = subjects.bases.size() + 1;
   std::vector<results::ModelExponents> models(count);
   ParallelOptions parallel = run.parallel("exponents");
+  const bool shown = static_cast<bool>(parallel.progress);
   SharedProgress progress(std::exchange(parallel.progress, {}), count);
   rethrow_first(parallel_for(count, parallel, [&](std::size_t i) {
     results::ModelExponents& model = models[i];
     diagnostics::TangentOptions own = options;
-    own.progress = progress.of(i);
+    if (shown) own.progress = progress.of(i);
     try {
       if (i == 0) {
         model.name = "full";

@@ -1,5 +1,6 @@
 #include <slipmode/studies/family.hpp>
 
+#include <slipmode/core/errors.hpp>
 #include <slipmode/rom/reduce.hpp>
 #include <slipmode/scene/shaken.hpp>
 
@@ -42,8 +43,15 @@ DriveSetter drive_setter(const scene::Scene& scene, const std::string& key, bool
   };
 }
 
-/// A force's mean is a load on the structure, all else of [drive] belongs to the drive.
-bool is_of_drive(const std::string& key) { return key.starts_with("drive.") && !key.starts_with("drive.mean"); }
+/// Where a force acts, and its mean, belong to the structure; its numbers, and all of a belt or shaker, to the drive.
+bool is_of_drive(const scene::Scene& scene, const std::string& key) {
+  if (!key.starts_with("drive.")) return false;
+  if (scene.drive.force() == nullptr) return true;
+  const std::string number = key.substr(key.rfind('.') + 1);
+  const bool own = key == "drive." + number, harmonic = key.starts_with("drive.harmonic.");
+  return (own || harmonic) && (number == "omega" || number == "frequency" || number == "amplitude" ||
+                               number == "phase" || number == "order");
+}
 
 /// A contact's place decides what the structure's modes show of it, all else of [[contact]] is its law's.
 bool is_of_law(const std::string& key) {
@@ -91,7 +99,8 @@ Family::Family(scene::Scene scene, std::vector<std::string> keys, std::optional<
                 .drive_only = false,
                 .laws_only = false,
                 .setters = {}};
-  shared.drive_only = std::ranges::all_of(shared.keys, is_of_drive);
+  shared.drive_only =
+      std::ranges::all_of(shared.keys, [&](const std::string& key) { return is_of_drive(shared.scene, key); });
   shared.laws_only = std::ranges::all_of(shared.keys, is_of_law);
   for (const std::string& key : shared.keys) {
     shared.setters.push_back(drive_setter(shared.scene, key, shared.keys.size() == 1));
@@ -103,6 +112,10 @@ Family::Family(scene::Scene scene, std::vector<std::string> keys, std::optional<
 }
 
 DrivenCase Family::case_at(const std::vector<double>& values) const {
+  if (values.size() != shared_->keys.size()) {
+    throw InvalidInput(
+        fmt::format("family over {} keys: expected as many values, found {}", shared_->keys.size(), values.size()));
+  }
   if (values.empty()) return shared_->own;
   const DrivenCase& own = shared_->own;
   const auto with = [&own](dynamics::HybridSystem system) {

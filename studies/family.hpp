@@ -27,7 +27,8 @@ class Family {
   explicit Family(scene::Scene scene, std::vector<std::string> keys = {}, std::optional<pod::NamedBasis> basis = {});
 
   /// The model at one value per key, in the order of the keys.
-  /// @throws InvalidInput  for a value the scene refuses
+  /// @throws InvalidInput  for another number of values than keys, or a value that the scene refuses (frequencies and
+  ///                       amplitudes of a drive are not checked against the scene)
   [[nodiscard]] dynamics::HybridSystem at(const std::vector<double>& values) const { return case_at(values).system; }
   /// The same with what is read from a shaken one and what its lifted states add to the energy.
   [[nodiscard]] diagnostics::DrivenCase case_at(const std::vector<double>& values) const;

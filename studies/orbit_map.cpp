@@ -79,6 +79,10 @@ void check(const Family& family, const OrbitMapOptions& options) {
 OrbitMapStudy orbit_map(const Family& family, const std::vector<std::vector<double>>& values,
                         const OrbitMapOptions& options, const RunOptions& run) {
   check(family, options);
+  if (values.size() != family.keys().size()) {
+    throw InvalidInput(
+        fmt::format("orbit map over {} keys: expected values of each, found {}", family.keys().size(), values.size()));
+  }
   OrbitMapStudy study;
   if (values.size() == 2) study.grid = {.x = values[0], .y = values[1]};
   for (const std::string& start : options.starts) {

@@ -119,11 +119,14 @@ Continuation continue_orbit(const scene::Scene& scene, const std::string& key,
                             const std::optional<pod::NamedBasis>& basis, const OrbitSearch& search,
                             const ContinuationRequest& request, const RunOptions& run) {
   const double own = scene::get_continuous_key(scene, key);
-  for (const double end : {request.from, request.to}) (void)scene::set_key(scene, key, end);
   const auto [low, high] = std::minmax(request.from, request.to);
   Continuation out;
   out.start = low <= own && own <= high ? own : request.from;
   const Family family(out.start == own ? scene : scene::set_key(scene, key, out.start), {key}, basis);
+  for (const double end : {request.from, request.to}) {
+    (void)scene::set_key(scene, key, end);
+    (void)family.at({end});
+  }
   const orbits::SystemFamily systems = [&family, &run](double value) {
     run.check_interrupt();
     return family.at({value});

@@ -3,6 +3,7 @@
 #include <slipmode/dynamics/simulate.hpp>
 #include <slipmode/fem/modes.hpp>
 #include <slipmode/figures/file_figures.hpp>
+#include <slipmode/figures/gnuplot.hpp>
 #include <slipmode/results/ensemble_store.hpp>
 #include <slipmode/results/provenance.hpp>
 #include <slipmode/results/records.hpp>
@@ -87,7 +88,7 @@ class Pipeline {
     constexpr Eigen::Index kShown = 20;
     const Eigen::Index n = full_.size(), contacts = static_cast<Eigen::Index>(full_.contacts().size());
     result_.slipping = fem::natural_modes(full_.structure(), std::min(kShown, n)).omega;
-    if (n <= contacts || !can_stick(full_)) return;
+    if (shaken_ || n <= contacts || !can_stick(full_)) return;  // a shaker's are not told
     Eigen::MatrixXd w(n, contacts);
     for (Eigen::Index c = 0; c < contacts; ++c) w.col(c) = full_.contacts()[c].direction;
     result_.sticking = fem::constrained_modes(full_.structure(), w, std::min(kShown, n - contacts)).omega;
@@ -194,6 +195,7 @@ double PipelineResult::basis_wall() const {
 }
 
 PipelineResult pipeline(const scene::Scene& scene, const fs::path& folder, const RunOptions& run) {
+  figures::require_gnuplot();  // not after hours of work
   return Pipeline(scene, folder, run).run();
 }
 

@@ -32,8 +32,14 @@ std::string identity_of(const std::filesystem::path& file) {
 }
 
 std::string identity_of(const pod::Basis& basis) {
-  const auto bytes = static_cast<std::size_t>(basis.vectors.size()) * sizeof(double);
-  return results::fingerprint({reinterpret_cast<const char*>(basis.vectors.data()), bytes});
+  std::string bytes = fmt::format("{} x {}\n", basis.vectors.rows(), basis.vectors.cols());
+  const auto append = [&bytes](const auto& numbers) {
+    bytes.append(reinterpret_cast<const char*>(numbers.data()),
+                 static_cast<std::size_t>(numbers.size()) * sizeof(double));
+  };
+  append(basis.vectors);
+  append(basis.mean);
+  return results::fingerprint(bytes);
 }
 
 }  // namespace slipmode::studies

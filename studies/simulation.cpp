@@ -1,7 +1,5 @@
 #include <slipmode/studies/simulation.hpp>
 
-#include <utility>
-
 namespace slipmode::studies {
 namespace {
 

@@ -44,19 +44,19 @@ TEST_P(FamilyOverKey, IsTheSceneWithThatValue) {
   EXPECT_EQ(run_of(family.at({value}), family.start()), run_of(anew, family.start()));
 }
 
-INSTANTIATE_TEST_SUITE_P(Keys, FamilyOverKey,
-                         testing::Values(Case{"chain10", "drive.speed", 0.31}, Case{"chain10", "contact.0.mu_s", 0.45},
-                                         Case{"chain10", "contact.0.normal_load", 2.5},
-                                         Case{"chain10", "structure.stiffness", 1.2},
-                                         Case{"backlash_sdof", "drive.omega", 0.9},
-                                         Case{"backlash_sdof", "drive.amplitude", 0.7},
-                                         Case{"clearance_3mass", "drive.mean", 0.2},
-                                         Case{"play_oscillator", "contact.0.left.stiffness", 20.0}),
-                         [](const auto& tested) {
-                           std::string name = tested.param.scene + "_" + tested.param.key;
-                           std::ranges::replace(name, '.', '_');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Keys, FamilyOverKey,
+    testing::Values(Case{"chain10", "drive.speed", 0.31}, Case{"chain10", "contact.0.mu_s", 0.45},
+                    Case{"chain10", "contact.0.normal_load", 2.5}, Case{"chain10", "structure.stiffness", 1.2},
+                    Case{"backlash_sdof", "drive.omega", 0.9}, Case{"backlash_sdof", "drive.amplitude", 0.7},
+                    Case{"clearance_3mass", "drive.mean", 0.2}, Case{"clearance_3mass", "drive.direction.0", 0.25},
+                    Case{"backlash_sdof", "drive.phase", 0.4},
+                    Case{"play_oscillator", "contact.0.left.stiffness", 20.0}),
+    [](const auto& tested) {
+      std::string name = tested.param.scene + "_" + tested.param.key;
+      std::ranges::replace(name, '.', '_');
+      return name;
+    });
 
 TEST(Family, OfTwoKeysTakesBothInTheirOrder) {
   const scene::Scene scene = dataset("backlash_sdof");
@@ -90,9 +90,12 @@ TEST(Family, OfAReducedModelIsTheProjectionOfTheFullOneAtThatValue) {
   EXPECT_NEAR(family.case_at({0.5}).energy_offset, diagnostics::projection_energy(full, basis), 1e-15);
 }
 
-TEST(Family, RefusesAValueThatTheSceneRefuses) {
+TEST(Family, RefusesWhatTheSceneRefusesAndAnotherNumberOfValues) {
   const Family family(dataset("chain10"), {"contact.0.mu_s"});
   EXPECT_THROW((void)family.at({-1.0}), InvalidInput);
+  EXPECT_THROW((void)family.at({0.4, 0.5}), InvalidInput);
+  EXPECT_THROW((void)family.at({}), InvalidInput);
+  EXPECT_THROW((void)Family(dataset("chain10"), {"contact.0.mass"}).at({1.0}), InvalidInput);
 }
 
 // In memory, without files. Expected: what the sweep of the chain's own model gives, to the last bit.
