@@ -66,7 +66,10 @@ std::size_t changes(const dynamics::Trajectory& run) {
 /// Starts on the attractor, a few cycles and an equal share of a cycle apart.
 std::vector<State> starts_of(const HybridSystem& system, const BeamModel& model, double period) {
   constexpr double kApart = 5.0;
-  State state = advance(system, diagnostics::at_section(system, system.rest()), kTransientCycles * period).final_state;
+  State state =
+      advance(system, dynamics::handed_on(system, system.rest(), system.drive().shaker()->next_upward_zero(0.0)),
+              kTransientCycles * period)
+          .final_state;
   std::vector<State> starts;
   for (int k = 0; k < model.stretches; ++k) {
     starts.push_back(state);

@@ -18,7 +18,7 @@ double slip_speed(const dynamics::HybridSystem& system, const dynamics::State& s
 
 dynamics::State onwards(const dynamics::HybridSystem& system, const dynamics::State& state, double duration) {
   const dynamics::SimulateOptions options{.duration = duration, .flow = {.tolerance = 1e-8, .audit = false}};
-  return diagnostics::continued(system, dynamics::simulate(system, state, options).final_state);
+  return dynamics::simulate(system, state, options).final_state;
 }
 
 dynamics::State until_clear_slip(const dynamics::HybridSystem& system, dynamics::State state) {

@@ -43,7 +43,7 @@ class SnapshotStream {
                                    .sample = sample_,
                                    .keep_events = false,
                                    .flow = {.tolerance = 1e-7, .audit = false}});
-    state_ = diagnostics::continued(system_, run.final_state);
+    state_ = run.final_state;
     return run.q.leftCols(count);
   }
 

@@ -86,6 +86,7 @@ Report diagnose_over(const Session& session, const scene::Scene& scene, const Di
                   tangent.interval, swept.back().title),
       identity);
   std::vector<studies::Family> families;
+  families.reserve(swept.size());
   for (const SweptModel& model : swept) families.push_back(model.family);
   const std::vector<studies::ExponentSweep> sweeps = studies::exponent_sweeps(
       families, over.values, {.tangent = tangent, .follow = models.follow, .journal = &file.journal()},

@@ -43,7 +43,7 @@ OrbitRange parse_range(const std::string& text) {
     }
     return value;
   };
-  const OrbitRange range{text.substr(0, equals), number(equals + 1, colon), number(colon + 1, text.size())};
+  OrbitRange range{text.substr(0, equals), number(equals + 1, colon), number(colon + 1, text.size())};
   if (range.from == range.to) throw complain("the range has no length");
   return range;
 }

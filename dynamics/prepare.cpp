@@ -256,4 +256,29 @@ State physical(const ModalModel& m, const HybridPoint& point) {
   return {point.time, m.to_q * point.x, m.to_v * point.x, point.modes, point.internal};
 }
 
+State end_state(const HybridSystem& system, const ModalModel& m, const HybridPoint& point) {
+  State end = physical(m, point);
+  if (end.v.size() == 0) return end;
+  constexpr double kLargestRepair = 1e-6;  // more is no error of a step: left for the next run to refuse
+  const double belt = system.drive().velocity(end.time);
+  std::vector<Eigen::Index> held;
+  for (std::size_t c = 0; c < end.modes.size(); ++c) {
+    const Eigen::VectorXd& w = system.contacts()[c].direction;
+    const double sliding = belt - w.dot(end.v), sign = sign_of(end.modes[c]);
+    const double scale = std::abs(belt) + w.cwiseAbs().dot(end.v.cwiseAbs());
+    const bool sticks = end.modes[c] == ContactMode::kStick, slips = std::abs(sign) == 1.0;
+    const bool rigid = friction::kind(system.contacts()[c].law) != LawKind::kCompliant;
+    const bool off_guard = rigid && (sticks || (slips && sliding * sign < 0.0));
+    if (off_guard && std::abs(sliding) <= kLargestRepair * std::max(1.0, scale))
+      held.push_back(static_cast<Eigen::Index>(c));
+  }
+  if (held.empty()) return end;
+  Eigen::MatrixXd W(system.size(), static_cast<Eigen::Index>(held.size()));
+  for (std::size_t k = 0; k < held.size(); ++k)
+    W.col(static_cast<Eigen::Index>(k)) = system.contacts()[static_cast<std::size_t>(held[k])].direction;
+  const Eigen::VectorXd sliding = Eigen::VectorXd::Constant(W.cols(), belt) - W.transpose() * end.v;
+  end.v += W * (W.transpose() * W).ldlt().solve(sliding);
+  return end;
+}
+
 }  // namespace slipmode::dynamics

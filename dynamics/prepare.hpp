@@ -27,6 +27,11 @@ struct Prepared {
 /// The state in the structure's own degrees of freedom; q and v empty without mode shapes.
 [[nodiscard]] State physical(const ModalModel& model, const HybridPoint& point);
 
+/// The same where a run ends, to go on from: rigid contacts that stick, or whose mode and sliding speed disagree in
+/// sign, are put on the belt's speed exactly (smallest change of v). A run holds that speed to its tolerance only, and
+/// a start must be consistent with its modes to rounding. Contacts behind a spring stick at any speed.
+[[nodiscard]] State end_state(const HybridSystem& system, const ModalModel& model, const HybridPoint& point);
+
 /// One step of a flow; a failure is reported with the state in the structure's own degrees of freedom, (q, q̇).
 template <class AnyFlow>
 bool advance_flow(AnyFlow& flow, const ModalModel& m, double end) {

@@ -127,7 +127,7 @@ void run(AnyFlow& flow, const HybridSystem& system, const ModalModel& m, const S
         event_q.push_back(s.q);
         event_v.push_back(s.v);
       }
-      if (options.on_event && !options.on_event(e, physical(m, flow.point()))) going = false;
+      if (options.on_event && !options.on_event(e, end_state(system, m, flow.point()))) going = false;
     }
   }
   while (recorder.next_time() <= end && going) {  // the last sample may lie a rounding error past the last step
@@ -143,7 +143,7 @@ void run(AnyFlow& flow, const HybridSystem& system, const ModalModel& m, const S
       out.event_v.col(static_cast<Eigen::Index>(k)) = event_v[k];
     }
   }
-  out.final_state = physical(m, flow.point());
+  out.final_state = end_state(system, m, flow.point());
   out.audit.energy_end = modal_energy(system, m, flow.point());
   out.audit.contact_work = flow.work().contact_work;
   out.audit.drive_work = flow.work().drive_work;
@@ -179,6 +179,18 @@ Trajectory simulate(const HybridSystem& system, const State& start, const Simula
     run(flow, system, p.tables.model, start, options, out);
   }
   return out;
+}
+
+State handed_on(const HybridSystem& system, const State& state, double time) {
+  State begin{.time = time, .q = state.q, .v = state.v, .internal = state.internal};
+  const auto is_compliant = [](const friction::Contact& contact) {
+    return friction::kind(contact.law) == LawKind::kCompliant;
+  };
+  if (state.modes.empty() || std::ranges::none_of(system.contacts(), is_compliant)) return begin;
+  begin.modes = simulate(system, begin, {.flow = {.audit = false}}).final_state.modes;
+  for (std::size_t c = 0; c < begin.modes.size(); ++c)
+    if (is_compliant(system.contacts()[c])) begin.modes[c] = state.modes[c];
+  return begin;
 }
 
 }  // namespace slipmode::dynamics

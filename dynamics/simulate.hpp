@@ -79,7 +79,7 @@ struct FlowStatistics {
   std::vector<double> stick_time;  ///< per contact [s]
 };
 
-/// Called at every event while simulating; return false to stop the run there.
+/// Called at every event while simulating, with a state to go on from; return false to stop the run there.
 using EventCallback = std::function<bool(const Event&, const State&)>;
 
 struct SimulateOptions {
@@ -101,7 +101,8 @@ struct Trajectory {
   Eigen::MatrixXd q, v;                          ///< n x T (kAllDofs)
   Eigen::MatrixXd contact_q, contact_v, lambda;  ///< nc x T: wᵀq + offset, wᵀq̇, contact forces
   Eigen::MatrixXd event_q, event_v;              ///< n x events, if asked
-  State final_state;  ///< in the structure's dofs (empty q, v with Output::kContacts on a long chain)
+  /// To go on from: contacts that stick move with the belt to rounding. Empty q, v with kContacts on a long chain.
+  State final_state;
   EnergyAudit audit;
   FlowStatistics statistics;
 };
@@ -111,6 +112,12 @@ struct Trajectory {
 ///                           that is not piecewise linear
 /// @throws NumericalFailure  with time and state (q, q̇): Zeno, no convergence of the collocation, values not finite
 [[nodiscard]] Trajectory simulate(const HybridSystem& system, const State& start, const SimulateOptions& options);
+
+/// A state handed on to a run of its own: of another system with the same contacts, at another value, or from the start
+/// of the drive's cycle again. Modes are derived anew, as the old ones need not hold, but for contacts behind a spring:
+/// there sliding at μ_k N is not told from sticking by position, velocity and stretch. To go on within a run, take its
+/// final_state as it is.
+[[nodiscard]] State handed_on(const HybridSystem& system, const State& state, double time = 0.0);
 
 /// The flow over [start, start + duration] with its fundamental matrix, saltation at every event included.
 ///

@@ -26,7 +26,7 @@ template <class AnyFlow>
 void TangentFlow::Implementation::advance_to(AnyFlow& flow, const ModalModel& m, double end, TangentResult& out) const {
   while (flow.point().time < end)
     if (advance_flow(flow, m, end)) out.events.insert(out.events.end(), flow.events().begin(), flow.events().end());
-  out.end = physical(m, flow.point());
+  out.end = end_state(system, m, flow.point());
 }
 
 TangentResult TangentFlow::Implementation::run(ClosedFormFlow& flow, const ModalModel& m, double end,

@@ -38,8 +38,7 @@ int main(int count, char** arguments) {
   for (Eigen::Index k = 0; k < curve.modes.size(); ++k) {
     const auto basis = modes.basis.truncated(static_cast<Eigen::Index>(curve.modes(k)));
     const diagnostics::Model reduced = diagnostics::reduced_belt_model(chain, basis);
-    const dynamics::State start =
-        rom::restrict_state(chain.structure(), basis, diagnostics::restarted(orbit.states[0]));
+    const dynamics::State start = rom::restrict_state(chain.structure(), basis, orbit.states[0]);
     const auto comparison =
         diagnostics::compare_orbits(chain.structure(), full, reduced, speed, orbit,
                                     diagnostics::settle_to_orbit(reduced.system(speed), start, settling));

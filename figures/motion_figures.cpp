@@ -49,7 +49,7 @@ Loops loops_after(const scene::Scene& scene, const dynamics::State& state) {
   const friction::Shaker& shaker = *scene.drive.shaker();
   dynamics::FlowOptions flow = scene.flow;
   flow.audit = false;
-  const dynamics::Trajectory run = dynamics::simulate(system, diagnostics::continued(system, state),
+  const dynamics::Trajectory run = dynamics::simulate(system, dynamics::handed_on(system, state, state.time),
                                                       {.duration = kCycles * shaker.period(),
                                                        .sample = shaker.period() / kSamplesPerCycle,
                                                        .output = dynamics::SimulateOptions::Output::kContacts,

@@ -71,22 +71,6 @@ void measure_amplitudes(const Eigen::MatrixXd& q, const Eigen::MatrixXd& v, doub
   }
 }
 
-/// The same point of the drive's cycle at another value: the cycle begins anew at time 0. Modes are derived anew, as
-/// the old ones need not hold, but for contacts behind a spring: there sliding at μ_k N is not told from sticking by
-/// position, velocity and stretch.
-dynamics::State carried(const dynamics::HybridSystem& system, const dynamics::State& end) {
-  dynamics::State begin{.time = 0.0, .q = end.q, .v = end.v, .internal = end.internal};
-  const auto is_compliant = [](const friction::Contact& contact) {
-    return friction::kind(contact.law) == friction::LawKind::kCompliant;
-  };
-  if (end.modes.empty() || std::ranges::none_of(system.contacts(), is_compliant)) return begin;
-  begin.modes = dynamics::simulate(system, begin, {.flow = {.audit = false}}).final_state.modes;
-  for (std::size_t c = 0; c < begin.modes.size(); ++c) {
-    if (is_compliant(system.contacts()[c])) begin.modes[c] = end.modes[c];
-  }
-  return begin;
-}
-
 }  // namespace
 
 double Strobe::sine_gap(Eigen::Index row) const {
@@ -128,7 +112,7 @@ StrobeMap strobe_map(const std::function<dynamics::HybridSystem(double)>& system
   using Begin = std::optional<dynamics::State>;  // where the value before ended; none: the value's own start
   const auto settle = [&](std::size_t k, int, const Begin& before) {
     const dynamics::HybridSystem here = system(values[k]);
-    return strobe(here, before ? carried(here, *before) : start(here), options);
+    return strobe(here, before ? dynamics::handed_on(here, *before) : start(here), options);
   };
   return SweepRunner<Strobe, Begin>({.settle = settle, .carry = [](const Strobe& point) { return point.end; }}, values,
                                     std::nullopt, options.follow ? SweepMode::kFollow : SweepMode::kIndependent, 1,

@@ -20,7 +20,7 @@ Portrait run_portrait(const dynamics::HybridSystem& system, const dynamics::Stat
   constexpr double kDuration = 500.0, kSample = 0.1;
   Portrait portrait{.title = std::move(title), .role = std::move(role), .displacement = {}, .velocity = {}};
   try {
-    const auto run = dynamics::simulate(system, diagnostics::restarted(start),
+    const auto run = dynamics::simulate(system, dynamics::handed_on(system, start),
                                         {.duration = kDuration,
                                          .sample = kSample,
                                          .keep_events = false,

@@ -54,7 +54,7 @@ Case build_case(const Variant& variant, const std::vector<OfferedBasis>& bases) 
   return {.model = std::move(model), .full = full, .basis = basis, .beam = std::move(beam), .flow = flow};
 }
 
-dynamics::State carried(const Case& from, const Case& to, const dynamics::State& state) {
+dynamics::State handed_on(const Case& from, const Case& to, const dynamics::State& state) {
   dynamics::State here = from.basis ? rom::lift(*from.basis, state) : state;
   if (!same_mesh(from, to)) {
     here.q = resampled(*from.beam, *to.beam, here.q);

@@ -28,6 +28,6 @@ struct Case {
 /// A state of one case as the nearest one of another: lifted, taken over to another mesh by the values and slopes at
 /// its nodes, projected. Contact modes are left to be derived; contacts' own states are kept where both have the same
 /// laws, else left relaxed.
-[[nodiscard]] dynamics::State carried(const Case& from, const Case& to, const dynamics::State& state);
+[[nodiscard]] dynamics::State handed_on(const Case& from, const Case& to, const dynamics::State& state);
 
 }  // namespace slipmode::trade

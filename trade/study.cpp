@@ -30,9 +30,9 @@ std::vector<dynamics::State> starts_of(const scene::Scene& scene, const dynamics
 }
 
 /// A start whose time is a section of a shaker; elsewhere time 0.
-dynamics::State at_phase(const dynamics::HybridSystem& system, dynamics::State state) {
-  state.time = 0.0;
-  return system.drive().shaker() != nullptr ? diagnostics::at_section(system, state) : state;
+dynamics::State at_phase(const dynamics::HybridSystem& system, const dynamics::State& state) {
+  const friction::Shaker* shaker = system.drive().shaker();
+  return dynamics::handed_on(system, state, shaker != nullptr ? shaker->next_upward_zero(0.0) : 0.0);
 }
 
 class Work {
@@ -62,7 +62,7 @@ class Work {
     motions_.resize(starts.size());
     std::vector<std::vector<dynamics::State>> along(starts.size());
     rethrow_first(parallel_for(starts.size(), options_.parallel, [&](std::size_t i) {
-      const dynamics::State start = at_phase(model_->model.system, carried(own, *model_, starts[i]));
+      const dynamics::State start = at_phase(model_->model.system, handed_on(own, *model_, starts[i]));
       motions_[i] = run_motion(*model_, start, schedule_.first_transient, schedule_, stop());
       along[i] = states_of(*model_, motions_[i].end, schedule_.starts, schedule_.gap, stop());
     }));
@@ -111,7 +111,7 @@ class Work {
     at(out.noise, Measure::kDx) = at(out.noise, Measure::kDe) = kNone;
     try {
       const Case candidate = build_case(variant, bases_);
-      const Motion motion = run_motion(candidate, carried(*model_, candidate, motions_.front().end),
+      const Motion motion = run_motion(candidate, handed_on(*model_, candidate, motions_.front().end),
                                        schedule_.transient, schedule_, stop());
       out.error = motion_distance(motions_.front(), motion);
       const HorizonDeviation horizon = horizon_deviation(*model_, candidate, shared_, schedule_, stop());
@@ -129,7 +129,7 @@ class Work {
 
   [[nodiscard]] Timed timed(const Variant& variant) const {
     return {.build = [&] { return build_case(variant, bases_); },
-            .start = [this](const Case& candidate) { return carried(*model_, candidate, motions_.front().end); }};
+            .start = [this](const Case& candidate) { return handed_on(*model_, candidate, motions_.front().end); }};
   }
 
   void take_times() {

@@ -225,18 +225,12 @@ DrivenPeriod driven_period(const Eigen::MatrixXd& points, const Eigen::VectorXd&
   return settling;
 }
 
-dynamics::State at_section(const dynamics::HybridSystem& system, const dynamics::State& state) {
-  dynamics::State start = state;
-  start.time = shaker_of(system).next_upward_zero(0.0);
-  return continued(system, start);
-}
-
 DrivenMotion settle_driven(const dynamics::HybridSystem& system, const Readings& readings, const dynamics::State& start,
                            const DrivenOptions& options) {
   check(system, readings, options);
   const friction::Shaker& shaker = shaker_of(system);
   const double T = shaker.period();
-  const dynamics::State begin = at_section(system, start);
+  const dynamics::State begin = dynamics::handed_on(system, start, shaker.next_upward_zero(0.0));
   const double transient = (options.cycles - options.kept) * T, duration = options.cycles * T;
   const dynamics::Trajectory run = dynamics::simulate(system, begin,
                                                       {.duration = duration,

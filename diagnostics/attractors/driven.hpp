@@ -87,11 +87,8 @@ struct DrivenMotion {
   dynamics::State end = {};  ///< at a section, a whole number of periods after the start
 };
 
-/// A start for a driven run: the state moved to the drive's first section after time 0, its modes kept where they still
-/// hold. What a sweep carries from one drive to the next, so that phase is continuous.
-[[nodiscard]] dynamics::State at_section(const dynamics::HybridSystem& system, const dynamics::State& state);
-
-/// Runs a shaken system for `cycles` of its drive from a section (at_section is applied to `start`).
+/// Runs a shaken system for `cycles` of its drive from its first section after time 0, to which `start` is handed on:
+/// so phase is continuous from one drive to the next.
 /// @throws InvalidInput      for a drive that does not shake or stands still (amplitude 0 shakes), options out of
 /// range,
 ///                           readings of another size, and as simulate

@@ -30,7 +30,8 @@ void check(const std::vector<double>& parameters, const std::vector<dynamics::St
 Eigen::MatrixXd run_member(const Model& model, const dynamics::State& start, const EnsembleOptions& options,
                            EnsembleMember& member) {
   try {
-    dynamics::Trajectory run = dynamics::simulate(model.system(member.parameter), restarted(start),
+    const dynamics::HybridSystem system = model.system(member.parameter);
+    dynamics::Trajectory run = dynamics::simulate(system, dynamics::handed_on(system, start),
                                                   {.duration = options.duration,
                                                    .transient = options.transient,
                                                    .sample = options.sample,
@@ -55,7 +56,7 @@ std::vector<dynamics::State> random_states(const dynamics::HybridSystem& system,
                                    options.count, options.spread));
   }
   const bool about_rest = options.centre == RandomStateOptions::Centre::kRest;
-  const dynamics::State centre = restarted(about_rest ? system.rest() : sliding_equilibrium(system));
+  const dynamics::State centre = about_rest ? system.rest() : sliding_equilibrium(system);
   std::vector<dynamics::State> states(static_cast<std::size_t>(options.count), centre);
   for (std::size_t k = 0; k < states.size(); ++k) {
     Random random = Random::stream(options.seed, k);

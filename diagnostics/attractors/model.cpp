@@ -39,39 +39,6 @@ dynamics::State lifted(const Model& model, const dynamics::State& state) {
   return model.basis ? rom::lift(*model.basis, state) : state;
 }
 
-dynamics::State restarted(const dynamics::State& state) {
-  return {.time = 0.0, .q = state.q, .v = state.v, .internal = state.internal};
-}
-
-dynamics::State continued(const dynamics::HybridSystem& system, const dynamics::State& state) {
-  constexpr double kLargestRepair = 1e-6;
-  const double belt = system.drive().velocity(state.time);
-  std::vector<Eigen::Index> held;
-  for (std::size_t c = 0; c < state.modes.size(); ++c) {
-    const Eigen::VectorXd& w = system.contacts()[c].direction;
-    const double sliding = belt - w.dot(state.v);
-    const double scale = std::abs(belt) + w.cwiseAbs().dot(state.v.cwiseAbs());
-    const auto sign = static_cast<double>(state.modes[c]);
-    const bool sticks = state.modes[c] == dynamics::ContactMode::kStick;
-    const bool slips = std::abs(sign) == 1.0;
-    const bool rigid = friction::kind(system.contacts()[c].law) != friction::LawKind::kCompliant;
-    const bool off_guard = rigid && (sticks || (slips && sliding * sign < 0.0));
-    if (off_guard && std::abs(sliding) <= kLargestRepair * std::max(1.0, scale)) {
-      held.push_back(static_cast<Eigen::Index>(c));
-    }
-  }
-  if (held.empty()) return state;
-  Eigen::MatrixXd W(system.size(), static_cast<Eigen::Index>(held.size()));
-  for (std::size_t k = 0; k < held.size(); ++k) {
-    W.col(static_cast<Eigen::Index>(k)) = system.contacts()[static_cast<std::size_t>(held[k])].direction;
-  }
-  dynamics::State repaired = state;
-  const Eigen::MatrixXd gram = W.transpose() * W;
-  const Eigen::VectorXd sliding = Eigen::VectorXd::Constant(W.cols(), belt) - W.transpose() * state.v;
-  repaired.v += W * gram.ldlt().solve(sliding);
-  return repaired;
-}
-
 double mean_energy(const dynamics::HybridSystem& system, const Eigen::Ref<const Eigen::MatrixXd>& q,
                    const Eigen::Ref<const Eigen::MatrixXd>& v) {
   const fem::Structure& structure = system.structure();

@@ -38,16 +38,6 @@ struct Model {
 /// A state in full coordinates: lifted for a reduced model, unchanged for a full one.
 [[nodiscard]] dynamics::State lifted(const Model& model, const dynamics::State& state);
 
-/// A state to start another run from: same q, v and contacts' own states, time 0, contact modes to be derived anew.
-/// What a sweep carries from one belt speed to the next, where the old modes need not hold.
-[[nodiscard]] dynamics::State restarted(const dynamics::State& state);
-
-/// A state to go on from within a run: rigid contacts that stick, or whose mode and sliding speed disagree in sign, are
-/// put on the belt's speed exactly (smallest change of v). A run holds that speed to its tolerance only, and a start
-/// must be consistent with its modes to rounding. Speeds off by more than 10⁻⁶ of the largest are left for simulate to
-/// refuse. Contacts behind a spring need no repair: they stick at any speed.
-[[nodiscard]] dynamics::State continued(const dynamics::HybridSystem& system, const dynamics::State& state);
-
 /// Mean of HybridSystem::energy over samples, one column per instant [J].
 /// @param q, v  n x T, T ≥ 1
 [[nodiscard]] double mean_energy(const dynamics::HybridSystem& system, const Eigen::Ref<const Eigen::MatrixXd>& q,

@@ -140,7 +140,7 @@ class Settling {
   dynamics::Trajectory run(dynamics::SimulateOptions simulate_options) {
     simulate_options.flow = options_.flow;
     dynamics::Trajectory part = dynamics::simulate(system_, out_.end, simulate_options);
-    out_.end = continued(system_, part.final_state);
+    out_.end = part.final_state;
     out_.time += simulate_options.duration;
     out_.events += part.statistics.events;
     if (options_.flow.audit) {
@@ -232,7 +232,7 @@ class Settling {
 Settled settle(const dynamics::HybridSystem& system, const dynamics::State& start, const SettleOptions& options) {
   check(options);
   check_stop(options);
-  return Settling(system, start, options).run_all();
+  return Settling(system, dynamics::handed_on(system, start), options).run_all();
 }
 
 Orbit settle_to_orbit(const dynamics::HybridSystem& system, const dynamics::State& start,
@@ -253,7 +253,7 @@ Orbit settle_to_orbit(const dynamics::HybridSystem& system, const dynamics::Stat
   dynamics::SimulateOptions run{.duration = 2.5 * settled.period.T, .flow = options.flow};
   run.on_event = [&](const dynamics::Event& event, const dynamics::State& state) {
     if (event.kind != dynamics::EventKind::kRelease || event.contact != settled.period.contact) return true;
-    states.push_back(continued(system, state));
+    states.push_back(state);
     if (orbit.displacements.size() < count) orbit.displacements.push_back(event.displacement);
     return states.size() < 2 * count;
   };

@@ -38,9 +38,9 @@ struct Settled {
   dynamics::State end;          ///< state at the end of the last block
 };
 
-/// Runs `start` until it is seen to be periodic, stuck or sliding for a whole block, or the limit is reached.
-/// A period in doubt (PeriodResult::doubt) is waited for as well. Slips of earlier blocks are kept while they may help
-/// to see a long period (as at very low belt speed).
+/// Runs `start`, handed on, until it is seen to be periodic, stuck or sliding for a whole block, or the limit is
+/// reached. A period in doubt (PeriodResult::doubt) is waited for as well. Slips of earlier blocks are kept while they
+/// may help to see a long period (as at very low belt speed).
 /// @throws InvalidInput      for block ≤ 0, transient < 0, limit < block, patience < 0, and as simulate
 /// @throws NumericalFailure  as simulate
 /// @throws Interrupted       if the stop flag was set

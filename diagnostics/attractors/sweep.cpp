@@ -16,7 +16,7 @@ using Runner = SweepRunner<Settled, dynamics::State>;
 
 Runner runner(SweepWork<Settled, dynamics::State> work, const std::vector<double>& values, const dynamics::State& start,
               const SweepOptions& options) {
-  return {std::move(work), values, restarted(start), options.mode, options.segments, options.parallel, options.sink};
+  return {std::move(work), values, start, options.mode, options.segments, options.parallel, options.sink};
 }
 
 Settled settle_at(const Model& model, double value, const dynamics::State& start, const SweepOptions& options) {
@@ -53,7 +53,7 @@ SweepResult sweep(const Model& model, const std::vector<double>& values, const d
                   const SweepOptions& options) {
   return runner({.settle = [&](std::size_t i, int,
                                const dynamics::State& from) { return settle_at(model, values[i], from, options); },
-                 .carry = [](const Settled& settled) { return restarted(settled.end); },
+                 .carry = [](const Settled& settled) { return settled.end; },
                  .leader = options.model},
                 values, start, options)
       .run_alone();
@@ -66,7 +66,7 @@ PairedSweep paired_sweep(const Model& full, const Model& reduced, const std::vec
                          [&](std::size_t i, int tag, const dynamics::State& from) {
                            return settle_at(tag == 0 ? full : reduced, values[i], from, options);
                          },
-                     .carry = [](const Settled& settled) { return restarted(settled.end); },
+                     .carry = [](const Settled& settled) { return settled.end; },
                      .leader = 1,
                      .follow = [&](const dynamics::State& leading) { return lifted(reduced, leading); }},
                     values, start, options);

@@ -109,7 +109,7 @@ void check(const LyapunovOptions& options) {
 dynamics::State advance(const dynamics::HybridSystem& system, const dynamics::State& from, double duration,
                         const dynamics::FlowOptions& flow) {
   const dynamics::SimulateOptions run{.duration = duration, .keep_events = false, .flow = flow};
-  return continued(system, dynamics::simulate(system, from, run).final_state);
+  return dynamics::simulate(system, from, run).final_state;
 }
 
 }  // namespace
@@ -143,7 +143,7 @@ LyapunovExponent largest_exponent(const dynamics::HybridSystem& system, const dy
   check(options);
   dynamics::FlowOptions flow = options.flow;
   flow.audit = false;
-  dynamics::State reference = system.drive().period() ? start : restarted(start);
+  dynamics::State reference = system.drive().period() ? start : dynamics::handed_on(system, start);
   if (options.transient > 0.0) reference = advance(system, reference, options.transient, flow);
 
   Random random(options.seed);

@@ -44,12 +44,12 @@ void require_steady(const friction::Drive& drive, double time) {
 
 dynamics::State after_transient(const dynamics::HybridSystem& system, const dynamics::State& start,
                                 const TangentOptions& options) {
-  const dynamics::State begin = system.drive().period() ? start : restarted(start);
+  const dynamics::State begin = system.drive().period() ? start : dynamics::handed_on(system, start);
   if (options.transient == 0.0) return begin;
   dynamics::FlowOptions flow = options.flow;
   flow.audit = false;
   const dynamics::SimulateOptions run{.duration = options.transient, .keep_events = false, .flow = flow};
-  return continued(system, dynamics::simulate(system, begin, run).final_state);
+  return dynamics::simulate(system, begin, run).final_state;
 }
 
 void poll(const StopFlag* stop) {

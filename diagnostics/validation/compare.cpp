@@ -124,7 +124,7 @@ SharedRun run_shared(const Model& full, const Model& reduced, double parameter, 
     throw InvalidInput(
         fmt::format("horizon comparison: expected horizon > 0 and sample > 0, found {} and {}", horizon, sample));
   }
-  const dynamics::State begin = restarted(start);
+  const dynamics::State begin = dynamics::handed_on(reduced.system(parameter), start);
   return {.full = simulate_record(full, parameter, lifted(reduced, begin), horizon, sample, flow),
           .reduced = simulate_record(reduced, parameter, begin, horizon, sample, flow)};
 }

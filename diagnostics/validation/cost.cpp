@@ -37,8 +37,9 @@ Cost measure_cost(const dynamics::HybridSystem& full, const pod::Basis& basis, c
 
   std::optional<dynamics::HybridSystem> reduced;
   const Times projection = timed([&] { reduced = rom::reduce(full, basis); });
-  const dynamics::State full_start = restarted(start);
-  const dynamics::State reduced_start = restarted(rom::restrict_state(full.structure(), basis, start));
+  const dynamics::State full_start = dynamics::handed_on(full, start);
+  const dynamics::State reduced_start =
+      dynamics::handed_on(*reduced, rom::restrict_state(full.structure(), basis, start));
   const Times full_first = simulate(full, full_start);
   const Times reduced_first = simulate(*reduced, reduced_start);
   std::vector<Times> full_times;

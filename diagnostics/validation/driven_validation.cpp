@@ -154,8 +154,9 @@ class DrivenValidationRun {
   }
 
   DrivenCost clock(const dynamics::HybridSystem& system, const dynamics::State& start, double projection) const {
-    const dynamics::State begin = at_section(system, start);
-    const dynamics::SimulateOptions run{.duration = options_.cost_cycles * system.drive().shaker()->period(),
+    const friction::Shaker& shaker = *system.drive().shaker();
+    const dynamics::State begin = dynamics::handed_on(system, start, shaker.next_upward_zero(0.0));
+    const dynamics::SimulateOptions run{.duration = options_.cost_cycles * shaker.period(),
                                         .keep_events = false,
                                         .output = dynamics::SimulateOptions::Output::kContacts,
                                         .flow = options_.driven.flow};

@@ -43,7 +43,7 @@ class Validation {
              const dynamics::State& start, const ValidationOptions& options)
       : full_(full),
         candidates_(candidates),
-        start_(restarted(start)),
+        start_(start),
         options_(options),
         full_model_(belt_model(full)),
         run_flow_(options.settle.flow),
@@ -107,7 +107,7 @@ class Validation {
   }
 
   [[nodiscard]] dynamics::State projected(const pod::Basis& basis, const dynamics::State& state) const {
-    return restarted(rom::restrict_state(full_.structure(), basis, state));
+    return rom::restrict_state(full_.structure(), basis, state);
   }
 
   // The full model alone: its attractor, itself again from elsewhere, its orbits.

@@ -50,8 +50,8 @@ Subject reduced_subject(const dynamics::HybridSystem& full, const dynamics::Stat
   Subject subject{.name = candidate.name};
   try {
     subject.system = rom::reduce(full, candidate.basis);
-    subject.start = restarted(rom::restrict_state(full.structure(), candidate.basis, start));
-    subject.start.time = start.time;
+    const dynamics::State nearest = rom::restrict_state(full.structure(), candidate.basis, start);
+    subject.start = dynamics::handed_on(*subject.system, nearest, start.time);
     subject.channel = candidate.basis.vectors.row(channel);
   } catch (const InvalidInput& unusable) {
     subject.failure = unusable.what();
@@ -88,7 +88,7 @@ void take_record(ModelFindings& findings, const Subject& subject, dynamics::Stat
     double stuck = 0.0;
     for (const double time : motion.statistics.stick_time) stuck += time;
     if (contacts > 0.0) findings.stick_fraction.halves[static_cast<std::size_t>(h)] = stuck / (contacts * duration);
-    state = continued(*subject.system, motion.final_state);
+    state = motion.final_state;
   }
   findings.stick_fraction.value = 0.5 * (findings.stick_fraction.halves[0] + findings.stick_fraction.halves[1]);
 }
@@ -167,12 +167,13 @@ ModelFindings findings_of(const Subject& subject, const ModelVerdictOptions& opt
   const Eigen::Index all = 2 * subject.system->size() + subject.system->internal_size();
   tangent.exponents = std::min(tangent.exponents, all);
   try {
-    dynamics::State state = subject.system->drive().period() ? subject.start : restarted(subject.start);
+    dynamics::State state = subject.start;
+    if (!subject.system->drive().period()) state = dynamics::handed_on(*subject.system, state);
     if (tangent.transient > 0.0) {
       dynamics::FlowOptions flow = tangent.flow;
       flow.audit = false;
       const dynamics::SimulateOptions run{.duration = tangent.transient, .keep_events = false, .flow = flow};
-      state = continued(*subject.system, dynamics::simulate(*subject.system, state, run).final_state);
+      state = dynamics::simulate(*subject.system, state, run).final_state;
     }
     tangent.transient = 0.0;
     findings.exponents = lyapunov_spectrum(*subject.system, state, tangent);

@@ -103,7 +103,7 @@ TEST(CompareOrbits, AlignsTheSlipsOfAnOrbitWithAnotherDescriptionOfIt) {
   settling.period.tolerance = 1e-9;
   const Orbit a = settle_to_orbit(full.system(0.39), tests::near_period_three(), settling);
   // From the full orbit's second slip, so that the two lists of slips need not begin alike.
-  const dynamics::State start = restarted(rom::restrict_state(system.structure(), *reduced.basis, a.states[1]));
+  const dynamics::State start = rom::restrict_state(system.structure(), *reduced.basis, a.states[1]);
   const Orbit b = settle_to_orbit(reduced.system(0.39), start, settling);
   const OrbitComparison found = compare_orbits(system.structure(), full, reduced, 0.39, a, b, 512);
   EXPECT_TRUE(found.same_period);

@@ -76,16 +76,14 @@ TEST(LargestExponent, OfTheChaoticChainIsThatOfItsTangentFlow) {
   // The same growth by an independent road: products of fundamental matrices with saltation, no finite differences.
   const dynamics::HybridSystem system = tests::chain10(0.2);
   const dynamics::FlowOptions flow{.audit = false};
-  const dynamics::State start =
-      continued(system, dynamics::simulate(system, system.rest(), {.duration = 5000.0}).final_state);
+  const dynamics::State start = dynamics::simulate(system, system.rest(), {.duration = 5000.0}).final_state;
   constexpr double kStep = 20.0;
   constexpr int kSteps = 40;  // 800 units: rounding grows to 1e-10 on the way, so both follow one trajectory
   const Eigen::Index n = system.size();
 
   const auto step = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
     const dynamics::State begin{0.0, x.head(n), x.tail(n), {}};
-    const dynamics::State end =
-        continued(system, dynamics::simulate(system, begin, {.duration = kStep, .flow = flow}).final_state);
+    const dynamics::State end = dynamics::simulate(system, begin, {.duration = kStep, .flow = flow}).final_state;
     Eigen::VectorXd y(2 * n);
     y << end.q, end.v;
     return y;
@@ -102,7 +100,7 @@ TEST(LargestExponent, OfTheChaoticChainIsThatOfItsTangentFlow) {
     const dynamics::TangentResult part = dynamics::tangent_flow(system, {0.0, state.q, state.v, {}}, kStep, flow);
     direction = part.monodromy * direction.normalized();
     sum += std::log(direction.norm());
-    state = continued(system, part.end);
+    state = part.end;
   }
   // Second-order terms of a separation of 1e-7, per unit of time.
   EXPECT_NEAR(found.nats, sum / (kSteps * kStep), 1e-5);

@@ -47,21 +47,6 @@ TEST(Model, ReducedEnergyPlusOffsetIsTheLiftedStatesEnergy) {
   EXPECT_EQ(reduced.system(0.3).drive().velocity(0.0), 0.3);
 }
 
-TEST(Continued, PutsAStuckContactOnTheBeltAndChangesNothingElse) {
-  const dynamics::HybridSystem system = tests::chain10(0.2);
-  dynamics::State state = system.rest();
-  state.v.setConstant(0.1);
-  state.v[9] = 0.2 + 3e-9;
-  state.modes = {dynamics::ContactMode::kStick};
-  const dynamics::State repaired = continued(system, state);
-  EXPECT_EQ(repaired.v[9], 0.2);
-  EXPECT_EQ(repaired.v.head(9), state.v.head(9));
-  state.modes = {dynamics::ContactMode::kSlipPositive};  // v_rel = −3e-9 contradicts the mode
-  EXPECT_EQ(continued(system, state).v[9], 0.2);
-  state.v[9] = 0.15;  // slips as its mode says
-  EXPECT_EQ(continued(system, state).v[9], 0.15);
-}
-
 TEST(RandomStates, DependOnSeedAndIndexOnly) {
   const dynamics::HybridSystem system = tests::chain10(0.2);
   const auto four = random_states(system, {.count = 4, .seed = 9});
@@ -91,7 +76,7 @@ TEST(EnsembleRun, GivesTheSameBytesForAnyNumberOfThreads) {
   EXPECT_EQ(one.members[4].parameter, 0.3);
   EXPECT_EQ(one.members[4].start, 1);
   // Members are the runs themselves.
-  const dynamics::Trajectory fifth = dynamics::simulate(belt_model(system).system(0.3), restarted(starts[1]),
+  const dynamics::Trajectory fifth = dynamics::simulate(belt_model(system).system(0.3), starts[1],
                                                         {.duration = 300.0, .transient = 100.0, .sample = 0.5});
   EXPECT_EQ(one.ensemble.snapshots.middleCols(1604, 401), fifth.q);
   options.parallel.threads = 4;

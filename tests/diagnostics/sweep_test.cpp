@@ -66,11 +66,11 @@ TEST(Sweep, FollowsEachEndStateToTheNextValue) {
   const SweepResult found = sweep(model, kSpeeds, system.rest(), {.mode = SweepMode::kFollow, .settle = quick()});
   ASSERT_EQ(found.points.size(), kSpeeds.size());
   EXPECT_FALSE(found.interrupted);
-  dynamics::State start = restarted(system.rest());
+  dynamics::State start = system.rest();
   for (std::size_t i = 0; i < kSpeeds.size(); ++i) {
     const Settled by_hand = settle(model.system(kSpeeds[i]), start, quick());
     EXPECT_TRUE(same_bytes(by_hand.end.q, found.points[i].settled.end.q)) << "speed " << kSpeeds[i];
-    start = restarted(by_hand.end);
+    start = by_hand.end;
   }
 }
 
@@ -171,7 +171,7 @@ TEST(Sweep, RecordsAValueThatFailsAndGoesOnFromItsStart) {
   EXPECT_FALSE(found.interrupted);
   EXPECT_EQ(found.points[2].failure, "made to fail at 0.35");
   for (const std::size_t i : {0u, 1u, 3u, 4u, 5u}) EXPECT_TRUE(found.points[i].ok());
-  const Settled after = settle(sound(kSpeeds[3]), restarted(found.points[1].settled.end), quick());
+  const Settled after = settle(sound(kSpeeds[3]), found.points[1].settled.end, quick());
   EXPECT_TRUE(same_bytes(after.end.q, found.points[3].settled.end.q));
 }
 
@@ -189,7 +189,7 @@ TEST(PairedSweep, StartsBothModelsFromTheReducedEndState) {
   const pod::Basis basis = pod::pod({.snapshots = run.q}, {.choice = {.modes = 6}}).basis;
   const Model full = belt_model(system);
   const Model reduced = reduced_belt_model(system, basis);
-  const dynamics::State start = restarted(rom::restrict_state(system.structure(), basis, system.rest()));
+  const dynamics::State start = rom::restrict_state(system.structure(), basis, system.rest());
 
   SweepOptions options{.mode = SweepMode::kFollow, .settle = quick(), .parallel = {.threads = 2}};
   const PairedSweep found = paired_sweep(full, reduced, kSpeeds, start, options);
@@ -204,7 +204,7 @@ TEST(PairedSweep, StartsBothModelsFromTheReducedEndState) {
     EXPECT_TRUE(same_bytes(r.end.q, found.reduced[i].settled.end.q));
     EXPECT_TRUE(same_bytes(f.end.q, found.full[i].settled.end.q));
     EXPECT_EQ(found.reduced[i].settled.mean_energy, r.mean_energy + energy_offset_at(reduced, kSpeeds[i]));
-    from = restarted(r.end);
+    from = r.end;
   }
 
   options.parallel.threads = 1;

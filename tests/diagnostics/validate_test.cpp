@@ -23,7 +23,7 @@ struct Study {
   Study() {
     const dynamics::Trajectory run =
         dynamics::simulate(full, start, {.duration = 30000.0, .transient = 20000.0, .sample = 0.5});
-    start = restarted(run.final_state);  // on the attractor: the way there from rest takes thousands of units
+    start = run.final_state;  // on the attractor: the way there from rest takes thousands of units
     const pod::Ensemble ensemble{.snapshots = run.q};
     pod = pod::pod(ensemble);
     pod::Basis lnm = rom::lnm_basis(full.structure(), 10);

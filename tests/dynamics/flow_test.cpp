@@ -240,5 +240,51 @@ TEST(Flow, RegimesAreBuiltWhenFirstVisited) {
   EXPECT_EQ(run.statistics.events, 0);
 }
 
+// A run stopped anywhere ends on its guards: stuck contacts move with the belt to rounding, and sliding ones slide as
+// their mode says, so that it can be gone on from with the modes it had.
+TEST(Flow, EndsInAStateThatARunCanStartFrom) {
+  int stuck = 0;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    SCOPED_TRACE(::testing::Message() << "seed " << seed);
+    const RandomScene scene = random_scene(seed, Laws::kRigid, 12);
+    const Trajectory run = simulate(scene.system, scene.start, {.duration = 3.0 + 0.01 * static_cast<double>(seed)});
+    const State& end = run.final_state;
+    const double belt = scene.system.drive().velocity(end.time);
+    for (std::size_t c = 0; c < end.modes.size(); ++c) {
+      const Eigen::VectorXd& w = scene.system.contacts()[c].direction;
+      const double scale = std::abs(belt) + w.cwiseAbs().dot(end.v.cwiseAbs());
+      const double sliding = belt - w.dot(end.v);
+      if (end.modes[c] == ContactMode::kStick) {
+        ++stuck;
+        EXPECT_LE(std::abs(sliding), 1e-15 * scale);
+      } else if (end.modes[c] == ContactMode::kSlipPositive) {
+        EXPECT_GE(sliding, -1e-15 * scale);
+      }
+    }
+    EXPECT_NO_THROW((void)simulate(scene.system, end, {.duration = 1.0}));
+  }
+  EXPECT_GT(stuck, 20);
+}
+
+// A mass pulled through a contact spring slides at a constant μ_k N < μ_s N, the spring's stretch at μ_k N / K_c:
+// position, velocity and stretch are those of a stuck contact too. Handed on it goes on sliding, as one run does; with
+// modes derived from position, velocity and stretch alone it would stick until μ_s N are reached.
+TEST(Flow, HandsOnAContactThatSlidesBehindItsSpring) {
+  const HybridSystem system = single_mass(
+      1.0, 0.05, 1.0, {.direction = {}, .law = friction::CompliantCoulomb{0.6, 0.2, 20.0}, .normal_load = {1.0}},
+      Belt::constant(0.4));
+  State state = system.rest();
+  for (int k = 0; k < 1000 && (state.modes.empty() || state.modes[0] != ContactMode::kSlipPositive); ++k)
+    state = simulate(system, state, {.duration = 0.1}).final_state;
+  ASSERT_EQ(state.modes[0], ContactMode::kSlipPositive);
+  const State on = handed_on(system, state);
+  EXPECT_EQ(on.time, 0.0);
+  const State went = simulate(system, state, {.duration = 0.2}).final_state;
+  EXPECT_LT((simulate(system, on, {.duration = 0.2}).final_state.q - went.q).norm(), 1e-12);
+  State forgotten = on;
+  forgotten.modes.clear();
+  EXPECT_GT((simulate(system, forgotten, {.duration = 0.2}).final_state.q - went.q).norm(), 1e-5);
+}
+
 }  // namespace
 }  // namespace slipmode::dynamics

@@ -129,7 +129,7 @@ TEST(Horizon, GivesTheDeviationsOfValidation) {
   const auto steps = static_cast<Eigen::Index>(std::llround(schedule.horizon / schedule.horizon_sample));
   diagnostics::Record a{Eigen::MatrixXd(3, 3 * steps), Eigen::MatrixXd(3, 3 * steps)}, b = a;
   for (Eigen::Index k = 0; k < 3; ++k) {
-    const dynamics::State own = carried(full, reduced, starts[static_cast<std::size_t>(k)]);
+    const dynamics::State own = handed_on(full, reduced, starts[static_cast<std::size_t>(k)]);
     const dynamics::SimulateOptions options{
         .duration = schedule.horizon, .sample = schedule.horizon_sample, .flow = scene.flow};
     const auto run = dynamics::simulate(full.full, rom::lift(*reduced.basis, own), options);
@@ -229,8 +229,8 @@ TEST(Cases, AStateSurvivesTheWayToAFinerMeshAndBack) {
   const Case a = build_case(as_it_stands(scene), {}), b = build_case(as_it_stands(finer), {});
   dynamics::State state = a.full.rest();
   for (Eigen::Index i = 0; i < state.q.size(); ++i) state.q(i) = 1e-3 * std::sin(1.0 + static_cast<double>(i));
-  const dynamics::State there = carried(a, b, state);
-  const dynamics::State back = carried(b, a, there);
+  const dynamics::State there = handed_on(a, b, state);
+  const dynamics::State back = handed_on(b, a, there);
   EXPECT_LT((back.q - state.q).norm(), 1e-12 * state.q.norm());
   const double energy = a.full.energy(state);
   EXPECT_NEAR(b.full.energy({.q = there.q, .v = there.v}), energy, 1e-9 * energy);

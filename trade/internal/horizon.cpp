@@ -99,8 +99,7 @@ std::vector<dynamics::State> states_of(const Case& reference, const dynamics::St
   const dynamics::SimulateOptions run{.duration = gap, .keep_events = false, .flow = reference.flow};
   while (states.size() < static_cast<std::size_t>(count)) {
     if (stop != nullptr && stop->load()) throw Interrupted();
-    states.push_back(diagnostics::continued(
-        reference.model.system, dynamics::simulate(reference.model.system, states.back(), run).final_state));
+    states.push_back(dynamics::simulate(reference.model.system, states.back(), run).final_state);
   }
   return states;
 }
@@ -110,8 +109,8 @@ HorizonDeviation horizon_deviation(const Case& reference, const Case& candidate,
                                    const StopFlag* stop) {
   std::vector<dynamics::State> own, shared;
   for (const dynamics::State& start : starts) {
-    own.push_back(carried(reference, candidate, start));
-    shared.push_back(carried(candidate, reference, own.back()));
+    own.push_back(handed_on(reference, candidate, start));
+    shared.push_back(handed_on(candidate, reference, own.back()));
     if (shared.back().internal.size() == 0) shared.back().internal = start.internal;
   }
   const auto columns = static_cast<Eigen::Index>(std::llround(schedule.horizon / schedule.horizon_sample));

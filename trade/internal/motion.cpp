@@ -100,8 +100,7 @@ Motion run_motion(const Case& model, const dynamics::State& start, double transi
   const dynamics::HybridSystem& system = model.model.system;
   dynamics::State state = start;
   if (transient > 0.0) {
-    state = diagnostics::continued(system,
-                                   run(model, state, {.duration = transient, .keep_events = false}, stop).final_state);
+    state = run(model, state, {.duration = transient, .keep_events = false}, stop).final_state;
   }
   const auto total = static_cast<Eigen::Index>(std::llround(schedule.duration / schedule.sample));
   const Eigen::Index section = std::max<Eigen::Index>(schedule.per_section, 1);
@@ -113,7 +112,7 @@ Motion run_motion(const Case& model, const dynamics::State& start, double transi
     const dynamics::Trajectory part = run(
         model, state, {.duration = static_cast<double>(columns) * schedule.sample, .sample = schedule.sample}, stop);
     record.add(part, columns);
-    state = diagnostics::continued(system, part.final_state);
+    state = part.final_state;
     done += columns;
   }
   return record.take(std::move(state));

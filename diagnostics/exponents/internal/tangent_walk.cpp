@@ -112,7 +112,7 @@ std::vector<Event> TangentWalk::push(double duration) {
     frame_ = next.directions.leftCols(kept);
     growth_.head(kept) += next.log_growth.head(kept);
     lost_ = std::max(lost_, kept < expected ? directions_of(system_) - kept : most);
-    state_ = continued(system_, result.end);
+    state_ = result.end;
     events.insert(events.end(), result.events.begin(), result.events.end());
   }
   return events;

@@ -26,7 +26,7 @@ std::vector<dynamics::State> states_along(const dynamics::HybridSystem& system, 
   std::vector<dynamics::State> states = {start};
   const dynamics::SimulateOptions run{.duration = gap, .keep_events = false, .flow = flow};
   while (states.size() < static_cast<std::size_t>(count)) {
-    states.push_back(continued(system, dynamics::simulate(system, states.back(), run).final_state));
+    states.push_back(dynamics::simulate(system, states.back(), run).final_state);
   }
   return states;
 }
@@ -37,9 +37,8 @@ Deviation deviation_up_to_horizon(const fem::Structure& structure, const Model& 
   Record all_full;
   Record all_reduced;
   for (const dynamics::State& state : starts) {
-    const SharedRun run =
-        run_shared(full, reduced, parameter, restarted(rom::restrict_state(structure, *reduced.basis, state)), horizon,
-                   sample, flow);
+    const SharedRun run = run_shared(full, reduced, parameter, rom::restrict_state(structure, *reduced.basis, state),
+                                     horizon, sample, flow);
     all_full = appended(std::move(all_full), run.full);
     all_reduced = appended(std::move(all_reduced), run.reduced);
   }
@@ -53,7 +52,7 @@ double distance_to_basis(const fem::Structure& structure, const pod::Basis& basi
   double lost = 0.0;
   double size = 0.0;
   for (const dynamics::State& state : states) {
-    const dynamics::State back = rom::lift(basis, restarted(rom::restrict_state(structure, basis, state)));
+    const dynamics::State back = rom::lift(basis, rom::restrict_state(structure, basis, state));
     lost += (state.q - back.q).squaredNorm() + (state.v - back.v).squaredNorm();
     size += (state.q - mean).squaredNorm() + state.v.squaredNorm();
   }
