@@ -5,6 +5,7 @@
 #include "bench/history.hpp"
 #include "bench/kernel_cases.hpp"
 #include "bench/library_cases.hpp"
+#include "bench/long_chain_cases.hpp"
 #include "bench/machine.hpp"
 #include "bench/orbit_cases.hpp"
 #include "bench/reduction_cases.hpp"
@@ -48,6 +49,7 @@ std::vector<LibraryCase> library_cases() {
           {"reduction", measure_reduction},
           {"orbit", measure_orbits},
           {"extras", measure_extras},
+          {"chain10000", measure_long_chain, true},
           {"series", measure_series, true},
           {"pod", measure_pod, true},
           {"beam", measure_beam, true},
