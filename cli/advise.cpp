@@ -84,6 +84,7 @@ Report run(const Session& session, const AdviseArguments& arguments) {
   report.data = {{"verb", "advise"}, {"limit_percent", limit}, {"effects", list}, {"study", to_json(done, scene)}};
   if (!file) return report;
   report.data["file"] = arguments.output;
+  tell_resumed(file->resumed(), "configurations", report);
   report.text += fmt::format("Result: {}\n", arguments.output);
   return report;
 }

@@ -108,9 +108,7 @@ Report diagnose_over(const Session& session, const scene::Scene& scene, const Di
     report.text += exponent_summary(swept[m].title, sweeps[m].points, summary);
     report.data["models"].push_back(std::move(summary));
   }
-  report.data["resumed"] = file.resumed();
-  if (file.resumed() > 0)
-    report.text += fmt::format("{} values were taken over from an interrupted run\n", file.resumed());
+  tell_resumed(file.resumed(), "values", report);
   report.text += fmt::format("Exponents: {}\n", request.output);
   return report;
 }

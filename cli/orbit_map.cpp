@@ -98,9 +98,7 @@ Report run(const Session& session, const OrbitMapArguments& arguments) {
   file.finish([&](results::StoreWriter& writer) { studies::store(writer, family, study); });
   Report report = summary(family, study, over);
   report.data["file"] = arguments.output;
-  report.data["resumed"] = file.resumed();
-  if (file.resumed() > 0)
-    report.text += fmt::format("{} rows were taken over from an interrupted run\n", file.resumed());
+  tell_resumed(file.resumed(), "rows", report);
   report.text += fmt::format("Map: {}\n", arguments.output);
   return report;
 }

@@ -57,6 +57,11 @@ void Session::check_interrupt() const {
   if (stop != nullptr && stop->load()) throw Interrupted();
 }
 
+void tell_resumed(std::size_t resumed, const std::string& what, Report& out_report) {
+  out_report.data["resumed"] = resumed;
+  if (resumed > 0) out_report.text += fmt::format("{} {} were taken over from an interrupted run\n", resumed, what);
+}
+
 void require_writable(const fs::path& file) {
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
   if (fs::is_directory(file)) {

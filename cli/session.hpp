@@ -55,6 +55,9 @@ struct Report {
 /// @throws InvalidInput  when the folder is missing or not writable, or the path is a folder
 void require_writable(const std::filesystem::path& file);
 
+/// Says what an interrupted run had finished. @param what  is counted: "values", "rows"
+void tell_resumed(std::size_t resumed, const std::string& what, Report& out_report);
+
 /// What went wrong, when and in which state, for people.
 [[nodiscard]] std::string describe(const NumericalFailure& failure);
 

@@ -78,8 +78,7 @@ Report summary(const SweepRequest& request, const studies::Family& family, const
   report.data["failures"] = failures;
   report.text += fmt::format("Sweep: {}\n", request.output);
   report_failures(report, failures, values);
-  report.data["resumed"] = resumed;
-  if (resumed > 0) report.text += fmt::format("{} values were taken over from an interrupted run\n", resumed);
+  tell_resumed(resumed, "values", report);
   return report;
 }
 

@@ -92,6 +92,7 @@ Report run(const Session& session, const TradeArguments& arguments) {
   for (const std::string& sentence : advice) report.text += sentence + '\n';
   if (!arguments.output.empty()) {
     report.data["file"] = arguments.output;
+    tell_resumed(file->resumed(), "configurations", report);
     report.text += fmt::format("Result: {}\n", arguments.output);
   }
   if (!arguments.figures.empty()) {

@@ -75,6 +75,7 @@ struct StoreWriter::Impl {
   fs::path temporary;
   Hdf5Handle file;
   bool dimensionless = false;
+  bool failed = false;
 
   Impl(fs::path target, bool without_dimensions) : path(std::move(target)), dimensionless(without_dimensions) {
     check_target(path);
@@ -82,9 +83,12 @@ struct StoreWriter::Impl {
     const QuietHdf5 quiet;
     file = Hdf5Handle(H5Fcreate(temporary.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
     if (!file.valid()) {
+      const int cause = errno;
+      std::error_code ignored;
+      fs::remove(temporary, ignored);  // made, but not even its first bytes written
       throw InvalidInput(
           fmt::format("{}: cannot be written ({}); check the folder's permissions or choose another output",
-                      path.string(), std::strerror(errno)));
+                      path.string(), std::strerror(cause)));
     }
   }
 
@@ -98,15 +102,17 @@ struct StoreWriter::Impl {
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
-  [[noreturn]] void fail(const std::string& name, const std::string& what) const {
+  [[noreturn]] void fail(const std::string& name, const std::string& what) {
+    failed = true;
     throw InvalidInput(fmt::format("{}: {}: {}", path.string(), name, what));
   }
 
-  void check_open(const std::string& name) const {
+  void check_open(const std::string& name) {
+    if (failed) fail(name, "an earlier write to this file failed");
     if (!file.valid()) fail(name, "the file is already committed; write everything before commit");
   }
 
-  void attribute(hid_t object, const char* key, const std::string& value) const {
+  void attribute(hid_t object, const char* key, const std::string& value) {
     const Hdf5Handle type = text_type(value.size());
     const Hdf5Handle space(H5Screate(H5S_SCALAR), H5Sclose);
     const Hdf5Handle attr(H5Acreate2(object, key, type.id(), space.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);

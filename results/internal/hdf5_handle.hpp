@@ -35,10 +35,12 @@ class Hdf5Handle {
   Close close_ = nullptr;
 };
 
-/// Stops HDF5 from printing its error stack while alive; the caller's setting comes back afterwards.
+/// Stops HDF5 from printing its error stack while alive; the caller's setting comes back afterwards. The first one keeps
+/// HDF5 from tidying up at exit: files are closed long before, and over one that a full disc keeps open it crashes.
 class QuietHdf5 {
  public:
   QuietHdf5() {
+    [[maybe_unused]] static const herr_t once = H5dont_atexit();
     H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   }

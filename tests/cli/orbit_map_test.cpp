@@ -1,5 +1,6 @@
 #include <slipmode/results/table.hpp>
 #include "cli/slipmode_process.hpp"
+#include "cli/small_scenes.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +14,6 @@ namespace fs = std::filesystem;
 namespace scene = slipmode::scene;
 using testing::HasSubstr;
 
-const std::string kBacklash = std::string(SLIPMODE_SOURCE_DIR) + "/datasets/backlash_sdof/scene.toml";
 const std::string kThreeMasses = std::string(SLIPMODE_SOURCE_DIR) + "/datasets/clearance_3mass/scene.toml";
 
 class OrbitMap : public testing::Test {
