@@ -65,7 +65,7 @@ function(slipmode_module name)
   target_include_directories(slipmode_${name} PUBLIC ${SLIPMODE_BUILD_INCLUDE} PRIVATE ${PROJECT_SOURCE_DIR})
   target_compile_definitions(slipmode_${name} PUBLIC ${SLIPMODE_PUBLIC_DEFINITIONS})
   target_link_libraries(slipmode_${name} PUBLIC Eigen3::Eigen PRIVATE slipmode_flags Spectra::Spectra fmt::fmt
-    tomlplusplus::tomlplusplus nlohmann_json::nlohmann_json ${fourier_library} slipmode::hdf5
+    tomlplusplus::tomlplusplus nlohmann_json::nlohmann_json ${fourier_library} slipmode::hdf5 ZLIB::ZLIB
     Threads::Threads)
   if(name IN_LIST SLIPMODE_LIGHT_MODULES)
     target_link_libraries(slipmode_${name} PRIVATE slipmode_light)
@@ -78,7 +78,7 @@ function(slipmode_configure_library)
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_definitions(slipmode PUBLIC ${SLIPMODE_PUBLIC_DEFINITIONS})
   target_link_libraries(slipmode PUBLIC Eigen3::Eigen PRIVATE fmt::fmt tomlplusplus::tomlplusplus LAPACK::LAPACK
-    ${fourier_library} slipmode::hdf5 Threads::Threads)
+    ${fourier_library} slipmode::hdf5 ZLIB::ZLIB Threads::Threads)
   target_compile_features(slipmode PUBLIC cxx_std_20)
   set_target_properties(slipmode PROPERTIES LINKER_LANGUAGE CXX)
 endfunction()

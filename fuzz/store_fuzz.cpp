@@ -6,8 +6,10 @@
 #include <slipmode/results/provenance.hpp>
 #include <slipmode/results/records.hpp>
 #include "results/internal/hdf5_handle.hpp"
+#include "results/internal/seal.hpp"
 #include "scratch_file.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <filesystem>
@@ -38,6 +40,7 @@ std::vector<Seed> read_seeds() {
     std::ifstream in(path, std::ios::binary);
     Seed seed;
     seed.bytes.assign(std::istreambuf_iterator<char>(in), {});
+    std::fill_n(seed.bytes.begin(), slipmode::results::kSealBytes, 0);  // a seal would refuse whatever is changed
     const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
     if (!file.valid()) std::abort();
     H5Ovisit(file.id(), H5_INDEX_NAME, H5_ITER_NATIVE, note_dataset, &seed.datasets);

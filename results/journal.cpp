@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <sys/file.h>
 #include <unistd.h>
+#include <zlib.h>
 #include <array>
 #include <cerrno>
 #include <charconv>
@@ -21,20 +22,8 @@ namespace {
 constexpr std::string_view kMagic = "slipmode-journal 1 ";
 constexpr double kSyncInterval = 1.0;  // s: a sync costs milliseconds, a row often less
 
-/// CRC-32 (IEEE 802.3, reflected, polynomial 0xEDB88320).
-std::uint32_t crc32(std::string_view text) {
-  static constexpr auto kTable = [] {
-    std::array<std::uint32_t, 256> table{};
-    for (std::uint32_t i = 0; i < table.size(); ++i) {
-      std::uint32_t value = i;
-      for (int bit = 0; bit < 8; ++bit) value = (value >> 1) ^ ((value & 1U) != 0 ? 0xEDB88320U : 0U);
-      table[i] = value;
-    }
-    return table;
-  }();
-  std::uint32_t crc = 0xFFFFFFFFU;
-  for (const char c : text) crc = (crc >> 8) ^ kTable[(crc ^ static_cast<unsigned char>(c)) & 0xFFU];
-  return ~crc;
+std::uint32_t crc_of(std::string_view text) {
+  return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(text.data()), text.size()));
 }
 
 std::string escape(const std::string& note) {
@@ -73,7 +62,7 @@ std::string to_line(const JournalRecord& record) {
     body.append(digits.data(), end);
   }
   body += ' ' + escape(record.note);
-  return fmt::format("{:08x} {}\n", crc32(body), body);
+  return fmt::format("{:08x} {}\n", crc_of(body), body);
 }
 
 std::string_view take_word(std::string_view& rest) {
@@ -94,7 +83,7 @@ std::optional<JournalRecord> from_line(std::string_view line) {
   std::uint32_t expected = 0;
   const std::string_view word = take_word(line);
   const auto crc_read = std::from_chars(word.data(), word.data() + word.size(), expected, 16);
-  if (crc_read.ec != std::errc() || crc32(line) != expected) return std::nullopt;
+  if (crc_read.ec != std::errc() || crc_of(line) != expected) return std::nullopt;
   JournalRecord record;
   record.table = std::string(take_word(line));
   std::size_t count = 0;

@@ -7,6 +7,7 @@
 #include <slipmode/results/records.hpp>
 #include <slipmode/results/units.hpp>
 #include <slipmode/scene/scene.hpp>
+#include "results/internal/seal.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -14,7 +15,6 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <vector>
 
 namespace slipmode::results {
@@ -41,13 +41,6 @@ FileAndSeries file_and_series(const std::string& input) {
     throw InvalidInput(fmt::format("'{}': no such file; expected FILE or FILE:SERIES", input));
   }
   return {input, ""};
-}
-
-bool is_hdf5(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::string start(8, '\0');
-  in.read(start.data(), 8);
-  return start == "\x89HDF\r\n\x1a\n";
 }
 
 Eigen::VectorXd equal_steps(Eigen::Index count, double interval) {

@@ -1,6 +1,7 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/results/store.hpp>
 #include "results/internal/hdf5_handle.hpp"
+#include "results/internal/seal.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -14,19 +15,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool has_hdf5_signature(const fs::path& path) {
-  constexpr char kSignature[] = "\x89HDF\r\n\x1a\n";
-  char head[8] = {};
-  std::ifstream(path, std::ios::binary).read(head, sizeof head);
-  return std::memcmp(head, kSignature, sizeof head) == 0;
-}
-
 std::string why_not_opened(const fs::path& path) {
   if (!fs::exists(path)) return "no such file; check the path";
   if (fs::is_directory(path)) return "is a folder; expected a result file";
   if (!std::ifstream(path).good()) return "cannot be read; check its permissions";
   if (fs::file_size(path) == 0) return "is empty; make it again";
-  if (!has_hdf5_signature(path)) return "is not an HDF5 file; expected a result written by slipmode (or h5py, MATLAB)";
+  if (!is_hdf5(path)) return "is not an HDF5 file; expected a result written by slipmode (or h5py, MATLAB)";
   return "is truncated or damaged HDF5; make it again";
 }
 
@@ -103,6 +97,8 @@ struct StoreReader::Impl {
 
   explicit Impl(fs::path source) : path(std::move(source)) {
     const QuietHdf5 quiet;
+    if (const std::string damage = damage_of(path); !damage.empty())
+      throw InvalidInput(fmt::format("{}: {}; copy or make it again", path.string(), damage));
     file = Hdf5Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
     if (!file.valid()) throw InvalidInput(fmt::format("{}: {}", path.string(), why_not_opened(path)));
   }

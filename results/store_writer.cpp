@@ -1,6 +1,7 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/results/store.hpp>
 #include "results/internal/hdf5_handle.hpp"
+#include "results/internal/seal.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -81,7 +82,9 @@ struct StoreWriter::Impl {
     check_target(path);
     temporary = temporary_beside(path);
     const QuietHdf5 quiet;
-    file = Hdf5Handle(H5Fcreate(temporary.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+    const Hdf5Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+    H5Pset_userblock(creation.id(), kSealBytes);
+    file = Hdf5Handle(H5Fcreate(temporary.c_str(), H5F_ACC_EXCL, creation.id(), H5P_DEFAULT), H5Fclose);
     if (!file.valid()) {
       const int cause = errno;
       std::error_code ignored;
@@ -102,17 +105,16 @@ struct StoreWriter::Impl {
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
-  [[noreturn]] void fail(const std::string& name, const std::string& what) {
-    failed = true;
+  [[noreturn]] void fail(const std::string& name, const std::string& what) const {
     throw InvalidInput(fmt::format("{}: {}: {}", path.string(), name, what));
   }
 
-  void check_open(const std::string& name) {
+  void check_open(const std::string& name) const {
     if (failed) fail(name, "an earlier write to this file failed");
     if (!file.valid()) fail(name, "the file is already committed; write everything before commit");
   }
 
-  void attribute(hid_t object, const char* key, const std::string& value) {
+  void attribute(hid_t object, const char* key, const std::string& value) const {
     const Hdf5Handle type = text_type(value.size());
     const Hdf5Handle space(H5Screate(H5S_SCALAR), H5Sclose);
     const Hdf5Handle attr(H5Acreate2(object, key, type.id(), space.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
@@ -149,6 +151,7 @@ struct StoreWriter::Impl {
         H5Dcreate2(file.id(), name.c_str(), file_type, space.id(), links.id(), layout.id(), H5P_DEFAULT), H5Dclose);
     if (!set.valid()) fail(name, "dataset could not be made; is there one of this name already, or is the disc full?");
     if (count > 0 && H5Dwrite(set.id(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) {
+      failed = true;
       fail(name, "could not be written; is the disc full?");
     }
     const bool is_number = dimensionless && meaning.of == Meaning::Of::kModel && has_dimension(meaning.units);
@@ -225,7 +228,8 @@ void StoreWriter::describe_group(const std::string& name, const std::string& des
 void StoreWriter::commit() {
   const QuietHdf5 quiet;
   impl_->check_open("commit");
-  if (!impl_->file.reset()) impl_->fail("commit", "could not be finished; is the disc full?");
+  if (!impl_->file.reset() || !seal(impl_->temporary))
+    impl_->fail("commit", "could not be finished; is the disc full?");
   const int descriptor = ::open(impl_->temporary.c_str(), O_RDONLY | O_CLOEXEC);
   const bool synced = descriptor >= 0 && ::fsync(descriptor) == 0;
   if (descriptor >= 0) ::close(descriptor);

@@ -6,7 +6,7 @@ packages=(
   # toolchain
   g++ cmake ninja-build git ca-certificates
   # libraries
-  libeigen3-dev libspectra-dev liblapack-dev libfftw3-dev libhdf5-dev
+  libeigen3-dev libspectra-dev liblapack-dev libfftw3-dev libhdf5-dev zlib1g-dev
   libfmt-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev
   # tests, benchmarks and the peers they measure against
   libgtest-dev libgmock-dev libarpack2-dev libbenchmark-dev libsundials-dev libboost-dev
