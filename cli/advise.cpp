@@ -64,7 +64,7 @@ Report run(const Session& session, const AdviseArguments& arguments) {
   const trade::Schedule schedule = trade::schedule_of(scene);
   const std::vector<trade::Effect> effects = trade::effects_of(scene);
   std::optional<studies::ResultFile> file;
-  if (!arguments.output.empty()) file.emplace(arguments.output, scene, "slipmode advise");
+  if (!arguments.output.empty()) file.emplace(arguments.output, scene, results::FileKind::kTrade, "slipmode advise");
   trade::StudyOptions options{.schedule = schedule};
   options.parallel = session.run_options().parallel("advise");
   if (file) results::keep_in(file->journal(), options);

@@ -1,7 +1,7 @@
 #include "cli/diagnose.hpp"
 
+#include <slipmode/figures/file_figures.hpp>
 #include <slipmode/figures/gnuplot.hpp>
-#include <slipmode/figures/series_figures.hpp>
 #include <slipmode/results/series_input.hpp>
 #include <slipmode/results/series_store.hpp>
 #include "cli/diagnose_model.hpp"
@@ -86,14 +86,14 @@ Report diagnosis_report(const diagnostics::SeriesStudy& study, const results::Se
   report.data["not_run"] = not_run;
   const std::string file = diagnosis_file(arguments.request);
   if (file.empty()) return report;
-  results::StoreWriter writer(file);
+  results::StoreWriter writer(file, results::FileKind::kSeries);
   save(writer, study, input, findings);
   writer.commit();
   report.data["file"] = file;
   report.text += fmt::format("Numbers and curves: {}\n", file);
   if (arguments.request.figures.empty()) return report;
-  report.data["figures"] =
-      figures::save_all(figures::series_figures_of(results::StoreReader(file)), arguments.request.figures);
+  const results::StoreReader store(file);
+  report.data["figures"] = figures::save_all(store, figures::figures_of(store), arguments.request.figures);
   report.text += fmt::format("Figures: {}\n", arguments.request.figures);
   return report;
 }

@@ -1,7 +1,7 @@
 #include "cli/diagnose_model.hpp"
 #include "cli/exponents_report.hpp"
 
-#include <slipmode/figures/exponents_figures.hpp>
+#include <slipmode/figures/file_figures.hpp>
 #include <slipmode/results/exponents_store.hpp>
 #include <slipmode/results/provenance.hpp>
 #include <slipmode/scene/own_times.hpp>
@@ -31,8 +31,8 @@ void check_diagnosis_outputs(const DiagnoseRequest& request) {
 
 void draw_diagnosis(const DiagnoseRequest& request, const std::string& file, Report& report) {
   if (request.figures.empty()) return;
-  report.data["figures"] =
-      figures::save_all(figures::exponents_figures_of(results::StoreReader(file)), request.figures);
+  const results::StoreReader store(file);
+  report.data["figures"] = figures::save_all(store, figures::figures_of(store), request.figures);
   report.text += fmt::format("Figures: {}\n", request.figures);
 }
 
@@ -70,7 +70,7 @@ Report diagnose_scene(const Session& session, const DiagnoseRequest& request, co
   const std::string file = model_file(request);
   if (file.empty()) return report;
   const results::Units units = results::Units::of(scene.units);
-  results::StoreWriter writer(file, scene.units);
+  results::StoreWriter writer(file, verdict ? results::FileKind::kVerdict : results::FileKind::kExponents, scene.units);
   results::save(writer,
                 results::provenance_of(scene, models.verdict ? "slipmode diagnose --verdict" : "slipmode diagnose"));
   results::store_exponents(writer, spectra, units);

@@ -80,7 +80,7 @@ Report diagnose_over(const Session& session, const scene::Scene& scene, const Di
   std::string identity;
   for (const std::string& file : models.files) identity += studies::identity_of(std::filesystem::path(file));
   studies::ResultFile file(
-      request.output, scene,
+      request.output, scene, results::FileKind::kExponentSweep,
       fmt::format("slipmode diagnose --over {}{} --exponents {} --transient {} --duration {} --renormalise {} {}",
                   models.over, models.follow ? " --follow" : "", tangent.exponents, tangent.transient, tangent.duration,
                   tangent.interval, swept.back().title),

@@ -82,7 +82,7 @@ double hertz(double omega) { return omega / (2.0 * std::numbers::pi); }
 
 void store(const std::filesystem::path& path, const scene::Scene& scene, const ModeSets& sets) {
   const results::Units units = results::Units::of(scene.units);
-  results::StoreWriter writer(path, scene.units);
+  results::StoreWriter writer(path, results::FileKind::kModes, scene.units);
   results::save(writer, results::provenance_of(scene, "slipmode modes"));
   const auto write = [&](const std::string& group, const fem::Modes& modes, const std::string& what) {
     writer.describe_group(group, what);

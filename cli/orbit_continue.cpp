@@ -112,7 +112,7 @@ Report run(const Session& session, const OrbitContinueArguments& arguments) {
       studies::continue_orbit(scene, range.key, basis, search_of(arguments.search, scene), request, run_options);
   if (!found.found.converged()) return not_found("orbit continue", found.found);
   const studies::Family model(scene, {range.key}, basis);
-  results::StoreWriter writer(arguments.output, scene.units);
+  results::StoreWriter writer(arguments.output, results::FileKind::kBranches, scene.units);
   const std::string command =
       fmt::format("slipmode orbit continue --over {} --model {}", arguments.over, arguments.search.model);
   results::save(writer, results::provenance_of(scene::set_key(scene, range.key, found.start), command));

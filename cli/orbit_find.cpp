@@ -22,7 +22,7 @@ void store(const std::string& path, const scene::Scene& scene, const dynamics::H
   constexpr double kSamples = 1000.0;
   const dynamics::Trajectory period = dynamics::simulate(
       system, orbit.start, {.duration = orbit.period, .sample = orbit.period / kSamples, .flow = {.tolerance = 1e-12}});
-  results::StoreWriter writer(path, scene.units);
+  results::StoreWriter writer(path, results::FileKind::kOrbit, scene.units);
   results::Provenance provenance = results::provenance_of(scene, "slipmode orbit find");
   provenance.audit = period.audit;
   results::save(writer, provenance);

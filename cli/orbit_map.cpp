@@ -84,7 +84,7 @@ Report run(const Session& session, const OrbitMapArguments& arguments) {
   studies::check(family, options);
   for (const Over& one : over) check_values(scene, one);
   studies::ResultFile file(
-      arguments.output, scene,
+      arguments.output, scene, keys.size() > 1 ? results::FileKind::kMap : results::FileKind::kStrobe,
       fmt::format("slipmode orbit map --over {} --start {} --max-order {} --periods {} --kept {} --tolerance {}{}",
                   fmt::join(arguments.over, " --over "), arguments.start, options.max_order, options.periods,
                   options.kept, options.tolerance, options.follow ? " --follow" : ""));

@@ -77,7 +77,7 @@ std::vector<double> column_of(const std::vector<Recurrence>& groups, double (*nu
 
 void store_groups(const OrbitReturnsArguments& arguments, const Eigen::MatrixXd& points,
                   const std::vector<Recurrence>& groups) {
-  results::StoreWriter writer(arguments.output);
+  results::StoreWriter writer(arguments.output, results::FileKind::kReturns);
   writer.describe_group("returns", fmt::format("close returns of {}, delay {}, dimension {}", arguments.series,
                                                arguments.delay, arguments.dimension));
   results::save(

@@ -17,7 +17,7 @@ struct OrbitSkeletonArguments {
 };
 
 results::StoreWriter begin_store(const OrbitSkeletonArguments& arguments, const scene::Scene& scene) {
-  results::StoreWriter writer(arguments.output, scene.units);
+  results::StoreWriter writer(arguments.output, results::FileKind::kSkeleton, scene.units);
   results::save(
       writer,
       results::provenance_of(

@@ -14,9 +14,7 @@ struct PlotArguments {
 const figures::FileFigure& select(const std::vector<figures::FileFigure>& figures, const PlotArguments& arguments) {
   if (figures.empty()) {
     throw InvalidInput(
-        fmt::format("'{}' holds nothing to draw; figures come from trajectories, PODs, reduced models, "
-                    "sweeps and validations ('slipmode info' says what is inside)",
-                    arguments.input));
+        fmt::format("'{}' holds nothing to draw ('slipmode info' says what is inside)", arguments.input));
   }
   if (arguments.figure.empty()) return figures.front();
   for (const figures::FileFigure& figure : figures) {
@@ -32,9 +30,10 @@ Report run(const PlotArguments& arguments) {
   figures::require_figure_extension(arguments.output);
   require_writable(arguments.output);
   const results::StoreReader store(arguments.input);
+  results::require_kind(store, figures::drawn_kinds());
   const std::vector<figures::FileFigure> figures = figures::figures_of(store);
   const figures::FileFigure& figure = select(figures, arguments);
-  figures::save(figure.draw(), {arguments.output});
+  figures::save(figure.draw(store), {arguments.output});
 
   Report report;
   report.text = fmt::format("{}: {}\n", figure.what, arguments.output);

@@ -36,7 +36,7 @@ Report run_shaken(const PodArguments& arguments, const scene::Scene& scene, cons
   }
   const results::ShakenModes modes = studies::shaken_modes(scene, scene::build_system(scene).structure(), ensemble);
   provenance.command = "slipmode pod";
-  results::StoreWriter writer(arguments.output, scene.units);
+  results::StoreWriter writer(arguments.output, results::FileKind::kPod, scene.units);
   results::save(writer, provenance);
   results::save(writer, modes);
   writer.commit();
@@ -62,7 +62,7 @@ Report run(const Session& session, const PodArguments& arguments) {
   const pod::PodResult result = decompose(ensemble, arguments);
 
   provenance.command = "slipmode pod";
-  results::StoreWriter writer(arguments.output, scene.units);
+  results::StoreWriter writer(arguments.output, results::FileKind::kPod, scene.units);
   results::save(writer, provenance);
   results::save(writer, results::kPodGroup, result);
   writer.commit();

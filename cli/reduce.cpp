@@ -37,7 +37,7 @@ Report run(const Session& session, const ReduceArguments& arguments) {
   const pod::Basis basis = source.basis.truncated(modes);
   const dynamics::HybridSystem reduced = rom::reduce(full, basis);
 
-  results::StoreWriter writer(arguments.output, scene.units);
+  results::StoreWriter writer(arguments.output, results::FileKind::kReduced, scene.units);
   results::save(writer, results::provenance_of(scene, fmt::format("slipmode reduce --modes {}", modes)));
   results::save(writer, results::kReducedGroup, results::ReducedModel{.system = reduced, .basis = basis});
   writer.commit();

@@ -20,7 +20,7 @@ Report run_trajectory(const Session& session, const SimulateArguments& arguments
   const studies::Simulation run = studies::simulate(scene, session.run_options());
   const dynamics::Trajectory& trajectory = run.trajectory;
 
-  results::StoreWriter writer(arguments.output, scene.units);
+  results::StoreWriter writer(arguments.output, results::FileKind::kTrajectory, scene.units);
   results::Provenance provenance = results::provenance_of(scene, "slipmode simulate");
   provenance.audit = trajectory.audit;
   results::save(writer, provenance);

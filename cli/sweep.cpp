@@ -101,7 +101,7 @@ Report run(const Session& session, SweepRequest request) {
   const auto basis = studies::model_basis(scene, request.model, run_options);
   const studies::Family family(scene, {over.key}, basis);
   check_values(scene, over);
-  studies::ResultFile file(request.output, scene, command_of(request),
+  studies::ResultFile file(request.output, scene, results::FileKind::kSweep, command_of(request),
                            basis ? studies::identity_of(basis->basis) : "full");
   request.options.journal = &file.journal();
   const studies::Sweep sweep = studies::sweep(family, over.values, request.options, run_options);

@@ -72,8 +72,8 @@ Report run(const Session& session, const TradeArguments& arguments) {
   for (const trade::Axis axis : axes) identity += trade::to_string(axis);
   std::optional<studies::ResultFile> file;
   if (!arguments.output.empty()) {
-    file.emplace(arguments.output, scene, fmt::format("slipmode trade{}", arguments.product ? " --product" : ""),
-                 identity);
+    file.emplace(arguments.output, scene, results::FileKind::kTrade,
+                 fmt::format("slipmode trade{}", arguments.product ? " --product" : ""), identity);
   }
   trade::StudyOptions options{.schedule = schedule};
   options.parallel = session.run_options().parallel("trade");

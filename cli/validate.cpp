@@ -23,7 +23,8 @@ struct ValidateArguments {
 Report run_shaken(const Session& session, const ValidateArguments& arguments, scene::Scene scene,
                   const std::vector<pod::NamedBasis>& bases) {
   if (arguments.no_sweep) scene.shaken.frequencies.reset();
-  if (results::StoreReader(arguments.input).has(results::kReducedGroup)) {  // its own size is the one to judge
+  if (results::kind_of(results::StoreReader(arguments.input)) ==
+      results::FileKind::kReduced) {  // its own size is the one to judge
     scene.shaken.modes = {static_cast<int>(bases.front().basis.modes())};
   }
   const auto result = studies::validate_shaken(scene, bases, arguments.output, session.run_options());

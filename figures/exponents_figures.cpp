@@ -136,15 +136,14 @@ Figure exponents_over_key(const StoreReader& store) {
 }  // namespace
 
 std::vector<FileFigure> exponents_figures_of(const StoreReader& store) {
-  if (!store.has(results::kExponentsGroup)) return {};
-  if (store.has("exponents/full"))
-    return {{"exponents", "exponents against the swept key, below the bifurcation diagram",
-             [&store] { return exponents_over_key(store); }}};
   if (exponent_groups(store).empty()) return {};
-  return {
-      {"exponents", "Lyapunov exponents with their errors", [&store] { return exponents_drawn(store); }},
-      {"convergence", "exponents against the time measured", [&store] { return convergence_drawn(store); }},
-      {"expansion", "distribution of the expansion over one interval", [&store] { return expansion_drawn(store); }}};
+  return {{"exponents", "Lyapunov exponents with their errors", exponents_drawn},
+          {"convergence", "exponents against the time measured", convergence_drawn},
+          {"expansion", "distribution of the expansion over one interval", expansion_drawn}};
+}
+
+std::vector<FileFigure> exponent_sweep_figures_of(const StoreReader&) {
+  return {{"exponents", "exponents against the swept key, below the bifurcation diagram", exponents_over_key}};
 }
 
 }  // namespace slipmode::figures

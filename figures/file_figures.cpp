@@ -1,264 +1,67 @@
 #include <slipmode/figures/file_figures.hpp>
 
-#include <slipmode/figures/bifurcation.hpp>
-#include <slipmode/figures/deviation.hpp>
-#include <slipmode/figures/energy_shares.hpp>
+#include <slipmode/figures/belt_figures.hpp>
 #include <slipmode/figures/exponents_figures.hpp>
 #include <slipmode/figures/map_figures.hpp>
-#include <slipmode/figures/mode_shapes.hpp>
 #include <slipmode/figures/orbit_figures.hpp>
-#include <slipmode/figures/panels.hpp>
-#include <slipmode/figures/phase_portraits.hpp>
 #include <slipmode/figures/series_figures.hpp>
 #include <slipmode/figures/shaken_figures.hpp>
 #include <slipmode/figures/skeleton_figures.hpp>
-#include <slipmode/figures/style.hpp>
-#include <slipmode/figures/time_history.hpp>
 #include <slipmode/figures/trade_figures.hpp>
-#include <slipmode/results/portrait_store.hpp>
 #include <slipmode/results/provenance.hpp>
-#include <slipmode/results/records.hpp>
-#include <slipmode/results/table.hpp>
-#include <slipmode/rom/candidates.hpp>
-#include <slipmode/rom/reduce.hpp>
-#include <slipmode/scene/own_times.hpp>
 #include <slipmode/scene/shaken.hpp>
-#include <slipmode/scene/solver_options.hpp>
 
-#include <fmt/format.h>
 #include <algorithm>
-#include <map>
+#include <utility>
 
 namespace slipmode::figures {
 namespace {
 
-using results::StoreReader;
+using results::FileKind;
 
-std::string_view colour_of(const std::string& role) {
-  if (role == "full") return kFullColour;
-  return role == "LNM" ? kLnmColour : kPomColour;
-}
+/// Figures of a file that is known to be of a kind, the most telling first.
+using FiguresOf = std::vector<FileFigure> (*)(const results::StoreReader&);
 
-/// "x_{10}": the displacement of the scene's first contact as the figures call it.
-std::string contact_symbol(const scene::Scene& scene, const std::string& letter) {
-  return fmt::format("{}_{{{}}}", letter, scene::to_string(scene.contacts.front().at));
-}
+struct KindFigures {
+  FileKind kind;
+  FiguresOf figures;
+  FiguresOf under_shaker = nullptr;  ///< if they are others there
+};
 
-Figure bifurcation(const StoreReader& store) {
-  const scene::Scene scene = results::load_scene_of(store);
-  std::vector<BifurcationPanel> panels;
-  std::string label, unit;
-  for (const std::string group : {"sweep/full", "sweep/reduced"}) {
-    if (!store.has(group)) continue;
-    const results::Table slips = results::load_table(store, group + "/slips");
-    const auto& contact = slips.numbers("contact");
-    const auto& parameter = slips.numbers("parameter");
-    const auto& displacement = slips.numbers("displacement");
-    std::vector<double> x, y;
-    for (std::size_t i = 0; i < contact.size(); ++i) {
-      if (contact[i] != 0.0) continue;
-      x.push_back(parameter[i]);
-      y.push_back(displacement[i]);
-    }
-    panels.push_back(
-        {store.text(group + "/title"), to_vector(x), to_vector(y), group == "sweep/full" ? kFullColour : kPomColour});
-    label = store.text(group + "/label");
-    unit = store.entry(group + "/values/parameter").meaning.units;
-  }
-  return bifurcation_diagram(panels, {.parameter = label,
-                                      .parameter_unit = unit,
-                                      .value = "slip-state displacement " + contact_symbol(scene, "x"),
-                                      .value_unit = results::Units::of(scene.units).length});
-}
-
-Figure portraits(const StoreReader& store, const std::string& group, PortraitLayout::Axes axes) {
-  const scene::Scene scene = results::load_scene_of(store);
-  const results::Units units = results::Units::of(scene.units);
-  const results::PortraitSet set = results::load_portraits(store, group);
-  std::vector<PhasePortrait> panels;
-  for (const results::Portrait& portrait : set.portraits) {
-    panels.push_back({portrait.title, portrait.displacement, portrait.velocity, colour_of(portrait.role)});
-  }
-  return phase_portraits(panels, {.columns = set.columns,
-                                  .displacement = "displacement " + contact_symbol(scene, "x"),
-                                  .displacement_unit = units.length,
-                                  .velocity = "velocity " + contact_symbol(scene, "v"),
-                                  .velocity_unit = units.velocity,
-                                  .axes = axes});
-}
-
-/// Curves of one motion: rows of a table that belong to it, by basis.
-DeviationCase deviation_case(const results::Table& table, const std::string& title,
-                             const std::vector<std::size_t>& rows) {
-  std::map<std::string, std::vector<std::size_t>> by_basis;
-  for (const std::size_t row : rows) by_basis[table.texts("basis")[row]].push_back(row);
-  DeviationCase motion{.title = title, .curves = {}};
-  for (const auto& [basis, of_basis] : by_basis) {
-    const auto pick = [&, &of_basis = of_basis](const std::string& column) {
-      Eigen::VectorXd values(static_cast<Eigen::Index>(of_basis.size()));
-      for (Eigen::Index i = 0; i < values.size(); ++i) values[i] = table.numbers(column)[of_basis[i]];
-      return values;
-    };
-    motion.curves.push_back({basis, pick("modes"), pick("dX"), pick("dE"), colour_of(basis)});
-  }
-  std::stable_sort(motion.curves.begin(), motion.curves.end(),
-                   [](const auto& a, const auto& b) { return a.name == "POM" && b.name != "POM"; });
-  return motion;
-}
-
-/// False when there was no orbit to compare at any number of modes.
-bool has_values(const DeviationCase& motion) {
-  return std::any_of(motion.curves.begin(), motion.curves.end(),
-                     [](const auto& curve) { return curve.delta_x.array().isFinite().any(); });
-}
-
-Figure deviation(const StoreReader& store) {
-  const scene::Scene scene = scene::with_own_times(results::load_scene_of(store));
-  const results::Table shares = results::load_table(store, "validation/shares");
-  const results::Table orbits = results::load_table(store, "validation/orbits");
-  std::vector<DeviationCase> cases;
-  std::vector<std::size_t> all(shares.rows());
-  for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
-  cases.push_back(deviation_case(
-      shares, fmt::format("V = {:g}, up to t = {:g}", store.number("validation/full/speed"), scene.validation.horizon),
-      all));
-  std::map<double, std::vector<std::size_t>, std::greater<>> by_speed;
-  for (std::size_t i = 0; i < orbits.rows(); ++i) by_speed[orbits.numbers("speed")[i]].push_back(i);
-  for (const auto& [speed, rows] : by_speed) {
-    DeviationCase orbit = deviation_case(orbits, fmt::format("V = {:g}, one period", speed), rows);
-    if (has_values(orbit)) cases.push_back(std::move(orbit));
-  }
-  constexpr std::size_t kMostColumns = 4;
-  if (cases.size() > kMostColumns) cases.resize(kMostColumns);
-  return deviation(cases);
-}
-
-/// The LNMs of the scene a file was made from, beside which POMs are drawn.
-Eigen::MatrixXd lnms(const scene::Scene& scene, Eigen::Index count) {
-  return rom::lnm_basis(scene::build_system(scene).structure(), count).vectors;
-}
-
-Figure shapes(const StoreReader& store) {
-  const pod::PodResult result = results::load_pod(store);
-  return mode_shapes({.poms = result.basis.vectors,
-                      .lnms = lnms(results::load_scene_of(store), result.basis.modes()),
-                      .shares = result.shares});
-}
-
-Figure reduced_shapes(const StoreReader& store) {
-  const pod::Basis basis = results::load_basis(store, std::string(results::kReducedGroup) + "/basis");
-  const bool compare = basis.kind != pod::BasisKind::kLnm;
-  return mode_shapes({.poms = basis.vectors,
-                      .lnms = compare ? lnms(results::load_scene_of(store), basis.modes()) : Eigen::MatrixXd(),
-                      .shares = basis.energy});
-}
-
-Figure energy(const StoreReader& store) {
-  const scene::Scene scene = results::load_scene_of(store);
-  const pod::PodResult result = results::load_pod(store);
-  const pod::NamedBasis lnm = rom::pom_and_lnm(scene::build_system(scene).structure(), result)[1];
-  return energy_shares(
-      {.pom = result.shares, .lnm_captured = lnm.captured, .threshold = scene.reduction.choice.energy});
-}
-
-std::vector<std::pair<double, double>> stick_intervals(const dynamics::Trajectory& trajectory) {
-  std::vector<std::pair<double, double>> intervals;
-  const double begin = trajectory.times[0], end = trajectory.times[trajectory.times.size() - 1];
-  double since = begin;
-  bool stuck = false, known = false;
-  for (const auto& event : trajectory.events) {
-    if (event.contact != 0) continue;
-    if (!known) stuck = event.before == dynamics::ContactMode::kStick;
-    known = true;
-    if (stuck) intervals.emplace_back(since, event.time);
-    stuck = event.after == dynamics::ContactMode::kStick;
-    since = event.time;
-  }
-  if (stuck) intervals.emplace_back(since, end);
-  return intervals;
-}
-
-/// The last stretch of a trajectory: long ones would be black.
-Figure history(const StoreReader& store) {
-  constexpr Eigen::Index kShown = 1000;
-  const scene::Scene scene = results::load_scene_of(store);
-  const results::Units units = results::Units::of(scene.units);
-  const dynamics::Trajectory trajectory = results::load_trajectory(store);
-  const Eigen::Index shown = std::min(kShown, trajectory.times.size());
-  std::vector<std::pair<double, double>> stick;
-  const double begin = trajectory.times[trajectory.times.size() - shown];
-  for (const auto& interval : stick_intervals(trajectory)) {
-    if (interval.second > begin) stick.push_back(interval);
-  }
-  return time_history({.contact = scene.contacts.front().name,
-                       .time = trajectory.times.tail(shown),
-                       .displacement = trajectory.contact_q.row(0).tail(shown),
-                       .velocity = trajectory.contact_v.row(0).tail(shown),
-                       .force = trajectory.lambda.row(0).tail(shown),
-                       .stick = stick,
-                       .time_unit = units.time,
-                       .displacement_unit = units.length,
-                       .velocity_unit = units.velocity,
-                       .force_unit = units.force});
-}
-
-Figure trajectory_portrait(const StoreReader& store) {
-  constexpr Eigen::Index kShown = 5000;
-  const scene::Scene scene = results::load_scene_of(store);
-  const results::Units units = results::Units::of(scene.units);
-  const dynamics::Trajectory trajectory = results::load_trajectory(store);
-  const Eigen::Index shown = std::min(kShown, trajectory.times.size());
-  return phase_portraits(
-      {{scene.title, trajectory.contact_q.row(0).tail(shown), trajectory.contact_v.row(0).tail(shown), kFullColour}},
-      {.columns = 1,
-       .displacement = "displacement " + contact_symbol(scene, "x"),
-       .displacement_unit = units.length,
-       .velocity = "velocity " + contact_symbol(scene, "v"),
-       .velocity_unit = units.velocity});
-}
-
-/// Figures of files made from a scene with a belt.
-std::vector<FileFigure> belt_figures_of(const StoreReader& store) {
-  using Axes = PortraitLayout::Axes;
-  FileFigures out(store);
-  out.add("validation/shares", "deviation", "deviations against the number of modes", deviation);
-  out.add("sweep", "bifurcation", "slip states against the swept key", bifurcation);
-  out.add("portraits/levels", "levels", "phase portraits, fewer and fewer modes",
-          [](const StoreReader& file) { return portraits(file, "portraits/levels", Axes::kShared); });
-  out.add("portraits/orbits", "orbits", "periodic orbits, full above reduced",
-          [](const StoreReader& file) { return portraits(file, "portraits/orbits", Axes::kPerColumn); });
-  out.add(results::kPodGroup, "shapes", "proper orthogonal modes beside linear natural modes", shapes);
-  out.add(results::kPodGroup, "energy", "energy shares", energy);
-  out.add(results::kReducedGroup, "shapes", "basis of the reduced model", reduced_shapes);
-  out.add(results::kTrajectoryGroup, "history", "displacement, velocity and force of the first contact", history);
-  out.add(results::kTrajectoryGroup, "portrait", "phase portrait of the first contact", trajectory_portrait);
-  return std::move(out.all);
-}
+constexpr KindFigures kFigures[] = {
+    {FileKind::kTrajectory, trajectory_figures_of, shaken_trajectory_figures_of},
+    {FileKind::kPod, belt_pod_figures_of, shaken_pod_figures_of},
+    {FileKind::kReduced, belt_reduced_figures_of, shaken_reduced_figures_of},
+    {FileKind::kValidation, belt_validation_figures_of, shaken_validation_figures_of},
+    {FileKind::kSweep, belt_sweep_figures_of, shaken_sweep_figures_of},
+    {FileKind::kExponents, exponents_figures_of},
+    {FileKind::kVerdict, exponents_figures_of},
+    {FileKind::kExponentSweep, exponent_sweep_figures_of},
+    {FileKind::kSeries, series_figures_of},
+    {FileKind::kOrbit, orbit_figures_of},
+    {FileKind::kBranches, branch_figures_of},
+    {FileKind::kMap, map_figures_of},
+    {FileKind::kStrobe, strobe_figures_of},
+    {FileKind::kSkeleton, skeleton_figures_of},
+    {FileKind::kTrade, trade_figures_of},
+};
 
 }  // namespace
 
-std::vector<FileFigure> figures_of(const StoreReader& store) {
-  if (std::vector<FileFigure> maps = map_figures_of(store); !maps.empty()) return maps;
-  if (std::vector<FileFigure> skeletons = skeleton_figures_of(store); !skeletons.empty()) return skeletons;
-  if (std::vector<FileFigure> series = series_figures_of(store); !series.empty()) return series;
-  if (std::vector<FileFigure> exponents = exponents_figures_of(store); !exponents.empty()) return exponents;
-  if (std::vector<FileFigure> fronts = trade_figures_of(store); !fronts.empty()) return fronts;
-  std::vector<FileFigure> orbits = orbit_figures_of(store);
-  if (!orbits.empty()) {
-    if (store.has(results::kTrajectoryGroup)) {
-      orbits.push_back(
-          {"history", "displacement, velocity and force of the first contact", [&store] { return history(store); }});
-    }
-    return orbits;
+std::vector<FileKind> drawn_kinds() {
+  std::vector<FileKind> kinds;
+  for (const KindFigures& drawn : kFigures) kinds.push_back(drawn.kind);
+  return kinds;
+}
+
+std::vector<FileFigure> figures_of(const results::StoreReader& store) {
+  const auto kind = results::kind_of(store);
+  for (const KindFigures& drawn : kFigures) {
+    if (drawn.kind != kind) continue;
+    const bool shaken = drawn.under_shaker != nullptr && is_shaken(results::load_scene_of(store));
+    return (shaken ? drawn.under_shaker : drawn.figures)(store);
   }
-  if (!store.has("provenance")) return belt_figures_of(store);
-  if (!is_shaken(results::load_scene_of(store))) return belt_figures_of(store);
-  std::vector<FileFigure> out = shaken_figures_of(store);
-  if (!store.has(results::kTrajectoryGroup)) return out;
-  for (FileFigure& figure : belt_figures_of(store)) {
-    if (figure.name == "history" || figure.name == "portrait") out.push_back(std::move(figure));
-  }
-  return out;
+  return {};
 }
 
 std::vector<std::string> save_figures_of(const std::filesystem::path& folder, const std::vector<std::string>& files,
@@ -267,7 +70,7 @@ std::vector<std::string> save_figures_of(const std::filesystem::path& folder, co
   for (const std::string& name : files) {
     if (std::find(skipped.begin(), skipped.end(), name) != skipped.end()) continue;
     const results::StoreReader store(folder / name);
-    for (const FileFigure& figure : figures_of(store)) drawn.emplace_back(figure.name, figure.draw());
+    for (const FileFigure& figure : figures_of(store)) drawn.emplace_back(figure.name, figure.draw(store));
   }
   std::vector<std::string> names;
   for (const auto& entry : drawn) {

@@ -9,6 +9,9 @@
 
 namespace slipmode::figures {
 
+/// Kinds of files that figures are made of.
+[[nodiscard]] std::vector<results::FileKind> drawn_kinds();
+
 /// All figures a file can give, the most telling first; empty when it holds nothing to draw.
 [[nodiscard]] std::vector<FileFigure> figures_of(const results::StoreReader& store);
 

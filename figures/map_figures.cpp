@@ -190,16 +190,16 @@ Figure strobe_amplitudes(const StoreReader& store) {
 
 }  // namespace
 
-std::vector<FileFigure> map_figures_of(const StoreReader& store) {
-  FileFigures out(store);
-  out.add(results::kMapGroup, "crossings", "regime changes of period-1 orbits", crossings);
-  out.add(results::kMapGroup, "multipliers", "largest |multiplier|", multipliers);
-  out.add(results::kMapGroup, "orders", "periods of the orbits", orders);
-  out.add(results::kMapGroup, "amplitudes", "alternating amplitudes", amplitudes);
-  out.add(results::kStrobeGroup, "strobe", "motion seen once per period against the key", strobe_diagram);
-  out.add(results::kStrobeGroup, "amplitudes", "alternating and effective amplitudes against the key",
-          strobe_amplitudes);
-  return std::move(out.all);
+std::vector<FileFigure> map_figures_of(const StoreReader&) {
+  return {{"crossings", "regime changes of period-1 orbits", crossings},
+          {"multipliers", "largest |multiplier|", multipliers},
+          {"orders", "periods of the orbits", orders},
+          {"amplitudes", "alternating amplitudes", amplitudes}};
+}
+
+std::vector<FileFigure> strobe_figures_of(const StoreReader&) {
+  return {{"strobe", "motion seen once per period against the key", strobe_diagram},
+          {"amplitudes", "alternating and effective amplitudes against the key", strobe_amplitudes}};
 }
 
 }  // namespace slipmode::figures

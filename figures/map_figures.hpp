@@ -6,7 +6,8 @@
 
 namespace slipmode::figures {
 
-/// Figures of a result of `slipmode orbit map`; none when the file holds no map.
+/// Figures of a map over two keys, and of one over one key.
 [[nodiscard]] std::vector<FileFigure> map_figures_of(const results::StoreReader& store);
+[[nodiscard]] std::vector<FileFigure> strobe_figures_of(const results::StoreReader& store);
 
 }  // namespace slipmode::figures

@@ -1,5 +1,6 @@
 #include <slipmode/figures/orbit_figures.hpp>
 
+#include <slipmode/figures/belt_figures.hpp>
 #include <slipmode/figures/panels.hpp>
 #include <slipmode/figures/style.hpp>
 #include <slipmode/results/branch_store.hpp>
@@ -163,13 +164,15 @@ Figure branch_multipliers(const StoreReader& store) {
 
 }  // namespace
 
-std::vector<FileFigure> orbit_figures_of(const StoreReader& store) {
-  FileFigures out(store);
-  out.add(results::kOrbitGroup, "orbit", "phase portrait of the orbit, stops drawn", orbit_portrait);
-  out.add(results::kOrbitGroup, "multipliers", "Floquet multipliers and the unit circle", orbit_multipliers);
-  out.add("branches", "response", "amplitude over the key, unstable orbits dashed, special points marked", response);
-  out.add("branches", "multipliers", "moduli of the Floquet multipliers over the key", branch_multipliers);
-  return std::move(out.all);
+std::vector<FileFigure> orbit_figures_of(const StoreReader&) {
+  return {{"orbit", "phase portrait of the orbit, stops drawn", orbit_portrait},
+          {"multipliers", "Floquet multipliers and the unit circle", orbit_multipliers},
+          history_figure()};
+}
+
+std::vector<FileFigure> branch_figures_of(const StoreReader&) {
+  return {{"response", "amplitude over the key, unstable orbits dashed, special points marked", response},
+          {"multipliers", "moduli of the Floquet multipliers over the key", branch_multipliers}};
 }
 
 }  // namespace slipmode::figures

@@ -6,8 +6,9 @@
 
 namespace slipmode::figures {
 
-/// Figures of a stored orbit ("orbit", "multipliers") or of stored branches ("response", "multipliers"); none for other
-/// files.
+/// Figures of a stored orbit: phase portrait, multipliers, history.
 [[nodiscard]] std::vector<FileFigure> orbit_figures_of(const results::StoreReader& store);
+/// Figures of stored branches: response, multipliers.
+[[nodiscard]] std::vector<FileFigure> branch_figures_of(const results::StoreReader& store);
 
 }  // namespace slipmode::figures

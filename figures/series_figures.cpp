@@ -199,23 +199,22 @@ Figure draw_recurrence(const results::StoreReader& store) {
 }  // namespace
 
 std::vector<FileFigure> series_figures_of(const results::StoreReader& store) {
-  FileFigures out(store);
-  out.add(results::diagnosis_path("series"), "delay", "the record against itself one and two delays later",
-          draw_delay_map);
-  out.add(results::diagnosis_path("information"), "information", "average mutual information", draw_information);
-  out.add(results::diagnosis_path("autocorrelation"), "autocorrelation", "autocorrelation", draw_autocorrelation);
-  out.add(results::diagnosis_path("neighbours"), "neighbours",
-          "false neighbours and Cao's averages against the dimension", draw_neighbours);
-  const bool diverges =
-      store.has(results::diagnosis_path("across_the_flow")) || store.has(results::diagnosis_path("rosenstein"));
-  out.add(results::diagnosis_path(diverges ? "series" : "kantz"), "divergence",
-          "divergence of neighbours with the fitted part", draw_divergence);
-  out.add(results::diagnosis_path("correlation"), "dimension", "correlation sum with local slopes and the fitted part",
-          draw_dimension);
-  out.add(results::diagnosis_path("spectrum"), "spectrum", "averaged amplitude spectrum", draw_spectrum);
-  out.add(results::diagnosis_path("section"), "section", "Poincaré section", draw_section);
-  out.add(results::diagnosis_path("recurrence"), "recurrence", "recurrence plot", draw_recurrence);
-  return std::move(out.all);
+  std::vector<FileFigure> out;
+  const auto add = [&](std::initializer_list<const char*> any_of, const char* name, const char* what, auto draw) {
+    if (std::ranges::any_of(any_of, [&](const char* part) { return store.has(results::diagnosis_path(part)); }))
+      out.push_back({name, what, draw});
+  };
+  add({"series"}, "delay", "the record against itself one and two delays later", draw_delay_map);
+  add({"information"}, "information", "average mutual information", draw_information);
+  add({"autocorrelation"}, "autocorrelation", "autocorrelation", draw_autocorrelation);
+  add({"neighbours"}, "neighbours", "false neighbours and Cao's averages against the dimension", draw_neighbours);
+  add({"across_the_flow", "rosenstein", "kantz"}, "divergence", "divergence of neighbours with the fitted part",
+      draw_divergence);
+  add({"correlation"}, "dimension", "correlation sum with local slopes and the fitted part", draw_dimension);
+  add({"spectrum"}, "spectrum", "averaged amplitude spectrum", draw_spectrum);
+  add({"section"}, "section", "Poincaré section", draw_section);
+  add({"recurrence"}, "recurrence", "recurrence plot", draw_recurrence);
+  return out;
 }
 
 }  // namespace slipmode::figures

@@ -2,6 +2,7 @@
 
 #include <slipmode/fem/beam_modes.hpp>
 #include <slipmode/fem/modes.hpp>
+#include <slipmode/figures/belt_figures.hpp>
 #include <slipmode/figures/motion_figures.hpp>
 #include <slipmode/figures/panels.hpp>
 #include <slipmode/figures/style.hpp>
@@ -177,53 +178,59 @@ Figure functions_along(const StoreReader& store, const std::string& group, const
       {.columns = 3, .panel_height = 260, .x_label = axis_label("x", "m"), .y_label = axis_label("shape", "1")});
 }
 
+FileFigure along_figure(const char* name, const char* what, const std::string& group, const std::string& vectors) {
+  return {name, what, [=](const StoreReader& file) { return functions_along(file, group + "/basis", vectors); }};
+}
+
+bool is_of_beam(const StoreReader& store) { return results::load_scene_of(store).beam() != nullptr; }
+
 }  // namespace
 
-std::vector<FileFigure> shaken_figures_of(const StoreReader& store) {
-  std::vector<FileFigure> out;
-  const auto add = [&](std::string name, std::string what, auto draw) {
-    out.push_back({std::move(name), std::move(what), [&store, draw] { return draw(store); }});
-  };
-  const bool beam = results::load_scene_of(store).beam() != nullptr;
+std::vector<FileFigure> shaken_validation_figures_of(const StoreReader& store) {
   const std::string root = results::kShakenValidationGroup;
-  if (store.has(root)) {
-    add("agreement", "distance of reduced models to the full one against the number of modes", agreement);
-    const bool swept = results::load_table(store, root + "/full/values").rows() > 1;
-    for (const auto& [basis, models] : models_by_basis(store)) {
-      if (!swept) break;
-      add("sweep_" + basis, "sections of reduced models over the full model's",
-          [models = models, colour = colour_of_basis(basis)](const StoreReader& file) {
-            return multiples(file, models, colour);
-          });
-    }
-    add("labels", "amplitude and label of the full model",
-        [root](const StoreReader& file) { return amplitudes(file, {root + "/full"}); });
+  std::vector<FileFigure> out{
+      {"agreement", "distance of reduced models to the full one against the number of modes", agreement}};
+  const bool swept = results::load_table(store, root + "/full/values").rows() > 1;
+  for (const auto& [basis, models] : models_by_basis(store)) {
+    if (!swept) break;
+    out.push_back({"sweep_" + basis, "sections of reduced models over the full model's",
+                   [models = models, colour = colour_of_basis(basis)](const StoreReader& file) {
+                     return multiples(file, models, colour);
+                   }});
   }
-  if (store.has("sweep")) {
-    add("sections", "sections against the swept key", sweep_sections);
-    add("labels", "amplitude and label against the swept key",
-        [](const StoreReader& file) { return amplitudes(file, sweep_groups(file)); });
+  out.push_back({"labels", "amplitude and label of the full model",
+                 [root](const StoreReader& file) { return amplitudes(file, {root + "/full"}); }});
+  return out;
+}
+
+std::vector<FileFigure> shaken_sweep_figures_of(const StoreReader&) {
+  return {{"sections", "sections against the swept key", sweep_sections},
+          {"labels", "amplitude and label against the swept key",
+           [](const StoreReader& file) { return amplitudes(file, sweep_groups(file)); }}};
+}
+
+std::vector<FileFigure> shaken_pod_figures_of(const StoreReader& store) {
+  std::vector<FileFigure> out;
+  if (!is_of_beam(store)) return out;
+  if (store.has(results::kPomfGroup)) {
+    out.push_back(
+        along_figure("pomfs", "modal functions from the sensors beside natural modes", results::kPomfGroup, "POMF"));
   }
-  if (beam && store.has(results::kPomfGroup)) {
-    add("pomfs", "modal functions from the sensors beside natural modes", [](const StoreReader& file) {
-      return functions_along(file, std::string(results::kPomfGroup) + "/basis", "POMF");
-    });
-  }
-  if (beam && store.has(results::kPodGroup)) {
-    add("poms", "proper orthogonal modes in the mass metric beside natural modes", [](const StoreReader& file) {
-      return functions_along(file, std::string(results::kPodGroup) + "/basis", "mass POM");
-    });
-  }
-  if (beam && store.has(results::kReducedGroup)) {
-    add("shapes", "basis of the reduced model along the beam", [](const StoreReader& file) {
-      return functions_along(file, std::string(results::kReducedGroup) + "/basis", "vector");
-    });
-  }
-  if (store.has(results::kTrajectoryGroup)) {
-    add("loops", "friction force against relative displacement and velocity", friction_loops);
-    add("delay", "delay map of the reading", reading_delay_map);
-    add("spectrum", "amplitude spectrum of the reading", reading_spectrum);
-  }
+  out.push_back(along_figure("poms", "proper orthogonal modes in the mass metric beside natural modes",
+                             results::kPodGroup, "mass POM"));
+  return out;
+}
+
+std::vector<FileFigure> shaken_reduced_figures_of(const StoreReader& store) {
+  if (!is_of_beam(store)) return {};
+  return {along_figure("shapes", "basis of the reduced model along the beam", results::kReducedGroup, "vector")};
+}
+
+std::vector<FileFigure> shaken_trajectory_figures_of(const StoreReader& store) {
+  std::vector<FileFigure> out{{"loops", "friction force against relative displacement and velocity", friction_loops},
+                              {"delay", "delay map of the reading", reading_delay_map},
+                              {"spectrum", "amplitude spectrum of the reading", reading_spectrum}};
+  for (FileFigure& figure : trajectory_figures_of(store)) out.push_back(std::move(figure));
   return out;
 }
 

@@ -1,12 +1,21 @@
 #pragma once
 
-#include <slipmode/figures/file_figures.hpp>
+#include <slipmode/figures/file_figure.hpp>
+
+#include <vector>
 
 namespace slipmode::figures {
 
-/// Figures of a file made from a scene with a shaker, the most telling first: sections over the swept key, small
-/// multiples of reduced models over the full one, agreement against the number of modes, functions along the beam,
-/// friction loops, delay map and spectrum.
-[[nodiscard]] std::vector<FileFigure> shaken_figures_of(const results::StoreReader& store);
+// Figures of results of scenes with a shaker, the most telling first.
+
+/// Agreement against the number of modes, small multiples of reduced models over the full one, labels.
+[[nodiscard]] std::vector<FileFigure> shaken_validation_figures_of(const results::StoreReader& store);
+/// Sections and labelled amplitudes over the swept key.
+[[nodiscard]] std::vector<FileFigure> shaken_sweep_figures_of(const results::StoreReader& store);
+/// Modal functions and modes along the beam; none where there is no beam.
+[[nodiscard]] std::vector<FileFigure> shaken_pod_figures_of(const results::StoreReader& store);
+[[nodiscard]] std::vector<FileFigure> shaken_reduced_figures_of(const results::StoreReader& store);
+/// Friction loops, delay map and spectrum before those of any trajectory.
+[[nodiscard]] std::vector<FileFigure> shaken_trajectory_figures_of(const results::StoreReader& store);
 
 }  // namespace slipmode::figures

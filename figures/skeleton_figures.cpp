@@ -158,13 +158,11 @@ Figure orbit_spectrum(const StoreReader& store) {
 }  // namespace
 
 std::vector<FileFigure> skeleton_figures_of(const StoreReader& store) {
-  std::vector<FileFigure> out;
-  if (models_of(store).empty()) return out;
+  std::vector<FileFigure> out{{"orbits", "the attractor and its orbits", portraits},
+                              {"spectrum", "growth rates and shares against period", orbit_spectrum}};
   if (store.has(group_of("comparison"))) {
-    out.push_back({"comparison", "both attractors and orbits that both have", [&store] { return comparison(store); }});
+    out.insert(out.begin(), {"comparison", "both attractors and orbits that both have", comparison});
   }
-  out.push_back({"orbits", "the attractor and its orbits", [&store] { return portraits(store); }});
-  out.push_back({"spectrum", "growth rates and shares against period", [&store] { return orbit_spectrum(store); }});
   return out;
 }
 

@@ -113,7 +113,6 @@ std::vector<std::string> save_trade_figures(const trade::Study& study, const sce
 }
 
 std::vector<FileFigure> trade_figures_of(const results::StoreReader& store) {
-  if (!store.has(std::string(results::kTradeGroup) + "/candidates")) return {};
   std::vector<FileFigure> out;
   const Fronts fronts = fronts_of(store);
   for (const Measure measure :
@@ -121,7 +120,7 @@ std::vector<FileFigure> trade_figures_of(const results::StoreReader& store) {
     if (!has_values(fronts, measure)) continue;
     out.push_back({fmt::format("pareto_{}", trade::to_string(measure)),
                    fmt::format("time against {}", trade::describe(measure)),
-                   [&store, measure] { return front_of(fronts_of(store), measure); }});
+                   [measure](const results::StoreReader& file) { return front_of(fronts_of(file), measure); }});
   }
   return out;
 }

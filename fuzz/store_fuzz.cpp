@@ -114,6 +114,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   refused_or_read([&] { static_cast<void>(info(path, InfoFormat::kText)); });
   refused_or_read([&] {
     const StoreReader store(path);
+    static_cast<void>(kind_of(store));
     refused_or_read([&] { static_cast<void>(load_provenance(store)); });
     refused_or_read([&] { static_cast<void>(load_trajectory(store)); });
     refused_or_read([&] { static_cast<void>(load_pod(store)); });

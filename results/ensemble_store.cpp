@@ -6,6 +6,7 @@
 #include <slipmode/results/units.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -15,7 +16,7 @@ namespace slipmode::results {
 
 void store_ensemble(const std::filesystem::path& path, const scene::Scene& scene, const diagnostics::EnsembleRun& run) {
   const Units units = Units::of(scene.units);
-  StoreWriter writer(path, scene.units);
+  StoreWriter writer(path, FileKind::kEnsemble, scene.units);
   Provenance provenance = provenance_of(scene, "slipmode simulate");
   Table members{.description = "runs of the ensemble", .columns = {}};
   std::vector<double> parameter, start, columns, events, residual;
@@ -57,11 +58,9 @@ void store_sensors(StoreWriter& writer, const scene::Scene& scene, const Eigen::
 }
 
 pod::Ensemble load_snapshots(const StoreReader& store) {
-  if (store.has(kEnsembleGroup)) return load_ensemble(store);
-  if (store.has(kTrajectoryGroup)) {
-    return {.snapshots = load_trajectory(store).q, .run_begin = {0}};
-  }
-  store.fail("ensemble", "the file holds neither an ensemble nor a trajectory; make one with 'slipmode simulate'");
+  const FileKind kind = require_kind(store, std::array{FileKind::kEnsemble, FileKind::kTrajectory, FileKind::kOrbit});
+  if (kind == FileKind::kEnsemble) return load_ensemble(store);
+  return {.snapshots = load_trajectory(store).q, .run_begin = {0}};
 }
 
 }  // namespace slipmode::results

@@ -14,7 +14,7 @@ void store_ensemble(const std::filesystem::path& path, const scene::Scene& scene
 /// Writes the group `sensors`: their places and readings of these displacements.
 void store_sensors(StoreWriter& writer, const scene::Scene& scene, const Eigen::MatrixXd& q);
 
-/// Reads what a POD can be made of: an ensemble, or the samples of one trajectory.
+/// Reads what a POD can be made of: an ensemble, or the samples of one trajectory or orbit.
 /// @throws InvalidInput  when the file holds neither
 [[nodiscard]] pod::Ensemble load_snapshots(const StoreReader& store);
 

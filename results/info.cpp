@@ -98,12 +98,16 @@ nlohmann::json entry_json(const StoreReader& store, const StoreEntry& entry) {
 
 std::string info(const std::filesystem::path& path, InfoFormat format) {
   const StoreReader store(path);
+  const std::optional<FileKind> kind = kind_of(store);
   if (format == InfoFormat::kText) {
-    std::string text = path.string() + "\n";
+    std::string text = path.string();
+    if (kind) text += fmt::format(": {}  # {}", words_of(*kind).word, words_of(*kind).meaning);
+    text += '\n';
     for (const StoreEntry& entry : store.entries()) text += entry_line(store, entry);
     return text;
   }
-  nlohmann::json out = {{"file", path.string()}, {"contents", nlohmann::json::array()}};
+  nlohmann::json out = {{"file", path.string()}, {"kind", nullptr}, {"contents", nlohmann::json::array()}};
+  if (kind) out["kind"] = words_of(*kind).word;
   for (const StoreEntry& entry : store.entries()) out["contents"].push_back(entry_json(store, entry));
   return out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);  // foreign files hold any bytes
 }

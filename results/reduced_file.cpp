@@ -2,6 +2,7 @@
 
 #include <slipmode/results/records.hpp>
 
+#include <array>
 #include <string_view>
 
 namespace slipmode::results {
@@ -14,9 +15,7 @@ std::optional<std::string> reduced_file(const std::string& model) {
 
 pod::Basis reduced_basis(const std::string& file, Eigen::Index size) {
   const StoreReader store(file);
-  if (!store.has(kReducedGroup)) {
-    store.fail(kReducedGroup, "the file holds no reduced model; make one with 'slipmode reduce'");
-  }
+  require_kind(store, std::array{FileKind::kReduced});
   return load_basis(store, std::string(kReducedGroup) + "/basis", size);
 }
 

@@ -185,10 +185,9 @@ class RecordFile {
 
   std::optional<Choice> best_choice() const {
     if (!scene_) return std::nullopt;
-    for (const std::string dataset : {"trajectory/v", "ensemble/snapshots"}) {
-      if (is_record(dataset) && store_.entry(dataset).shape.back() > farthest_) return Choice{dataset, farthest_};
-    }
-    return std::nullopt;
+    const std::string dataset = kind_of(store_) == FileKind::kEnsemble ? "ensemble/snapshots" : "trajectory/v";
+    if (!is_record(dataset) || store_.entry(dataset).shape.back() <= farthest_) return std::nullopt;
+    return Choice{dataset, farthest_};
   }
 
   Choice farthest() const {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <slipmode/results/file_kind.hpp>
+
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
@@ -23,7 +25,7 @@ struct Meaning {
 /// Writes one HDF5 result file. The content goes to a temporary in the same folder; `commit` renames it into place, so
 /// that a reader sees the whole file or none. A writer destroyed without `commit` leaves nothing behind.
 ///
-///     StoreWriter store("out/run.h5");
+///     StoreWriter store("out/run.h5", FileKind::kTrajectory);
 ///     store.write("trajectory/time", times, {"s", "sampling instants"});
 ///     store.write_columns("trajectory/q", q, {"m", "displacements, time x dof"});  // q is n x T
 ///     store.commit();
@@ -35,8 +37,9 @@ struct Meaning {
 ///                       message names file, dataset and remedy
 class StoreWriter {
  public:
+  /// @param kind         what the file holds, kept as its attributes `kind` and `description`
   /// @param unit_system  a scene's `units`, "SI" or "dimensionless": what the model's numbers are in
-  explicit StoreWriter(std::filesystem::path path, const std::string& unit_system = "SI");
+  StoreWriter(std::filesystem::path path, FileKind kind, const std::string& unit_system = "SI");
   ~StoreWriter();
   StoreWriter(StoreWriter&&) noexcept;
   StoreWriter& operator=(StoreWriter&&) noexcept;
@@ -99,6 +102,8 @@ class StoreReader {
   [[nodiscard]] Eigen::MatrixXd columns(const std::string& name, Eigen::Index rows = kAny,
                                         Eigen::Index cols = kAny) const;
 
+  /// A text attribute of the file itself; empty when it has none of that name.
+  [[nodiscard]] std::string attribute(const std::string& key) const;
   /// True when a group or dataset of that name exists.
   [[nodiscard]] bool has(const std::string& name) const;
   /// Names directly inside a group ("" for the root), sorted.

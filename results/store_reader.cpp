@@ -76,7 +76,7 @@ std::string attribute_text(hid_t object, const char* key) {
   return ok && !values.empty() ? values.front() : std::string();
 }
 
-StoreEntry::Kind kind_of(H5T_class_t type_class) {
+StoreEntry::Kind entry_kind(H5T_class_t type_class) {
   switch (type_class) {
     case H5T_FLOAT:
       return StoreEntry::Kind::kDouble;
@@ -270,6 +270,12 @@ Eigen::MatrixXd StoreReader::columns(const std::string& name, Eigen::Index rows,
   return values;
 }
 
+std::string StoreReader::attribute(const std::string& key) const {
+  const QuietHdf5 quiet;
+  const Hdf5Handle root(H5Gopen2(impl_->file.id(), "/", H5P_DEFAULT), H5Gclose);
+  return attribute_text(root.id(), key.c_str());
+}
+
 bool StoreReader::has(const std::string& name) const {
   const QuietHdf5 quiet;
   return impl_->has(name);
@@ -293,7 +299,7 @@ StoreEntry StoreReader::entry(const std::string& name) const {
   if (object_type == H5I_GROUP) found.kind = StoreEntry::Kind::kGroup;
   if (object_type != H5I_DATASET) return found;
   const Hdf5Handle type(H5Dget_type(object.id()), H5Tclose);
-  found.kind = kind_of(H5Tget_class(type.id()));
+  found.kind = entry_kind(H5Tget_class(type.id()));
   found.shape = Impl::shape_of(object.id());
   return found;
 }

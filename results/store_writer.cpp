@@ -160,8 +160,13 @@ struct StoreWriter::Impl {
   }
 };
 
-StoreWriter::StoreWriter(fs::path path, const std::string& unit_system)
-    : impl_(std::make_unique<Impl>(std::move(path), unit_system != "SI")) {}
+StoreWriter::StoreWriter(fs::path path, FileKind kind, const std::string& unit_system)
+    : impl_(std::make_unique<Impl>(std::move(path), unit_system != "SI")) {
+  const QuietHdf5 quiet;
+  const Hdf5Handle root(H5Gopen2(impl_->file.id(), "/", H5P_DEFAULT), H5Gclose);
+  impl_->attribute(root.id(), "kind", words_of(kind).word);
+  impl_->attribute(root.id(), "description", words_of(kind).meaning);
+}
 StoreWriter::~StoreWriter() = default;
 StoreWriter::StoreWriter(StoreWriter&&) noexcept = default;
 StoreWriter& StoreWriter::operator=(StoreWriter&&) noexcept = default;

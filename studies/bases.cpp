@@ -14,12 +14,15 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <ctime>
 #include <utility>
 
 namespace slipmode::studies {
 namespace {
+
+using results::FileKind;
 
 constexpr Eigen::Index kShownModes = 6;
 /// Natural modes beyond this many are known badly by any mesh, and no reduced model is asked to have them.
@@ -67,26 +70,33 @@ pod::NamedBasis kept_basis(const results::StoreReader& store, const std::string&
           .captured = known ? pod::cumulative(basis.energy) : Eigen::VectorXd::Constant(basis.modes(), kNone)};
 }
 
-const std::string kReducedBasis = std::string(results::kReducedGroup) + "/basis";
+/// What models are reduced by, or what that is made of.
+constexpr std::array kWithBases{FileKind::kPod,   FileKind::kEnsemble,   FileKind::kReduced,
+                                FileKind::kBasis, FileKind::kTrajectory, FileKind::kOrbit};
+
+/// Where a reduced model, or a basis alone, has its vectors.
+std::string basis_group(FileKind kind) {
+  return kind == FileKind::kReduced ? std::string(results::kReducedGroup) + "/basis" : results::kBasisGroup;
+}
 
 std::vector<pod::NamedBasis> load_belt_bases(const scene::Scene& scene, const fem::Structure& structure,
                                              const results::StoreReader& store) {
   const Eigen::Index n = structure.size();
-  if (store.has(results::kReducedGroup)) return {kept_basis(store, kReducedBasis, n)};
-  if (store.has(results::kPodGroup)) {
-    return belt_bases(scene, structure, results::load_pod(store, results::kPodGroup, n));
-  }
-  if (store.has(results::kBasisGroup)) return {kept_basis(store, results::kBasisGroup, n)};
-  return belt_bases(scene, structure, pod::pod(snapshots_for(store, n)));
+  const FileKind kind = results::require_kind(store, kWithBases);
+  if (kind == FileKind::kReduced || kind == FileKind::kBasis) return {kept_basis(store, basis_group(kind), n)};
+  return belt_bases(
+      scene, structure,
+      kind == FileKind::kPod ? results::load_pod(store, results::kPodGroup, n) : pod::pod(snapshots_for(store, n)));
 }
 
 std::vector<pod::NamedBasis> load_shaken_bases(const scene::Scene& scene, const dynamics::HybridSystem& full,
                                                const results::StoreReader& store) {
-  if (store.has(results::kReducedGroup)) {
-    const pod::Basis basis = results::load_basis(store, kReducedBasis, full.size());
+  const FileKind kind = results::require_kind(store, kWithBases);
+  if (kind == FileKind::kReduced || kind == FileKind::kBasis) {
+    const pod::Basis basis = results::load_basis(store, basis_group(kind), full.size());
     return {{.name = std::string(pod::to_string(basis.kind)), .basis = basis}};
   }
-  const results::ShakenModes modes = store.has(results::kPodGroup)
+  const results::ShakenModes modes = kind == FileKind::kPod
                                          ? results::load_shaken_modes(store, full.size())
                                          : shaken_modes(scene, full.structure(), snapshots_for(store, full.size()));
   return shaken_bases(scene, full, [&]() -> const results::ShakenModes& { return modes; });
@@ -253,7 +263,7 @@ std::vector<pod::NamedBasis> load_bases(const scene::Scene& scene, const dynamic
 
 std::vector<pod::NamedBasis> load_chosen_bases(const scene::Scene& scene, const dynamics::HybridSystem& full,
                                                const std::string& file, Eigen::Index modes) {
-  const bool is_reduced = results::StoreReader(file).has(results::kReducedGroup);
+  const bool is_reduced = results::kind_of(results::StoreReader(file)) == FileKind::kReduced;
   std::vector<pod::NamedBasis> chosen;
   for (const pod::NamedBasis& basis : load_bases(scene, full, file)) {
     const Eigen::Index taken = modes_taken(scene, basis, file, is_reduced, modes);
@@ -275,7 +285,8 @@ pod::NamedBasis load_basis(const scene::Scene& scene, const dynamics::HybridSyst
   }
   if (source == "lnm") return {.name = "LNM", .basis = rom::lnm_basis(full.structure(), n)};
   const results::StoreReader store(source);
-  if (store.has(results::kPodGroup)) {
+  const FileKind kind = results::require_kind(store, std::array{FileKind::kPod, FileKind::kReduced, FileKind::kBasis});
+  if (kind == FileKind::kPod) {
     if (is_shaken(scene)) {  // such a POD holds several bases: the one that reduction.basis names is taken
       scene::Scene one = scene;
       one.shaken.bases = {scene.reduction.basis};
@@ -286,11 +297,7 @@ pod::NamedBasis load_basis(const scene::Scene& scene, const dynamics::HybridSyst
     const pod::PodResult result = results::load_pod(store, results::kPodGroup, n);
     return {.name = "POM", .basis = result.basis, .captured = pod::cumulative(result.shares)};
   }
-  const std::string group = store.has(kReducedBasis) ? kReducedBasis : std::string(results::kBasisGroup);
-  if (!store.has(group)) {
-    store.fail(group, "the file holds no basis; make one with 'slipmode pod', or say 'lnm' for linear natural modes");
-  }
-  const pod::Basis basis = results::load_basis(store, group, n);
+  const pod::Basis basis = results::load_basis(store, basis_group(kind), n);
   return {.name = std::string(pod::to_string(basis.kind)), .basis = basis, .captured = pod::cumulative(basis.energy)};
 }
 

@@ -74,9 +74,9 @@ class Pipeline {
     return folder_ / name;
   }
 
-  void write(const std::string& name, const std::function<void(results::StoreWriter&)>& fill,
+  void write(const std::string& name, results::FileKind kind, const std::function<void(results::StoreWriter&)>& fill,
              const std::optional<dynamics::EnergyAudit>& audit = {}) {
-    results::StoreWriter writer(file(name), scene_.units);
+    results::StoreWriter writer(file(name), kind, scene_.units);
     results::Provenance provenance = results::provenance_of(scene_, "slipmode run");
     provenance.audit = audit;
     results::save(writer, provenance);
@@ -106,7 +106,7 @@ class Pipeline {
     const dynamics::Trajectory run = dynamics::simulate(full_, scene::initial_state(scene_, full_), options);
     run_.check_interrupt();
     write(
-        "trajectory.h5",
+        "trajectory.h5", results::FileKind::kTrajectory,
         [&](results::StoreWriter& writer) {
           results::save(writer, results::kTrajectoryGroup, run);
           if (scene_.sensors) results::store_sensors(writer, scene_, run.q);
@@ -124,16 +124,17 @@ class Pipeline {
     const pod::Ensemble snapshots = std::exchange(result_.ensemble->ensemble, {});
     if (shaken_) {
       result_.shaken_modes = shaken_modes(scene_, full_.structure(), snapshots);
-      write("pod.h5", [this](results::StoreWriter& writer) { results::save(writer, *result_.shaken_modes); });
+      write("pod.h5", results::FileKind::kPod,
+            [this](results::StoreWriter& writer) { results::save(writer, *result_.shaken_modes); });
     } else {
       result_.pod = pod::pod(snapshots);
-      write("pod.h5",
+      write("pod.h5", results::FileKind::kPod,
             [this](results::StoreWriter& writer) { results::save(writer, results::kPodGroup, *result_.pod); });
     }
   }
 
   void write_reduced(const std::string& name, const pod::Basis& basis) {
-    write(name, [&](results::StoreWriter& writer) {
+    write(name, results::FileKind::kReduced, [&](results::StoreWriter& writer) {
       results::save(writer, results::kReducedGroup,
                     results::ReducedModel{.system = rom::reduce(full_, basis), .basis = basis});
     });
@@ -169,8 +170,7 @@ class Pipeline {
 
   /// Files that show the same as another one are skipped.
   void figures() {
-    const std::vector<std::string> skipped = {"reduced_pom.h5", "reduced_lnm.h5", "reduced.h5",
-                                              shaken_ ? "ensemble.h5" : ""};
+    const std::vector<std::string> skipped = {"reduced_pom.h5", "reduced_lnm.h5", "reduced.h5"};
     result_.figures = figures::save_figures_of(folder_, result_.files, skipped,
                                                {.threads = run_.threads, .stop = run_.stop, .progress = {}});
   }

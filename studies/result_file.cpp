@@ -9,9 +9,11 @@
 
 namespace slipmode::studies {
 
-ResultFile::ResultFile(std::filesystem::path path, scene::Scene scene, std::string command, const std::string& identity)
+ResultFile::ResultFile(std::filesystem::path path, scene::Scene scene, results::FileKind kind, std::string command,
+                       const std::string& identity)
     : path_(std::move(path)),
       scene_(std::move(scene)),
+      kind_(kind),
       command_(std::move(command)),
       journal_(results::Journal::path_for(path_),
                results::fingerprint(fmt::format("{}\n{}\n{}\n{}", results::version(), command_, identity,
@@ -19,7 +21,7 @@ ResultFile::ResultFile(std::filesystem::path path, scene::Scene scene, std::stri
       resumed_(journal_.records().size()) {}
 
 void ResultFile::finish(const std::function<void(results::StoreWriter&)>& write) {
-  results::StoreWriter writer(path_, scene_.units);
+  results::StoreWriter writer(path_, kind_, scene_.units);
   results::save(writer, results::provenance_of(scene_, command_));
   write(writer);
   writer.commit();

@@ -20,7 +20,8 @@ class ResultFile {
   ///                  journal found beside the file belongs to the same study
   /// @param identity  of what else decides values: the models of files, see identity_of
   /// @throws InvalidInput  as results::Journal
-  ResultFile(std::filesystem::path path, scene::Scene scene, std::string command, const std::string& identity = "");
+  ResultFile(std::filesystem::path path, scene::Scene scene, results::FileKind kind, std::string command,
+             const std::string& identity = "");
 
   [[nodiscard]] results::Journal& journal() { return journal_; }
   /// Values that were found finished.
@@ -32,6 +33,7 @@ class ResultFile {
  private:
   std::filesystem::path path_;
   scene::Scene scene_;
+  results::FileKind kind_;
   std::string command_;
   results::Journal journal_;
   std::size_t resumed_;

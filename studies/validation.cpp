@@ -21,7 +21,7 @@ ResultFile file_of(const std::filesystem::path& path, const scene::Scene& scene,
                    const std::vector<pod::NamedBasis>& bases) {
   std::string identity;
   for (const pod::NamedBasis& basis : bases) identity += fmt::format("{} {}\n", basis.name, identity_of(basis.basis));
-  return {path, scene, "slipmode validate", identity};
+  return {path, scene, results::FileKind::kValidation, "slipmode validate", identity};
 }
 
 diagnostics::DrivenValidationOptions options_of(const scene::Scene& scene) {

@@ -44,10 +44,11 @@ class BadInput : public testing::TestWithParam<BadCall> {
     slipmode_in(*inputs_, {"simulate", "good.toml", "-o", "few.h5", "--set", "time.duration=10.1"});
     slipmode_in(*inputs_, {"simulate", "good.toml", "-o", "run.h5"});
     slipmode_in(*inputs_, {"pod", "run.h5", "-o", "pod.h5"});
+    slipmode_in(*inputs_, {"modes", "good.toml", "-o", "modes.h5"});
     write_file(at / "truncated.h5", bytes_of(at / "pod.h5").substr(0, 2000));
     Eigen::MatrixXd vectors = Eigen::MatrixXd::Identity(4, 2);
     vectors(1, 1) = std::numeric_limits<double>::quiet_NaN();
-    results::StoreWriter writer(at / "nan.h5");
+    results::StoreWriter writer(at / "nan.h5", results::FileKind::kBasis);
     writer.write("basis/vectors", vectors, {"1", "made by hand"});
     writer.commit();
   }
@@ -117,8 +118,20 @@ const BadCall kCalls[] = {
      {"structure.masses", "must stay at 4"}},
     {"ModelThatIsNone",
      {"sweep", "good.toml", "--over", "drive.speed=0.5:0.4:0.1", "--model", "rom:pod.h5", "-o", "o.h5"},
-     {"pod.h5", "no reduced model", "slipmode reduce"}},
+     {"pod.h5", "holds a POD; expected a reduced model", "slipmode reduce"}},
     {"FigureOfNoFormat", {"plot", "pod.h5", "-o", "o.jpg"}, {"o.jpg", ".svg, .png or .pdf"}},
+    {"PodOfAPod",
+     {"pod", "pod.h5", "-o", "o.h5"},
+     {"'pod.h5' holds a POD; expected an ensemble, a trajectory or an orbit", "slipmode simulate"}},
+    {"ReducedByATrajectory",
+     {"reduce", "good.toml", "run.h5", "-o", "o.h5"},
+     {"'run.h5' holds a trajectory; expected a POD, a reduced model or a basis", "slipmode pod"}},
+    {"ValidatedByModes",
+     {"validate", "good.toml", "modes.h5", "-o", "o.h5"},
+     {"'modes.h5' holds natural modes; expected a POD, an ensemble, a reduced model", "slipmode pod"}},
+    {"NothingOfItIsDrawn",
+     {"plot", "modes.h5", "-o", "o.png"},
+     {"'modes.h5' holds natural modes; expected a trajectory, a POD", "slipmode simulate --single"}},
     {"FigureOfAnotherFile", {"plot", "pod.h5", "--figure", "orbits", "-o", "o.png"}, {"orbits", "shapes, energy"}},
     {"NoVerb", {}, {"--help"}},
     {"UnknownVerb", {"simulat", "good.toml"}, {"simulat: no such verb", "run, modes, simulate"}},

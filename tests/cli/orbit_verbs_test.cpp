@@ -191,7 +191,7 @@ TEST_F(OrbitVerbs, ReducedModelWithAllModesHasTheSameOrbit) {
       json_of({"continue", four, "--model", "rom:rom.h5", "--over", "drive.omega=0.93:0.95", "-o", "b.h5"});
   EXPECT_EQ(branch["branches"][0]["end"], "range");
   expect_refused({"find", four, "--model", "pod.h5"}, {"--model pod.h5", "rom:FILE"});
-  expect_refused({"find", four, "--model", "rom:pod.h5"}, {"pod.h5", "no reduced model", "slipmode reduce"});
+  expect_refused({"find", four, "--model", "rom:pod.h5"}, {"pod.h5", "expected a reduced model", "slipmode reduce"});
 }
 
 TEST_F(OrbitVerbs, OtherVerbsSayWhatToUseUnderAForce) {

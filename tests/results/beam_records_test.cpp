@@ -21,7 +21,7 @@ using tests::TemporaryFolder;
 
 /// Writes into a new file and hands out a reader of it.
 StoreReader stored(const TemporaryFolder& folder, const std::function<void(StoreWriter&)>& write) {
-  StoreWriter out(folder.path() / "record.h5");
+  StoreWriter out(folder.path() / "record.h5", FileKind::kTrajectory);
   write(out);
   out.commit();
   return StoreReader(folder.path() / "record.h5");

@@ -17,7 +17,7 @@ using tests::TemporaryFolder;
 
 dynamics::HybridSystem read_back(const dynamics::HybridSystem& system) {
   const TemporaryFolder folder;
-  StoreWriter out(folder.path() / "record.h5");
+  StoreWriter out(folder.path() / "record.h5", FileKind::kTrajectory);
   save(out, "system", system);
   out.commit();
   return load_system(StoreReader(folder.path() / "record.h5"));

@@ -18,7 +18,7 @@ using orbits::PeriodicOrbit;
 using tests::TemporaryFolder;
 
 StoreReader stored(const TemporaryFolder& folder, const PeriodicOrbit& orbit) {
-  StoreWriter out(folder.path() / "orbit.h5");
+  StoreWriter out(folder.path() / "orbit.h5", FileKind::kOrbit);
   save(out, kOrbitGroup, orbit);
   out.commit();
   return StoreReader(folder.path() / "orbit.h5");

@@ -21,7 +21,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Writes one thing into a new file and hands out a reader of it.
 StoreReader written(const TemporaryFolder& folder, const std::function<void(StoreWriter&)>& write) {
-  StoreWriter out(folder.path() / "record.h5");
+  StoreWriter out(folder.path() / "record.h5", FileKind::kTrajectory);
   write(out);
   out.commit();
   return StoreReader(folder.path() / "record.h5");

@@ -30,7 +30,7 @@ TEST(Store, EveryTypeReadsBackToTheSameBits) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "a.h5";
   const Eigen::MatrixXd large = Eigen::MatrixXd::Random(7, 5000);  // chunked and deflated
-  StoreWriter out(path);
+  StoreWriter out(path, FileKind::kTrajectory);
   out.write("number", 0.1 + 0.2, {"m", "a number"});
   out.write("g/integer", std::int64_t{-7}, {"", "an integer"});
   out.write("g/text", std::string("line 1\nμ_s"), {"", "a text"});
@@ -68,7 +68,7 @@ TEST(Store, EveryTypeReadsBackToTheSameBits) {
 TEST(Store, UnitsOfADimensionlessModelAreOne) {
   const TemporaryFolder folder;
   const auto units_in = [&](const std::string& system, const Meaning& meaning) {
-    StoreWriter out(folder.path() / "a.h5", system);
+    StoreWriter out(folder.path() / "a.h5", FileKind::kTrajectory, system);
     out.write("number", 1.0, meaning);
     out.commit();
     return StoreReader(folder.path() / "a.h5").entry("number").meaning.units;
@@ -84,7 +84,7 @@ TEST(Store, UnitsOfADimensionlessModelAreOne) {
 TEST(Store, SameContentGivesTheSameBytes) {
   const TemporaryFolder folder;
   for (const char* name : {"a.h5", "b.h5"}) {
-    StoreWriter out(folder.path() / name);
+    StoreWriter out(folder.path() / name, FileKind::kTrajectory);
     out.describe_group("g", "a group");
     out.write("g/large", Eigen::MatrixXd(Eigen::MatrixXd::Constant(300, 200, 0.1)), {"m", "constant"});
     out.commit();
@@ -96,7 +96,7 @@ TEST(Store, SameContentGivesTheSameBytes) {
 TEST(Store, NothingIsLeftWithoutCommit) {
   const TemporaryFolder folder;
   {
-    StoreWriter out(folder.path() / "a.h5");
+    StoreWriter out(folder.path() / "a.h5", FileKind::kTrajectory);
     out.write("x", 1.0, {"1", "x"});
     EXPECT_FALSE(folder.names().empty());  // the temporary
   }
@@ -106,16 +106,16 @@ TEST(Store, NothingIsLeftWithoutCommit) {
 TEST(Store, OldResultStaysUntilTheNewOneIsWhole) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "a.h5";
-  StoreWriter first(path);
+  StoreWriter first(path, FileKind::kTrajectory);
   first.write("x", 1.0, {"1", "x"});
   first.commit();
   {
-    StoreWriter abandoned(path);
+    StoreWriter abandoned(path, FileKind::kTrajectory);
     abandoned.write("x", 2.0, {"1", "x"});
     EXPECT_EQ(StoreReader(path).number("x"), 1.0);
   }
   EXPECT_EQ(StoreReader(path).number("x"), 1.0);
-  StoreWriter second(path);
+  StoreWriter second(path, FileKind::kTrajectory);
   second.write("x", 3.0, {"1", "x"});
   second.commit();
   EXPECT_EQ(StoreReader(path).number("x"), 3.0);
@@ -124,7 +124,7 @@ TEST(Store, OldResultStaysUntilTheNewOneIsWhole) {
 
 TEST(Store, MistakesOfTheWriterAreNamed) {
   const TemporaryFolder folder;
-  StoreWriter out(folder.path() / "a.h5");
+  StoreWriter out(folder.path() / "a.h5", FileKind::kTrajectory);
   out.write("x", 1.0, {"1", "x"});
   expect_parts(message_of([&] { out.write("x", 2.0, {"1", "x"}); }), {"a.h5", "x", "already"});
   out.commit();
@@ -133,10 +133,11 @@ TEST(Store, MistakesOfTheWriterAreNamed) {
 
 TEST(Store, OutputFolderMissingOrNotWritableIsNamed) {
   const TemporaryFolder folder;
-  expect_parts(message_of([&] { StoreWriter out(folder.path() / "no" / "a.h5"); }),
+  expect_parts(message_of([&] { StoreWriter out(folder.path() / "no" / "a.h5", FileKind::kTrajectory); }),
                {(folder.path() / "no" / "a.h5").string(), "does not exist", "mkdir"});
-  expect_parts(message_of([&] { StoreWriter out(folder.path()); }), {"is a folder"});
-  expect_parts(message_of([&] { StoreWriter out("/proc/slipmode.h5"); }), {"/proc/slipmode.h5", "cannot be written"});
+  expect_parts(message_of([&] { StoreWriter out(folder.path(), FileKind::kTrajectory); }), {"is a folder"});
+  expect_parts(message_of([&] { StoreWriter out("/proc/slipmode.h5", FileKind::kTrajectory); }),
+               {"/proc/slipmode.h5", "cannot be written"});
   EXPECT_TRUE(folder.names().empty());
 }
 
@@ -156,7 +157,7 @@ TEST(Store, TruncationAtAnyLengthIsAnErrorAndHdf5StaysSilent) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "a.h5";
   const Eigen::MatrixXd values = Eigen::MatrixXd::Random(100, 200);
-  StoreWriter out(path);
+  StoreWriter out(path, FileKind::kTrajectory);
   out.write("x", values, {"1", "x"});
   out.commit();
   const std::string whole = bytes_of(path);
@@ -173,7 +174,7 @@ TEST(Store, TruncationAtAnyLengthIsAnErrorAndHdf5StaysSilent) {
 TEST(Store, FlippedBitsInLargeDataAreFound) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "a.h5";
-  StoreWriter out(path);
+  StoreWriter out(path, FileKind::kTrajectory);
   out.write("x", Eigen::MatrixXd(Eigen::MatrixXd::Random(200, 200)), {"1", "x"});
   out.commit();
   std::string bytes = bytes_of(path);
@@ -186,7 +187,7 @@ TEST(Store, FlippedBitsInLargeDataAreFound) {
 TEST(Store, MissingDatasetWrongTypeAndWrongShapeAreNamed) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "a.h5";
-  StoreWriter out(path);
+  StoreWriter out(path, FileKind::kTrajectory);
   out.write("g/v", Eigen::VectorXd(Eigen::VectorXd::Zero(3)), {"1", "v"});
   out.write("g/t", std::string("text"), {"", "t"});
   out.commit();
@@ -208,7 +209,7 @@ TEST(Table, ColumnsKeepOrderUnitsAndNaN) {
                     {{"speed", {"m/s", "belt speed"}, std::vector<double>{0.5, 0.4}},
                      {"failure", {"", "why not"}, std::vector<std::string>{"", "Zeno at t = 3"}},
                      {"energy", {"J", "mean energy"}, std::vector<double>{nan, 2.0}}}};
-  StoreWriter out(path);
+  StoreWriter out(path, FileKind::kTrajectory);
   save(out, "sweep", table);
   out.commit();
   const Table back = load_table(StoreReader(path), "sweep");
@@ -225,7 +226,7 @@ TEST(Table, ColumnsKeepOrderUnitsAndNaN) {
 
 TEST(Table, UnequalColumnsAreRefused) {
   const TemporaryFolder folder;
-  StoreWriter out(folder.path() / "a.h5");
+  StoreWriter out(folder.path() / "a.h5", FileKind::kTrajectory);
   const Table table{"", {{"a", {}, std::vector<double>{1.0}}, {"b", {}, std::vector<double>{}}}};
   expect_parts(message_of([&] { save(out, "t", table); }), {"t", "column b has 0 rows", "1"});
 }
@@ -233,7 +234,7 @@ TEST(Table, UnequalColumnsAreRefused) {
 TEST(Info, ListsNamesShapesUnitsAndDescriptions) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "a.h5";
-  StoreWriter out(path);
+  StoreWriter out(path, FileKind::kTrajectory);
   out.describe_group("run", "one run");
   out.write("run/q", Eigen::MatrixXd(Eigen::MatrixXd::Zero(4, 2)), {"m", "displacements"});
   out.write("run/energy", 2.5, {"J", "energy"});

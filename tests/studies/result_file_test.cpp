@@ -35,16 +35,19 @@ TEST(ResultFile, GoesOnFromItsOwnJournalAndRefusesAnother) {
   const scene::Scene scene = scene::load_scene(std::string(SLIPMODE_SOURCE_DIR) + "/datasets/chain10/scene.toml");
   const std::string identity = identity_of(two_modes_of_three());
   {
-    ResultFile interrupted(folder.path() / "sweep.h5", scene, "slipmode sweep", identity);
+    ResultFile interrupted(folder.path() / "sweep.h5", scene, results::FileKind::kSweep, "slipmode sweep", identity);
     EXPECT_EQ(interrupted.resumed(), 0U);
     interrupted.journal().append({"full", 0, {0.25}, ""});
   }
-  EXPECT_THROW(ResultFile(folder.path() / "sweep.h5", scene, "slipmode sweep", "another"), InvalidInput);
-  EXPECT_THROW(ResultFile(folder.path() / "sweep.h5", scene, "slipmode sweep --follow", identity), InvalidInput);
+  EXPECT_THROW(ResultFile(folder.path() / "sweep.h5", scene, results::FileKind::kSweep, "slipmode sweep", "another"),
+               InvalidInput);
   EXPECT_THROW(
-      ResultFile(folder.path() / "sweep.h5", scene::set_key(scene, "drive.speed", 0.3), "slipmode sweep", identity),
+      ResultFile(folder.path() / "sweep.h5", scene, results::FileKind::kSweep, "slipmode sweep --follow", identity),
       InvalidInput);
-  ResultFile again(folder.path() / "sweep.h5", scene, "slipmode sweep", identity);
+  EXPECT_THROW(ResultFile(folder.path() / "sweep.h5", scene::set_key(scene, "drive.speed", 0.3),
+                          results::FileKind::kSweep, "slipmode sweep", identity),
+               InvalidInput);
+  ResultFile again(folder.path() / "sweep.h5", scene, results::FileKind::kSweep, "slipmode sweep", identity);
   EXPECT_EQ(again.resumed(), 1U);
   again.finish([](results::StoreWriter&) {});
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "sweep.h5"));
