@@ -26,7 +26,7 @@ std::optional<BranchPoint> orbit_beside(const BranchSolver& solver, const Period
 
 }  // namespace
 
-std::vector<BranchPoint> switch_branch(const SystemFamily& family, const SpecialPoint& special,
+std::vector<BranchPoint> switch_branch(const dynamics::SystemFamily& family, const SpecialPoint& special,
                                        const ContinuationOptions& options, double distance) {
   const bool doubling = special.kind == SpecialKind::kPeriodDoubling;
   if (!doubling && special.kind != SpecialKind::kSymmetryBreaking)

@@ -92,7 +92,7 @@ const char* to_string(BranchEnd end) {
   return "unknown";
 }
 
-Branch continue_orbit(const SystemFamily& family, const PeriodicOrbit& orbit, double parameter,
+Branch continue_orbit(const dynamics::SystemFamily& family, const PeriodicOrbit& orbit, double parameter,
                       const ContinuationOptions& options) {
   check(orbit, parameter, options);
   ContinuationOptions own = options;

@@ -1,20 +1,15 @@
 #pragma once
 
+#include <slipmode/dynamics/system_family.hpp>
 #include <slipmode/orbits/shooting.hpp>
 
 #include <Eigen/Core>
 #include <complex>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace slipmode::orbits {
-
-/// A system for each value of a parameter; asked only within the range of a branch. With HybridSystem::with_drive
-/// inside, modal data and regimes are shared. It must be continuous in the parameter, and of the same size and kind of
-/// drive everywhere.
-using SystemFamily = std::function<dynamics::HybridSystem(double parameter)>;
 
 enum class SpecialKind : std::uint8_t {
   kFold,              ///< the branch turns back: a multiplier passes 1
@@ -89,7 +84,7 @@ struct Branch {
 /// @param orbit      at `parameter`, converged
 /// @throws InvalidInput  for a range without length, a start outside it, steps that are not positive, a family whose
 ///                       system is of another size than the orbit
-[[nodiscard]] Branch continue_orbit(const SystemFamily& family, const PeriodicOrbit& orbit, double parameter,
+[[nodiscard]] Branch continue_orbit(const dynamics::SystemFamily& family, const PeriodicOrbit& orbit, double parameter,
                                     const ContinuationOptions& options);
 
 /// Orbits of the branch that leaves at a symmetry breaking (same period, both mirror images) or a period doubling
@@ -98,7 +93,7 @@ struct Branch {
 /// @return          one or two points to continue from (with `order` doubled in the options after a period doubling)
 /// @throws InvalidInput      for a special point of another kind, or outside the range of the options
 /// @throws NumericalFailure  when no orbit is found
-[[nodiscard]] std::vector<BranchPoint> switch_branch(const SystemFamily& family, const SpecialPoint& special,
+[[nodiscard]] std::vector<BranchPoint> switch_branch(const dynamics::SystemFamily& family, const SpecialPoint& special,
                                                      const ContinuationOptions& options, double distance = 0.02);
 
 }  // namespace slipmode::orbits

@@ -18,7 +18,7 @@ std::vector<double> gather(const std::vector<BranchPoint>& points, Get get) {
 }
 
 /// Columns of the contacts' displacements: "alternating_1" and so on.
-std::vector<Column> amplitude_columns(const std::vector<BranchPoint>& points, const orbits::SystemFamily& family) {
+std::vector<Column> amplitude_columns(const std::vector<BranchPoint>& points, const dynamics::SystemFamily& family) {
   struct Measure {
     const char* name;
     const char* what;
@@ -47,7 +47,7 @@ std::vector<Column> amplitude_columns(const std::vector<BranchPoint>& points, co
   return columns;
 }
 
-Table point_table(const std::string& key, const std::vector<BranchPoint>& points, const orbits::SystemFamily& family) {
+Table point_table(const std::string& key, const std::vector<BranchPoint>& points, const dynamics::SystemFamily& family) {
   const auto add = [&points](const char* name, const char* units, const char* what, auto get) {
     return Column{name, {units, what}, gather(points, get)};
   };
@@ -74,7 +74,7 @@ Table point_table(const std::string& key, const std::vector<BranchPoint>& points
   return table;
 }
 
-Table special_table(const orbits::Branch& branch, const orbits::SystemFamily& family) {
+Table special_table(const orbits::Branch& branch, const dynamics::SystemFamily& family) {
   std::vector<std::string> kind, note;
   std::vector<double> before, parameter, uncertainty, real, imaginary, amplitude;
   for (const orbits::SpecialPoint& point : branch.special) {
@@ -125,7 +125,7 @@ Eigen::MatrixXd start_rows(const std::vector<BranchPoint>& points) {
 }  // namespace
 
 void store_branches(StoreWriter& writer, const std::string& key, const std::vector<NamedBranch>& branches,
-                    const orbits::SystemFamily& family) {
+                    const dynamics::SystemFamily& family) {
   writer.describe_group("branches", "branches of periodic orbits over a parameter");
   writer.write("branches/key", key, {"", "the parameter: a key of the scene"});
   for (std::size_t k = 0; k < branches.size(); ++k) {

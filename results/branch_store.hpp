@@ -17,7 +17,7 @@ struct NamedBranch {
 /// Writes the group `branches`: one sub-group per branch with its points, special points and why it ended.
 /// @param family  gives the systems whose contacts' amplitudes are measured
 void store_branches(StoreWriter& writer, const std::string& key, const std::vector<NamedBranch>& branches,
-                    const orbits::SystemFamily& family);
+                    const dynamics::SystemFamily& family);
 
 /// What figures need of a stored branch.
 struct StoredBranch {

@@ -166,7 +166,7 @@ diagnostics::DrivenModel Family::driven_model() const {
   return [family = *this](double value) { return family.case_at({value}); };
 }
 
-orbits::SystemFamily Family::systems() const {
+dynamics::SystemFamily Family::systems() const {
   return [family = *this](double value) { return family.at({value}); };
 }
 

@@ -51,7 +51,7 @@ class Family {
   /// As solvers take a family over one key.
   [[nodiscard]] diagnostics::Model model() const;
   [[nodiscard]] diagnostics::DrivenModel driven_model() const;
-  [[nodiscard]] orbits::SystemFamily systems() const;
+  [[nodiscard]] dynamics::SystemFamily systems() const;
 
  private:
   struct Shared;

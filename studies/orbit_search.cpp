@@ -51,7 +51,7 @@ SearchStart self_excited(const OrbitSearch& search, const Family& model, orbits:
 }
 
 /// The branch that leaves at a special point, of two mirror images one.
-results::NamedBranch switched(const orbits::SystemFamily& family, const orbits::SpecialPoint& special,
+results::NamedBranch switched(const dynamics::SystemFamily& family, const orbits::SpecialPoint& special,
                               orbits::ContinuationOptions options) {
   results::NamedBranch side{
       .title = fmt::format("from {} at {:.8g}", orbits::to_string(special.kind), special.parameter), .branch = {}};
@@ -72,7 +72,7 @@ results::NamedBranch switched(const orbits::SystemFamily& family, const orbits::
   return side;
 }
 
-std::vector<results::NamedBranch> follow(const orbits::SystemFamily& family, const orbits::PeriodicOrbit& orbit,
+std::vector<results::NamedBranch> follow(const dynamics::SystemFamily& family, const orbits::PeriodicOrbit& orbit,
                                          double start, const orbits::ContinuationOptions& options, bool switches) {
   std::vector<results::NamedBranch> branches = {
       {.title = "main branch", .branch = orbits::continue_orbit(family, orbit, start, options)}};
@@ -127,7 +127,7 @@ Continuation continue_orbit(const scene::Scene& scene, const std::string& key,
     (void)scene::set_key(scene, key, end);
     (void)family.at({end});
   }
-  const orbits::SystemFamily systems = [&family, &run](double value) {
+  const dynamics::SystemFamily systems = [&family, &run](double value) {
     run.check_interrupt();
     return family.at({value});
   };

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <slipmode/dynamics/simulate.hpp>
-#include <slipmode/dynamics/system.hpp>
+#include <slipmode/dynamics/system_family.hpp>
 #include <slipmode/pod/basis.hpp>
 
 #include <Eigen/Core>
@@ -10,12 +10,9 @@
 
 namespace slipmode::diagnostics {
 
-/// A system for a value of the swept parameter. Called from several threads at once: must not change anything.
-using SystemFactory = std::function<dynamics::HybridSystem(double parameter)>;
-
 /// A model under study: full, or reduced by a basis.
 struct Model {
-  SystemFactory system;
+  dynamics::SystemFamily system;
   std::optional<pod::Basis> basis = {};  ///< set for a reduced model: how its states lift to the full ones
   /// Added to HybridSystem::energy so that a reduced model's energy is that of its lifted state [J]; it moves with the
   /// stiffness and the load. Empty: zero.

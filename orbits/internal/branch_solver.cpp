@@ -23,7 +23,7 @@ double share_of(double time, double period) { return time / period - std::floor(
 
 }  // namespace
 
-BranchSolver::BranchSolver(SystemFamily family, const PeriodicOrbit& orbit, double parameter,
+BranchSolver::BranchSolver(dynamics::SystemFamily family, const PeriodicOrbit& orbit, double parameter,
                            const ContinuationOptions& options)
     : family_(std::move(family)), options_(options), kind_(orbit.kind), range_(std::abs(options.to - options.from)) {
   options_.shooting.order = orbit.order;

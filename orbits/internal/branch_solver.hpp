@@ -30,7 +30,8 @@ struct BranchEvaluation {
 class BranchSolver {
  public:
   /// @param orbit  fixes kind, order and scales
-  BranchSolver(SystemFamily family, const PeriodicOrbit& orbit, double parameter, const ContinuationOptions& options);
+  BranchSolver(dynamics::SystemFamily family, const PeriodicOrbit& orbit, double parameter,
+               const ContinuationOptions& options);
 
   [[nodiscard]] BranchUnknowns unknowns_of(const PeriodicOrbit& orbit, double parameter) const;
 
@@ -83,7 +84,7 @@ class BranchSolver {
   [[nodiscard]] std::vector<Eigen::MatrixXd> parameter_columns(const BranchUnknowns& at,
                                                                const ShootingEvaluation& here) const;
 
-  SystemFamily family_;
+  dynamics::SystemFamily family_;
   ContinuationOptions options_;
   OrbitKind kind_;
   double range_ = 1.0;

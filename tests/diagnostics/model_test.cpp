@@ -89,7 +89,7 @@ TEST(EnsembleRun, GivesTheSameBytesForAnyNumberOfThreads) {
 TEST(EnsembleRun, RecordsAMemberThatFailsAndKeepsTheOthers) {
   const dynamics::HybridSystem system = tests::chain10(0.2);
   Model model = belt_model(system);
-  const SystemFactory sound = model.system;
+  const dynamics::SystemFamily sound = model.system;
   model.system = [sound](double speed) {
     if (speed == 0.3) throw NumericalFailure("made to fail", 0.0, {}, 0.0);
     return sound(speed);

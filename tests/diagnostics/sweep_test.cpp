@@ -161,7 +161,7 @@ TEST(Sweep, RefusesAJournalOfAnotherSweep) {
 TEST(Sweep, RecordsAValueThatFailsAndGoesOnFromItsStart) {
   const dynamics::HybridSystem system = tests::chain10(0.2);
   Model model = belt_model(system);
-  const SystemFactory sound = model.system;
+  const dynamics::SystemFamily sound = model.system;
   model.system = [sound](double speed) {
     if (speed == 0.35) throw NumericalFailure("made to fail at 0.35", 12.0, {}, 0.0);
     return sound(speed);

@@ -64,7 +64,7 @@ struct Backlash {
 }
 
 /// The same system under A sin ωt at other frequencies: regimes are shared.
-[[nodiscard]] inline SystemFamily over_frequency(const dynamics::HybridSystem& base, double amplitude = 1.0) {
+[[nodiscard]] inline dynamics::SystemFamily over_frequency(const dynamics::HybridSystem& base, double amplitude = 1.0) {
   return [base, amplitude](double omega) { return base.with_drive(Backlash::drive(amplitude, omega)); };
 }
 

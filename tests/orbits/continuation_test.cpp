@@ -400,7 +400,7 @@ TEST(Continuation, AParameterTheFamilyRefusesKeepsThePartialBranch) {
 TEST(Continuation, BadInputIsNamed) {
   const HybridSystem base = Backlash{.omega = 1.1}.system();
   const PeriodicOrbit orbit = settled(base, -2.0);
-  const SystemFamily family = over_frequency(base);
+  const dynamics::SystemFamily family = over_frequency(base);
   EXPECT_THROW(static_cast<void>(continue_orbit(family, orbit, 1.1, {.from = 1.0, .to = 1.0})), InvalidInput);
   EXPECT_THROW(static_cast<void>(continue_orbit(family, orbit, 1.1, {.from = 1.2, .to = 1.5})), InvalidInput);
   EXPECT_THROW(static_cast<void>(continue_orbit(family, orbit, 1.1, {.from = 1.0, .to = 1.5, .step = 0.0})),
