@@ -2,6 +2,7 @@
 
 #include <slipmode/results/driven_store.hpp>
 #include <slipmode/scene/shaken.hpp>
+#include "cli/json_values.hpp"
 #include "cli/text_table.hpp"
 
 #include <fmt/format.h>
@@ -21,23 +22,16 @@ Json peaks_json(const std::vector<diagnostics::AmplitudePeak>& peaks) {
 }
 
 Json agreement_json(const diagnostics::DrivenAgreement& agreement) {
-  return {{"values", agreement.values},
-          {"failed", agreement.failed},
-          {"mean_distance", agreement.mean_wasserstein},
-          {"median_distance", agreement.median_wasserstein},
-          {"mean_hausdorff", agreement.mean_hausdorff},
-          {"same_label", agreement.same_label},
-          {"same_period", agreement.same_period}};
+  return merged({{"values", agreement.values}, {"failed", agreement.failed}}, fields_json(agreement));
 }
 
 Json row_json(const DrivenRow& row) {
   if (!row.failure.empty()) return {{"modes", row.modes}, {"failure", row.failure}};
-  Json out = {{"modes", row.modes}};
-  out.update(agreement_json(row.agreement));
+  Json out = merged({{"modes", row.modes}}, agreement_json(row.agreement));
   out["trusted_share"] = row.trusted_share;
   out["band"] = {row.band.first, row.band.second};
   out["peaks"] = peaks_json(row.peaks);
-  out["cost"] = {{"wall_s", row.cost.wall}, {"cpu_s", row.cost.cpu}, {"setup_s", row.cost.setup}};
+  out["cost"] = fields_json(row.cost);
   return out;
 }
 
@@ -73,7 +67,7 @@ std::string candidate_text(const DrivenCandidateReport& candidate, const DrivenV
 Json to_json(const DrivenValidationReport& report) {
   Json out = {{"noise", agreement_json(report.noise)},
               {"peaks", peaks_json(report.peaks)},
-              {"cost", {{"wall_s", report.cost.wall}, {"cpu_s", report.cost.cpu}, {"setup_s", report.cost.setup}}},
+              {"cost", fields_json(report.cost)},
               {"sweeps_wall_s", report.sweeps_wall}};
   out["bases"] = Json::array();
   for (const DrivenCandidateReport& candidate : report.candidates) {

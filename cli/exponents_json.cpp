@@ -8,7 +8,6 @@ namespace slipmode::cli {
 namespace {
 
 using diagnostics::LyapunovSpectrum;
-using diagnostics::VolumeBalance;
 
 Json exponent_list(const Eigen::VectorXd& values) {
   Json out = Json::array();
@@ -36,23 +35,14 @@ Json exponents_json(const std::vector<results::ModelExponents>& models) {
     one.update({{"nats", exponent_list(spectrum.nats)},
                 {"bits", exponent_list(spectrum.bits())},
                 {"error_nats", exponent_list(spectrum.error)},
-                {"directions", spectrum.size},
-                {"lost", spectrum.lost},
                 {"chaotic", spectrum.is_chaotic()},
-                {"kaplan_yorke", exponent_json(spectrum.dimension)},
-                {"kaplan_yorke_error", exponent_json(spectrum.dimension_error)},
                 {"duration", spectrum.duration},
                 {"interval", spectrum.interval}});
+    one.update(fields_json(spectrum));
     if (!spectrum.failure.empty()) one["ended_early"] = spectrum.failure;
     if (spectrum.balance) {
-      const VolumeBalance& balance = *spectrum.balance;
-      one["balance"] = {{"sum", balance.sum},
-                        {"expected", balance.expected()},
-                        {"viscous", balance.viscous},
-                        {"friction", balance.friction},
-                        {"events", balance.events},
-                        {"revived", balance.revived},
-                        {"unexplained", balance.unexplained}};
+      one["balance"] = fields_json(*spectrum.balance);
+      one["balance"]["expected"] = spectrum.balance->expected();
     }
     out.push_back(one);
   }

@@ -2,6 +2,7 @@
 #include <slipmode/results/provenance.hpp>
 #include <slipmode/studies/bases.hpp>
 #include <slipmode/studies/orbit_search.hpp>
+#include "cli/json_values.hpp"
 #include "cli/orbit_report.hpp"
 #include "cli/orbit_search.hpp"
 #include "cli/text_table.hpp"
@@ -52,11 +53,9 @@ Json branch_json(const results::NamedBranch& named) {
   const orbits::Branch& branch = named.branch;
   Json special = Json::array();
   for (const orbits::SpecialPoint& point : branch.special) {
-    special.push_back({{"kind", orbits::to_string(point.kind)},
-                       {"parameter", point.parameter},
-                       {"uncertainty", point.uncertainty},
-                       {"multiplier", {point.multiplier.real(), point.multiplier.imag()}},
-                       {"note", point.note}});
+    special.push_back(merged(
+        {{"kind", orbits::to_string(point.kind)}, {"multiplier", {point.multiplier.real(), point.multiplier.imag()}}},
+        fields_json(point)));
   }
   std::size_t stable = 0;
   for (const orbits::BranchPoint& point : branch.points) {

@@ -90,41 +90,18 @@ Json complex_json(const Eigen::VectorXcd& values) {
 Json orbit_json(const dynamics::HybridSystem& system, const PeriodicOrbit& orbit,
                 const std::vector<orbits::Amplitude>& amplitudes) {
   Json data = {{"kind", orbits::to_string(orbit.kind)},
-               {"period", orbit.period},
-               {"order", orbit.order},
-               {"repeats", orbit.repeats},
                {"multipliers", complex_json(orbit.multipliers)},
-               {"trivial_multipliers", orbit.trivial_multipliers},
-               {"leading_modulus", orbit.leading_modulus},
                {"stability", orbits::to_string(orbit.stability)},
-               {"zero_multipliers", orbit.zero_multipliers},
-               {"superstable", orbit.superstable},
                {"half_multipliers", complex_json(orbit.half_multipliers)},
-               {"word", orbit.word},
-               {"crossings", orbit.crossings},
-               {"symmetric", orbit.symmetric},
-               {"asymmetry", orbit.asymmetry},
-               {"grazing", orbit.grazing},
-               {"has_grazing", orbit.has_grazing},
-               {"family_dimension", orbit.family.cols()},
-               {"family_note", orbit.family_note},
-               {"residual", orbit.residual},
-               {"iterations", orbit.iterations},
-               {"residuals", orbit.residuals}};
+               {"family_dimension", orbit.family.cols()}};
+  data.update(fields_json(orbit));
   data["start"] = {{"time", orbit.start.time},
                    {"displacement", results::values_of(orbit.start.q)},
                    {"velocity", results::values_of(orbit.start.v)},
                    {"internal", results::values_of(orbit.start.internal)}};
   Json sizes = Json::array();
-  for (std::size_t c = 0; c < amplitudes.size(); ++c) {
-    const orbits::Amplitude& own = amplitudes[c];
-    sizes.push_back({{"contact", contact_name(system, c)},
-                     {"min", own.min},
-                     {"max", own.max},
-                     {"mean", own.mean},
-                     {"alternating", own.alternating},
-                     {"effective", own.effective}});
-  }
+  for (std::size_t c = 0; c < amplitudes.size(); ++c)
+    sizes.push_back(merged({{"contact", contact_name(system, c)}}, fields_json(amplitudes[c])));
   data["amplitudes"] = sizes;
   return data;
 }

@@ -27,13 +27,7 @@ std::string findings_text(const std::vector<diagnostics::Finding>& findings) {
 
 Json findings_json(const std::vector<diagnostics::Finding>& findings) {
   Json out = Json::object();
-  for (const diagnostics::Finding& finding : findings) {
-    out[finding.key] = {{"quantity", finding.quantity},
-                        {"value", json_number(finding.value)},
-                        {"error", json_number(finding.error)},
-                        {"unit", finding.unit},
-                        {"settings", finding.settings}};
-  }
+  for (const diagnostics::Finding& finding : findings) out[finding.key] = fields_json(finding);
   return out;
 }
 

@@ -1,5 +1,6 @@
 #include "cli/skeleton_report.hpp"
 
+#include "cli/json_values.hpp"
 #include "cli/text_table.hpp"
 
 #include <fmt/format.h>
@@ -28,12 +29,8 @@ Json skeleton_json(const results::ModelSkeleton& model) {
   }
   Json refused = Json::array();
   for (const orbits::Refusal& refusal : model.skeleton.refusals) {
-    const orbits::Candidate& candidate = model.skeleton.candidates[refusal.candidate];
-    refused.push_back({{"origin", candidate.origin},
-                       {"length", candidate.length},
-                       {"period", candidate.period},
-                       {"distance", candidate.distance},
-                       {"reason", refusal.reason}});
+    refused.push_back(
+        merged(fields_json(model.skeleton.candidates[refusal.candidate]), Json{{"reason", refusal.reason}}));
   }
   return {{"title", model.title},
           {"candidates", model.skeleton.candidates.size()},
@@ -58,12 +55,7 @@ std::string skeleton_text(const results::ModelSkeleton& model) {
 Json comparison_json(const SkeletonComparison& comparison) {
   Json matched = Json::array();
   for (const OrbitMatch& match : comparison.matched) {
-    matched.push_back({{"full", match.full + 1},
-                       {"reduced", match.reduced + 1},
-                       {"period", match.period},
-                       {"log_multiplier", match.log_multiplier},
-                       {"shape", match.shape},
-                       {"share", match.share}});
+    matched.push_back(merged({{"full", match.full + 1}, {"reduced", match.reduced + 1}}, fields_json(match)));
   }
   return {{"matched", matched},
           {"missed", results::numbers_of(comparison.missed)},

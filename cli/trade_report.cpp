@@ -25,14 +25,10 @@ Json json_of(const Study& study, const Row& row, double duration) {
               {"axis", trade::to_string(row.variant.axis)},
               {"error_percent", errors},
               {"noise_percent", noise},
-              {"time_s", json_number(row.cost.cpu)},
-              {"time_low_s", row.cost.cpu_low},
-              {"time_high_s", row.cost.cpu_high},
-              {"wall_s", json_number(row.cost.wall)},
-              {"setup_s", row.cost.setup},
               {"basis_s", row.basis_seconds},
               {"speed_up", json_number(trade::speed_up(study, row))},
               {"break_even_runs", json_number(trade::break_even(study, row, duration))}};
+  out.update(fields_json(row.cost));
   if (!row.failure.empty()) out["failure"] = row.failure;
   return out;
 }
@@ -69,12 +65,8 @@ Json to_json(const Study& study, const scene::Scene& scene) {
     for (const std::size_t i : trade::pareto_front(study.offers(measure))) names.push_back(study.rows[i].variant.name);
     fronts[std::string(trade::to_string(measure))] = names;
   }
-  return {{"reference", json_of(study, study.reference, scene.time.duration)},
-          {"timed", study.schedule.timed},
-          {"recorded", study.schedule.duration},
-          {"horizon", study.schedule.horizon},
-          {"candidates", rows},
-          {"fronts", fronts}};
+  return merged({{"reference", json_of(study, study.reference, scene.time.duration)}}, fields_json(study.schedule),
+                Json{{"candidates", rows}, {"fronts", fronts}});
 }
 
 std::string study_text(const Study& study, const scene::Scene& scene) {

@@ -1,5 +1,6 @@
 #include <slipmode/results/sweep_store.hpp>
 #include "cli/exponents_report.hpp"
+#include "cli/json_values.hpp"
 #include "cli/validation_report.hpp"
 
 namespace slipmode::cli {
@@ -20,16 +21,9 @@ Json settled_json(const diagnostics::Settled& settled, const std::optional<diagn
           {"audit_residual", settled.audit_residual}};
 }
 
-Json deviation_json(const diagnostics::Deviation& deviation) {
-  return {{"dX", deviation.dX}, {"dE", deviation.dE}, {"dE_pointwise", deviation.dE_pointwise}};
-}
-
 Json distance_json(const diagnostics::AttractorDistance& distance) {
-  return {{"wasserstein", distance.wasserstein},
-          {"hausdorff", distance.hausdorff},
-          {"mean_energy_percent", distance.mean_energy_percent},
-          {"stick_fraction", distance.stick_fraction},
-          {"slip_rate", distance.slip_rate}};
+  return merged(fields_json(distance),
+                Json{{"stick_fraction", distance.stick_fraction}, {"slip_rate", distance.slip_rate}});
 }
 
 Json share_json(const ShareRow& row) {
@@ -38,7 +32,7 @@ Json share_json(const ShareRow& row) {
     out["failure"] = row.failure;
     return out;
   }
-  out["horizon"] = deviation_json(row.horizon);
+  out["horizon"] = fields_json(row.horizon);
   out["start_error"] = row.start_error;
   if (row.attractor) {
     out["attractor"] = settled_json(*row.attractor, row.lyapunov);
@@ -57,7 +51,7 @@ Json orbit_json(const OrbitRow& row) {
     out["period_reduced"] = comparison.reduced.period;
     out["T_full"] = comparison.full.T;
     out["T_reduced"] = comparison.reduced.T;
-    if (comparison.same_period) out["deviation"] = deviation_json(comparison.deviation);
+    if (comparison.same_period) out["deviation"] = fields_json(comparison.deviation);
   }
   return out;
 }
@@ -88,33 +82,12 @@ Json to_json(const ValidationReport& report) {
   if (report.sweep) {
     out["sweep"] = {{"full", motions_json(report.sweep->full)}, {"reduced", motions_json(report.sweep->reduced)}};
   }
-  if (report.bifurcation) {
-    const auto& b = *report.bifurcation;
-    out["bifurcation"] = {{"values", b.values},
-                          {"failed", b.failed},
-                          {"decided", b.decided},
-                          {"same_motion", b.same_motion},
-                          {"same_period", b.same_period},
-                          {"periodic_full", b.periodic_full},
-                          {"periodic_reduced", b.periodic_reduced},
-                          {"mean_wasserstein", b.mean_wasserstein},
-                          {"median_wasserstein", b.median_wasserstein},
-                          {"mean_hausdorff", b.mean_hausdorff}};
-  }
+  if (report.bifurcation) out["bifurcation"] = fields_json(*report.bifurcation);
   if (report.verdict) {
     out["verdict"] = verdict_json(*report.verdict);
     out["exponents"] = exponents_json(results::exponents_of(*report.verdict));
   }
-  if (report.cost) {
-    const auto& c = *report.cost;
-    out["cost"] = {{"duration", c.duration},
-                   {"full_wall_s", c.full_wall},
-                   {"full_cpu_s", c.full_cpu},
-                   {"reduced_wall_s", c.reduced_wall},
-                   {"reduced_cpu_s", c.reduced_cpu},
-                   {"full_setup_wall_s", c.full_setup_wall},
-                   {"projection_wall_s", c.projection_wall}};
-  }
+  if (report.cost) out["cost"] = fields_json(*report.cost);
   return out;
 }
 

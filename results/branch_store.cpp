@@ -1,7 +1,8 @@
 #include <slipmode/results/branch_store.hpp>
 
+#include "results/internal/field_record.hpp"
+
 #include <fmt/format.h>
-#include <array>
 
 namespace slipmode::results {
 namespace {
@@ -19,35 +20,24 @@ std::vector<double> gather(const std::vector<BranchPoint>& points, Get get) {
 
 /// Columns of the contacts' displacements: "alternating_1" and so on.
 std::vector<Column> amplitude_columns(const std::vector<BranchPoint>& points, const dynamics::SystemFamily& family) {
-  struct Measure {
-    const char* name;
-    const char* what;
-    double orbits::Amplitude::*value;
-  };
-  constexpr std::array<Measure, 5> kMeasures = {
-      {{"min", "least displacement of contact", &orbits::Amplitude::min},
-       {"max", "greatest displacement of contact", &orbits::Amplitude::max},
-       {"mean", "mean displacement of contact", &orbits::Amplitude::mean},
-       {"alternating", "half the range of contact", &orbits::Amplitude::alternating},
-       {"effective", "rms about the mean of contact", &orbits::Amplitude::effective}}};
   std::vector<std::vector<orbits::Amplitude>> all;
   for (const BranchPoint& point : points)
     all.push_back(orbits::contact_amplitudes(family(point.parameter), point.orbit));
   std::vector<Column> columns;
   const std::size_t contacts = all.empty() ? 0 : all.front().size();
   for (std::size_t c = 0; c < contacts; ++c) {
-    for (const Measure& measure : kMeasures) {
-      std::vector<double> values;
-      for (const auto& sizes : all) values.push_back(sizes[c].*measure.value);
-      columns.push_back({fmt::format("{}_{}", measure.name, c + 1),
-                         {"m", fmt::format("{} {}", measure.what, c + 1)},
-                         std::move(values)});
+    for (Column& column : columns_of(
+             all, [c](const std::vector<orbits::Amplitude>& sizes) -> const auto& { return sizes[c]; })) {
+      column.name += fmt::format("_{}", c + 1);
+      column.meaning.description += fmt::format(" {}", c + 1);
+      columns.push_back(std::move(column));
     }
   }
   return columns;
 }
 
-Table point_table(const std::string& key, const std::vector<BranchPoint>& points, const dynamics::SystemFamily& family) {
+Table point_table(const std::string& key, const std::vector<BranchPoint>& points,
+                  const dynamics::SystemFamily& family) {
   const auto add = [&points](const char* name, const char* units, const char* what, auto get) {
     return Column{name, {units, what}, gather(points, get)};
   };
@@ -75,27 +65,22 @@ Table point_table(const std::string& key, const std::vector<BranchPoint>& points
 }
 
 Table special_table(const orbits::Branch& branch, const dynamics::SystemFamily& family) {
-  std::vector<std::string> kind, note;
-  std::vector<double> before, parameter, uncertainty, real, imaginary, amplitude;
+  std::vector<std::string> kind;
+  std::vector<double> before, real, imaginary, amplitude;
   for (const orbits::SpecialPoint& point : branch.special) {
     kind.emplace_back(orbits::to_string(point.kind));
     before.push_back(static_cast<double>(point.before));
-    note.push_back(point.note);
-    parameter.push_back(point.parameter);
-    uncertainty.push_back(point.uncertainty);
     real.push_back(point.multiplier.real());
     imaginary.push_back(point.multiplier.imag());
     amplitude.push_back(orbits::contact_amplitudes(family(point.parameter), point.orbit).front().alternating);
   }
   return {.description = "points where the branch changes its kind",
-          .columns = {{"kind", {"", "what happens"}, kind},
-                      {"before", {"", "row of `points` it follows, from 0"}, before},
-                      {"parameter", {"", "where"}, parameter},
-                      {"uncertainty", {"", "width of the last bracket"}, uncertainty},
-                      {"multiplier", {"1", "the critical one, real part"}, real},
-                      {"multiplier_imaginary", {"1", "its imaginary part"}, imaginary},
-                      {"alternating", {"m", "half the range of the first contact's displacement"}, amplitude},
-                      {"note", {"", "what was seen"}, note}}};
+          .columns = joined(
+              {{{"kind", {"", "what happens"}, kind}, {"before", {"", "row of `points` it follows, from 0"}, before}},
+               columns_of(branch.special),
+               {{"multiplier", {"1", "the critical one, real part"}, real},
+                {"multiplier_imaginary", {"1", "its imaginary part"}, imaginary},
+                {"alternating", {"m", "half the range of the first contact's displacement"}, amplitude}}})};
 }
 
 /// Multipliers of all points: a row each, real parts, then imaginary ones.

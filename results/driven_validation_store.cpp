@@ -3,6 +3,7 @@
 #include <slipmode/results/driven_store.hpp>
 #include <slipmode/results/table.hpp>
 #include <slipmode/scene/shaken.hpp>
+#include "results/internal/field_record.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -25,40 +26,27 @@ std::string group_name(const DrivenCandidateReport& candidate, const DrivenRow& 
 
 Table agreement_table(const DrivenValidationReport& report) {
   std::vector<std::string> basis, failure;
-  std::vector<double> modes, mean, median, hausdorff, label, period, trusted, from, to, wall, cpu, setup;
+  std::vector<double> modes, trusted, from, to;
+  std::vector<const DrivenRow*> rows;
   for (const DrivenCandidateReport& candidate : report.candidates) {
     for (const DrivenRow& row : candidate.rows) {
+      rows.push_back(&row);
       basis.push_back(candidate.name);
       modes.push_back(static_cast<double>(row.modes));
-      mean.push_back(row.agreement.mean_wasserstein);
-      median.push_back(row.agreement.median_wasserstein);
-      hausdorff.push_back(row.agreement.mean_hausdorff);
-      label.push_back(row.agreement.same_label);
-      period.push_back(row.agreement.same_period);
       trusted.push_back(row.trusted_share);
       from.push_back(row.band.first);
       to.push_back(row.band.second);
-      wall.push_back(row.cost.wall);
-      cpu.push_back(row.cost.cpu);
-      setup.push_back(row.cost.setup);
       failure.push_back(row.failure);
     }
   }
   return {"reduced models against the full one; distances in units of the full model's root mean square",
-          {{"basis", {"", "what the vectors are"}, basis},
-           {"modes", {"", "number of modes L"}, modes},
-           {"mean_distance", {"1", "Wasserstein-1 distance of section points, mean over values"}, mean},
-           {"median_distance", {"1", "the same, median"}, median},
-           {"mean_hausdorff", {"1", "Hausdorff distance of section points, mean over values"}, hausdorff},
-           {"same_label", {"1", "share of values with the same label"}, label},
-           {"same_period", {"1", "share of values with the same period"}, period},
-           {"trusted_share", {"1", "share of values where the distance is within what is trusted"}, trusted},
-           {"band_from", {"Hz", "longest run of trusted values: first"}, from},
-           {"band_to", {"Hz", "longest run of trusted values: last"}, to},
-           {"wall", {"s", "median clock time of a timed run", Meaning::Of::kClock}, wall},
-           {"cpu", {"s", "median processor time of a timed run", Meaning::Of::kClock}, cpu},
-           {"setup", {"s", "projection and modal data", Meaning::Of::kClock}, setup},
-           {"failure", {"", "why there is no such model; empty: there is"}, failure}}};
+          joined({{{"basis", {"", "what the vectors are"}, basis}, {"modes", {"", "number of modes L"}, modes}},
+                  columns_of(rows, &DrivenRow::agreement),
+                  {{"trusted_share", {"1", "share of values where the distance is within what is trusted"}, trusted},
+                   {"band_from", {"Hz", "longest run of trusted values: first"}, from},
+                   {"band_to", {"Hz", "longest run of trusted values: last"}, to}},
+                  columns_of(rows, &DrivenRow::cost),
+                  {{"failure", {"", "why there is no such model; empty: there is"}, failure}}})};
 }
 
 }  // namespace

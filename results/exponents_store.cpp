@@ -2,6 +2,7 @@
 
 #include <slipmode/core/none.hpp>
 #include <slipmode/results/table.hpp>
+#include "results/internal/field_record.hpp"
 #include "results/internal/journal_line.hpp"
 
 #include <fmt/format.h>
@@ -14,19 +15,6 @@ using diagnostics::Halved;
 using diagnostics::LyapunovSpectrum;
 using diagnostics::ModelFindings;
 using diagnostics::VerdictTable;
-using diagnostics::VolumeBalance;
-
-void store_balance(StoreWriter& writer, const std::string& group, const VolumeBalance& balance, const Units& units) {
-  const std::string rate = units.rate;
-  writer.write(group + "/viscous", balance.viscous, {rate, "mean of the trace of the field, dashpots"});
-  writer.write(group + "/friction", balance.friction, {rate, "the same, friction that depends on sliding speed"});
-  writer.write(group + "/events", balance.events, {rate, "logarithms of what events do to volumes, per time"});
-  writer.write(group + "/revived", balance.revived, {rate, "growth of directions that slip gave back"});
-  writer.write(group + "/expected", balance.expected(), {rate, "what the finite exponents must add up to"});
-  writer.write(group + "/sum", balance.sum, {rate, "what they add up to"});
-  writer.write(group + "/unexplained", static_cast<std::int64_t>(balance.unexplained),
-               {"", "events that are not accounted for"});
-}
 
 void store_model_exponents(StoreWriter& writer, const std::string& group, const ModelExponents& model,
                            const Units& units) {
@@ -50,11 +38,11 @@ void store_model_exponents(StoreWriter& writer, const std::string& group, const 
   writer.write(group + "/time", times, {units.time, "ends of the intervals, from the start of measuring"});
   writer.write_columns(group + "/running", spectrum.running(), {units.rate, "exponents so far, time x exponent"});
   writer.write_columns(group + "/rates", spectrum.rates, {units.rate, "expansion per interval, time x exponent"});
-  writer.write(group + "/directions", static_cast<std::int64_t>(spectrum.size), {"", "directions there are"});
-  writer.write(group + "/lost", static_cast<std::int64_t>(spectrum.lost), {"", "exponents of minus infinity"});
-  writer.write(group + "/kaplan_yorke", spectrum.dimension, {"1", "Kaplan-Yorke dimension"});
-  writer.write(group + "/kaplan_yorke_error", spectrum.dimension_error, {"1", "its error"});
-  if (spectrum.balance) store_balance(writer, group + "/balance", *spectrum.balance, units);
+  save_fields(writer, group, spectrum);
+  if (!spectrum.balance) return;
+  save_fields(writer, group + "/balance", *spectrum.balance);
+  writer.write(group + "/balance/expected", spectrum.balance->expected(),
+               {units.rate, "what the finite exponents must add up to"});
 }
 
 /// How many exponents a verdict shows.

@@ -7,35 +7,6 @@
 
 #include <fmt/format.h>
 
-namespace slipmode {
-
-template <>
-inline constexpr auto kFields<orbits::PeriodicOrbit> = [] {
-  using Own = orbits::PeriodicOrbit;
-  return std::tuple{
-      required("period", &Own::period, "s", "period"),
-      required("order", &Own::order, "", "period over that of the drive; 1 when self-excited", kFromZero),
-      required("repeats", &Own::repeats, "", "how often a shorter orbit is passed within the period", kFromZero),
-      required("trivial_multipliers", &Own::trivial_multipliers, "",
-               "multipliers 1 that belong to a family, not to stability", kFromZero),
-      required("leading_modulus", &Own::leading_modulus, "1", "largest modulus without the trivial ones"),
-      required("zero_multipliers", &Own::zero_multipliers, "", "multipliers that are zero", kFromZero),
-      required("superstable", &Own::superstable, "", "1: all but the trivial multipliers are zero", kFromZero),
-      required("word", &Own::word, "", "cyclic sequence of regimes, a letter per contact"),
-      required("crossings", &Own::crossings, "", "events that change the force law of a contact", kFromZero),
-      required("symmetric", &Own::symmetric, "", "1: x(T/2) = -x(0)", kFromZero),
-      required("asymmetry", &Own::asymmetry, "1", "mismatch of x(T/2) + x(0)"),
-      required("grazing", &Own::grazing, "1", "least speed at which a stop is reached, relative"),
-      required("has_grazing", &Own::has_grazing, "", "1: a grazing, or nearly one", kFromZero),
-      required("family", &Own::family, "", "directions of the family it is one of, as columns; empty: isolated"),
-      required("family_note", &Own::family_note, "", "the family in words; empty: isolated"),
-      required("residual", &Own::residual, "1", "largest mismatch after a period, relative"),
-      required("iterations", &Own::iterations, "", "Newton steps", kFromZero),
-      required("residuals", &Own::residuals, "1", "before each Newton step and after the last")};
-}();
-
-}  // namespace slipmode
-
 namespace slipmode::results {
 
 namespace {

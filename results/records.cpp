@@ -8,28 +8,6 @@
 #include <algorithm>
 #include <array>
 
-namespace slipmode {
-
-template <>
-inline constexpr auto kFields<dynamics::EnergyAudit> = std::tuple{
-    required("energy_start", &dynamics::EnergyAudit::energy_start, "J", "energy at the start"),
-    required("energy_end", &dynamics::EnergyAudit::energy_end, "J", "energy at the end"),
-    required("contact_work", &dynamics::EnergyAudit::contact_work, "J", "work of the contact forces on the structure"),
-    required("drive_work", &dynamics::EnergyAudit::drive_work, "J", "work of the drive"),
-    required("friction_loss", &dynamics::EnergyAudit::friction_loss, "J", "dissipated by friction"),
-    optional("force_work", &dynamics::EnergyAudit::force_work, "J", "work of a force drive"),
-    required("viscous_loss", &dynamics::EnergyAudit::viscous_loss, "J", "dissipated by damping"),
-    required("exchanged", &dynamics::EnergyAudit::exchanged, "J", "scale of the residual")};
-template <>
-inline constexpr auto kFields<dynamics::FlowStatistics> =
-    std::tuple{required("steps", &dynamics::FlowStatistics::steps, "", "steps taken"),
-               required("rejected", &dynamics::FlowStatistics::rejected, "", "steps rejected"),
-               required("events", &dynamics::FlowStatistics::events, "", "events located, kept or not"),
-               required("regimes_built", &dynamics::FlowStatistics::regimes_built, "", "regimes built"),
-               required("stick_time", &dynamics::FlowStatistics::stick_time, "s", "time in stick, per contact")};
-
-}  // namespace slipmode
-
 namespace slipmode::results {
 
 namespace {

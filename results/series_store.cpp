@@ -29,19 +29,10 @@ std::vector<double> numbers_of(const std::vector<diagnostics::Finding>& findings
 }
 
 void save_findings(StoreWriter& store, const std::vector<diagnostics::Finding>& findings) {
-  save(
-      store, diagnosis_path("findings"),
-      {"every number; error NaN: exact or not known; unit per row",
-       {{"key", {"", "short name"}, texts_of(findings, [](const diagnostics::Finding& f) { return f.key; })},
-        {"quantity", {"", "what it is"}, texts_of(findings, [](const diagnostics::Finding& f) { return f.quantity; })},
-        {"value",
-         {"", "value, in the row's unit"},
-         numbers_of(findings, [](const diagnostics::Finding& f) { return f.value; })},
-        {"error", {"", "its uncertainty"}, numbers_of(findings, [](const diagnostics::Finding& f) { return f.error; })},
-        {"unit", {"", "unit"}, texts_of(findings, [](const diagnostics::Finding& f) { return f.unit; })},
-        {"settings", {"", "how it was come by"}, texts_of(findings, [](const diagnostics::Finding& f) {
-           return f.settings;
-         })}}});
+  save(store, diagnosis_path("findings"),
+       {"every number; error NaN: exact or not known; unit per row",
+        joined({{{"key", {"", "short name"}, texts_of(findings, [](const diagnostics::Finding& f) { return f.key; })}},
+                columns_of(findings)})});
 }
 
 void save_record(StoreWriter& store, const diagnostics::SeriesStudy& study, const SeriesInput& input) {

@@ -3,6 +3,8 @@
 #include <slipmode/results/orbit_records.hpp>
 #include <slipmode/results/table.hpp>
 
+#include "results/internal/field_record.hpp"
+
 #include <fmt/format.h>
 
 namespace slipmode::results {
@@ -18,13 +20,6 @@ template <class Number>
 std::vector<double> column(const Skeleton& skeleton, const Number& number) {
   std::vector<double> values;
   for (const SkeletonOrbit& member : skeleton.orbits) values.push_back(static_cast<double>(number(member)));
-  return values;
-}
-
-template <class Number>
-std::vector<double> column(const SkeletonComparison& comparison, const Number& number) {
-  std::vector<double> values;
-  for (const OrbitMatch& match : comparison.matched) values.push_back(static_cast<double>(number(match)));
   return values;
 }
 
@@ -56,23 +51,14 @@ Table orbit_table(const Skeleton& skeleton, const Units& units) {
        {"word", {"", "sequence of regimes"}, word}}};
 }
 
-Table refusal_table(const Skeleton& skeleton, const Units& units) {
-  std::vector<double> length, period, distance;
-  std::vector<std::string> origin, reason;
-  for (const orbits::Refusal& refusal : skeleton.refusals) {
-    const orbits::Candidate& candidate = skeleton.candidates[refusal.candidate];
-    length.push_back(static_cast<double>(candidate.length));
-    period.push_back(candidate.period);
-    distance.push_back(candidate.distance);
-    origin.push_back(candidate.origin);
-    reason.push_back(refusal.reason);
-  }
+Table refusal_table(const Skeleton& skeleton) {
+  std::vector<std::string> reason;
+  for (const orbits::Refusal& refusal : skeleton.refusals) reason.push_back(refusal.reason);
+  const auto candidate = [&](const orbits::Refusal& refusal) -> const auto& {
+    return skeleton.candidates[refusal.candidate];
+  };
   return {"candidates that became no orbit",
-          {{"length", {"", "passages per period, as guessed"}, length},
-           {"period", {units.time, "period, as guessed"}, period},
-           {"distance", {"1", "of the close return, in the attractor's metric"}, distance},
-           {"origin", {"", "where the candidate is from"}, origin},
-           {"reason", {"", "why it was refused"}, reason}}};
+          joined({columns_of(skeleton.refusals, candidate), {{"reason", {"", "why it was refused"}, reason}}})};
 }
 
 }  // namespace
@@ -92,7 +78,7 @@ void store_skeleton(StoreWriter& writer, const std::string& name, const ModelSke
   writer.write_columns(group + "/portrait", model.portrait,
                        {units.length, "displacement and velocity of the first contact along the attractor"});
   save(writer, group + "/orbits", orbit_table(model.skeleton, units));
-  save(writer, group + "/refusals", refusal_table(model.skeleton, units));
+  save(writer, group + "/refusals", refusal_table(model.skeleton));
   for (std::size_t k = 0; k < model.skeleton.orbits.size(); ++k) {
     const SkeletonOrbit& member = model.skeleton.orbits[k];
     const std::string own = fmt::format("{}/orbit_{:03}", group, k + 1);
@@ -107,22 +93,15 @@ void store_skeleton(StoreWriter& writer, const std::string& name, const ModelSke
 void store_comparison(StoreWriter& writer, const SkeletonComparison& comparison) {
   const std::string group = fmt::format("{}/comparison", kSkeletonGroup);
   writer.describe_group(group, "orbits of the full and of the reduced model; differences are reduced less full");
-  const Table matched{
-      "orbits that both have",
-      {{"full",
-        {"", "number of the full model's orbit, from 1"},
-        column(comparison, [](const auto& m) { return m.full + 1; })},
-       {"reduced",
-        {"", "number of the reduced model's orbit, from 1"},
-        column(comparison, [](const auto& m) { return m.reduced + 1; })},
-       {"period", {"1", "difference of periods, relative"}, column(comparison, [](const auto& m) { return m.period; })},
-       {"log_multiplier",
-        {"1", "difference of ln |leading multiplier|"},
-        column(comparison, [](const auto& m) { return m.log_multiplier; })},
-       {"shape",
-        {"1", "root mean square distance of the paths, relative to the full orbit's size"},
-        column(comparison, [](const auto& m) { return m.shape; })},
-       {"share", {"1", "difference of shares"}, column(comparison, [](const auto& m) { return m.share; })}}};
+  std::vector<double> full, reduced;
+  for (const OrbitMatch& match : comparison.matched) {
+    full.push_back(static_cast<double>(match.full + 1));
+    reduced.push_back(static_cast<double>(match.reduced + 1));
+  }
+  const Table matched{"orbits that both have",
+                      joined({{{"full", {"", "number of the full model's orbit, from 1"}, full},
+                               {"reduced", {"", "number of the reduced model's orbit, from 1"}, reduced}},
+                              columns_of(comparison.matched)})};
   save(writer, group + "/matched", matched);
   writer.write(group + "/missed", numbers_of(comparison.missed), {"", "orbits of the full model without a partner"});
   writer.write(group + "/extra", numbers_of(comparison.extra), {"", "orbits of the reduced model without a partner"});

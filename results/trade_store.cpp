@@ -3,8 +3,10 @@
 #include <slipmode/results/table.hpp>
 #include <slipmode/results/units.hpp>
 #include <slipmode/trade/advice.hpp>
+#include "results/internal/field_record.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <vector>
@@ -55,15 +57,10 @@ Table candidate_table(const Study& study, const scene::Scene& scene) {
                          return trade::at(r.noise, measure);
                        })});
   }
-  const auto add = [&](const std::string& name, const std::string& what, const auto& value) {
-    columns.push_back({name, {"s", what, Meaning::Of::kClock}, numbers(rows, value)});
-  };
-  add("time", "processor time of a timed run, median", [](const Row& r) { return r.cost.cpu; });
-  add("time_low", "its least", [](const Row& r) { return r.cost.cpu_low; });
-  add("time_high", "its largest", [](const Row& r) { return r.cost.cpu_high; });
-  add("wall", "time of the clock, median", [](const Row& r) { return r.cost.wall; });
-  add("setup", "building, projection and modal data, once", [](const Row& r) { return r.cost.setup; });
-  add("basis", "making the basis, once", [](const Row& r) { return r.basis_seconds; });
+  std::ranges::move(columns_of(rows, &Row::cost), std::back_inserter(columns));
+  columns.push_back({"basis", {"s", "making the basis, once", Meaning::Of::kClock}, numbers(rows, [](const Row& r) {
+                       return r.basis_seconds;
+                     })});
   columns.push_back({"break_even",
                      {"1", "runs of [time] after which basis and projection are paid for"},
                      numbers(rows, [&](const Row& r) { return trade::break_even(study, r, scene.time.duration); })});
@@ -104,13 +101,10 @@ void keep_in(Journal& journal, trade::StudyOptions& out_options) {
 
 void store_study(StoreWriter& writer, const trade::Study& study, const scene::Scene& scene) {
   const std::string group = kTradeGroup;
-  const std::string time = Units::of(scene.units).time;
   writer.describe_group(group, "speed against accuracy");
   save(writer, group + "/candidates", candidate_table(study, scene));
   writer.write(group + "/reference", study.reference.variant.name, {"", "what errors are measured against"});
-  writer.write(group + "/timed", study.schedule.timed, {time, "simulated by a timed run"});
-  writer.write(group + "/recorded", study.schedule.duration, {time, "recorded of a settled motion"});
-  writer.write(group + "/horizon", study.schedule.horizon, {time, "of dX and dE"});
+  save_fields(writer, group, study.schedule);
 }
 
 }  // namespace slipmode::results

@@ -3,12 +3,17 @@
 // Structs with a field list, to and from datasets.
 
 #include <slipmode/core/fields.hpp>
+#include <slipmode/core/none.hpp>
+#include <slipmode/results/result_fields.hpp>
 #include <slipmode/results/store.hpp>
+#include <slipmode/results/table.hpp>
 #include "results/internal/checked_read.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Core>
 #include <algorithm>
+#include <functional>
+#include <initializer_list>
 #include <limits>
 #include <string>
 #include <tuple>
@@ -24,6 +29,7 @@ inline constexpr const char* kCodes = "";
 template <class S, class T>
 [[nodiscard]] Meaning meaning_of(const Field<S, T>& field) {
   const std::string said = field.meaning;
+  if (field.unit == std::string_view(kClockSeconds)) return {"s", said, Meaning::Of::kClock};
   if constexpr (!std::is_enum_v<T>)
     return {field.unit, said};
   else
@@ -117,6 +123,37 @@ template <class S>
       take(coded(store, name, field, count));
   });
   return rows;
+}
+
+/// A column for each field, of numbers or of texts.
+/// @param part  part(row): the struct of a row, or a pointer to it; numbers of a row without one are NaN
+template <class Row, class Part = std::identity>
+[[nodiscard]] std::vector<Column> columns_of(const std::vector<Row>& rows, const Part& part = {}) {
+  using Found = std::remove_cvref_t<std::invoke_result_t<Part, const Row&>>;
+  using S = std::remove_cv_t<std::remove_pointer_t<Found>>;
+  std::vector<Column> columns;
+  for_each_field<S>([&]<class T>(const Field<S, T>& field) {
+    std::vector<std::conditional_t<std::is_same_v<T, std::string>, std::string, double>> values;
+    for (const Row& row : rows) {
+      typename decltype(values)::value_type value{};
+      if constexpr (!std::is_pointer_v<Found>) {
+        value = static_cast<decltype(value)>(std::invoke(part, row).*field.member);
+      } else if (const S* own = std::invoke(part, row); own != nullptr) {
+        value = static_cast<decltype(value)>(own->*field.member);
+      } else if constexpr (!std::is_same_v<T, std::string>) {
+        value = kNone;
+      }
+      values.push_back(std::move(value));
+    }
+    columns.push_back({field.stored, meaning_of(field), std::move(values)});
+  });
+  return columns;
+}
+
+[[nodiscard]] inline std::vector<Column> joined(std::initializer_list<std::vector<Column>> parts) {
+  std::vector<Column> columns;
+  for (const std::vector<Column>& part : parts) columns.insert(columns.end(), part.begin(), part.end());
+  return columns;
 }
 
 /// The fields of a struct of numbers as one vector.
