@@ -186,11 +186,6 @@ std::vector<double> TomlReader::numbers(const std::string& key, const Limits& li
   return values;
 }
 
-std::vector<double> TomlReader::numbers_or(const std::string& key, std::vector<double> otherwise, const Limits& limits,
-                                           std::int64_t count) {
-  return has(key) ? numbers(key, limits, count) : otherwise;
-}
-
 std::vector<int> TomlReader::integers(const std::string& key, const Limits& limits) {
   const toml::node& node = need(key);
   if (!node.is_array()) fail(key, "wrong type", "an array, each " + integer_range_text(limits));

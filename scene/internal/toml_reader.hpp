@@ -80,8 +80,6 @@ class TomlReader {
   /// A number (then one value) or an array of numbers, of any length, or of `count` when that is not negative.
   [[nodiscard]] std::vector<double> per_item(const std::string& key, const Limits& limits, std::int64_t count = -1);
   [[nodiscard]] std::vector<double> numbers(const std::string& key, const Limits& limits, std::int64_t count = -1);
-  [[nodiscard]] std::vector<double> numbers_or(const std::string& key, std::vector<double> otherwise,
-                                               const Limits& limits, std::int64_t count = -1);
   [[nodiscard]] std::vector<int> integers(const std::string& key, const Limits& limits);
   /// An array of pairs of numbers, [[first, second], ...].
   [[nodiscard]] std::vector<std::pair<double, double>> pairs(const std::string& key, const Limits& first,

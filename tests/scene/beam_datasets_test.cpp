@@ -6,6 +6,7 @@
 #include <slipmode/pod/modal_fit.hpp>
 #include <slipmode/pod/pod.hpp>
 #include <slipmode/scene/scene.hpp>
+#include "scene/expected_numbers.hpp"
 #include "scene/internal/toml_reader.hpp"
 
 #include <gtest/gtest.h>
@@ -34,9 +35,9 @@ std::map<std::string, BeamExpectation> expectations() {
   std::map<std::string, BeamExpectation> found;
   for (scene::TomlReader& item : in.tables("driven")) {
     BeamExpectation e;
-    e.value = item.numbers_or("value", {}, kFinite);
-    e.tolerance = item.numbers_or("tolerance", {}, kPositive);
-    e.frequencies = item.numbers_or("frequencies", {}, kPositive);
+    e.value = tests::numbers_if_any(item, "value", kFinite);
+    e.tolerance = tests::numbers_if_any(item, "tolerance", kPositive);
+    e.frequencies = tests::numbers_if_any(item, "frequencies", kPositive);
     EXPECT_FALSE(item.text_or("origin", "").empty());
     (void)item.text_or("units", "");
     found[item.text_or("measure", "")] = e;

@@ -8,6 +8,7 @@
 #include <slipmode/pod/pod.hpp>
 #include <slipmode/scene/scene.hpp>
 #include "fixtures/test_names.hpp"
+#include "scene/expected_numbers.hpp"
 #include "scene/internal/toml_reader.hpp"
 
 #include <gtest/gtest.h>
@@ -46,10 +47,10 @@ Expectation read_expectation(scene::TomlReader& in, const std::string& dataset, 
   e.measure = in.text_or("measure", "");
   e.speed = in.number_or("speed", own_speed, kFinite);
   if (in.has("modes")) e.modes = in.integers("modes", {.low = 1.0, .high = 1e6});
-  e.value = in.numbers_or("value", {}, kFinite);
-  e.tolerance = in.numbers_or("tolerance", {}, kPositive, static_cast<std::int64_t>(e.value.size()));
-  e.displacement = in.numbers_or("displacement", {}, kFinite);
-  e.velocity = in.numbers_or("velocity", {}, kFinite, static_cast<std::int64_t>(e.displacement.size()));
+  e.value = tests::numbers_if_any(in, "value", kFinite);
+  e.tolerance = tests::numbers_if_any(in, "tolerance", kPositive, static_cast<std::int64_t>(e.value.size()));
+  e.displacement = tests::numbers_if_any(in, "displacement", kFinite);
+  e.velocity = tests::numbers_if_any(in, "velocity", kFinite, static_cast<std::int64_t>(e.displacement.size()));
   e.origin = in.text_or("origin", "");
   (void)in.text_or("units", "");
   in.finish();

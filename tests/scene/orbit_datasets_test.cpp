@@ -56,7 +56,7 @@ dynamics::State start_of(scene::TomlReader& entry, const scene::Scene& scene, co
     const double periods = std::round(scene.time.transient / *system.drive().period());
     return orbits::settle_guess(system, scene::initial_state(scene, system), periods);
   }
-  const std::vector<double> x = entry.numbers_or("start", {}, kFinite, 2 * system.size());
+  const std::vector<double> x = entry.numbers("start", kFinite, 2 * system.size());
   const Eigen::Map<const Eigen::VectorXd> values(x.data(), 2 * system.size());
   return {.q = values.head(system.size()), .v = values.tail(system.size())};
 }
