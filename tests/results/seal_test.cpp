@@ -20,7 +20,7 @@ using testing::ThrowsMessage;
 class Seal : public testing::Test {
  protected:
   void SetUp() override {
-    StoreWriter writer(file);
+    StoreWriter writer(file, FileKind::kSeries);
     writer.write("values", Eigen::VectorXd(Eigen::VectorXd::LinSpaced(1000, 0.0, 1.0)), {"m", "some"});
     writer.commit();
     whole = tests::bytes_of(file);
