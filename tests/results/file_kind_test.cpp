@@ -2,10 +2,12 @@
 #include <slipmode/results/info.hpp>
 #include <slipmode/results/store.hpp>
 #include "results/internal/hdf5_handle.hpp"
+#include "results/internal/seal.hpp"
 #include "scene/messages.hpp"
 #include "scene/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -25,8 +27,9 @@ std::filesystem::path written(const TemporaryFolder& folder, FileKind kind, cons
   return path;
 }
 
-/// Takes the kind out of a file, or puts another word there.
+/// Takes the kind out of a file, or puts another word there; and the seal off, which would refuse the change.
 void rewrite_kind(const std::filesystem::path& path, const std::string& word) {
+  std::fstream(path, std::ios::binary | std::ios::in | std::ios::out) << std::string(kSealBytes, '\0');
   const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
   ASSERT_GE(H5Adelete(file.id(), "kind"), 0);
   if (word.empty()) return;
