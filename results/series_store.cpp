@@ -2,6 +2,7 @@
 
 #include <slipmode/results/provenance.hpp>
 #include <slipmode/results/table.hpp>
+#include "results/internal/field_record.hpp"
 
 #include <fmt/format.h>
 #include <cmath>
