@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace slipmode::selftest {
 namespace {
@@ -46,6 +47,8 @@ class Timeline {
   [[nodiscard]] ContactMode at(double t) const {
     return modes_[static_cast<std::size_t>(std::ranges::upper_bound(times_, t) - times_.begin())];
   }
+  /// The mode that ends at times()[i].
+  [[nodiscard]] ContactMode before(std::size_t i) const { return modes_[i]; }
   [[nodiscard]] bool broken() const { return broken_; }
   [[nodiscard]] const std::vector<double>& times() const { return times_; }
 
@@ -98,6 +101,21 @@ class LoadHistory {
   friction::NormalLoad load_;
   double z_ = 0.0, z_rate_ = 0.0;
 };
+
+/// The polynomial through equidistant instants, `share` of their distance beyond the last.
+ContactInstant continued(std::span<const ContactInstant> samples, double share) {
+  ContactInstant out{};
+  const auto n = static_cast<int>(samples.size());
+  for (int j = 0; j < n; ++j) {
+    double weight = 1.0;
+    for (int i = 0; i < n; ++i)
+      if (i != j) weight *= (share + n - 1 - i) / (j - i);
+    for (double ContactInstant::*part : {&ContactInstant::y, &ContactInstant::v, &ContactInstant::slip,
+                                         &ContactInstant::lambda, &ContactInstant::load, &ContactInstant::load_rate})
+      out.*part += weight * (samples[static_cast<std::size_t>(j)].*part);
+  }
+  return out;
+}
 
 class Scan {
  public:
@@ -240,14 +258,16 @@ class Scan {
     const Timeline& timeline = timelines_[static_cast<std::size_t>(c)];
     LoadHistory load(contact(c).normal_load, W_.col(c).dot(start_.q) + contact(c).offset);
     Eigen::VectorXd guards(s.times.size());
+    std::vector<ContactInstant> instants;
     std::vector<LoadHistory> recent;  // at samples k − 2, k − 1
     for (Index k = 0; k < s.times.size(); ++k) {
       if (k > 0) load = carried(c, load, s, k);
       const double t = s.times(k);
+      instants.push_back(instant(c, s, k, load));
       if (!quiet(t, t)) {  // the sample may belong to either side
         guards(k) = 1.0;
       } else {
-        const LawCheck check = check_law(contact(c), timeline.at(t), instant(c, s, k, load), scales);
+        const LawCheck check = check_law(contact(c), timeline.at(t), instants.back(), scales);
         guards(k) = check.guard;
         note(c, t, check);
       }
@@ -255,7 +275,7 @@ class Scan {
       recent.push_back(load);
       if (recent.size() > 2) recent.erase(recent.begin());
     }
-    check_event_guards(c, s, guards);
+    check_event_guards(c, s, instants, scales);
   }
 
   void note(int c, double t, const LawCheck& check) {
@@ -310,23 +330,28 @@ class Scan {
     }
   }
 
-  /// The guard of a mode that ends, extrapolated to its end from three samples, against its size before.
-  void check_event_guards(int c, const Samples& s, const Eigen::VectorXd& guards) {
+  /// The guards of a mode that ends must vanish at its end, where its last samples are continued to. The samples are,
+  /// not the least of the guards: that has kinks where guards change places.
+  void check_event_guards(int c, const Samples& s, const std::vector<ContactInstant>& instants,
+                          const ContactScales& scales) {
     const double h = options_.sample;
-    for (const double t : timelines_[static_cast<std::size_t>(c)].times()) {
+    const Timeline& timeline = timelines_[static_cast<std::size_t>(c)];
+    for (std::size_t i = 0; i < timeline.times().size(); ++i) {
+      const double t = timeline.times()[i];
       const auto k = static_cast<Index>(std::ceil((t - s.times(0)) / h)) - 1;
       // One contact's event may set off another's.
       const auto [first, last] = std::equal_range(event_times_.begin(), event_times_.end(), t);
       if (last - first > 1 || k < 4 || k >= s.times.size() || !quiet(s.times(k - 4), t - 1e-12 * (1.0 + t)) ||
           !smooth_drive(s.times(k - 4), t) || t - s.times(k) < 1e-9 * h)
         continue;
-      const double x = (t - s.times(k)) / h;
-      const double at =
-          guards(k) * (1 + x) * (2 + x) / 2 - guards(k - 1) * x * (2 + x) + guards(k - 2) * x * (1 + x) / 2;
-      const double third = std::abs(guards(k) - 3 * guards(k - 1) + 3 * guards(k - 2) - guards(k - 3));
-      // The least of two guards has a kink where they change places.
-      const double second = std::abs(guards(k) - 2 * guards(k - 1) + guards(k - 2));
-      const double excess = std::max(0.0, std::abs(at) - 4.0 * third - 4.0 * second);
+      const std::span<const ContactInstant> samples(instants.data() + k - 3, 4);
+      const auto guard_by = [&](std::size_t points) {
+        return check_law(contact(c), timeline.before(i), continued(samples.last(points), (t - s.times(k)) / h), scales)
+            .guard;
+      };
+      // By four points, and by three to know how far that can be trusted: what four leave out is less than what the
+      // fourth changes, as long as samples resolve the motion.
+      const double at = guard_by(4), excess = std::max(0.0, std::abs(at) - 4.0 * std::abs(at - guard_by(3)));
       figures_.spurious = std::max(figures_.spurious, excess);
       if (excess > limits_.spurious)
         violate("spurious event", fmt::format("contact {}: its guard is {:.2g} at the event at t = {:.9g}", c, at, t));
