@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <vector>
 
@@ -19,6 +20,14 @@ constexpr double kSmallestScale = 1e-8;
 
 /// Largest error of a state that is turned into pairs and back.
 constexpr double kLargestGap = 1e-7;
+
+void check_condition(double condition) {
+  if (!(condition < kLargestCondition))
+    throw NumericalFailure("the damping makes two modes coincide (condition number of the eigenvectors " +
+                               std::to_string(condition) +
+                               ", at most 1e10 is workable): change the damping or a contact's stiffness slightly",
+                           kNone, {}, condition);
+}
 
 }  // namespace
 
@@ -56,14 +65,18 @@ PairForm pair_form(const Eigen::MatrixXd& A) {
     if (!rigid) rest.push_back(i);
     rest.push_back(n + i);
   }
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(Eigen::MatrixXd(A(rest, rest)));
-  if (solver.info() != Eigen::Success)
-    throw NumericalFailure("eigenvalues of the damped structure did not converge", kNone, {}, kNone);
-  const Eigen::VectorXcd values = solver.eigenvalues();
-  Eigen::MatrixXcd vectors = Eigen::MatrixXcd::Zero(2 * n, values.size());
-  vectors(rest, Eigen::all) = solver.eigenvectors();
-  if (!shifted.empty())
-    vectors(shifted, Eigen::all) = A(shifted, rest) * solver.eigenvectors() * values.cwiseInverse().asDiagonal();
+  Eigen::VectorXcd values;
+  Eigen::MatrixXcd vectors;
+  if (!rest.empty()) {
+    const Eigen::EigenSolver<Eigen::MatrixXd> solver(Eigen::MatrixXd(A(rest, rest)));
+    if (solver.info() != Eigen::Success)
+      throw NumericalFailure("eigenvalues of the damped structure did not converge", kNone, {}, kNone);
+    values = solver.eigenvalues();
+    vectors = Eigen::MatrixXcd::Zero(2 * n, values.size());
+    vectors(rest, Eigen::all) = solver.eigenvectors();
+    if (!shifted.empty())
+      vectors(shifted, Eigen::all) = A(shifted, rest) * solver.eigenvectors() * values.cwiseInverse().asDiagonal();
+  }
 
   struct Real {
     Eigen::VectorXd vector;
@@ -82,14 +95,54 @@ PairForm pair_form(const Eigen::MatrixXd& A) {
     put(reals[k].vector, reals[k + 1].vector, reals[k].value, 0.0, 0.0, reals[k + 1].value);
 
   const Eigen::VectorXd singular = Eigen::BDCSVD<Eigen::MatrixXd>(form.T).singularValues();
-  const double condition = singular(0) / singular(2 * n - 1);
-  if (!(condition < kLargestCondition))
-    throw NumericalFailure("the damping makes two modes coincide (condition number of the eigenvectors " +
-                               std::to_string(condition) +
-                               ", at most 1e10 is workable): change the damping or a contact's stiffness slightly",
-                           kNone, {}, condition);
+  check_condition(singular(0) / singular(2 * n - 1));
   form.T_inverse = form.T.inverse();
   return form;
+}
+
+void add_driven_pair(PairForm& form, const Eigen::Matrix2d& A, const Eigen::MatrixXd& B) {
+  const Eigen::Index n = form.g11.size();
+  const PairForm own = pair_form(A);
+  // X with [x; X x] the motion of the pair under each of the others: A X − X G = −B T, two columns at a time.
+  Eigen::MatrixXd X = Eigen::MatrixXd::Zero(2, 2 * n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    Eigen::Matrix2d driven;
+    driven << B * form.T.col(i), B * form.T.col(n + i);
+    if (driven.isZero(0.0)) continue;
+    Eigen::Matrix4d S = Eigen::Matrix4d::Zero();
+    S.topLeftCorner<2, 2>() = S.bottomRightCorner<2, 2>() = A;
+    S.diagonal() -= Eigen::Vector4d(form.g11(i), form.g11(i), form.g22(i), form.g22(i));
+    S.topRightCorner<2, 2>().diagonal().array() -= form.g21(i);
+    S.bottomLeftCorner<2, 2>().diagonal().array() -= form.g12(i);
+    const Eigen::JacobiSVD<Eigen::Matrix4d> svd(S, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    check_condition(svd.singularValues()(0) / svd.singularValues()(3));
+    const Eigen::Vector4d x = svd.solve(-driven.reshaped());
+    X.col(i) = x.head<2>();
+    X.col(n + i) = x.tail<2>();
+  }
+  // The new states stand behind the first ones and behind the second ones.
+  const auto widened = [n](const Eigen::MatrixXd& old, const Eigen::MatrixXd& rows, const Eigen::Matrix2d& corner) {
+    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(2 * n + 2, 2 * n + 2);
+    const auto of = [n](Eigen::Index k) { return k < n ? k : k + 1; };
+    for (Eigen::Index j = 0; j < 2 * n; ++j) {
+      for (Eigen::Index i = 0; i < 2 * n; ++i) out(of(i), of(j)) = old(i, j);
+      out(n, of(j)) = rows(0, j);
+      out(2 * n + 1, of(j)) = rows(1, j);
+    }
+    const std::array<Eigen::Index, 2> last{n, 2 * n + 1};
+    out(last, last) = corner;
+    return out;
+  };
+  form.T = widened(form.T, X, own.T);
+  form.T_inverse = widened(form.T_inverse, -own.T_inverse * X * form.T_inverse, own.T_inverse);
+  const auto append = [n](Eigen::VectorXd& g, const Eigen::VectorXd& value) {
+    g.conservativeResize(n + 1);
+    g(n) = value(0);
+  };
+  append(form.g11, own.g11);
+  append(form.g12, own.g12);
+  append(form.g21, own.g21);
+  append(form.g22, own.g22);
 }
 
 void check_pair_form(const PairForm& form, const Eigen::VectorXd& scale) {
@@ -110,9 +163,9 @@ void check_pair_form(const PairForm& form, const Eigen::VectorXd& scale) {
 }
 
 BalancedState balanced_state(const Eigen::VectorXd& omega, const Eigen::MatrixXd& damping,
-                             const Eigen::VectorXd& coupling) {
+                             const Eigen::VectorXd& coupling, double beside) {
   const Eigen::Index n = omega.size();
-  const double fastest = std::max({omega.maxCoeff(), damping.diagonal().maxCoeff(), 1e-300});
+  const double fastest = std::max({omega.maxCoeff(), damping.diagonal().maxCoeff(), beside, 1e-300});
   BalancedState state{omega.cwiseMax(kSmallestScale * fastest), Eigen::MatrixXd::Zero(2 * n, 2 * n)};
   if (coupling.size() > 0) state.scale = state.scale.cwiseMax(coupling);
   state.A.topRightCorner(n, n).diagonal() = state.scale;

@@ -18,6 +18,12 @@ struct PairForm {
 ///                           iteration does not converge
 [[nodiscard]] PairForm pair_form(const Eigen::MatrixXd& A);
 
+/// Adds a pair that the others drive and that does not act back, ż = A z + B x, as the last first and the last second
+/// state. By itself: in one matrix with the others it would split a rigid-body motion into two slow exponentials.
+/// @param form  of A_x, may be empty  @param B  [2 x 2n]
+/// @throws NumericalFailure  when the pair resonates with another that drives it, or is critically damped
+void add_driven_pair(PairForm& form, const Eigen::Matrix2d& A, const Eigen::MatrixXd& B);
+
 /// State matrix [0 diag(ω); −diag(ω) −D] of the balanced state (ω η, η̇); rigid-body modes (ω = 0) use the smallest
 /// scale that keeps it balanced.
 struct BalancedState {
@@ -26,8 +32,9 @@ struct BalancedState {
 };
 /// @param coupling  rates by which other terms, still to be put into A, act on the displacements [n], or empty: a scale
 ///                  is at least that, or those terms would be large over a small scale
+/// @param beside    fastest rate of pairs that are added later
 [[nodiscard]] BalancedState balanced_state(const Eigen::VectorXd& omega, const Eigen::MatrixXd& damping,
-                                           const Eigen::VectorXd& coupling = {});
+                                           const Eigen::VectorXd& coupling = {}, double beside = 0.0);
 
 /// Checks that a state turned into pairs and back is the same state.
 /// @param scale  of the displacements in the balanced state [n]

@@ -191,22 +191,32 @@ void RegimeBuilder::make_symmetric_pairs(Regime& out) {
 
 void RegimeBuilder::make_general_pairs(Regime& out) {
   // First states: scaled displacements of the modes without what is not symmetric or not positive, then scaled ζ;
-  // second states: their rates.
-  const auto m = Z_.cols(), k = static_cast<Eigen::Index>(oscillators_.size()), N = m + k;
+  // second states: their rates. First ζ that act back, by a friction that follows the load; the others are driven.
+  const auto m = Z_.cols();
   auto [base_omega, shapes] = base_modes();
+  std::vector<Eigen::Index> order, driven;  // in oscillators_
+  for (std::size_t j = 0; j < oscillators_.size(); ++j)
+    (friction_(oscillators_[j]) != 0.0 ? order : driven).push_back(static_cast<Eigen::Index>(j));
+  const auto acting = static_cast<Eigen::Index>(order.size()), N = m + acting;
+  order.insert(order.end(), driven.begin(), driven.end());
+  const auto k = static_cast<Eigen::Index>(order.size());
+  const auto contact = [&](Eigen::Index j) {
+    return oscillators_[static_cast<std::size_t>(order[static_cast<std::size_t>(j)])];
+  };
   Eigen::VectorXd omega(N);
   omega.head(m) = base_omega;
-  for (Eigen::Index j = 0; j < k; ++j)
-    omega(m + j) = std::sqrt(load(oscillators_[static_cast<std::size_t>(j)]).stiffness);
+  for (Eigen::Index j = 0; j < acting; ++j) omega(m + j) = std::sqrt(load(contact(j)).stiffness);
   Eigen::MatrixXd own_damping = shapes.transpose() * (Z_.transpose() * C_ * Z_) * shapes;
-  Eigen::MatrixXd W = Eigen::MatrixXd::Zero(m, nc_);  // of the contacts that add what is not in the base modes
-  for (Eigen::Index c = 0; c < nc_; ++c) {
-    if (!(spring_(c) < 0.0 || load(c).oscillates())) continue;
+  const auto direction = [&](Eigen::Index c) -> Eigen::VectorXd {
     const auto w = modal_.directions.col(c);
     const Eigen::VectorXd moved = Z_.transpose() * w;
     // A held contact does not move. What the projection leaves of it is rounding, which scaled up would couple.
-    if (moved.norm() > kRounding * w.norm()) W.col(c) = shapes.transpose() * moved;
-  }
+    if (!(moved.norm() > kRounding * w.norm())) return Eigen::VectorXd::Zero(m);
+    return shapes.transpose() * moved;
+  };
+  Eigen::MatrixXd W = Eigen::MatrixXd::Zero(m, nc_);  // of the contacts that add what is not in the base modes
+  for (Eigen::Index c = 0; c < nc_; ++c)
+    if (spring_(c) < 0.0 || (load(c).oscillates() && friction_(c) != 0.0)) W.col(c) = direction(c);
   separate_rigid_modes(base_omega, shapes, own_damping, &W);
   Eigen::MatrixXd damping = Eigen::MatrixXd::Zero(N, N);
   damping.topLeftCorner(m, m) = own_damping;
@@ -216,13 +226,15 @@ void RegimeBuilder::make_general_pairs(Regime& out) {
     if (spring_(c) < 0.0) coupling.head(m) = coupling.head(m).cwiseMax(-spring_(c) * w.norm() * w);
     if (load(c).oscillates()) coupling.head(m) = coupling.head(m).cwiseMax(std::abs(load(c).lift) * w);
   }
-  BalancedState state = balanced_state(omega, damping, coupling.cwiseSqrt());
+  double beside = 0.0;
+  for (Eigen::Index j = acting; j < k; ++j) beside = std::max(beside, std::sqrt(load(contact(j)).stiffness));
+  BalancedState state = N > 0 ? balanced_state(omega, damping, coupling.cwiseSqrt(), beside) : BalancedState{};
   Eigen::MatrixXd& A = state.A;
   for (Eigen::Index c = 0; c < nc_; ++c)
     if (spring_(c) < 0.0)
       A.block(N, 0, m, m) -= spring_(c) * W.col(c) * W.col(c).cwiseQuotient(state.scale.head(m)).transpose();
-  for (Eigen::Index j = 0; j < k; ++j) {
-    const Eigen::Index c = oscillators_[static_cast<std::size_t>(j)];
+  for (Eigen::Index j = 0; j < acting; ++j) {
+    const Eigen::Index c = contact(j);
     const friction::LoadForm& own = load(c);
     const auto w = W.col(c);
     A(N + m + j, N + m + j) = -own.damping;
@@ -231,22 +243,41 @@ void RegimeBuilder::make_general_pairs(Regime& out) {
     A.block(N, m + j, m, 1) += friction_(c) * own.z / state.scale(m + j) * w;
     A.block(N, N + m + j, m, 1) += friction_(c) * own.z_rate * w;
   }
-  const PairForm form = pair_form(A);
+  PairForm form = N > 0 ? pair_form(A) : PairForm{};
+  for (Eigen::Index j = acting; j < k; ++j) {
+    const friction::LoadForm& own = load(contact(j));
+    const Eigen::VectorXd w = direction(contact(j));
+    const double scale = std::sqrt(own.stiffness);
+    const Eigen::Index before = form.g11.size();
+    Eigen::MatrixXd B = Eigen::MatrixXd::Zero(2, 2 * before);
+    B.block(1, 0, 1, m) = own.lift * w.cwiseQuotient(state.scale.head(m)).transpose();
+    B.block(1, before, 1, m) = own.lift_rate * w.transpose();
+    add_driven_pair(form, Eigen::Matrix2d{{0.0, scale}, {-scale, -own.damping}}, B);
+    state.scale.conservativeResize(before + 1);
+    state.scale(before) = scale;
+  }
   check_pair_form(form, state.scale);
   ModalModel& pairs = out.pairs;
   set_blocks(pairs, form);
   const Eigen::VectorXd inverse_scale = state.scale.cwiseInverse();
-  const Eigen::MatrixXd first = inverse_scale.asDiagonal() * form.T.topRows(N), second = form.T.bottomRows(N);
-  const Eigen::MatrixXd from_first = form.T_inverse.leftCols(N) * state.scale.asDiagonal();
-  const Eigen::MatrixXd from_second = form.T_inverse.rightCols(N);
+  const Eigen::MatrixXd first = inverse_scale.asDiagonal() * form.T.topRows(m + k), second = form.T.bottomRows(m + k);
+  const Eigen::MatrixXd from_first = form.T_inverse.leftCols(m + k) * state.scale.asDiagonal();
+  const Eigen::MatrixXd from_second = form.T_inverse.rightCols(m + k);
   at_.to_y = spread_columns(shapes * first.topRows(m), pairs.np);
   at_.to_rate = spread_columns(shapes * second.topRows(m), pairs.np);
-  at_.to_zeta = spread_columns(first.bottomRows(k), pairs.np);
-  at_.to_zeta_rate = spread_columns(second.bottomRows(k), pairs.np);
   at_.from_y = spread(from_first.leftCols(m) * shapes.transpose(), pairs.np);
   at_.from_rate = spread(from_second.leftCols(m) * shapes.transpose(), pairs.np);
-  at_.from_zeta = spread(from_first.rightCols(k), pairs.np);
-  at_.from_zeta_rate = spread(from_second.rightCols(k), pairs.np);
+  const Eigen::MatrixXd zeta = spread_columns(first.bottomRows(k), pairs.np),
+                        zeta_rate = spread_columns(second.bottomRows(k), pairs.np);
+  const Eigen::MatrixXd from_zeta = spread(from_first.rightCols(k), pairs.np),
+                        from_zeta_rate = spread(from_second.rightCols(k), pairs.np);
+  for (Eigen::Index j = 0; j < k; ++j) {
+    const Eigen::Index own = order[static_cast<std::size_t>(j)];
+    at_.to_zeta.row(own) = zeta.row(j);
+    at_.to_zeta_rate.row(own) = zeta_rate.row(j);
+    at_.from_zeta.col(own) = from_zeta.col(j);
+    at_.from_zeta_rate.col(own) = from_zeta_rate.col(j);
+  }
 }
 
 void RegimeBuilder::make_pairs(Regime& out) {

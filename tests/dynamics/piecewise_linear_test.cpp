@@ -1,5 +1,8 @@
 #include <slipmode/core/errors.hpp>
+#include <slipmode/dynamics/modal_model.hpp>
+#include <slipmode/dynamics/regime.hpp>
 #include <slipmode/dynamics/simulate.hpp>
+#include <slipmode/fem/masses.hpp>
 #include "fixtures/runge_kutta_reference.hpp"
 #include "fixtures/shaken_scenes.hpp"
 
@@ -217,6 +220,39 @@ TEST(VaryingLoad, OscillatorFollowsItsOwnEquation) {
   const double expected = std::real(H * A * std::polar(1.0, w * 600.0)) -
                           A * own.slope * own.spring_stiffness / (own.support_stiffness + own.spring_stiffness);
   EXPECT_NEAR(run.final_state.internal(0), expected, 1e-12);
+}
+
+TEST(VaryingLoad, OscillatorThatDoesNotActBackLeavesAFloatingStructureItsDigits) {
+  // Two masses that float on a dashpot, and a normal oscillator that friction does not feel: pairs and back is the same
+  // state. As one matrix the rigid-body motion became two exponentials e^{±3e-9 t}, and the state came back to 2e-8. A
+  // single mass leaves nothing beside the rigid-body motion, and when it is held nothing beside the oscillator.
+  const friction::NormalOscillator own{.mass = 0.7,
+                                       .support_stiffness = 1.1,
+                                       .support_damping = 0.1,
+                                       .spring_stiffness = 2.0,
+                                       .spring_damping = 0.05,
+                                       .slope = 0.2};
+  const auto rounding = [](const Eigen::MatrixXd& gap) { return gap.cwiseAbs().maxCoeff() < 1e-14; };
+  for (const Eigen::Index n : {1, 2}) {
+    fem::MassesOptions spec{.mass = {1.0}, .links = {}};
+    if (n == 2) spec = {.mass = {1.0, 2.0}, .links = {{.first = 1, .second = 2, .damping = 0.3}}};
+    const friction::Contact contact{
+        .direction = Eigen::VectorXd::Unit(n, 0), .law = friction::Coulomb{0.3, 0.2}, .normal_load = {1.0, own}};
+    const HybridSystem system(fem::masses(spec), {contact}, friction::Belt::constant(0.2));
+    const ModalModel slipping = build_modal_model(system, false);
+    const ModalCoordinates& modal = slipping.modal;
+    Eigen::MatrixXd eta(2 * n, 2 * slipping.np), back(2 * slipping.np, 2 * n);
+    eta << modal.to_eta, modal.to_eta_rate;
+    back << modal.from_eta, modal.from_eta_rate;
+    const Regime lost(system, slipping, {ContactRole::kSeparated});
+    const Eigen::MatrixXd same = eta * lost.to_slipping * lost.from_slipping * back;
+    EXPECT_TRUE(rounding(same - Eigen::MatrixXd::Identity(2 * n, 2 * n))) << n << '\n' << same;
+    EXPECT_TRUE(rounding(lost.to_oscillators * lost.from_oscillators - Eigen::Matrix2d::Identity())) << n;
+    EXPECT_TRUE(rounding(lost.to_oscillators * lost.from_slipping * back)) << n;
+    EXPECT_LE(lost.growth, 0.0) << n;
+    const Regime held(system, slipping, {ContactRole::kHeld});
+    EXPECT_TRUE(rounding(held.to_oscillators * held.from_oscillators - Eigen::Matrix2d::Identity())) << n;
+  }
 }
 
 TEST(Tilt, MakesFrictionDifferBothWays) {
