@@ -19,12 +19,21 @@ void CollocationFlow::start_bristles() {
 }
 
 void CollocationFlow::refresh_bristles() {
+  bristle_force_at(point_.time, point_.modes, point_.x.data(), point_.internal, point_.force);
   for (int c = 0; c < nc_; ++c) {
     if (!bristled(c)) continue;
     const double s = drive().velocity(point_.time) - resolver_.contact_velocity(c, point_.x.data());
-    if (std::abs(s) <= kUnmoved * velocity_scale(c, point_.x)) point_.multiplicity[static_cast<std::size_t>(c)] = 2;
+    if (std::abs(s) <= kUnmoved * velocity_scale(c, point_.x)) start_from_rest(c);
   }
-  bristle_force_at(point_.time, point_.modes, point_.x.data(), point_.internal, point_.force);
+}
+
+void CollocationFlow::start_from_rest(int c) {
+  // The way the acceleration leads: a step might see where the contact goes in the end, and not where it goes first.
+  const auto i = static_cast<std::size_t>(c);
+  const int order =
+      start_multiplicity(resolver_.instant(point_.time, point_.x.data()), c, ContactMode::kSlipPositive, point_.force);
+  point_.multiplicity[i] = order == 2 ? 2 : 1;
+  if (order != 2) point_.modes[i] = order == 1 ? ContactMode::kSlipPositive : ContactMode::kSlipNegative;
 }
 
 Eigen::VectorXd CollocationFlow::internal_within(double share) const {
@@ -65,6 +74,7 @@ void CollocationFlow::collocate_bristles(double h) {
 }
 
 bool CollocationFlow::turn_resting_bristles() {
+  if (begin_ == turned_at_) return false;  // it would turn to and fro
   bool turned = false;
   for (int c = 0; c < nc_; ++c) {
     const auto i = static_cast<std::size_t>(c);
@@ -80,8 +90,20 @@ bool CollocationFlow::turn_resting_bristles() {
       break;
     }
   }
-  if (turned) step_modes_ = point_.modes;
   return turned;
+}
+
+void CollocationFlow::record_reversals(const std::vector<ContactMode>& before) {
+  for (int c = 0; c < nc_; ++c) {
+    const auto i = static_cast<std::size_t>(c);
+    if (bristled(c) && point_.modes[i] != before[i]) record_bristle(c, EventKind::kReversal, before[i]);
+  }
+}
+
+void CollocationFlow::record_bristle(int c, EventKind kind, ContactMode before) {
+  const double displacement = model_.displacement_row.col(c).dot(point_.x) + model_.contact_offset(c);
+  events_.push_back({point_.time, c, kind, before, point_.modes[static_cast<std::size_t>(c)], displacement,
+                     resolver_.contact_velocity(c, point_.x.data()), point_.force(c)});
 }
 
 void CollocationFlow::settle_bristle(int c, bool touching) {
@@ -94,16 +116,13 @@ void CollocationFlow::settle_bristle(int c, bool touching) {
     resolver_.hold(point_.time, held, point_.x.data());
     const ContactMode after =
         before == ContactMode::kSlipPositive ? ContactMode::kSlipNegative : ContactMode::kSlipPositive;
-    const int order = start_multiplicity(resolver_.instant(point_.time, point_.x.data()), c, after, point_.force);
-    point_.modes[i] = order < 0 ? before : after;
-    point_.multiplicity[i] = order == 1 || order < 0 ? 1 : 2;
+    point_.modes[i] = after;
+    start_from_rest(c);
     bristle_force_at(point_.time, point_.modes, point_.x.data(), point_.internal, point_.force);
   } else {
     point_.multiplicity[i] = 2;
   }
-  const double displacement = model_.displacement_row.col(c).dot(point_.x) + model_.contact_offset(c);
-  events_.push_back({point_.time, c, point_.modes[i] == before ? EventKind::kGrazing : EventKind::kReversal, before,
-                     point_.modes[i], displacement, resolver_.contact_velocity(c, point_.x.data()), point_.force(c)});
+  record_bristle(c, point_.modes[i] == before ? EventKind::kGrazing : EventKind::kReversal, before);
 }
 
 double CollocationFlow::bristle_error(int c) const {

@@ -144,6 +144,17 @@ bool CollocationFlow::step(double t_limit) {
     }
     break;
   }
+  if (any_bristle_ && point_.modes != step_modes_) {
+    if (statistics_.steps > 0) {  // turned where the last step ended: an event, and the step is taken after it
+      turned_at_ = begin_;
+      point_.x = x_begin_;
+      solved_ = false;
+      record_reversals(step_modes_);
+      statistics_.events += static_cast<std::int64_t>(events_.size());
+      return true;
+    }
+    step_modes_ = point_.modes;
+  }
   const bool at_guard = guard.contact >= 0 && guard.theta * h <= remaining;
   if (at_guard && point_.modes[static_cast<std::size_t>(guard.contact)] != ContactMode::kStick)
     stop_level_ = error < tolerance * kGrowth ? level - 1 : level;
@@ -203,7 +214,10 @@ bool CollocationFlow::step(double t_limit) {
   } else {
     resolver_.settle(point_, {contact, guard.touching});
     events_ = resolver_.events();
-    if (any_bristle_) refresh_bristles();
+    if (any_bristle_) {
+      refresh_bristles();
+      record_reversals(step_modes_);
+    }
   }
   statistics_.events += static_cast<std::int64_t>(events_.size());
   if (!guard.touching) {

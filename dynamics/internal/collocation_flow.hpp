@@ -6,6 +6,7 @@
 #include "dynamics/internal/within_step.hpp"
 
 #include <Eigen/Core>
+#include <limits>
 #include <vector>
 
 namespace slipmode::dynamics {
@@ -82,16 +83,22 @@ class CollocationFlow {
 
   [[nodiscard]] bool bristled(int c) const { return laws()[static_cast<std::size_t>(c)].kind == LawKind::kBristle; }
   void start_bristles();
-  /// Forces of bristle contacts, and which of them are at rest, after the resolver has decided about the others.
+  /// Forces of bristle contacts, and where those at rest start to, after the resolver has decided about the others.
   void refresh_bristles();
+  /// Direction and order of a bristle contact at rest, by its acceleration; the direction stays where that is rounding.
+  void start_from_rest(int c);
   /// z at the nodes, for the speeds there.
   void collocate_bristles(double h);
   /// z of every bristle at a share of the last step (other contact states unchanged).
   [[nodiscard]] Eigen::VectorXd internal_within(double share) const;
   void bristle_force_at(double t, const std::vector<ContactMode>& modes, const double* x,
                         const Eigen::VectorXd& internal, Eigen::VectorXd& out_force) const;
-  /// Turns bristle contacts that started at zero speed towards where the solved step takes them. True if any turned.
+  /// Turns bristle contacts whose acceleration at rest was rounding towards where the solved step takes them. True if
+  /// any turned.
   bool turn_resting_bristles();
+  /// Of bristle contacts whose direction has changed, at the point.
+  void record_reversals(const std::vector<ContactMode>& before);
+  void record_bristle(int c, EventKind kind, ContactMode before);
   void settle_bristle(int c, bool touching);
   [[nodiscard]] double bristle_error(int c) const;
   void push_tangents(int level, double tau);
@@ -127,6 +134,7 @@ class CollocationFlow {
   HybridPoint point_;
   Eigen::VectorXd x_begin_, internal_begin_;
   bool any_bristle_ = false;
+  double turned_at_ = std::numeric_limits<double>::quiet_NaN();  ///< when a contact at rest was last turned
   std::vector<Eigen::Index> bristle_at_;  ///< index of each contact's bristle among the contacts' own states
   std::vector<Event> events_;
   std::vector<ContactMode> step_modes_;

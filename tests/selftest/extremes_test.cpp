@@ -45,8 +45,12 @@ TEST(RandomScenes, ThatOnceFailedHold) {
   // projected K whose rounding looked indefinite; a contact that holds while its normal load oscillates, on a structure
   // that floats (67; wrong or right as the rounding of the build would have it); a load that touches zero (50007); one
   // mode left in a regime, whose frequency of rounding was taken for a slow one (7034); a stick's force told badly from
-  // the equations of motion (17168).
-  for (const std::uint64_t index : {67, 129, 184, 189, 277, 342, 487, 581, 627, 7034, 17168, 50007})
+  // the equations of motion (17168); a guard that was extrapolated across a kink (13453, 28766, 54051); bristles that
+  // start one way and soon turn (36024, 40620, 59219, 88377, 93775, 99232) or whose way was rounding (73352); floating
+  // structures under normal oscillators (89677, 92935, 97654), and such with nothing else beside (54288, 94726).
+  for (const std::uint64_t index :
+       {67,    129,   184,   189,   277,   342,   487,   581,   627,   7034,  13453, 17168, 28766, 36024,
+        40620, 50007, 54051, 54288, 59219, 73352, 88377, 89677, 92935, 93775, 94726, 97654, 99232})
     EXPECT_EQ(text_of(check_random_scene(1, index)), "") << "scene " << index;
 }
 
