@@ -40,7 +40,7 @@ struct ScanLimits {
 
 /// Certifies a run from its samples alone: that every contact obeys the law of its mode, that no guard was passed
 /// unnoticed, that modes change only where a guard is reached, and that the samples solve the equations of motion, in
-/// the structure's own matrices by Simpson's rule. Shares no code with the flow. A run that passes at this resolution
+/// the structure's own matrices by Boole's rule. Shares no code with the flow. A run that passes at this resolution
 /// is a solution with no event missed and none too many.
 ///
 /// Guards are evaluated at every sample; where three samples show a minimum whose parabola goes below zero, the run is
