@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <complex>
+#include <limits>
 
 namespace slipmode::dynamics {
 namespace {
@@ -282,15 +283,17 @@ AuditForms::Stay::Values AuditForms::Stay::values(const Place& at) {
   Values out{};
   const auto add = [&](const Eigen::MatrixXd& rows, double first, double second) {
     vector.node_sums(rows.data(), at.free.data(), at.free.size(), nullptr, sums.data());
-    for (std::size_t kind = 0; kind < kKinds; ++kind) out[kind] += first * sums[kind] + second * sums[kKinds + kind];
+    for (std::size_t kind = 0; kind < kKinds; ++kind) out.add(kind, first * sums[kind] + second * sums[kKinds + kind]);
   };
   add(forms_->harmonic_, p.cosine, p.sine);
   for (std::size_t k = 0; k < forms_->constant_.size(); ++k)
     add(forms_->constant_[k], inputs_(forms_->acting_[2 * k]),
         2 * k + 1 < forms_->acting_.size() ? inputs_(forms_->acting_[2 * k + 1]) : 0.0);
-  for (const Kind kind : {kContact, kDrive, kViscous, kForce}) out[kind] += steady(kind, at.time - begin_, p);
-  out[kContact] += quadratic(forms_->forms_.contact, at.free) + contact_potential(p, at.x);
-  out[kViscous] += forms_->forms_.viscous_is_energy ? -free_energy(at, p) : quadratic(forms_->forms_.viscous, at.free);
+  for (const Kind kind : {kContact, kDrive, kViscous, kForce}) out.add(kind, steady(kind, at.time - begin_, p));
+  out.add(kContact, quadratic(forms_->forms_.contact, at.free));
+  out.add(kContact, contact_potential(p, at.x));
+  out.add(kViscous,
+          forms_->forms_.viscous_is_energy ? -free_energy(at, p) : quadratic(forms_->forms_.viscous, at.free));
   return out;
 }
 
@@ -312,8 +315,9 @@ void AuditForms::Stay::begin(const AuditForms& forms, const Place& at, const Eig
 
 StayWork AuditForms::Stay::until(const Place& at) {
   const Values now = values(at);
-  const StayWork work{now[kContact] - at_begin_[kContact], now[kDrive] - at_begin_[kDrive],
-                      now[kViscous] - at_begin_[kViscous], now[kForce] - at_begin_[kForce]};
+  const auto change = [&](Kind kind) { return now.of[kind] - at_begin_.of[kind]; };
+  const StayWork work{change(kContact), change(kDrive), change(kViscous), change(kForce),
+                      std::numeric_limits<double>::epsilon() * (now.size + at_begin_.size)};
   at_begin_ = now;
   return work;
 }

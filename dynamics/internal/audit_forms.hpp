@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -12,10 +13,11 @@ namespace slipmode::dynamics {
 
 /// Work of a stay in a regime [J].
 struct StayWork {
-  double contact = 0.0;  ///< ∫ Σ λ wᵀq̇ dt
-  double drive = 0.0;    ///< ∫ Σ λ v_drive dt
-  double viscous = 0.0;  ///< ∫ q̇ᵀCq̇ dt
-  double force = 0.0;    ///< ∫ Σ u_k d_kᵀq̇ dt
+  double contact = 0.0;   ///< ∫ Σ λ wᵀq̇ dt
+  double drive = 0.0;     ///< ∫ Σ λ v_drive dt
+  double viscous = 0.0;   ///< ∫ q̇ᵀCq̇ dt
+  double force = 0.0;     ///< ∫ Σ u_k d_kᵀq̇ dt
+  double rounding = 0.0;  ///< what these may be off by, differences of larger sums
 };
 
 /// The energy audit under a harmonic drive without quadrature: with x = x_f + S u, ẋ_f = G x_f, u = (ι, cos θ, sin θ),
@@ -26,7 +28,8 @@ struct StayWork {
 /// The quadratic part of the viscous loss is minus the energy of x_f, as it must be: of many pairs, and where Y says so
 /// too, n squares take its place. Costs O(n) then, else O(n²), per stay whatever its length, where quadrature would
 /// follow the fastest mode. Constant for a regime under a drive, and safe to share between threads. Source:
-/// docs/theory/compliant-contacts.md, section 4.
+/// docs/theory/compliant-contacts.md, section 4. Where a stay is short beside the drive's period, x_f and S u may each
+/// be far larger than x, and their squares leave fewer digits than quadrature: StayWork::rounding tells.
 class AuditForms {
  public:
   /// Null where a mode has no damping to speak of, or drifts, or the drive has several harmonics: then the integrals
@@ -50,7 +53,15 @@ class AuditForms {
     [[nodiscard]] StayWork until(const Place& at);
 
    private:
-    using Values = std::array<double, 4>;  ///< of each Kind
+    /// Of each Kind, and the sum of all sizes they are made of.
+    struct Values {
+      std::array<double, 4> of{};
+      double size = 0.0;
+      void add(std::size_t kind, double piece) {
+        of[kind] += piece;
+        size += std::abs(piece);
+      }
+    };
 
     [[nodiscard]] double steady(std::size_t kind, double stay, DrivePhase p) const;
     /// Energy of x_f with the contacts' springs.
@@ -61,9 +72,9 @@ class AuditForms {
 
     const AuditForms* forms_ = nullptr;
     double begin_ = 0.0;
-    Eigen::VectorXd inputs_, resting_;      ///< of this stay; what the inputs hold
-    Eigen::VectorXd lifted_;                ///< x_f in the slipping model
-    Values along_cosine_{}, along_sine_{};  ///< what cos θ and sin θ come with under these inputs
+    Eigen::VectorXd inputs_, resting_;                     ///< of this stay; what the inputs hold
+    Eigen::VectorXd lifted_;                               ///< x_f in the slipping model
+    std::array<double, 4> along_cosine_{}, along_sine_{};  ///< what cos θ, sin θ come with under these inputs
     Values at_begin_{};
   };
 

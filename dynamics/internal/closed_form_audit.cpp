@@ -2,6 +2,8 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace slipmode::dynamics {
 namespace {
@@ -10,58 +12,65 @@ namespace {
 constexpr double kShortRest = 0.25;
 /// Phase of the fastest harmonic that the rules of a window, made for the regime's own rate, take at least.
 constexpr double kDriveRest = 1.0;
+/// Forms that round by more than this share of the energy exchanged are left for quadrature.
+constexpr double kLostInForms = 1e-12;
 
 }  // namespace
 
 void ClosedFormFlow::account(double tau, bool ends) {
-  if (!regime_->forms && !regime_->belt) return integrate(tau);
+  const auto add = [this](const StayWork& work) { work_.add(work.contact, work.drive, work.viscous, work.force); };
+  if (!regime_->forms && !regime_->belt) return add(integrate(begin_, x_begin_, inputs_begin_, tau));
   if (!ends) return;
-  if (regime_->forms && !measured_) measure_amplitudes();
-  const StayWork work =
-      regime_->forms ? stay_.until({point_.time, x_, free_, point_.x}) : regime_->belt->until(point_.time, x_, inputs_);
-  work_.add(work.contact, work.drive, work.viscous, work.force);
+  if (regime_->belt) return add(regime_->belt->until(point_.time, x_, inputs_));
+  if (!measured_) measure_amplitudes();
+  StayWork work = stay_.until({point_.time, x_, free_, point_.x});
+  if (work.rounding > kLostInForms * (work_.exchanged + std::abs(work.contact) + std::abs(work.force) + work.viscous))
+    work = integrate(accounted_, x_accounted_, inputs_, point_.time - accounted_);
+  add(work);
+  accounted_ = point_.time;
+  x_accounted_ = x_;
 }
 
-void ClosedFormFlow::integrate(double tau) {
+StayWork ClosedFormFlow::integrate(double t, Eigen::VectorXd x, Eigen::VectorXd inputs, double tau) const {
   const RegimeTables& tables = *tables_;
   const Regime& r = tables.regime();
   const DriveOverlay* overlay = regime_->overlay;
-  double contact = 0.0, driven = 0.0, viscous = 0.0, forced = 0.0;
-  const auto add = [&](double weight, double t, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs) {
-    const DrivePhase phase = overlay ? phase_at(t) : DrivePhase{};
-    const double V = drive_velocity(t, inputs);
+  StayWork sum;
+  const auto add = [&](double weight, double at, const Eigen::VectorXd& x_then, const Eigen::VectorXd& inputs_then) {
+    const DrivePhase phase = overlay ? phase_at(at) : DrivePhase{};
+    const double V = drive_velocity(at, inputs_then);
     for (int c = 0; c < nc_; ++c) {
-      double force = inputs(c), velocity = V;
+      double force = inputs_then(c), velocity = V;
       if (r.roles[static_cast<std::size_t>(c)] != ContactRole::kSliding)
-        force = r.force_row.col(c).dot(x) + r.force_coefficient.col(c).dot(inputs);
-      if (!r.held(c)) velocity = r.velocity_row.col(c).dot(x) + r.velocity_coefficient.col(c).dot(inputs);
+        force = r.force_row.col(c).dot(x_then) + r.force_coefficient.col(c).dot(inputs_then);
+      if (!r.held(c)) velocity = r.velocity_row.col(c).dot(x_then) + r.velocity_coefficient.col(c).dot(inputs_then);
       if (overlay) {
         force += overlay->force.at(c, phase);
         if (!r.held(c)) velocity += overlay->velocity.at(c, phase);
       }
-      contact += weight * force * velocity;
-      driven += weight * force * V;
+      sum.contact += weight * force * velocity;
+      sum.drive += weight * force * V;
     }
     if (const friction::Force* force = resolver_.drive().force())
       for (Eigen::Index k = 0; k < r.forces; ++k)
-        forced += weight * force->value(static_cast<int>(k), t) *
-                  (r.drive_row.col(k).dot(x) + r.drive_coefficient.col(k).dot(inputs) + overlay->driven.at(k, phase));
+        sum.force += weight * force->value(static_cast<int>(k), at) *
+                     (r.drive_row.col(k).dot(x_then) + r.drive_coefficient.col(k).dot(inputs_then) +
+                      overlay->driven.at(k, phase));
     if (overlay) {
-      Eigen::VectorXd all = x;
+      Eigen::VectorXd all = x_then;
       overlay->state.add(phase, 1.0, all);
-      viscous += weight * r.viscous_power(all, V);
+      sum.viscous += weight * r.viscous_power(all, V);
     } else {
-      viscous += weight * r.viscous_power(x, V);
+      sum.viscous += weight * r.viscous_power(x_then, V);
     }
   };
-  const auto move_to = [&](const RegimeStep& s, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs,
+  const auto move_to = [&](const RegimeStep& s, const Eigen::VectorXd& from, const Eigen::VectorXd& from_inputs,
                            Eigen::VectorXd& out_x, Eigen::VectorXd& out_inputs) {
-    apply(s, x.data(), inputs, out_x.data());
-    out_inputs = inputs;
+    apply(s, from.data(), from_inputs, out_x.data());
+    out_inputs = from_inputs;
     r.advance_inputs(out_inputs, s.h);
   };
-  Eigen::VectorXd x = x_begin_, inputs = inputs_begin_, at_x(x.size()), at_inputs(inputs.size());
-  double t = begin_;
+  Eigen::VectorXd at_x(x.size()), at_inputs(inputs.size());
   const double drive_rate = overlay ? static_cast<double>(overlay->orders()) * overlay->omega() : 0.0;
   const double fastest = std::max(r.rate, drive_rate);
   const int first = drive_rate * tables.length(RegimeTables::kAuditLevel) > kDriveRest
@@ -93,7 +102,7 @@ void ClosedFormFlow::integrate(double tau) {
       advance(tables, rule.node(j) * tau, at_x, at_inputs);
       add(rule.weight(j) * tau, t + rule.node(j) * tau, at_x, at_inputs);
     }
-  work_.add(contact, driven, viscous, forced);
+  return sum;
 }
 
 }  // namespace slipmode::dynamics

@@ -99,7 +99,11 @@ void ClosedFormFlow::enter_regime() {
     vector.product(r.particular.data(), x_.size(), inputs_.size(), inputs_.data(), resting_.data());
   }
   measure_amplitudes();
-  if (regime_->forms) stay_.begin(*regime_->forms, {point_.time, x_, free_, point_.x}, inputs_);
+  if (regime_->forms) {
+    stay_.begin(*regime_->forms, {point_.time, x_, free_, point_.x}, inputs_);
+    accounted_ = point_.time;
+    x_accounted_ = x_;
+  }
   if (regime_->belt) regime_->belt->begin(point_.time, x_, inputs_);
   set_guards();
   drop_idle_guards();

@@ -119,7 +119,8 @@ class ClosedFormFlow {
   [[nodiscard]] double curvature(Eigen::Index output) const;
   /// Adds the work of a step of this length; where forms integrate whole stays, once a stay or the run `ends`.
   void account(double tau, bool ends);
-  void integrate(double tau);
+  /// Work of a time tau from a state on, by quadrature.
+  [[nodiscard]] StayWork integrate(double t, Eigen::VectorXd x, Eigen::VectorXd inputs, double tau) const;
   /// State of the slipping model and contact forces at t, from the regime's.
   void lift(const Visited& in, double t, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs,
             Eigen::VectorXd& out_x, Eigen::VectorXd& out_force) const;
@@ -177,6 +178,8 @@ class ClosedFormFlow {
   double tangent_time_ = 0.0;
 
   AuditForms::Stay stay_;
+  double accounted_ = 0.0;       ///< where forms integrate: up to here,
+  Eigen::VectorXd x_accounted_;  ///< and from there
   WorkSums work_;
   FlowStatistics statistics_;
   std::deque<Visited> visited_;
