@@ -98,6 +98,7 @@ RadauTables build() {
   t.bernstein7 = bernstein_values(kNodes - 1, c).inverse().cast<double>();
   t.bernstein8 = to_bernstein8.bottomRightCorner(kNodes, kNodes).cast<double>();
   t.bernstein8_start = to_bernstein8.col(0).tail(kNodes).cast<double>();
+  t.legendre5 = to_legendre.row(kNodes - 3).transpose().cast<double>();
   t.legendre6 = to_legendre.row(kNodes - 2).transpose().cast<double>();
   t.legendre7 = to_legendre.row(kNodes - 1).transpose().cast<double>();
   // b = p₇ + γ (P₈ − P₇)(2t − 1) by its value at 0, where that difference is 2; and ∫₀¹ P₇² dt = 1/15.

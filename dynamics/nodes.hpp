@@ -20,16 +20,16 @@ struct RadauTables {
   using Matrix8 = Eigen::Matrix<double, 8, 8>;
   using Vector8 = Eigen::Matrix<double, 8, 1>;
 
-  Vector8 node;                  ///< c_1 < ... < c_8 = 1
-  Vector8 weight;                ///< ∫₀¹ ℓ_j
-  Matrix8 bernstein7;            ///< node values → Bernstein coefficients of the degree-7 interpolant
-  Matrix8 bernstein8;            ///< node values → coefficients 1..8 of the degree-8 interpolant through f(0) too
-  Vector8 bernstein8_start;      ///< contribution of f(0) to those (coefficient 0 is f(0) itself)
-  Vector8 legendre6, legendre7;  ///< node values → Legendre coefficients of degree 6 and 7
-  Matrix8 left_half;             ///< node values on [0,1] → node values on [0,½]
-  Matrix8 right_half;            ///< node values on [0,1] → node values on [½,1]
-  Matrix8 integral;              ///< node values → ∫₀^{c_i} of the degree-7 interpolant (Radau IIA's A)
-  Matrix8 monomial;              ///< node values → coefficients of 1, t, ..., t⁷
+  Vector8 node;              ///< c_1 < ... < c_8 = 1
+  Vector8 weight;            ///< ∫₀¹ ℓ_j
+  Matrix8 bernstein7;        ///< node values → Bernstein coefficients of the degree-7 interpolant
+  Matrix8 bernstein8;        ///< node values → coefficients 1..8 of the degree-8 interpolant through f(0) too
+  Vector8 bernstein8_start;  ///< contribution of f(0) to those (coefficient 0 is f(0) itself)
+  Vector8 legendre5, legendre6, legendre7;  ///< node values → Legendre coefficients of degree 5 to 7
+  Matrix8 left_half;                        ///< node values on [0,1] → node values on [0,½]
+  Matrix8 right_half;                       ///< node values on [0,1] → node values on [½,1]
+  Matrix8 integral;  ///< node values → ∫₀^{c_i} of the degree-7 interpolant (Radau IIA's A)
+  Matrix8 monomial;  ///< node values → coefficients of 1, t, ..., t⁷
 
   /// Node values on [0,1] → values at the nodes of the following interval of length 2, 1, ½, ¼: a first guess only, by
   /// the part of degree 5 (for length 2: 4), since extrapolation magnifies what is at the end of the expansion.

@@ -127,11 +127,9 @@ void CollocationFlow::settle_bristle(int c, bool touching) {
 
 double CollocationFlow::bristle_error(int c) const {
   // z is a state: what its polynomial of degree 8 leaves out stays. The first coefficient left out, by the last two.
-  const auto z = bristle_nodes_.segment<kNodes>(kNodes * c);
   const ContactForces& law = laws()[static_cast<std::size_t>(c)];
-  const double sixth = std::abs(nodes_.legendre6.dot(z)), seventh = std::abs(nodes_.legendre7.dot(z));
-  const double ratio = std::min(1.0, seventh / std::max(sixth, 1e-300));
-  return seventh * ratio * ratio * law.bristle.stiffness / law.static_limit;
+  const auto [last, ratio] = ending(bristle_nodes_.data() + kNodes * c);
+  return last * ratio * ratio * law.bristle.stiffness / law.static_limit;
 }
 
 }  // namespace slipmode::dynamics

@@ -101,6 +101,13 @@ class CollocationFlow {
   void record_bristle(int c, EventKind kind, ContactMode before);
   void settle_bristle(int c, bool touching);
   [[nodiscard]] double bristle_error(int c) const;
+  /// How the Legendre coefficients of a polynomial through the nodes end.
+  struct Ending {
+    double last = 0.0;   ///< size of the last
+    double ratio = 0.0;  ///< of one coefficient to the one before, at most 1
+  };
+  /// By the last three, so that one which happens to vanish does not say that all that follow do.
+  [[nodiscard]] Ending ending(const double* values) const;
   void push_tangents(int level, double tau);
   void salt_tangents(const Eigen::VectorXd& force_before, int contact);
   [[nodiscard]] double force_slope(int c, ContactMode mode, double velocity, double drive_velocity) const;

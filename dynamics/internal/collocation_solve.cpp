@@ -127,7 +127,9 @@ bool CollocationFlow::solve_single_smooth(const Collocation& table) {
       slope(j) = -slope(j);
     }
     residual = free_ + table.kernel * force - v;
-    if (!kernels_.solve_nodes(table.kernel.data(), slope.data(), residual.data(), delta.data())) return false;
+    if (!kernels_.solve_nodes(table.kernel.data(), slope.data(), residual.data(), delta.data()))
+      delta =
+          (RadauTables::Matrix8::Identity() - table.kernel * slope.asDiagonal()).eval().partialPivLu().solve(residual);
     v += delta;
     const double change = delta.cwiseAbs().maxCoeff();
     if (!(change < 1e12)) return false;
@@ -249,18 +251,25 @@ bool CollocationFlow::solve_coupled(const Collocation& table, double h) {
   return false;
 }
 
+CollocationFlow::Ending CollocationFlow::ending(const double* values) const {
+  const double fifth = std::abs(kernels_.dot(nodes_.legendre5.data(), values, kNodes));
+  double sixth, seventh;
+  kernels_.two_dots(nodes_.legendre6.data(), nodes_.legendre7.data(), values, sixth, seventh);
+  sixth = std::abs(sixth);
+  seventh = std::abs(seventh);
+  const double ratio = sixth < fifth ? sixth / fifth : 1.0;
+  if (seventh < ratio * sixth) return {ratio * sixth, ratio};
+  return {seventh, seventh < sixth ? seventh / sixth : 1.0};
+}
+
 double CollocationFlow::force_error() const {
   double worst = 0.0;
   for (int c = 0; c < nc_; ++c) {
     const auto i = static_cast<std::size_t>(c);
     if (laws()[i].kind == LawKind::kFree) continue;
-    double sixth, seventh;
-    kernels_.two_dots(nodes_.legendre6.data(), nodes_.legendre7.data(), forces_.data() + kNodes * c, sixth, seventh);
-    sixth = std::abs(sixth);
-    seventh = std::abs(seventh);
     // The first coefficient left out, if the sequence keeps falling as it does.
-    const double next = seventh < sixth ? seventh * seventh / sixth : seventh;
-    worst = std::max(worst, next * over_limit_[i]);
+    const auto [last, ratio] = ending(forces_.data() + kNodes * c);
+    worst = std::max(worst, last * ratio * over_limit_[i]);
     if (bristled(c)) worst = std::max(worst, bristle_error(c) * tables_.step(0) / tables_.step(step_level_));
   }
   return worst;

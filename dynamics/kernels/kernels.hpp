@@ -121,7 +121,7 @@ struct Kernels {
   void (*solve_stick)(const Trial& trial, const double* inverse);
   /// Velocities under the forces given.
   void (*solve_sliding)(const Trial& trial);
-  /// (I − A diag(d)) δ = r by elimination. False when it is singular to rounding.
+  /// (I − A diag(d)) δ = r by elimination without pivots. False when that does not solve it: δ is then worth nothing.
   bool (*solve_nodes)(const double* A, const double* d, const double* r, double* out_delta);
   /// aᵀx and bᵀx [8].
   void (*two_dots)(const double* a, const double* b, const double* x, double& out_a, double& out_b);

@@ -17,6 +17,8 @@ constexpr double kClip = -1.4;
 /// Speeds that change by less than this, in units of 1/α, leave the law's slopes what they were.
 constexpr double kSameSlope = 0.1;
 constexpr double kSingular = 1e-14;
+/// What the solution of a step's Newton equations may leave of the right side.
+constexpr double kSolved = 1e-8;
 
 alignas(64) constexpr double kUnit[kNodes][kNodes] = {
     {1, 0, 0, 0, 0, 0, 0, 0}, {0, 1, 0, 0, 0, 0, 0, 0}, {0, 0, 1, 0, 0, 0, 0, 0}, {0, 0, 0, 1, 0, 0, 0, 0},
@@ -150,9 +152,13 @@ void matrix8(const double* A, const double* x, double* out) { store8(out, matrix
 
 bool solve_nodes(const double* A, const double* d, const double* r, double* out_delta) {
   Inverse inverse;
-  if (!invert(A, load8(d), inverse)) return false;
-  store8(out_delta, Inverse::times(inverse, load8(r)));
-  return true;
+  const V8 slope = load8(d), right = load8(r);
+  if (!invert(A, slope, inverse)) return false;
+  const V8 delta = Inverse::times(inverse, right);
+  store8(out_delta, delta);
+  // Without pivots, where A d is large and negative, elimination may leave no digit.
+  const V8 left = delta - matrix_times(A, slope * delta) - right;
+  return largest(abs8(left)) <= kSolved * largest(abs8(right));
 }
 
 bool solve_stribeck(const Trial& t) {
