@@ -28,9 +28,9 @@ struct ScanFigures {
   void merge(const ScanFigures& other);
 };
 
-/// Limits for ScanFigures. Four samples continued leave (1/25)⁴ = 2.6e-6 of a guard's fastest part (3e-6 at most in 79,000
-/// scenes); what the rule for the motion leaves out is taken off before; the rest is rounding and the flow's tolerance of
-/// 1e-9.
+/// Limits for ScanFigures. Four samples continued leave (1/25)⁴ = 2.6e-6 of a guard's fastest part (3e-6 at most in
+/// 79,000 scenes); what the rule for the motion leaves out is taken off before; the rest is rounding and the flow's
+/// tolerance of 1e-9.
 struct ScanLimits {
   double guard = 1e-8;
   double law = 1e-7;

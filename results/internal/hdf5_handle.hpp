@@ -35,8 +35,9 @@ class Hdf5Handle {
   Close close_ = nullptr;
 };
 
-/// Stops HDF5 from printing its error stack while alive; the caller's setting comes back afterwards. The first one keeps
-/// HDF5 from tidying up at exit: files are closed long before, and over one that a full disc keeps open it crashes.
+/// Stops HDF5 from printing its error stack while alive; the caller's setting comes back afterwards. The first one
+/// keeps HDF5 from tidying up at exit: files are closed long before, and over one that a full disc keeps open it
+/// crashes.
 class QuietHdf5 {
  public:
   QuietHdf5() {

@@ -6,8 +6,8 @@
 
 namespace slipmode::results {
 
-/// Bytes before a result's HDF5, its user block. It says who wrote the file, how long the rest is and the rest's CRC-32:
-/// libhdf5 1.10 can crash over damaged bytes, so that a damaged file of ours must never reach it.
+/// Bytes before a result's HDF5, its user block. It says who wrote the file, how long the rest is and the rest's
+/// CRC-32: libhdf5 1.10 can crash over damaged bytes, so that a damaged file of ours must never reach it.
 inline constexpr std::size_t kSealBytes = 512;
 
 /// Fills the user block of a finished file. @return  false when it cannot be written
