@@ -37,10 +37,11 @@ bool crc_of_rest(std::istream& in, std::uintmax_t size, std::uint32_t& out_crc) 
 }  // namespace
 
 bool seal(const std::filesystem::path& file) {
+  std::error_code gone;
+  const std::uintmax_t size = std::filesystem::file_size(file, gone) - kSealBytes;
   std::fstream both(file, std::ios::binary | std::ios::in | std::ios::out);
-  const std::uintmax_t size = std::filesystem::file_size(file) - kSealBytes;
   std::uint32_t crc = 0;
-  if (!crc_of_rest(both, size, crc)) return false;
+  if (gone || !crc_of_rest(both, size, crc)) return false;
   std::string block = block_text(size, crc);
   block.resize(kSealBytes, '\0');
   both.seekp(0);

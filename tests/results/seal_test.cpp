@@ -61,6 +61,8 @@ TEST_F(Seal, FindsMissingAndAddedBytes) {
   }
 }
 
+TEST_F(Seal, OfAFileThatIsGoneFails) { EXPECT_FALSE(seal(folder.path() / "none.h5")); }
+
 // What h5py, MATLAB and earlier versions write has no seal.
 TEST_F(Seal, IsNotAskedOfOtherFiles) {
   std::string foreign = whole;
