@@ -60,7 +60,9 @@ bool is_of_law(const std::string& key) {
 
 DrivenCase full_case(const scene::Scene& scene) {
   if (is_shaken(scene)) return scene::shaken_case(scene);
-  return {.system = scene::build_system(scene)};
+  DrivenCase belt{.system = scene::build_system(scene), .readings = {}};
+  belt.readings.rows.resize(0, belt.system.size());  // none, and projected there are none
+  return belt;
 }
 
 DrivenCase projected(const DrivenCase& full, const std::optional<pod::NamedBasis>& basis) {
