@@ -20,13 +20,11 @@ struct ValidateArguments {
   bool no_sweep = false, verdict = false;
 };
 
+/// @param is_reduced  the bases are a reduced model's: its own size is the one to judge
 Report run_shaken(const Session& session, const ValidateArguments& arguments, scene::Scene scene,
-                  const std::vector<pod::NamedBasis>& bases) {
+                  const std::vector<pod::NamedBasis>& bases, bool is_reduced) {
   if (arguments.no_sweep) scene.shaken.frequencies.reset();
-  if (results::kind_of(results::StoreReader(arguments.input)) ==
-      results::FileKind::kReduced) {  // its own size is the one to judge
-    scene.shaken.modes = {static_cast<int>(bases.front().basis.modes())};
-  }
+  if (is_reduced) scene.shaken.modes = {static_cast<int>(bases.front().basis.modes())};
   const auto result = studies::validate_shaken(scene, bases, arguments.output, session.run_options());
   Report report;
   report.data = {{"verb", "validate"}, {"file", arguments.output}, {"validation", to_json(result)}};
@@ -38,12 +36,14 @@ Report run(const Session& session, const ValidateArguments& arguments) {
   require_writable(arguments.output);
   const scene::Scene scene = scene::with_own_times(session.load(arguments.scene));
   scene::refuse_force(scene, "validate");
-  const std::vector<pod::NamedBasis> bases = studies::load_bases(scene, scene::build_system(scene), arguments.input);
+  const results::StoreReader store(arguments.input);
+  const std::vector<pod::NamedBasis> bases = studies::load_bases(scene, scene::build_system(scene), store);
   if (is_shaken(scene)) {
     if (arguments.verdict)
       throw InvalidInput(
           "--verdict: expected a belt, found a shaker; there 'slipmode diagnose SCENE FILE --verdict' does it");
-    return run_shaken(session, arguments, scene, bases);
+    const bool is_reduced = results::kind_of(store) == results::FileKind::kReduced;
+    return run_shaken(session, arguments, scene, bases, is_reduced);
   }
   diagnostics::ValidationOptions options = studies::validation_options(scene, bases);
   if (arguments.no_sweep) options.sweep_values.clear();

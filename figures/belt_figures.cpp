@@ -63,20 +63,23 @@ Figure bifurcation(const StoreReader& store) {
                                       .value_unit = results::Units::of(scene.units).length});
 }
 
-Figure portraits(const StoreReader& store, const std::string& group, PortraitLayout::Axes axes) {
-  const scene::Scene scene = results::load_scene_of(store);
+PortraitLayout portrait_layout(const scene::Scene& scene, int columns, PortraitLayout::Axes axes) {
   const results::Units units = results::Units::of(scene.units);
+  return {.columns = columns,
+          .displacement = "displacement " + contact_symbol(scene, "x"),
+          .displacement_unit = units.length,
+          .velocity = "velocity " + contact_symbol(scene, "v"),
+          .velocity_unit = units.velocity,
+          .axes = axes};
+}
+
+Figure portraits(const StoreReader& store, const std::string& group, PortraitLayout::Axes axes) {
   const results::PortraitSet set = results::load_portraits(store, group);
   std::vector<PhasePortrait> panels;
   for (const results::Portrait& portrait : set.portraits) {
     panels.push_back({portrait.title, portrait.displacement, portrait.velocity, colour_of(portrait.role)});
   }
-  return phase_portraits(panels, {.columns = set.columns,
-                                  .displacement = "displacement " + contact_symbol(scene, "x"),
-                                  .displacement_unit = units.length,
-                                  .velocity = "velocity " + contact_symbol(scene, "v"),
-                                  .velocity_unit = units.velocity,
-                                  .axes = axes});
+  return phase_portraits(panels, portrait_layout(results::load_scene_of(store), set.columns, axes));
 }
 
 /// Curves of one motion: rows of a table that belong to it, by basis.
@@ -197,16 +200,11 @@ Figure history(const StoreReader& store) {
 Figure trajectory_portrait(const StoreReader& store) {
   constexpr Eigen::Index kShown = 5000;
   const scene::Scene scene = results::load_scene_of(store);
-  const results::Units units = results::Units::of(scene.units);
   const dynamics::Trajectory trajectory = results::load_trajectory(store);
   const Eigen::Index shown = std::min(kShown, trajectory.times.size());
   return phase_portraits(
       {{scene.title, trajectory.contact_q.row(0).tail(shown), trajectory.contact_v.row(0).tail(shown), kFullColour}},
-      {.columns = 1,
-       .displacement = "displacement " + contact_symbol(scene, "x"),
-       .displacement_unit = units.length,
-       .velocity = "velocity " + contact_symbol(scene, "v"),
-       .velocity_unit = units.velocity});
+      portrait_layout(scene, 1, PortraitLayout::Axes::kShared));
 }
 
 FileFigure bifurcation_figure() { return {"bifurcation", "slip states against the swept key", bifurcation}; }

@@ -21,6 +21,12 @@ namespace results {
 /// Unit of times measured by a clock: they are seconds in dimensionless scenes too.
 inline constexpr const char* kClockSeconds = "s of clock";
 
+/// A time that a clock measured; its name outside files says the unit.
+template <class S>
+constexpr Field<S, double> timed(const char* name, double S::*member, const char* stored, const char* what) {
+  return required(name, member, kClockSeconds, what).stored_as(stored);
+}
+
 }  // namespace results
 
 template <>
@@ -178,9 +184,7 @@ inline constexpr auto kFields<diagnostics::BifurcationComparison> = [] {
 template <>
 inline constexpr auto kFields<diagnostics::Cost> = [] {
   using Own = diagnostics::Cost;
-  const auto timed = [](const char* name, double Own::*member, const char* stored, const char* what) {
-    return required(name, member, results::kClockSeconds, what).stored_as(stored);
-  };
+  using results::timed;
   return std::tuple{required("duration", &Own::duration, "s", "simulated time of the timed run"),
                     timed("full_wall_s", &Own::full_wall, "full_wall", "median wall time, full model"),
                     timed("full_cpu_s", &Own::full_cpu, "full_cpu", "median CPU time, full model"),
@@ -208,19 +212,16 @@ inline constexpr auto kFields<diagnostics::DrivenAgreement> = [] {
 template <>
 inline constexpr auto kFields<diagnostics::DrivenCost> = [] {
   using Own = diagnostics::DrivenCost;
-  using results::kClockSeconds;
-  return std::tuple{
-      required("wall_s", &Own::wall, kClockSeconds, "median clock time of a timed run").stored_as("wall"),
-      required("cpu_s", &Own::cpu, kClockSeconds, "median processor time of a timed run").stored_as("cpu"),
-      required("setup_s", &Own::setup, kClockSeconds, "projection and modal data").stored_as("setup")};
+  using results::timed;
+  return std::tuple{timed("wall_s", &Own::wall, "wall", "median clock time of a timed run"),
+                    timed("cpu_s", &Own::cpu, "cpu", "median processor time of a timed run"),
+                    timed("setup_s", &Own::setup, "setup", "projection and modal data")};
 }();
 
 template <>
 inline constexpr auto kFields<trade::RunCost> = [] {
   using Own = trade::RunCost;
-  const auto timed = [](const char* name, double Own::*member, const char* stored, const char* what) {
-    return required(name, member, results::kClockSeconds, what).stored_as(stored);
-  };
+  using results::timed;
   return std::tuple{timed("time_s", &Own::cpu, "time", "processor time of a timed run, median"),
                     timed("time_low_s", &Own::cpu_low, "time_low", "its least"),
                     timed("time_high_s", &Own::cpu_high, "time_high", "its largest"),

@@ -14,9 +14,11 @@ namespace {
 
 constexpr std::string_view kOurs = "slipmode result: HDF5 from byte 512 on";
 
-/// The whole text of the block, without its padding.
-std::string block_text(std::uintmax_t size, std::uint32_t crc) {
-  return fmt::format("{}, {} bytes, CRC-32 {:08x}\n", kOurs, size, crc);
+/// The whole block.
+std::string block_of(std::uintmax_t size, std::uint32_t crc) {
+  std::string block = fmt::format("{}, {} bytes, CRC-32 {:08x}\n", kOurs, size, crc);
+  block.resize(kSealBytes, '\0');
+  return block;
 }
 
 /// Of all behind the block. @return  false where not all of `size` can be read
@@ -42,8 +44,7 @@ bool seal(const std::filesystem::path& file) {
   std::fstream both(file, std::ios::binary | std::ios::in | std::ios::out);
   std::uint32_t crc = 0;
   if (gone || !crc_of_rest(both, size, crc)) return false;
-  std::string block = block_text(size, crc);
-  block.resize(kSealBytes, '\0');
+  const std::string block = block_of(size, crc);
   both.seekp(0);
   both.write(block.data(), static_cast<std::streamsize>(block.size()));
   return both.flush().good();
@@ -56,9 +57,7 @@ std::string damage_of(const std::filesystem::path& file) {
   const std::uintmax_t size = std::filesystem::file_size(file) - kSealBytes;
   std::uint32_t crc = 0;
   if (!crc_of_rest(in, size, crc)) return "cannot be read to its end";
-  std::string expected = block_text(size, crc);
-  expected.resize(kSealBytes, '\0');
-  return block == expected ? "" : "is damaged: its length or checksum is not what was written";
+  return block == block_of(size, crc) ? "" : "is damaged: its length or checksum is not what was written";
 }
 
 bool is_hdf5(const std::filesystem::path& file) {

@@ -256,16 +256,16 @@ std::vector<pod::NamedBasis> belt_bases(const scene::Scene& scene, const fem::St
 }
 
 std::vector<pod::NamedBasis> load_bases(const scene::Scene& scene, const dynamics::HybridSystem& full,
-                                        const std::string& file) {
-  const results::StoreReader store(file);
+                                        const results::StoreReader& store) {
   return is_shaken(scene) ? load_shaken_bases(scene, full, store) : load_belt_bases(scene, full.structure(), store);
 }
 
 std::vector<pod::NamedBasis> load_chosen_bases(const scene::Scene& scene, const dynamics::HybridSystem& full,
                                                const std::string& file, Eigen::Index modes) {
-  const bool is_reduced = results::kind_of(results::StoreReader(file)) == FileKind::kReduced;
+  const results::StoreReader store(file);
+  const bool is_reduced = results::kind_of(store) == FileKind::kReduced;
   std::vector<pod::NamedBasis> chosen;
-  for (const pod::NamedBasis& basis : load_bases(scene, full, file)) {
+  for (const pod::NamedBasis& basis : load_bases(scene, full, store)) {
     const Eigen::Index taken = modes_taken(scene, basis, file, is_reduced, modes);
     chosen.push_back({.name = fmt::format("{} {}s", taken, basis.name), .basis = basis.basis.truncated(taken)});
   }

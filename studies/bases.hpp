@@ -3,6 +3,7 @@
 #include <slipmode/dynamics/system.hpp>
 #include <slipmode/pod/pod.hpp>
 #include <slipmode/results/shaken_modes.hpp>
+#include <slipmode/results/store.hpp>
 #include <slipmode/scene/scene.hpp>
 #include <slipmode/studies/run_options.hpp>
 #include <slipmode/trade/variant.hpp>
@@ -37,9 +38,9 @@ namespace slipmode::studies {
 /// or trajectory's snapshots.
 /// @throws InvalidInput  when it holds none of them, or is of another size
 [[nodiscard]] std::vector<pod::NamedBasis> load_bases(const scene::Scene& scene, const dynamics::HybridSystem& full,
-                                                      const std::string& file);
+                                                      const results::StoreReader& store);
 
-/// The same, each cut to so many modes and named so ("6 POMs").
+/// The same of a file, each cut to so many modes and named so ("6 POMs").
 /// @param modes  0: all of a reduced model's, else as [reduction] chooses
 /// @throws InvalidInput  also for more modes than there are, or where nothing says how many
 [[nodiscard]] std::vector<pod::NamedBasis> load_chosen_bases(const scene::Scene& scene,

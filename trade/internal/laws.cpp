@@ -40,12 +40,10 @@ std::optional<scene::Scene> with_rigid_contacts(const scene::Scene& scene) { ret
 std::optional<scene::Scene> with_springs(const scene::Scene& scene, double factor) {
   const dynamics::HybridSystem system = scene::build_system(scene);
   std::size_t c = 0;
-  return with_contacts(scene, [&](scene::ContactSpec& contact) {
+  return with_laws(scene, [&](const friction::Law& law) {
     const Eigen::VectorXd& w = system.contacts()[c++].direction;
     const double own = w.dot(fem::multiply(system.structure().K(), w).col(0)) / (w.squaredNorm() * w.squaredNorm());
-    const auto law = friction::with_spring(contact.law, own, factor);
-    if (law) contact.law = *law;
-    return law.has_value();
+    return friction::with_spring(law, own, factor);
   });
 }
 
