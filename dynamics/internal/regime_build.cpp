@@ -193,7 +193,8 @@ void RegimeBuilder::make_general_pairs(Regime& out) {
   // First states: scaled displacements of the modes without what is not symmetric or not positive, then scaled ζ;
   // second states: their rates. First ζ that act back, by a friction that follows the load; the others are driven.
   const auto m = Z_.cols();
-  auto [base_omega, shapes] = base_modes();
+  auto [base_omega, base_shapes] = base_modes();
+  Eigen::MatrixXd& shapes = base_shapes;    // a binding cannot be captured
   std::vector<Eigen::Index> order, driven;  // in oscillators_
   for (std::size_t j = 0; j < oscillators_.size(); ++j)
     (friction_(oscillators_[j]) != 0.0 ? order : driven).push_back(static_cast<Eigen::Index>(j));
