@@ -28,7 +28,7 @@ MethodFigures tolerable(const HybridSystem& system, const std::vector<Truth>& tr
        {1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 3e-9, 1e-9, 3e-10, 1e-10, 3e-11, 1e-11, 1e-12, 1e-13}) {
     MethodFigures figures;
     try {
-      figures = errors_of(slipmode_method(system, tolerance, Audit::kOn), truth, stretch);
+      figures = errors_of(slipmode_method(system, tolerance, Checks::kAudit), truth, stretch);
     } catch (const NumericalFailure&) {
       continue;  // too loose to be of use
     }
@@ -81,16 +81,19 @@ class Stopwatch {
 void time_all(Comparison& row, const HybridSystem& system, const State& start) {
   const ComparisonCase& setting = row.setting;
   const double tolerance = row.slipmode.tolerance;
-  const Method own = slipmode_method(system, tolerance, Audit::kOn);
-  const Method plain = slipmode_method(system, tolerance, Audit::kOff);
-  Stopwatch slipmode, without_audit, cvode, odeint;
+  const Method own = slipmode_method(system, tolerance, Checks::kAudit);
+  const Method plain = slipmode_method(system, tolerance, Checks::kNone);
+  const Method certified = slipmode_method(system, tolerance, Checks::kCertified);
+  Stopwatch slipmode, without_audit, with_proof, cvode, odeint;
   row.audit_residual =  // and builds what is built once
       dynamics::simulate(system, start, {.duration = setting.duration, .flow = {.tolerance = tolerance}})
           .audit.residual();
   (void)plain(start, setting.duration);
+  (void)certified(start, setting.duration);
   for (int i = 0; i < setting.repeats; ++i) {
     slipmode.run(own, start, setting.duration);
     without_audit.run(plain, start, setting.duration);
+    with_proof.run(certified, start, setting.duration);
     if (i % 3 != 0) continue;
     cvode.run(cvode_method(setting.problem, kPeerTolerance, kPeerTolerance), start, setting.peer_duration);
     odeint.run(odeint_method(setting.problem, kPeerTolerance, kPeerTolerance), start, setting.peer_duration);
@@ -99,6 +102,7 @@ void time_all(Comparison& row, const HybridSystem& system, const State& start) {
   cvode.report(row.cvode);
   odeint.report(row.odeint);
   row.plain_seconds = without_audit.seconds();
+  row.certified_seconds = with_proof.seconds();
 }
 
 nlohmann::json figures(const MethodFigures& m) {
@@ -139,7 +143,7 @@ EventAgreement check_events(const ChainProblem& problem) {
   constexpr int kStretches = 40;
   const HybridSystem system = system_of(problem);
   const auto truth = true_stretches(system, start_on_attractor(system, 2000.0), kStretch, kStretches);
-  const Method own_method = slipmode_method(system, kTight, Audit::kOn),
+  const Method own_method = slipmode_method(system, kTight, Checks::kAudit),
                cvode = cvode_method(problem, kTight, kTightAbsolute);
   EventAgreement result{.name = problem.name};
   for (const Truth& t : truth) {
@@ -189,6 +193,7 @@ void to_json(nlohmann::json& out, const Comparison& row) {
          {"wanted_cvode", row.setting.wanted_cvode},
          {"wanted_odeint", row.setting.wanted_odeint},
          {"audit_off_seconds_per_unit", row.plain_seconds},
+         {"certified_seconds_per_unit", row.certified_seconds},
          {"audit_residual", row.audit_residual},
          {"setup_rows_seconds", row.setup_rows_seconds},
          {"setup_shapes_seconds", row.setup_shapes_seconds}};

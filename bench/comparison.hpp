@@ -36,7 +36,8 @@ struct Comparison {
   ComparisonCase setting;
   MethodFigures slipmode, cvode, odeint;
   long reference_events = 0;
-  double plain_seconds = 0.0;  ///< slipmode's timed run with the energy audit off
+  double plain_seconds = 0.0;      ///< slipmode's timed run with the energy audit off
+  double certified_seconds = 0.0;  ///< with the audit, and the proof that no event is passed
   double audit_residual = 0.0;
   double setup_rows_seconds = 0.0;    ///< frequencies, contact rows and step tables: all a run from rest needs
   double setup_shapes_seconds = 0.0;  ///< the same with mode shapes, for runs from a given state

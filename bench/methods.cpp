@@ -59,10 +59,12 @@ MethodFigures errors_of(const Method& method, const std::vector<Truth>& truth, d
   return figures;
 }
 
-Method slipmode_method(const HybridSystem& system, double tolerance, Audit audit) {
-  return [&system, tolerance, audit](const State& start, double duration) {
+Method slipmode_method(const HybridSystem& system, double tolerance, Checks checks) {
+  return [&system, tolerance, checks](const State& start, double duration) {
     const auto run = dynamics::simulate(
-        system, start, {.duration = duration, .flow = {.tolerance = tolerance, .audit = audit == Audit::kOn}});
+        system, start,
+        {.duration = duration,
+         .flow = {.tolerance = tolerance, .audit = checks != Checks::kNone, .certify = checks == Checks::kCertified}});
     PeerRun result{plain(run.final_state.q), plain(run.final_state.v), {}, 0};
     for (const auto& event : run.events) {
       if (event.before != event.after) result.event_times.push_back(event.time);

@@ -22,10 +22,11 @@ struct Truth {
 /// Anything that advances a state: slipmode or a peer.
 using Method = std::function<PeerRun(const dynamics::State& start, double duration)>;
 
-enum class Audit { kOff, kOn };
+/// What a run of slipmode keeps an eye on: nothing, the energy audit, or the proof that no event is passed too.
+enum class Checks { kNone, kAudit, kCertified };
 
 /// The system must outlive the method.
-[[nodiscard]] Method slipmode_method(const dynamics::HybridSystem& system, double tolerance, Audit audit);
+[[nodiscard]] Method slipmode_method(const dynamics::HybridSystem& system, double tolerance, Checks checks);
 [[nodiscard]] Method cvode_method(const ChainProblem& problem, double rtol, double atol);
 [[nodiscard]] Method odeint_method(const ChainProblem& problem, double rtol, double atol);
 [[nodiscard]] Method tanh_method(const ChainProblem& problem, double epsilon, double rtol, double atol);

@@ -26,10 +26,9 @@ Json ensemble_json(const PipelineResult& result) {
   for (const auto& member : result.ensemble->members) {
     if (!member.failure.empty()) failures.push_back(member.failure);
   }
-  return {{"runs", result.ensemble->members.size()},
-          {"snapshots", result.snapshots},
-          {"audit_residual", result.ensemble->worst_audit()},
-          {"failures", failures}};
+  return {{"runs", result.ensemble->members.size()},          {"snapshots", result.snapshots},
+          {"steps", result.ensemble->total().steps},          {"certified", result.ensemble->total().certified},
+          {"audit_residual", result.ensemble->worst_audit()}, {"failures", failures}};
 }
 
 std::string frequencies(const Eigen::VectorXd& omega) {
@@ -127,8 +126,9 @@ Json to_json(const PipelineResult& result, const scene::Scene& scene) {
 std::string summary_text(const PipelineResult& result, const scene::Scene& scene) {
   std::string out = scene.title + "\n" + modes_text(result, is_shaken(scene));
   if (result.ensemble) {
-    out += fmt::format("  ensemble: {} runs, {} snapshots, largest energy residual {:.1e}\n",
-                       result.ensemble->members.size(), result.snapshots, result.ensemble->worst_audit());
+    out += fmt::format("  ensemble: {} runs, {} snapshots, {}, largest energy residual {:.1e}\n",
+                       result.ensemble->members.size(), result.snapshots, certificate(result.ensemble->total()),
+                       result.ensemble->worst_audit());
   }
   if (result.pod) {
     out += fmt::format("  reduction: {} of {} modes hold {:.2f} % of the energy\n", result.chosen,

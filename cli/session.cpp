@@ -77,6 +77,10 @@ void require_writable(const fs::path& file) {
   }
 }
 
+std::string certificate(const dynamics::FlowStatistics& statistics) {
+  return fmt::format("certified {} of {} steps", statistics.certified, statistics.steps);
+}
+
 std::string describe(const NumericalFailure& failure) {
   constexpr Eigen::Index kShown = 20;
   std::string text =

@@ -60,5 +60,7 @@ void tell_resumed(std::size_t resumed, const std::string& what, Report& out_repo
 
 /// What went wrong, when and in which state, for people.
 [[nodiscard]] std::string describe(const NumericalFailure& failure);
+/// In how many of a run's steps it is proved that no event was passed.
+[[nodiscard]] std::string certificate(const dynamics::FlowStatistics& statistics);
 
 }  // namespace slipmode::cli

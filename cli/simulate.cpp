@@ -40,6 +40,8 @@ Report run_trajectory(const Session& session, const SimulateArguments& arguments
                  {"kind", "trajectory"},
                  {"samples", trajectory.times.size()},
                  {"events", trajectory.events.size()},
+                 {"steps", statistics.steps},
+                 {"certified", statistics.certified},
                  {"stick_fraction", stick_fraction},
                  {"audit_residual", trajectory.audit.residual()}};
   if (run.failure) {
@@ -50,9 +52,9 @@ Report run_trajectory(const Session& session, const SimulateArguments& arguments
     report.data["incomplete"] = true;
     return report;
   }
-  report.text =
-      fmt::format("{}: {} samples, {} events, energy residual {:.2g}\nTrajectory: {}\n", scene.title,
-                  trajectory.times.size(), trajectory.events.size(), trajectory.audit.residual(), arguments.output);
+  report.text = fmt::format("{}: {} samples, {} events, {}, energy residual {:.2g}\nTrajectory: {}\n", scene.title,
+                            trajectory.times.size(), trajectory.events.size(), certificate(statistics),
+                            trajectory.audit.residual(), arguments.output);
   return report;
 }
 
@@ -61,6 +63,7 @@ Report run_ensemble(const Session& session, const SimulateArguments& arguments, 
   results::store_ensemble(arguments.output, scene, run);
 
   Report report;
+  const dynamics::FlowStatistics total = run.total();
   Json failures = Json::array();
   for (const auto& member : run.members) {
     if (!member.failure.empty()) failures.push_back(member.failure);
@@ -70,10 +73,13 @@ Report run_ensemble(const Session& session, const SimulateArguments& arguments, 
                  {"kind", "ensemble"},
                  {"members", run.members.size()},
                  {"snapshots", run.ensemble.snapshots.cols()},
+                 {"steps", total.steps},
+                 {"certified", total.certified},
                  {"audit_residual", run.worst_audit()},
                  {"failures", failures}};
-  report.text = fmt::format("{}: {} runs, {} snapshots, largest energy residual {:.2g}\nEnsemble: {}\n", scene.title,
-                            run.members.size(), run.ensemble.snapshots.cols(), run.worst_audit(), arguments.output);
+  report.text = fmt::format("{}: {} runs, {} snapshots, {}, largest energy residual {:.2g}\nEnsemble: {}\n",
+                            scene.title, run.members.size(), run.ensemble.snapshots.cols(), certificate(total),
+                            run.worst_audit(), arguments.output);
   if (!failures.empty()) {
     report.exit_code = kNumericalFailure;
     report.text = fmt::format("{} of {} runs failed; the others are kept in {}\n  first: {}\n", failures.size(),

@@ -2,6 +2,7 @@
 
 #include <slipmode/core/decompositions.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -70,6 +71,29 @@ MatrixL bernstein_values(int degree, const VectorL& points) {
   return B;
 }
 
+/// Largest values on a grid so fine that what lies between adds less than the thousandth allowed for.
+void measure_remainders(const VectorL& with_start, RadauTables& t) {
+  VectorL power = VectorL::Zero(kNodes + 2);  // Ω by powers
+  power(0) = 1;
+  for (int k = 0; k <= kNodes; ++k)
+    for (int i = k + 1; i >= 0; --i) power(i) = (i > 0 ? power(i - 1) : Real(0)) - with_start(k) * power(i);
+  constexpr int kGrid = 4000;
+  t.remainder = {};
+  t.lebesgue = 0.0;
+  const MatrixL basis = interpolation(with_start.tail(kNodes), VectorL::LinSpaced(kGrid + 1, 0, 1)).cwiseAbs();
+  t.lebesgue = 1.001 * static_cast<double>(basis.rowwise().sum().maxCoeff());
+  for (double& remainder : t.remainder) {
+    for (int i = 0; i <= kGrid; ++i) {
+      Real value = 0;
+      for (Eigen::Index k = power.size(); k-- > 0;) value = value * i / kGrid + power(k);
+      remainder = std::max(remainder, static_cast<double>(std::abs(value)));
+    }
+    remainder *= 1.001 / 362880.0;
+    for (Eigen::Index k = 1; k < power.size(); ++k) power(k - 1) = static_cast<Real>(k) * power(k);
+    power(power.size() - 1) = 0;
+  }
+}
+
 RadauTables build() {
   VectorL c(kNodes);
   c.head(kNodes - 1) = simple_roots(
@@ -98,9 +122,19 @@ RadauTables build() {
   t.bernstein7 = bernstein_values(kNodes - 1, c).inverse().cast<double>();
   t.bernstein8 = to_bernstein8.bottomRightCorner(kNodes, kNodes).cast<double>();
   t.bernstein8_start = to_bernstein8.col(0).tail(kNodes).cast<double>();
+  t.legendre = to_legendre.cast<double>();
   t.legendre5 = to_legendre.row(kNodes - 3).transpose().cast<double>();
   t.legendre6 = to_legendre.row(kNodes - 2).transpose().cast<double>();
   t.legendre7 = to_legendre.row(kNodes - 1).transpose().cast<double>();
+  MatrixL T(kNodes + 1, kNodes + 1);
+  for (int i = 0; i <= kNodes; ++i)
+    for (int k = 0; k <= kNodes; ++k) T(i, k) = std::cos(k * std::acos(2 * with_start(i) - 1));
+  const MatrixL to_chebyshev = T.inverse();
+  t.chebyshev = to_chebyshev.bottomRightCorner(kNodes, kNodes).cast<double>();
+  t.chebyshev_start = to_chebyshev.col(0).tail(kNodes).cast<double>();
+  t.chebyshev_mean = to_chebyshev.row(0).tail(kNodes).transpose().cast<double>();
+  t.chebyshev_mean_start = static_cast<double>(to_chebyshev(0, 0));
+  measure_remainders(with_start, t);
   // b = p₇ + γ (P₈ − P₇)(2t − 1) by its value at 0, where that difference is 2; and ∫₀¹ P₇² dt = 1/15.
   const MatrixL at_start = interpolation(c, VectorL::Zero(1));
   for (int j = 0; j < kNodes; ++j) {

@@ -7,6 +7,7 @@
 #include <slipmode/dynamics/pair_motion.hpp>
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -65,6 +66,26 @@ struct LossForm {
   }
 };
 
+/// Bounds on the motion within a step of size h, from Σ over the pairs of what each can do: with z a pair scaled so
+/// that free motion does not grow (or by e^{growth h} at most), |g_cᵀGᵏe^{Gt}x| ≤ Σ ‖g̃_iᵀG̃_iᵏ‖ |z_i|. Contact
+/// velocities v_c, forces of degree 7.
+struct StepBounds {
+  /// h⁹ max |v_c⁽⁹⁾| ≤ |x|·ninth_by_state + |λ̂|·ninth_by_force + ninth_by_load, λ̂ the forces' Legendre coefficients
+  /// [2np x nc], [8nc x nc], [nc]. Holds the rounding of v too, as what it is worth in that measure.
+  Eigen::MatrixXd ninth_by_state, ninth_by_force;
+  Eigen::VectorXd ninth_by_load;
+  /// The forces' share of the first contact by its mean force and by the largest that a value at a node is off it.
+  double ninth_by_mean = 0.0, ninth_by_spread = 0.0;
+  /// Impulse response γ_cd = g_cᵀe^{Gt}b_d: max over c of Σ_d max |γ_cd⁽ᵏ⁾|, k = 0, 1, 2.
+  std::array<double, 3> response{};
+  /// γ_cd⁽ᵏ⁾(0) for k = 1, 2 and the load's in the last column [nc x (nc + 1)].
+  Eigen::MatrixXd response1, response2;
+  Eigen::MatrixXd second_row;      ///< Gᵀ²g_c [2np x nc]
+  Eigen::MatrixXd third_by_state;  ///< |g_cᵀG³x(t)| ≤ |x|·this + h (|λ|·third_by_force + third_by_load) [2np x nc]
+  Eigen::MatrixXd third_by_force;  ///< [nc x nc]
+  Eigen::VectorXd third_by_load;   ///< [nc]
+};
+
 /// States at the points of a quadrature rule that integrates squares of velocities to rounding.
 struct NodeStates {
   GaussRule rule;
@@ -85,6 +106,9 @@ class StepTables {
   [[nodiscard]] const Collocation& collocation(int level) const {
     return collocations_.get(level, [&](Collocation& out) { make(out, level); });
   }
+  [[nodiscard]] const StepBounds& bounds(int level) const {
+    return bounds_.get(level, [&](StepBounds& out) { make(out, level); });
+  }
   [[nodiscard]] const ModalModel& model() const { return model_; }
   /// A constant load acts.
   [[nodiscard]] bool loaded() const { return loaded_; }
@@ -98,6 +122,7 @@ class StepTables {
   void make(Collocation& out, int level) const;
   void make(NodeStates& out, int level) const;
   void make(LossForm& out, int level) const;
+  void make(StepBounds& out, int level) const;
   /// e^{Gt} of all pairs, a column for each time: entries 11, 12, 21 and 22 [4np x times].
   [[nodiscard]] Eigen::MatrixXd exponentials(const Eigen::VectorXd& times) const;
   /// Propagator to the time end·h of a step of size h whose forces are given at the nodes of [0, h].
@@ -111,6 +136,7 @@ class StepTables {
   LazyLevels<Collocation, kLevels> collocations_;
   LazyLevels<LossForm, kLevels> losses_;
   LazyLevels<NodeStates, kLevels> node_states_;
+  LazyLevels<StepBounds, kLevels> bounds_;
 };
 
 }  // namespace slipmode::dynamics

@@ -47,6 +47,7 @@ inline constexpr auto kFields<dynamics::FlowStatistics> = [] {
   using Own = dynamics::FlowStatistics;
   return std::tuple{required("steps", &Own::steps, "", "steps taken"),
                     required("rejected", &Own::rejected, "", "steps rejected"),
+                    optional("certified", &Own::certified, "", "steps proved to pass over no event"),
                     required("events", &Own::events, "", "events located, kept or not"),
                     required("regimes_built", &Own::regimes_built, "", "regimes built"),
                     required("stick_time", &Own::stick_time, "s", "time in stick, per contact")};

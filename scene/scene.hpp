@@ -41,9 +41,9 @@ struct Scene {
   EnsembleSpec ensemble;
   std::optional<SensorSpec> sensors;
   ReductionSpec reduction;
-  ValidationSpec validation;    ///< for a belt
-  ShakenValidationSpec shaken;  ///< for a shaker; a scene with a force has neither
-  dynamics::FlowOptions flow;   ///< method and tolerance from [flow]
+  ValidationSpec validation;                       ///< for a belt
+  ShakenValidationSpec shaken;                     ///< for a shaker; a scene with a force has neither
+  dynamics::FlowOptions flow = {.certify = true};  ///< method and tolerance from [flow]
   SceneSource source;
 
   /// The chain, or null.

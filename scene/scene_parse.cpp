@@ -153,7 +153,7 @@ Scene parse_scene(const std::string& text, const std::vector<std::string>& overr
   } else {
     scene.validation = read_validation(in.table_or_empty("validation"), scene);
   }
-  scene.flow = read_table<dynamics::FlowOptions>(in.table_or_empty("flow"));
+  scene.flow = read_table<dynamics::FlowOptions>(in.table_or_empty("flow"), scene.flow);
   in.finish();
   return scene;
 }

@@ -7,13 +7,18 @@
 
 namespace slipmode::scene {
 
+dynamics::FlowOptions uncertified(dynamics::FlowOptions flow) {
+  flow.certify = false;
+  return flow;
+}
+
 diagnostics::SettleOptions settle_options(const Scene& scene) {
   const auto& spec = scene.validation;
   return {.transient = spec.transient,
           .block = spec.block,
           .limit = spec.limit,
           .period = {.tolerance = spec.period_tolerance, .max_period = spec.max_period},
-          .flow = scene.flow};
+          .flow = uncertified(scene.flow)};
 }
 
 diagnostics::SettleOptions sweep_settle_options(const Scene& scene) {
@@ -30,7 +35,7 @@ diagnostics::DrivenOptions driven_options(const Scene& scene) {
           .kept = scene.shaken.kept,
           .tolerance = scene.shaken.period_tolerance,
           .max_period = scene.shaken.max_period,
-          .flow = scene.flow};
+          .flow = uncertified(scene.flow)};
 }
 
 diagnostics::ModelVerdictOptions verdict_options(const Scene& scene) {
@@ -43,7 +48,7 @@ diagnostics::ModelVerdictOptions verdict_options(const Scene& scene) {
   options.tangent.duration = kShareOfDuration * scene.validation.lyapunov_duration;
   options.tangent.interval = options.tangent.duration / kIntervalsOfExponents;
   options.tangent.seed = scene.ensemble.seed;
-  options.tangent.flow = scene.flow;
+  options.tangent.flow = uncertified(scene.flow);
   return options;
 }
 

@@ -9,6 +9,9 @@
 
 namespace slipmode::scene {
 
+/// [flow] for studies of many runs: they report no certificates, and pay for none.
+[[nodiscard]] dynamics::FlowOptions uncertified(dynamics::FlowOptions flow);
+
 /// Settling times and period detection of [validation], for attractors and orbits.
 [[nodiscard]] diagnostics::SettleOptions settle_options(const Scene& scene);
 

@@ -71,7 +71,7 @@ diagnostics::ValidationOptions validation_options(const scene::Scene& scene,
   options.lyapunov.transient = spec.transient;
   options.lyapunov.interval = spec.horizon / kIntervalsInHorizon;
   options.lyapunov.seed = scene.ensemble.seed;
-  options.lyapunov.flow = scene.flow;
+  options.lyapunov.flow = scene::uncertified(scene.flow);
   options.cost_duration = spec.cost_duration;
   options.cost_repeats = spec.cost_repeats;
   return options;

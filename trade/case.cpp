@@ -1,6 +1,7 @@
 #include <slipmode/trade/case.hpp>
 
 #include <slipmode/rom/reduce.hpp>
+#include <slipmode/scene/solver_options.hpp>
 
 namespace slipmode::trade {
 
@@ -49,7 +50,7 @@ Case build_case(const Variant& variant, const std::vector<OfferedBasis>& bases) 
   diagnostics::DrivenCase model{.system = full, .readings = readings_of(scene, full, beam.get())};
   const std::optional<pod::Basis> basis = basis_of(variant, bases);
   if (basis) model = diagnostics::reduced_case(model, *basis);
-  dynamics::FlowOptions flow = scene.flow;
+  dynamics::FlowOptions flow = scene::uncertified(scene.flow);
   flow.audit = false;
   return {.model = std::move(model), .full = full, .basis = basis, .beam = std::move(beam), .flow = flow};
 }

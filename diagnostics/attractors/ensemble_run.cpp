@@ -107,4 +107,16 @@ double EnsembleRun::worst_audit() const {
   return worst;
 }
 
+dynamics::FlowStatistics EnsembleRun::total() const {
+  dynamics::FlowStatistics sum;
+  for (const EnsembleMember& member : members) {
+    if (!member.failure.empty()) continue;
+    sum.steps += member.statistics.steps;
+    sum.rejected += member.statistics.rejected;
+    sum.certified += member.statistics.certified;
+    sum.events += member.statistics.events;
+  }
+  return sum;
+}
+
 }  // namespace slipmode::diagnostics

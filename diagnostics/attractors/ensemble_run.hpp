@@ -47,6 +47,8 @@ struct EnsembleRun {
 
   /// Largest energy residual of the members that went well.
   [[nodiscard]] double worst_audit() const;
+  /// What these counted together; no stick times.
+  [[nodiscard]] dynamics::FlowStatistics total() const;
 };
 
 /// Runs every initial state at every parameter value and concatenates the snapshots.

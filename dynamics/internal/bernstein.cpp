@@ -138,6 +138,28 @@ bool stays_above(const std::array<double, 8>& coefficients, double bound, int ha
   return stays_above(left, bound, halvings - 1) && stays_above(right, bound, halvings - 1);
 }
 
+BernsteinPolynomial part(const BernsteinPolynomial& p, double from, double to) {
+  // De Casteljau's scheme twice: what lies after `from`, and of that what lies before `to`.
+  BernsteinPolynomial out = p;
+  const auto n = static_cast<std::size_t>(p.degree);
+  auto& b = out.coefficient;
+  if (from > 0.0)
+    for (std::size_t round = 1; round <= n; ++round)
+      for (std::size_t k = 0; k + round <= n; ++k) b[k] += from * (b[k + 1] - b[k]);
+  if (to == 1.0) return out;
+  const double share = from < 1.0 ? (to - from) / (1.0 - from) : 0.0;
+  for (std::size_t round = 1; round <= n; ++round)
+    for (std::size_t k = n; k >= round; --k) b[k] = b[k - 1] + share * (b[k] - b[k - 1]);
+  return out;
+}
+
+BernsteinPolynomial derivative(const BernsteinPolynomial& p) {
+  BernsteinPolynomial out{p.degree - 1, {}};
+  for (std::size_t k = 0; k < static_cast<std::size_t>(p.degree); ++k)
+    out.coefficient[k] = p.degree * (p.coefficient[k + 1] - p.coefficient[k]);
+  return out;
+}
+
 std::optional<FirstRoot> first_root(const BernsteinPolynomial& p) { return search(p, 0.0, 1.0); }
 
 }  // namespace slipmode::dynamics

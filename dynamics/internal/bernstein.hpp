@@ -5,7 +5,7 @@
 
 namespace slipmode::dynamics {
 
-/// A polynomial of degree 7 or 8 on [0, 1] by its Bernstein coefficients: it lies within their convex hull, and has at
+/// A polynomial of degree up to 8 on [0, 1] by its Bernstein coefficients: it lies within their convex hull, and has at
 /// most as many roots as they have sign changes, so that the absence of a root is proved, not sampled. Source: Farouki,
 /// The Bernstein polynomial basis: a centennial retrospective, 2012.
 struct BernsteinPolynomial {
@@ -19,9 +19,14 @@ struct FirstRoot {
   bool touching = false;  ///< a double root within resolution: no change of sign could be separated
 };
 
-/// The first root in (0, 1] of a polynomial that is positive just after 0. A root at 0 itself is
+/// The first root in (0, 1] of a polynomial of degree 7 or 8 that is positive just after 0. A root at 0 itself is
 /// dropped by setting the leading coefficients that vanish there to exactly zero.
 [[nodiscard]] std::optional<FirstRoot> first_root(const BernsteinPolynomial& p);
+
+/// The same polynomial between two places, on [0, 1] again.
+[[nodiscard]] BernsteinPolynomial part(const BernsteinPolynomial& p, double from, double to);
+/// dp/dt, of one degree less.
+[[nodiscard]] BernsteinPolynomial derivative(const BernsteinPolynomial& p);
 
 /// Whether a polynomial of degree 7 stays above `bound` on [0, 1], by its convex hull on up to 2^halvings parts. A
 /// false says nothing.

@@ -175,7 +175,8 @@ bool ClosedFormFlow::step(double t_limit) {
   if (!measured_) measure_amplitudes();
   Search found;
   double h = 0.0, tau = 0.0;
-  bool finest = false;
+  bool finest = false, certain = !blind_start_;
+  blind_start_ = false;
   for (;;) {
     h = tables_->length(level_);
     found = search(level_);
@@ -204,6 +205,7 @@ bool ClosedFormFlow::step(double t_limit) {
     // before.
     const double clear = begin_ + kUsed * root;
     const bool now = finest && !(clear > begin_);
+    certain &= proved ? root <= found.others * h : !found.resolved;
     if (proved ? now || (root <= std::min(h, remaining) && first) : found.resolved) {
       tau = root;
     } else {
@@ -220,7 +222,9 @@ bool ClosedFormFlow::step(double t_limit) {
     move(tau);
   }
   point_.time = tau == remaining ? end : begin_ + tau;
+  if (found.guard >= 0 && found.touching) certain = false;
   ++statistics_.steps;
+  if (certain) ++statistics_.certified;
   if ((x_.size() > 0 && !std::isfinite(x_(0))) || !std::isfinite(point_.time)) {
     lift(*regime_, begin_, x_begin_, inputs_begin_, point_.x, point_.force);
     throw NumericalFailure("the state is no longer finite at t = " + std::to_string(begin_), begin_, point_.x,

@@ -181,6 +181,7 @@ class ClosedFormFlow {
   double accounted_ = 0.0;       ///< where forms integrate: up to here,
   Eigen::VectorXd x_accounted_;  ///< and from there
   WorkSums work_;
+  bool blind_start_ = false;  ///< a guard starts at zero, and no bound says that it rises
   FlowStatistics statistics_;
   std::deque<Visited> visited_;
 };

@@ -173,6 +173,7 @@ void ClosedFormFlow::foresee_starts() {
     if (simple && g1 > 0) clear = std::min(g1 / m2, 1.0 / r.rate);
     if (flat && g2 > 0) clear = std::min(1.5 * g2 / m3, 1.0 / r.rate);
     if (!rigid_speed && clear == 0.0) continue;  // falling through zero: an event at once
+    blind_start_ |= clear < tiny;
     clear = std::max(clear, tiny);
     guard.exempt_until = point_.time + clear;
     shortest = std::min(shortest, clear);

@@ -19,6 +19,8 @@ constexpr double kGrowthPerStep = 1.2;
 /// The same product at the start of a slip, where Newton has to tell the slow start, which grows by e to this power,
 /// from sliding that has left it behind.
 constexpr double kGrowthAtStart = 10.0;
+/// Halvings of a step to prove that it passes over no event.
+constexpr int kProofHalvings = 3;
 /// A step spans at most this phase of a shaker, so that all quadratures resolve it.
 constexpr double kLargestDrivePhase = 2.0;
 
@@ -56,7 +58,7 @@ CollocationFlow::CollocationFlow(const HybridSystem& system, const StepTables& t
       coarsest_(coarsest_level(system.drive(), tables, options.tolerance)),
       newton_change_(std::min(1e-3, std::sqrt(kNewtonShare * options.tolerance))),
       start_level_(static_cast<std::size_t>(nc_) + 1, std::max(3, coarsest_)) {
-  for (auto* v : {&free_, &velocity_, &forces_, &drive_nodes_, &bristle_nodes_})
+  for (auto* v : {&free_, &velocity_, &forces_, &drive_nodes_, &bristle_nodes_, &guard_forms_})
     *v = Eigen::VectorXd::Zero(kNodes * nc_);
   statistics_.stick_time.assign(static_cast<std::size_t>(nc_), 0.0);
   for (std::size_t c = 0; c < laws().size(); ++c) {
@@ -78,6 +80,8 @@ CollocationFlow::CollocationFlow(const HybridSystem& system, const StepTables& t
   if (any_bristle_) start_bristles();
   resolver_.start(point_);
   if (any_bristle_) refresh_bristles();
+  guard_start_ = guard_least_ = Eigen::VectorXd::Zero(nc_);
+  prepare_proof();
   single_ = nc_ == 1 && !any_bristle_ && laws()[0].characteristic == nullptr;
   restart_steps();
 }
@@ -105,6 +109,8 @@ bool CollocationFlow::step(double t_limit) {
   while (level + 1 < StepTables::kLevels && tables_.step(level + 1) >= remaining) ++level;
   Guarded guard;
   double h = 0.0, tau = 0.0, error = 0.0, tolerance = 0.0;
+  bool proved = false;
+  int halved = 0;
   for (bool retry = false;; retry = true, ++statistics_.rejected) {
     if (level >= StepTables::kLevels)
       throw NumericalFailure(
@@ -142,6 +148,12 @@ bool CollocationFlow::step(double t_limit) {
       while (tables_.step(level + 1) > guard.theta * h);
       continue;
     }
+    proved = proves(guard, tau / h);
+    if (!proved && halving_proves_ && halved < kProofHalvings && !smallest) {
+      ++halved;
+      ++level;
+      continue;
+    }
     break;
   }
   if (any_bristle_ && point_.modes != step_modes_) {
@@ -174,6 +186,7 @@ bool CollocationFlow::step(double t_limit) {
   // A shaker's velocity feels the rounding of the time.
   if (tau == h && drive().shaker() != nullptr) resolver_.hold(point_.time, point_.modes, point_.x.data());
   ++statistics_.steps;
+  if (proved) ++statistics_.certified;
   if (!std::isfinite(point_.x(0)) || !std::isfinite(point_.time))
     throw NumericalFailure("the state is no longer finite at t = " + std::to_string(begin_), begin_, x_begin_, error);
   for (int c = 0; c < nc_; ++c)
@@ -182,7 +195,9 @@ bool CollocationFlow::step(double t_limit) {
   if (options_.audit) account(level, tau);
   if (tangents_.size() > 0) push_tangents(level, tau);
 
-  level_ = error < tolerance * kGrowth && level > coarsest_ ? level - 1 : level;
+  // What a proof asks for is asked for near a guard; where halving did not bring it, it is not tried again.
+  halving_proves_ = provable_ && proved;
+  level_ = std::max(coarsest_, (error < tolerance * kGrowth ? level - 1 : level) - halved);
   solved_ = tau == h;
   if (fresh_) {
     start_level_[stuck_count()] = level_;

@@ -68,7 +68,36 @@ class CollocationFlow {
   bool solve_single_smooth(const Collocation& table);
   bool solve_coupled(const Collocation& table, double h);
   [[nodiscard]] double force_error() const;
-  [[nodiscard]] Guarded first_guard() const;
+  /// Keeps the guards' Bernstein forms for the proof.
+  [[nodiscard]] Guarded first_guard();
+
+  /// How far the true motion from the step's start may be from the computed one, within the step.
+  struct Deviation {
+    double force = 0.0, force_slope = 0.0;  ///< of any contact force, and of a sticking one's rate times the step [N]
+    double speed = 0.0, speed_slope = 0.0;  ///< of any contact's speed, and of its rate times the step [m/s]
+  };
+  void prepare_proof();
+  /// Whether no guard but the one found vanishes up to this share of the solved step, nor that one before, in the true
+  /// motion.
+  [[nodiscard]] bool proves(const Guarded& found, double end);
+  /// α times the sliding speeds at the nodes.
+  [[nodiscard]] RadauTables::Vector8 scaled_speeds(int c) const;
+  /// What the polynomial through the nodes leaves out of a speed-dependent law at the computed speeds [N].
+  [[nodiscard]] double between_nodes(int c) const;
+  /// Whether bounds on everything tell one contact's guard from zero; `ninth_` without the forces' share.
+  [[nodiscard]] bool far_from_guards(const StepBounds& bounds, double h) const;
+  /// @param at_rest  sliding may come as near to rest as zero speed
+  [[nodiscard]] Deviation deviation(const StepBounds& bounds, double h, bool at_rest) const;
+  /// Share of the step for which a slip that starts with neither speed nor acceleration goes on; 0: not known.
+  [[nodiscard]] double clear_after_release(const StepBounds& bounds, const Deviation& off, double h, int c) const;
+  /// |dλ/dt| of a contact within the step, of the true motion [N/s].
+  [[nodiscard]] double largest_force_rate(int d, const Deviation& off, double h) const;
+  /// A guard known with these errors of it and of its slope, positive before `from`. @param found  the event, if it is
+  /// this guard's
+  [[nodiscard]] bool stays_clear(const BernsteinPolynomial& guard, double error, double slope_error, double from,
+                                 const Guarded* found, double end) const;
+  /// Largest |V⁽⁹⁾| h⁹ of the drive.
+  [[nodiscard]] double drive_ninth(double h) const;
   [[nodiscard]] bool unmoved(int c) const;
   [[nodiscard]] double velocity_scale(int c, const Eigen::VectorXd& x) const;
   [[nodiscard]] bool too_early(const Guarded& guard) const;
@@ -157,6 +186,12 @@ class CollocationFlow {
 
   // One step's scalars, contact after contact, eight nodes each.
   Eigen::VectorXd free_, velocity_, forces_, drive_nodes_, bristle_nodes_;
+
+  // Of the proof: what has guards, and whether they are of laws it knows.
+  bool guarded_ = false, provable_ = false, halving_proves_ = false;
+  Eigen::VectorXd guard_forms_, guard_start_,
+      guard_least_;        ///< Bernstein form of each guard, its start and least [8nc]
+  Eigen::VectorXd ninth_;  ///< h⁹ max |(V − v_c)⁽⁹⁾| [nc]
 
   WorkSums work_;
   FlowStatistics statistics_;

@@ -23,20 +23,20 @@ constexpr int kRefinements = 20;
 
 }  // namespace
 
-CollocationFlow::Guarded CollocationFlow::first_guard() const {
+CollocationFlow::Guarded CollocationFlow::first_guard() {
   Guarded first{2.0, -1, false};
   const auto consider = [&](const BernsteinPolynomial& p, int c) {
     if (const auto root = first_root(p); root && root->at < first.theta) first = {root->at, c, root->touching};
   };
   const RadauTables& t = nodes_;
-  alignas(64) std::array<double, kNodes> guard;
   for (int c = 0; c < nc_; ++c) {
     const auto i = static_cast<std::size_t>(c);
     const ContactForces& law = laws()[i];
     if (!law.sticks() && !bristled(c)) continue;
     BernsteinPolynomial p;
+    double* guard = guard_forms_.data() + kNodes * c;
     if (point_.modes[i] == ContactMode::kStick) {
-      const double most = kernels_.force_guard(t.bernstein7.data(), forces_.data() + kNodes * c, guard.data());
+      const double most = kernels_.force_guard(t.bernstein7.data(), forces_.data() + kNodes * c, guard);
       if (most < law.static_limit * (1.0 - kAtLimit)) continue;
       p.degree = kNodes - 1;
       for (const double sign : {1.0, -1.0}) {
@@ -51,18 +51,24 @@ CollocationFlow::Guarded CollocationFlow::first_guard() const {
     }
     const double sign = sign_of(point_.modes[i]);
     const int multiplicity = point_.multiplicity[i];
-    if ((multiplicity > 0 || bristled(c)) && unmoved(c)) continue;
+    if ((multiplicity > 0 || bristled(c)) && unmoved(c)) {
+      guard_start_(c) = guard_least_(c) = 0.0;
+      guard_forms_.segment<kNodes>(kNodes * c).setZero();
+      continue;
+    }
     const double start =
         multiplicity > 0
             ? 0.0
             : std::max(0.0, sign * (drive().velocity(begin_) - resolver_.contact_velocity(c, x_begin_.data())));
     double least = kernels_.speed_guard(t.bernstein8.data(), t.bernstein8_start.data(), start, sign,
-                                        drive_nodes_.data() + kNodes * c, velocity_.data() + kNodes * c, guard.data());
-    if (multiplicity == 2) least = *std::min_element(guard.begin() + 1, guard.end());  // the first is zero: see below
+                                        drive_nodes_.data() + kNodes * c, velocity_.data() + kNodes * c, guard);
+    guard_start_(c) = start;
+    guard_least_(c) = std::min(start, least);
+    if (multiplicity == 2) least = *std::min_element(guard + 1, guard + kNodes);  // the first is zero: see below
     if (least > 0.0) continue;
     p.degree = kNodes;
     p.coefficient[0] = start;
-    std::ranges::copy(guard, p.coefficient.begin() + 1);
+    std::copy_n(guard, kNodes, p.coefficient.begin() + 1);
     // Zero by the order of contact, whatever rounding says.
     std::fill_n(p.coefficient.begin(), multiplicity, 0.0);
     consider(p, c);

@@ -51,6 +51,7 @@ inline constexpr auto kFields<dynamics::FlowOptions> = std::tuple{
     optional("method", &dynamics::FlowOptions::method, "", "how the flow is computed"),
     optional("tolerance", &dynamics::FlowOptions::tolerance, "1", "bound on the error of a step",
              {.low = 0.0, .high = 1.0, .above = true, .text = "a number > 0 and <= 1"}),
+    optional("certify", &dynamics::FlowOptions::certify, "", "prove step by step that no event is passed"),
     optional("max_events_per_window", &dynamics::FlowOptions::max_events_per_window, "", "more is Zeno", kCount),
     optional("zeno_window", &dynamics::FlowOptions::zeno_window, "s", "in which these are counted; 0: chosen",
              kNonNegative)};

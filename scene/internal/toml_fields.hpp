@@ -63,6 +63,8 @@ void read_value(TomlReader& in, const AnyField& field, T& value, const Limits& l
     read_value(in, field, value.emplace(), limits, how);
   } else if constexpr (std::is_enum_v<T>) {
     value = static_cast<T>(in.choice(field.name, words<T>()));
+  } else if constexpr (std::same_as<T, bool>) {
+    value = in.flag_or(field.name, value);
   } else if constexpr (std::integral<T>) {
     value = in.integer<T>(field.name, limits);
   } else if constexpr (std::floating_point<T>) {

@@ -80,6 +80,17 @@ TEST_F(Verbs, ATrajectoryClosesItsEnergyBalance) {
   }
 }
 
+TEST_F(Verbs, ARunSaysHowManyOfItsStepsAreCertified) {
+  const std::vector<std::string> words = {"simulate", "two.toml", "-o", "run.h5", "--set", "flow.method=collocation"};
+  const auto found = json_of(words);
+  EXPECT_GT(found["steps"], 100);
+  EXPECT_EQ(found["certified"], found["steps"]);
+  std::vector<std::string> without = words;
+  without.insert(without.end(), {"--set", "flow.certify=false"});
+  EXPECT_EQ(json_of(without)["certified"], 0);
+  EXPECT_NE(call({"simulate", "two.toml", "-o", "run.h5"}).out.find("certified"), std::string::npos);
+}
+
 TEST_F(Verbs, TheChainOfVerbsEndsInAValidation) {
   const auto ensemble = json_of({"simulate", "free.toml", "-o", "ensemble.h5"});
   EXPECT_EQ(ensemble["members"], 3);

@@ -1,6 +1,7 @@
 // What a run promises whatever the scene: sampling, restarts, guards, repeatability, accuracy that follows tolerance.
 #include <slipmode/core/errors.hpp>
 #include "fixtures/against_reference.hpp"
+#include "fixtures/shaken_scenes.hpp"
 
 #include <gtest/gtest.h>
 #include <cstring>

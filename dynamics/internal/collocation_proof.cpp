@@ -1,0 +1,320 @@
+#include "dynamics/internal/collocation_flow.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+// That a step passes over no event: docs/theory/flow.md, section 4.
+
+namespace slipmode::dynamics {
+namespace {
+
+/// A stick force starts at its limit when it is this close (relative).
+constexpr double kOnLimit = 1e-10;
+/// Shares of a step tried, by halving, over which a guard that starts at zero is shown to rise.
+constexpr int kRiseHalvings = 8;
+/// Of a root found, relative: twice what first_root leaves.
+constexpr double kRootSlack = 2e-6;
+
+/// A force in slip may exceed its largest where a trial step passes zero speed: by e^0.7.
+constexpr double kLargestShare = 2.1;
+/// Newton's method leaves less of a force, as a share of the static limit.
+constexpr double kNewtonRest = 1e-7;
+/// e^x ≤ 1/(1 − x) up to here.
+constexpr double kLargestGrowth = 0.8;
+
+bool positive(BernsteinPolynomial p, double above) {
+  for (int k = 0; k <= p.degree; ++k) p.coefficient[static_cast<std::size_t>(k)] -= above;
+  return p.coefficient[0] > 0.0 && !first_root(p);
+}
+
+double least(const BernsteinPolynomial& p) {
+  return *std::min_element(p.coefficient.begin(), p.coefficient.begin() + p.degree + 1);
+}
+
+double most(const BernsteinPolynomial& p) {
+  return *std::max_element(p.coefficient.begin(), p.coefficient.begin() + p.degree + 1);
+}
+
+/// Semi-axes' sums of the ellipses about [0, 1] in which e^{−s} is bounded: 2 to 256.
+struct Ellipses {
+  Eigen::Array<double, kNodes, 1> sum, inverse, cost;  ///< cost: ln(ϱ⁸ (1 − 1/ϱ))
+  Ellipses() {
+    for (int k = 0; k < kNodes; ++k) sum(k) = std::exp2(k + 1);
+    inverse = sum.inverse();
+    cost = kNodes * sum.log() + (1.0 - inverse).log();
+  }
+};
+
+/// ln of a bound on what the polynomial of degree 7 through the nodes leaves out of e^{−s(t)}: the Chebyshev
+/// coefficients of e^{−s} are at most 2 max|e^{−s}| ϱ^{−k}, the maximum taken over an ellipse in whose foci the
+/// interval ends (Trefethen, Approximation Theory and Approximation Practice, theorem 8.1).
+/// @param mean, s  Chebyshev coefficient 0 of s, and 1 to 8
+double exponential_remainder(double mean, const RadauTables::Vector8& s) {
+  static const Ellipses ellipses;
+  static const double scale = std::log(2.0 * (1.0 + radau().lebesgue));
+  Eigen::Array<double, kNodes, 1> outward = Eigen::Array<double, kNodes, 1>::Zero();
+  for (int k = kNodes; k-- > 0;) outward = (outward + std::abs(s(k))) * ellipses.sum;
+  const double inward = s.cwiseAbs().sum();
+  return (0.5 * (outward + inward * ellipses.inverse) - ellipses.cost).minCoeff() - mean + scale;
+}
+
+/// e^x or more, for x ≥ 0.
+double exponential_bound(double x) { return x < 0.25 ? 1.0 / (1.0 - x) : std::exp(x); }
+
+}  // namespace
+
+void CollocationFlow::prepare_proof() {
+  const auto needs = [](const ContactForces& law) { return law.sticks() || law.kind == LawKind::kBristle; };
+  const auto known = [](const ContactForces& law) {
+    return law.is_constant() || (law.kind == LawKind::kSpeedDependent && law.characteristic == nullptr);
+  };
+  guarded_ = std::ranges::any_of(laws(), needs);
+  provable_ = halving_proves_ = options_.certify && (!guarded_ || std::ranges::all_of(laws(), known));
+  ninth_.resize(nc_);
+}
+
+double CollocationFlow::drive_ninth(double h) const {
+  const friction::Shaker* shaker = drive().shaker();
+  if (shaker == nullptr) return 0.0;
+  const double omega = shaker->omega();
+  return std::pow(omega * h, kNodes + 1) * std::hypot(drive().velocity(begin_), drive().acceleration(begin_) / omega);
+}
+
+RadauTables::Vector8 CollocationFlow::scaled_speeds(int c) const {
+  const auto i = static_cast<std::size_t>(c);
+  return (sign_of(point_.modes[i]) * laws()[i].alpha) *
+         (drive_nodes_.segment<kNodes>(kNodes * c) - velocity_.segment<kNodes>(kNodes * c));
+}
+
+double CollocationFlow::between_nodes(int c) const {
+  const ContactForces& law = laws()[static_cast<std::size_t>(c)];
+  const RadauTables::Vector8 s = scaled_speeds(c);
+  const double start = law.alpha * guard_start_(c);
+  alignas(64) RadauTables::Vector8 series;
+  kernels_.matrix8(nodes_.chebyshev.data(), s.data(), series.data());
+  series += start * nodes_.chebyshev_start;
+  const double mean = nodes_.chebyshev_mean.dot(s) + start * nodes_.chebyshev_mean_start;
+  return law.drop * std::exp(exponential_remainder(mean, series));
+}
+
+CollocationFlow::Deviation CollocationFlow::deviation(const StepBounds& bounds, double h, bool at_rest) const {
+  const double between = nodes_.remainder[0] * ninth_.maxCoeff();
+  double defect = 0.0, slope = 0.0, cross = 0.0, rate = 0.0, curve = 0.0;
+  std::vector<Eigen::Index> stuck;
+  for (int c = 0; c < nc_; ++c) {
+    const auto i = static_cast<std::size_t>(c);
+    const ContactForces& law = laws()[i];
+    if (point_.modes[i] == ContactMode::kStick) {
+      stuck.push_back(c);
+      rate = std::max(rate, nodes_.remainder[1] * ninth_(c) / h);
+      curve = std::max(curve, nodes_.remainder[2] * ninth_(c) / (h * h));
+      continue;
+    }
+    if (law.kind != LawKind::kSpeedDependent) continue;
+    const double sign = sign_of(point_.modes[i]);
+    // What Newton left at the nodes, what the nodes leave between them, and what is between p and the computed speed.
+    const double left = (forces_.segment<kNodes>(kNodes * c).array() -
+                         sign * (law.kinetic + law.drop * (-scaled_speeds(c).array()).exp()))
+                            .abs()
+                            .maxCoeff();
+    const double nearest = law.alpha * law.drop * std::exp(-law.alpha * (guard_least_(c) - between));
+    defect = std::max(defect, nodes_.lebesgue * left + between_nodes(c) + nearest * between);
+    const double steepest =
+        law.alpha * law.drop *
+        (at_rest ? exponential_bound(law.alpha * between) : std::exp(-0.5 * law.alpha * (guard_least_(c) - between)));
+    slope = std::max(slope, steepest);
+  }
+  double hold = 0.0;
+  if (!stuck.empty()) {
+    hold = 1.0 / model_.mobility(stuck.front(), stuck.front());
+    if (nc_ > 1) {
+      const Eigen::MatrixXd own = model_.mobility(stuck, stuck);
+      hold = own.inverse().cwiseAbs().rowwise().sum().maxCoeff();
+      for (int d = 0; d < nc_; ++d) {
+        const auto i = static_cast<std::size_t>(d);
+        if (point_.modes[i] == ContactMode::kStick || laws()[i].is_constant()) continue;
+        cross += model_.mobility(stuck, d).cwiseAbs().maxCoeff();
+      }
+    }
+  }
+  const auto& [reach, reach1, reach2] = bounds.response;
+  const double first = std::max(defect, hold * (rate + cross * defect)),
+               growth = std::max(slope * reach, hold * (cross * slope * reach + reach1));
+  Deviation out;
+  out.force = first * exponential_bound(growth * h);
+  out.speed = reach * h * out.force;
+  out.speed_slope = h * (reach + reach1 * h) * out.force;
+  out.force_slope =
+      cross > 0.0 ? std::numeric_limits<double>::infinity() : h * hold * (curve + (reach1 + reach2 * h) * out.force);
+  return out;
+}
+
+double CollocationFlow::largest_force_rate(int d, const Deviation& off, double h) const {
+  const auto i = static_cast<std::size_t>(d);
+  const ContactForces& law = laws()[i];
+  const auto form = guard_forms_.segment<kNodes>(kNodes * d);
+  const double steps = (form.tail<kNodes - 1>() - form.head<kNodes - 1>()).cwiseAbs().maxCoeff();
+  if (point_.modes[i] == ContactMode::kStick) return ((kNodes - 1) * steps + off.force_slope) / h;
+  const double of_speed = kNodes * std::max(steps, std::abs(form(0) - guard_start_(d)));
+  return law.alpha * law.drop * (of_speed + nodes_.remainder[1] * ninth_(d) + off.speed_slope) / h;
+}
+
+double CollocationFlow::clear_after_release(const StepBounds& bounds, const Deviation& off, double h, int c) const {
+  // s″ − κ s′ = B(t) with κ the law's slope times the mobility: as long as B > 0, s′ and s are.
+  const auto i = static_cast<std::size_t>(c);
+  const ContactForces& law = laws()[i];
+  const double sign = sign_of(point_.modes[i]);
+  const friction::Shaker* shaker = drive().shaker();
+  const double omega = shaker != nullptr ? shaker->omega() : 0.0;
+  const double speed =
+      shaker != nullptr ? std::hypot(drive().velocity(begin_), drive().acceleration(begin_) / omega) : 0.0;
+  double now = (shaker != nullptr ? -omega * omega * drive().velocity(begin_) : 0.0) -
+               bounds.second_row.col(c).dot(x_begin_) - bounds.response1(c, nc_);
+  double change = omega * omega * omega * speed + bounds.third_by_state.col(c).dot(x_begin_.cwiseAbs()) +
+                  h * bounds.third_by_load(c) + std::abs(bounds.response2(c, nc_));
+  double by_rate = 0.0, others = 0.0;
+  for (int d = 0; d < nc_; ++d) {
+    const ContactForces& other = laws()[static_cast<std::size_t>(d)];
+    now -= bounds.response1(c, d) * point_.force(d);
+    change += (h * bounds.third_by_force(c, d) + std::abs(bounds.response2(c, d))) * other.static_limit;
+    if (other.is_constant() && point_.modes[static_cast<std::size_t>(d)] != ContactMode::kStick) continue;
+    if (d == c) {
+      by_rate = std::abs(bounds.response1(c, c)) * other.alpha * other.drop;
+    } else if (model_.mobility(c, d) != 0.0 || bounds.response1(c, d) != 0.0) {
+      const double rate = largest_force_rate(d, off, h);
+      others += std::abs(model_.mobility(c, d)) * rate;
+      change += std::abs(bounds.response1(c, d)) * rate;
+    }
+  }
+  now = sign * now - others;
+  if (!(now > 0.0)) return 0.0;
+  // Up to where B could have vanished, s′ ≤ 2 B(0) h e^{κh}.
+  const double growth = law.alpha * law.drop * model_.mobility(c, c) * h;
+  change += by_rate * 2.0 * now * h * std::exp(growth);
+  return std::min(1.0, now / (change * h));
+}
+
+bool CollocationFlow::stays_clear(const BernsteinPolynomial& guard, double error, double slope_error, double from,
+                                  const Guarded* found, double end) const {
+  if (from >= end) return true;
+  if (guard.coefficient[0] <= error && from == 0.0) {  // starts at zero: it rises before it stays above
+    const BernsteinPolynomial slope = derivative(guard);
+    double rise = end;
+    int halvings = 0;
+    while (!(least(part(slope, 0.0, rise)) > slope_error)) {
+      if (++halvings > kRiseHalvings) return false;
+      rise *= 0.5;
+    }
+    if (rise == end) return true;
+    from = rise;
+  }
+  if (found == nullptr) return positive(part(guard, from, end), error);
+  // The first root of the guard less its error; from there to the event it falls.
+  BernsteinPolynomial low = part(guard, from, 1.0);
+  for (int k = 0; k <= low.degree; ++k) low.coefficient[static_cast<std::size_t>(k)] -= error;
+  if (!(low.coefficient[0] > 0.0)) return false;
+  const auto root = first_root(low);
+  if (!root || root->touching) return false;
+  const double enters = from + root->at * (1.0 - kRootSlack) * (1.0 - from);
+  const double leaves = std::min(1.0, found->theta + std::max(0.0, found->theta - enters));
+  return most(part(derivative(guard), enters, std::max(leaves, enters))) < -slope_error;
+}
+
+bool CollocationFlow::far_from_guards(const StepBounds& bounds, double h) const {
+  // One contact, by what its force can be at all: most steps are far from any guard, and this is cheap.
+  const ContactForces& law = laws()[0];
+  const bool stuck = point_.modes[0] == ContactMode::kStick;
+  const double size = stuck ? guard_forms_.head<kNodes>().cwiseAbs().maxCoeff() : 0.0;
+  const double mean = stuck ? size : kLargestShare * law.static_limit,
+               spread = stuck ? 2.0 * size : kLargestShare * law.drop;
+  const double ninth = ninth_(0) + bounds.ninth_by_mean * mean + bounds.ninth_by_spread * spread;
+  const auto& [reach, reach1, reach2] = bounds.response;
+  if (stuck) {
+    const double hold = 1.0 / model_.mobility(0, 0), growth = hold * reach1 * h;
+    return growth < kLargestGrowth && size + hold * nodes_.remainder[1] * ninth / h / (1.0 - growth) < law.static_limit;
+  }
+  const double between = nodes_.remainder[0] * ninth, room = 0.5 * (guard_least_(0) - between);
+  if (!(room > 0.0)) return false;
+  const double half = std::exp(-law.alpha * room), least = half * half,
+               growth = law.alpha * law.drop * half * reach * h;
+  if (!(growth < kLargestGrowth)) return false;
+  const double largest_defect = room * (1.0 - growth) / (reach * h) - nodes_.lebesgue * kNewtonRest * law.static_limit;
+  // By the range of the law over the speeds there are; by what its interpolation can leave.
+  const double fastest = std::max(guard_start_(0), guard_forms_.head<kNodes>().maxCoeff());
+  const double range = least * std::min(1.0, law.alpha * (fastest - guard_least_(0) + 2.0 * between));
+  return 0.5 * (1.0 + nodes_.lebesgue) * law.drop * range < largest_defect ||
+         between_nodes(0) + law.alpha * law.drop * least * between < largest_defect;
+}
+
+bool CollocationFlow::proves(const Guarded& found, double end) {
+  if (!guarded_) return true;
+  if (!provable_ || found.touching) return false;
+  const StepBounds& bounds = tables_.bounds(step_level_);
+  const double h = tables_.step(step_level_);
+  const double by_drive = drive_ninth(h);
+  for (int c = 0; c < nc_; ++c)
+    ninth_(c) = bounds.ninth_by_load(c) + by_drive + bounds.ninth_by_state.col(c).dot(x_begin_.cwiseAbs());
+  if (nc_ == 1 && found.contact < 0 && far_from_guards(bounds, h)) return true;
+  alignas(64) std::array<double, kNodes> series;
+  for (int d = 0; d < nc_; ++d) {
+    kernels_.matrix8(nodes_.legendre.data(), forces_.data() + kNodes * d, series.data());
+    for (int c = 0; c < nc_; ++c)
+      ninth_(c) += bounds.ninth_by_force.col(c)
+                       .segment<kNodes>(kNodes * d)
+                       .dot(Eigen::Map<const RadauTables::Vector8>(series.data()).cwiseAbs());
+  }
+  const double between = nodes_.remainder[0] * ninth_.maxCoeff();
+
+  bool at_rest = false;
+  for (int c = 0; c < nc_; ++c) {
+    const auto i = static_cast<std::size_t>(c);
+    if (point_.modes[i] != ContactMode::kStick && laws()[i].sticks()) at_rest |= !(guard_least_(c) > between);
+  }
+  Deviation off = deviation(bounds, h, at_rest);
+  if (!at_rest) {
+    for (int c = 0; c < nc_ && !at_rest; ++c) {
+      const auto i = static_cast<std::size_t>(c);
+      if (point_.modes[i] != ContactMode::kStick && laws()[i].sticks())
+        at_rest |= !(off.speed < 0.5 * (guard_least_(c) - between));
+    }
+    if (at_rest) off = deviation(bounds, h, true);
+  }
+
+  BernsteinPolynomial p;
+  for (int c = 0; c < nc_; ++c) {
+    const auto i = static_cast<std::size_t>(c);
+    const ContactForces& law = laws()[i];
+    if (!law.sticks()) continue;
+    const Guarded* reached = found.contact == c ? &found : nullptr;
+    const auto form = guard_forms_.segment<kNodes>(kNodes * c);
+    if (point_.modes[i] == ContactMode::kStick) {
+      p.degree = kNodes - 1;
+      const double greatest = form.cwiseAbs().maxCoeff();
+      if (reached == nullptr && greatest + off.force < law.static_limit) continue;
+      const double at_event = nodes_.lagrange(found.theta).dot(forces_.segment<kNodes>(kNodes * c));
+      for (const double sign : {1.0, -1.0}) {
+        for (int k = 0; k < kNodes; ++k) p.coefficient[static_cast<std::size_t>(k)] = law.static_limit - sign * form(k);
+        if (std::abs(p.coefficient[0]) <= kOnLimit * law.static_limit) p.coefficient[0] = 0.0;
+        const bool this_side = reached != nullptr && sign * at_event > 0.0;
+        if (!stays_clear(p, off.force, off.force_slope, 0.0, this_side ? reached : nullptr, end)) return false;
+      }
+      continue;
+    }
+    const double error = nodes_.remainder[0] * ninth_(c) + off.speed,
+                 slope_error = nodes_.remainder[1] * ninth_(c) + off.speed_slope;
+    if (reached == nullptr && guard_least_(c) > error) continue;
+    p.degree = kNodes;
+    p.coefficient[0] = guard_start_(c);
+    for (int k = 0; k < kNodes; ++k) p.coefficient[static_cast<std::size_t>(k) + 1] = form(k);
+    const double from = point_.multiplicity[i] == 2 ? clear_after_release(bounds, off, h, c) : 0.0;
+    if (point_.multiplicity[i] == 2 && from == 0.0) return false;
+    if (!stays_clear(p, error, slope_error, from, reached, end)) return false;
+  }
+  return true;
+}
+
+}  // namespace slipmode::dynamics

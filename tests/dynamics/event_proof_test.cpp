@@ -1,0 +1,182 @@
+#include <slipmode/core/errors.hpp>
+#include <slipmode/core/random.hpp>
+#include <slipmode/dynamics/cache.hpp>
+#include <slipmode/dynamics/prepare.hpp>
+#include <slipmode/scene/scene.hpp>
+#include "dynamics/internal/collocation_flow.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <algorithm>
+#include <cmath>
+
+namespace slipmode::dynamics {
+namespace {
+
+/// A chain with one or two Stribeck contacts: any damping, belts, ramps and shakers, laws from flat to steep.
+std::string random_stribeck_chain(std::uint64_t index, int contacts) {
+  slipmode::Random r = slipmode::Random::stream(77, index);
+  const int n = contacts + static_cast<int>(r.uniform() * 8);
+  std::string text = fmt::format(
+      "units = \"dimensionless\"\n[structure]\nkind = \"chain\"\nmasses = {}\nmass = 1.0\nstiffness = 1.0\n"
+      "damping = {}\n",
+      n, r.uniform() < 0.2 ? 0.0 : r.uniform(0.0, 0.05));
+  for (int c = 0; c < contacts; ++c) {
+    const double mu_k = r.uniform(0.05, 0.4), mu_s = mu_k + r.uniform(0.0, 0.5);
+    const double alpha = r.uniform() < 0.2 ? r.uniform(10.0, 200.0) : r.uniform(0.2, 10.0);
+    text +=
+        fmt::format("[[contact]]\nat = {}\nlaw = \"stribeck\"\nmu_s = {}\nmu_k = {}\nnormal_load = 1.0\nalpha = {}\n",
+                    n - c, mu_s, mu_k, alpha);
+  }
+  const double kind = r.uniform(), from = r.uniform(-0.6, 0.6), to = r.uniform(-0.6, 0.6);
+  if (kind < 0.5)
+    text += fmt::format("[drive]\nkind = \"belt\"\nspeed = {}\n", kind < 0.1 ? 0.0 : from);
+  else if (kind < 0.7)
+    text +=
+        fmt::format("[drive]\nkind = \"belt\"\nspeed = {{ from = {}, to = {}, begin = 3.0, end = 12.0 }}\n", from, to);
+  else
+    text += fmt::format("[drive]\nkind = \"shaker\"\nfrequency = {}\namplitude = {}\n", r.uniform(0.05, 0.4),
+                        r.uniform(0.1, 1.0));
+  text += "[time]\nduration = 40.0\nsample = 1.0\n[initial]\n";
+  for (const char* key : {"displacement", "velocity"}) {
+    text += fmt::format("{} = [", key);
+    for (int i = 0; i < n; ++i) text += fmt::format("{}, ", r.uniform(-1.0, 1.0));
+    text += "]\n";
+  }
+  return text;
+}
+
+struct Judged {
+  int steps = 0, certified = 0, judged = 0, wrong = 0;
+};
+
+/// Every step of a run beside the motion from the step's own start at tolerance 1e-13: does that pass an event where
+/// the step has none?
+Judged judge_steps(std::uint64_t index, int contacts, double tolerance) {
+  constexpr double kDuration = 40.0;
+  const scene::Scene scene = scene::parse_scene(random_stribeck_chain(index, contacts));
+  const HybridSystem system = scene::build_system(scene);
+  const Prepared p = prepare(system, scene::initial_state(scene, system), {.tolerance = tolerance, .certify = true}, false);
+  FlowOptions fine = p.options;
+  fine.tolerance = 1e-13;
+  fine.certify = false;
+  CollocationFlow flow(system, p.tables.steps, p.start, p.options);
+  const EventResolver resolver(system, p.tables.model, fine);
+  Judged out;
+  while (flow.point().time < kDuration) {
+    HybridPoint begin = flow.point();
+    const auto before = flow.statistics();
+    flow.step(kDuration);
+    const double end = flow.point().time;
+    out.steps += static_cast<int>(flow.statistics().steps - before.steps);
+    if (flow.statistics().certified == before.certified) continue;
+    ++out.certified;
+    try {
+      resolver.hold(begin.time, begin.modes, begin.x.data());
+      CollocationFlow reference(system, p.tables.steps, begin, fine);
+      while (reference.point().time < end && reference.events().empty()) reference.step(end);
+      ++out.judged;
+      if (reference.events().empty()) continue;
+      const Event& event = reference.events().front();
+      // The step's own event; or the one it began with, seen again: a release at its limit but for the tolerance.
+      const bool own = !flow.events().empty() && flow.events().front().contact == event.contact &&
+                       end - event.time < 10.0 * tolerance;
+      const auto c = static_cast<std::size_t>(event.contact);
+      const bool begun = event.contact >= 0 && begin.multiplicity[c] > 0 && event.after == begin.modes[c] &&
+                         event.time - begin.time < tolerance;
+      if (!own && !begun && end - event.time > 1e-13 * end) ++out.wrong;
+    } catch (const NumericalFailure&) {  // stuck contacts whose speed the step's start holds to its tolerance only
+    }
+  }
+  return out;
+}
+
+class CertifiedSteps : public testing::TestWithParam<std::tuple<int, double>> {};
+
+TEST_P(CertifiedSteps, PassNoEventAtAnyTolerance) {
+  const auto [contacts, tolerance] = GetParam();
+  Judged all;
+  for (std::uint64_t index = 0; index < 60; ++index) {
+    const Judged one = judge_steps(index, contacts, tolerance);
+    all.steps += one.steps;
+    all.certified += one.certified;
+    all.judged += one.judged;
+    all.wrong += one.wrong;
+  }
+  EXPECT_EQ(all.wrong, 0) << "of " << all.judged;
+  EXPECT_GT(all.judged, 9 * all.certified / 10);
+  // What stays open: grazings, starts at two limits at once.
+  EXPECT_GT(all.certified, (contacts == 1 ? 0.99 : 0.9) * all.steps) << all.steps;
+}
+
+INSTANTIATE_TEST_SUITE_P(Tolerances, CertifiedSteps,
+                         testing::Combine(testing::Values(1, 2), testing::Values(1e-1, 1e-3, 1e-6, 1e-9)),
+                         [](const auto& cell) {
+                           return fmt::format("Contacts{}Tolerance1em{:.0f}", std::get<0>(cell.param),
+                                              -std::log10(std::get<1>(cell.param)));
+                         });
+
+TEST(EventProof, BoundsWhatTheInterpolantOfASpeedLeavesOut) {
+  // Exact motion under polynomial forces at 65 times, beside the polynomial of degree 8 through nodes and start.
+  slipmode::Random random = slipmode::Random::stream(5, 0);
+  double tightest = 0.0;
+  for (std::uint64_t index = 0; index < 12; ++index) {
+    const scene::Scene scene = scene::parse_scene(random_stribeck_chain(index, 1 + static_cast<int>(index % 2)));
+    const HybridSystem system = scene::build_system(scene);
+    const Prepared p = prepare(system, scene::initial_state(scene, system), {}, false);
+    const StepTables& tables = p.tables.steps;
+    const ModalModel& model = p.tables.model;
+    const RadauTables& nodes = radau();
+    for (int level = 0; level < 4; ++level) {
+      Eigen::VectorXd x = Eigen::VectorXd::Zero(2 * model.np), forces(kNodes * model.contacts), v(forces.size());
+      for (Eigen::Index i = 0; i < model.n; ++i) {
+        x(i) = random.normal();
+        x(model.np + i) = random.normal();
+      }
+      for (double& force : forces) force = index < 6 ? random.normal() : 0.0;
+      tables.collocation(level).velocities(x.data(), forces.data(), v.data());
+      const StepBounds& bounds = tables.bounds(level);
+      WithinStep within(tables, false);
+      within.begin(x.data(), forces.data(), level);
+      for (int c = 0; c < model.contacts; ++c) {
+        double ninth = bounds.ninth_by_load(c) + bounds.ninth_by_state.col(c).dot(x.cwiseAbs());
+        for (int d = 0; d < model.contacts; ++d)
+          ninth += bounds.ninth_by_force.col(c)
+                       .segment<kNodes>(kNodes * d)
+                       .dot((nodes.legendre * forces.segment<kNodes>(kNodes * d)).cwiseAbs());
+        const RadauTables::Vector8 by_nodes =
+            nodes.chebyshev * v.segment<kNodes>(kNodes * c) + nodes.chebyshev_start * model.velocity_row.col(c).dot(x);
+        const double mean = nodes.chebyshev_mean.dot(v.segment<kNodes>(kNodes * c)) +
+                            nodes.chebyshev_mean_start * model.velocity_row.col(c).dot(x);
+        double largest = 0.0;
+        Eigen::VectorXd now(2 * model.np);
+        for (int k = 0; k <= 64; ++k) {
+          const double share = k / 64.0;
+          within.state(share * tables.step(level), now.data());
+          double p8 = mean;
+          for (int j = 1; j <= kNodes; ++j) p8 += by_nodes(j - 1) * std::cos(j * std::acos(2.0 * share - 1.0));
+          largest = std::max(largest, std::abs(model.velocity_row.col(c).dot(now) - p8));
+        }
+        EXPECT_LE(largest, nodes.remainder[0] * ninth) << "scene " << index << " level " << level;
+        tightest = std::max(tightest, largest / (nodes.remainder[0] * ninth));
+      }
+    }
+  }
+  EXPECT_GT(tightest, 0.1) << "a bound ten times too large in every case would prove little";
+}
+
+TEST(EventProof, RemaindersAreThoseOfTheNinthPower) {
+  // t⁹ less its interpolant of degree 8 is Ω itself, whose ninth derivative is 9!: Shadrin's bounds are attained.
+  const RadauTables& nodes = radau();
+  double largest = 0.0;
+  for (int k = 0; k <= 5000; ++k) {
+    const double t = k / 5000.0;
+    largest = std::max(largest, std::abs(t * (t - nodes.node.array()).prod()));
+  }
+  EXPECT_NEAR(nodes.remainder[0] * 362880.0, largest, 2e-3 * largest);
+  EXPECT_GT(nodes.remainder[1], 9.0 * nodes.remainder[0]);
+  EXPECT_GE(nodes.lebesgue, nodes.lagrange(0.0).cwiseAbs().sum());
+}
+
+}  // namespace
+}  // namespace slipmode::dynamics
