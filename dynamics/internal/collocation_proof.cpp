@@ -192,9 +192,9 @@ double CollocationFlow::clear_after_release(const StepBounds& bounds, const Devi
   }
   now = sign * now - others;
   if (!(now > 0.0)) return 0.0;
-  // Up to where B could have vanished, s′ ≤ 2 B(0) h e^{κh}.
+  // Up to where B could have vanished, s′ ≤ 2 B(0) h e^{κh}, B(0) less and more what the others may add.
   const double growth = law.alpha * law.drop * model_.mobility(c, c) * h;
-  change += by_rate * 2.0 * now * h * std::exp(growth);
+  change += by_rate * 2.0 * (now + others) * h * std::exp(growth);
   return std::min(1.0, now / (change * h));
 }
 
@@ -269,20 +269,17 @@ bool CollocationFlow::proves(const Guarded& found, double end) {
   }
   const double between = nodes_.remainder[0] * ninth_.maxCoeff();
 
-  bool at_rest = false;
-  for (int c = 0; c < nc_; ++c) {
-    const auto i = static_cast<std::size_t>(c);
-    if (point_.modes[i] != ContactMode::kStick && laws()[i].sticks()) at_rest |= !(guard_least_(c) > between);
-  }
-  Deviation off = deviation(bounds, h, at_rest);
-  if (!at_rest) {
-    for (int c = 0; c < nc_ && !at_rest; ++c) {
+  const auto faster_than = [&](double speed) {  // of the computed motion
+    for (int c = 0; c < nc_; ++c) {
       const auto i = static_cast<std::size_t>(c);
-      if (point_.modes[i] != ContactMode::kStick && laws()[i].sticks())
-        at_rest |= !(off.speed < 0.5 * (guard_least_(c) - between));
+      if (point_.modes[i] == ContactMode::kStick || !laws()[i].sticks()) continue;
+      if (!(guard_least_(c) - between > speed)) return false;
     }
-    if (at_rest) off = deviation(bounds, h, true);
-  }
+    return true;
+  };
+  const bool moving = faster_than(0.0);
+  Deviation off = deviation(bounds, h, !moving);
+  if (moving && !faster_than(2.0 * off.speed)) off = deviation(bounds, h, true);
 
   BernsteinPolynomial p;
   for (int c = 0; c < nc_; ++c) {
