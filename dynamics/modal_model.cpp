@@ -135,7 +135,7 @@ Eigen::MatrixXd square_root(const Eigen::MatrixXd& A) {
 }
 
 void separate_rigid_modes(const Eigen::VectorXd& omega, Eigen::MatrixXd& shapes, Eigen::MatrixXd& damping,
-                          Eigen::MatrixXd* coupled) {
+                          double damping_size, Eigen::MatrixXd* coupled) {
   std::vector<Eigen::Index> rigid;
   for (Eigen::Index i = 0; i < omega.size(); ++i)
     if (omega(i) == 0.0) rigid.push_back(i);
@@ -143,7 +143,7 @@ void separate_rigid_modes(const Eigen::VectorXd& omega, Eigen::MatrixXd& shapes,
   Eigen::MatrixXd own = damping(rigid, rigid);
   own = (own + own.transpose()).eval() / 2.0;
   if (coupled != nullptr) {  // sizes do not matter, only what is zero
-    own /= std::max(damping.norm(), 1e-300);
+    own /= std::max(damping_size, 1e-300);
     for (const auto& w : coupled->colwise())
       if (w.norm() > 0.0) own += w(rigid) * w(rigid).transpose() / w.squaredNorm();
   }
@@ -152,7 +152,7 @@ void separate_rigid_modes(const Eigen::VectorXd& omega, Eigen::MatrixXd& shapes,
   shapes(Eigen::all, rigid) = (shapes(Eigen::all, rigid) * Q).eval();
   damping(rigid, Eigen::all) = (Q.transpose() * damping(rigid, Eigen::all)).eval();
   damping(Eigen::all, rigid) = (damping(Eigen::all, rigid) * Q).eval();
-  const double nothing = kProportionalTolerance * damping.norm();
+  const double nothing = kProportionalTolerance * damping_size;
   for (const Eigen::Index i : rigid)
     if (damping.row(i).norm() <= nothing && damping.col(i).norm() <= nothing) {
       damping.row(i).setZero();
@@ -256,7 +256,7 @@ ModalModel build_modal_model(const HybridSystem& system, bool rows_only) {
   if (!rayleigh) {
     D = modes.shapes.transpose() * fem::multiply(structure.C(), modes.shapes);
     if ((D - D.transpose()).norm() <= kProportionalTolerance * D.norm()) D = (D + D.transpose()).eval() / 2.0;
-    separate_rigid_modes(modes.omega, modes.shapes, D);
+    separate_rigid_modes(modes.omega, modes.shapes, D, D.norm());
   }
   const Eigen::MatrixXd rows = W.transpose() * modes.shapes;
   const Eigen::VectorXd load =

@@ -80,10 +80,11 @@ struct ModalModel {
 /// to zero what damping leaves of a mode it does not act on: such a mode then decouples exactly.
 /// @param omega   [m]; @param shapes  in whatever coordinates, columns [n x m]; turned
 /// @param damping  in these modes [m x m]; turned with them
+/// @param damping_size  norm of the whole structure's: what rounding is a share of, however little of it is left here
 /// @param coupled  directions in these modes along which further terms will act, columns, or null; turned with them:
 ///                 modes that neither damping nor these reach are separated from those that they do
 void separate_rigid_modes(const Eigen::VectorXd& omega, Eigen::MatrixXd& shapes, Eigen::MatrixXd& damping,
-                          Eigen::MatrixXd* coupled = nullptr);
+                          double damping_size, Eigen::MatrixXd* coupled = nullptr);
 
 /// Builds the model. Rows only: a long chain's frequencies and contact rows without mode shapes, O(n²).
 /// @throws NumericalFailure  when damping is not proportional and the state matrix is close to defective

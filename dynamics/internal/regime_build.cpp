@@ -147,7 +147,8 @@ fem::Modes RegimeBuilder::base_modes() const {
         std::sqrt(spring_(sprung[k])) * (modal_.directions.col(sprung[k]).transpose() * Z_);
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(root, Eigen::ComputeThinV);
   fem::Modes modes{svd.singularValues().reverse(), svd.matrixV().rowwise().reverse()};
-  const double slowest = kRigid * modes.omega.maxCoeff();
+  // What holding contacts leaves may be a rigid-body motion alone: its rounding is a share of the whole structure's.
+  const double slowest = std::max(kRigid * modes.omega.maxCoeff(), kRounding * modal_.omega.maxCoeff());
   for (double& w : modes.omega)
     if (w <= slowest) w = 0.0;
   return modes;
@@ -159,7 +160,7 @@ void RegimeBuilder::make_symmetric_pairs(Regime& out) {
   ModalModel& pairs = out.pairs;
   Eigen::MatrixXd D = shapes.transpose() * (Z_.transpose() * C_ * Z_) * shapes;
   if ((D - D.transpose()).norm() <= kRounding * D.norm()) D = (D + D.transpose()).eval() / 2.0;
-  separate_rigid_modes(omega, shapes, D);
+  separate_rigid_modes(omega, shapes, D, C_.norm());
   const Eigen::VectorXd diagonal = D.diagonal();
   const bool kept = rayleigh_ && spring_.isZero(0.0) && damper_.isZero(0.0);
   const Eigen::MatrixXd no_rate = Eigen::MatrixXd::Zero(m, m);
@@ -218,7 +219,7 @@ void RegimeBuilder::make_general_pairs(Regime& out) {
   Eigen::MatrixXd W = Eigen::MatrixXd::Zero(m, nc_);  // of the contacts that add what is not in the base modes
   for (Eigen::Index c = 0; c < nc_; ++c)
     if (spring_(c) < 0.0 || (load(c).oscillates() && friction_(c) != 0.0)) W.col(c) = direction(c);
-  separate_rigid_modes(base_omega, shapes, own_damping, &W);
+  separate_rigid_modes(base_omega, shapes, own_damping, C_.norm(), &W);
   Eigen::MatrixXd damping = Eigen::MatrixXd::Zero(N, N);
   damping.topLeftCorner(m, m) = own_damping;
   Eigen::VectorXd coupling = Eigen::VectorXd::Zero(N);  // squared
