@@ -34,9 +34,16 @@ void ClosedFormFlow::account(double tau, bool ends) {
 StayWork ClosedFormFlow::integrate(double t, Eigen::VectorXd x, Eigen::VectorXd inputs, double tau) const {
   const RegimeTables& tables = *tables_;
   const Regime& r = tables.regime();
-  const DriveOverlay* overlay = regime_->overlay;
+  const DriveOverlay* const drive = regime_->overlay;
+  const bool whole = cancels(*regime_, t, x) && cancels(*regime_, point_.time, x_);
   StayWork sum;
-  const auto add = [&](double weight, double at, const Eigen::VectorXd& x_then, const Eigen::VectorXd& inputs_then) {
+  Eigen::VectorXd x_whole, inputs_whole;
+  const auto add = [&](double weight, double at, const Eigen::VectorXd& x_beside,
+                       const Eigen::VectorXd& inputs_beside) {
+    if (whole) anew(*regime_, at, x_whole, inputs_whole);
+    const Eigen::VectorXd& x_then = whole ? x_whole : x_beside;
+    const Eigen::VectorXd& inputs_then = whole ? inputs_whole : inputs_beside;
+    const DriveOverlay* const overlay = whole ? nullptr : drive;
     const DrivePhase phase = overlay ? phase_at(at) : DrivePhase{};
     const double V = drive_velocity(at, inputs_then);
     for (int c = 0; c < nc_; ++c) {
@@ -55,7 +62,7 @@ StayWork ClosedFormFlow::integrate(double t, Eigen::VectorXd x, Eigen::VectorXd 
       for (Eigen::Index k = 0; k < r.forces; ++k)
         sum.force += weight * force->value(static_cast<int>(k), at) *
                      (r.drive_row.col(k).dot(x_then) + r.drive_coefficient.col(k).dot(inputs_then) +
-                      overlay->driven.at(k, phase));
+                      (overlay ? overlay->driven.at(k, phase) : 0.0));
     if (overlay) {
       Eigen::VectorXd all = x_then;
       overlay->state.add(phase, 1.0, all);
@@ -71,7 +78,7 @@ StayWork ClosedFormFlow::integrate(double t, Eigen::VectorXd x, Eigen::VectorXd 
     r.advance_inputs(out_inputs, s.h);
   };
   Eigen::VectorXd at_x(x.size()), at_inputs(inputs.size());
-  const double drive_rate = overlay ? static_cast<double>(overlay->orders()) * overlay->omega() : 0.0;
+  const double drive_rate = drive ? static_cast<double>(drive->orders()) * drive->omega() : 0.0;
   const double fastest = std::max(r.rate, drive_rate);
   const int first = drive_rate * tables.length(RegimeTables::kAuditLevel) > kDriveRest
                         ? tables.level_covering(kDriveRest / drive_rate)

@@ -18,6 +18,8 @@ constexpr double kUsed = 1.0 - 1e-5;
 /// The next window is longer when the least value of every guard is this many times what was left out.
 constexpr double kSpareToGrow = 32.0;
 constexpr int kLargestGrowth = 4;
+/// A sum of which no more than this share of its terms is left is made anew.
+constexpr double kLittleLeft = 1e-3;
 
 }  // namespace
 
@@ -91,6 +93,9 @@ void ClosedFormFlow::enter_regime() {
     x_.noalias() += r.from_oscillators * Eigen::VectorXd(point_.internal(oscillator_states_));
   if (overlay) {
     for (Eigen::Index c = 0; c < nc_; ++c) inputs_(c) -= overlay->inputs.at(c, phase);
+    regime_->entered = point_.time;
+    regime_->x_entered = x_;
+    regime_->inputs_entered = inputs_;
     overlay->state.add(phase, -1.0, x_);
   }
   amplitude_.resize(r.pairs.np);
@@ -261,8 +266,37 @@ bool ClosedFormFlow::settle(int guard, bool touching) {
   return true;
 }
 
+bool ClosedFormFlow::cancels(const Visited& in, double t, const Eigen::VectorXd& x) const {
+  if (in.overlay == nullptr || t < in.entered) return false;
+  Eigen::VectorXd sum = x;
+  in.overlay->state.add(phase_at(t), 1.0, sum);
+  return scaled_size(in.tables->regime(), sum) < kLittleLeft * in.overlay->size;
+}
+
+void ClosedFormFlow::anew(const Visited& in, double t, Eigen::VectorXd& out_x, Eigen::VectorXd& out_inputs) const {
+  out_x = in.x_entered;
+  out_inputs = in.inputs_entered;
+  advance(*in.tables, t - in.entered, out_x, out_inputs);
+  out_x += in.overlay->from_rest(in.tables->regime(), t - in.entered, in.overlay->phase(in.entered));
+  in.overlay->inputs.add(phase_at(t), 1.0, out_inputs);
+}
+
 void ClosedFormFlow::lift(const Visited& in, double t, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs,
                           Eigen::VectorXd& out_x, Eigen::VectorXd& out_force) const {
+  if (cancels(in, t, x)) {
+    Eigen::VectorXd whole, all;
+    anew(in, t, whole, all);
+    return lift_sum(in, whole, all, out_x, out_force);
+  }
+  lift_sum(in, x, inputs, out_x, out_force);
+  if (!in.overlay) return;
+  const DrivePhase phase = phase_at(t);
+  in.overlay->slipping.add(phase, 1.0, out_x);
+  for (int c = 0; c < nc_; ++c) out_force(c) += in.overlay->force.at(c, phase);
+}
+
+void ClosedFormFlow::lift_sum(const Visited& in, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs,
+                              Eigen::VectorXd& out_x, Eigen::VectorXd& out_force) const {
   const Regime& r = in.tables->regime();
   r.lift(x, inputs, out_x);
   out_force.resize(nc_);
@@ -270,10 +304,6 @@ void ClosedFormFlow::lift(const Visited& in, double t, const Eigen::VectorXd& x,
     out_force(c) = r.roles[static_cast<std::size_t>(c)] == ContactRole::kSliding
                        ? inputs(c)
                        : r.force_row.col(c).dot(x) + r.force_coefficient.col(c).dot(inputs);
-  if (!in.overlay) return;
-  const DrivePhase phase = phase_at(t);
-  in.overlay->slipping.add(phase, 1.0, out_x);
-  for (int c = 0; c < nc_; ++c) out_force(c) += in.overlay->force.at(c, phase);
 }
 
 void ClosedFormFlow::lift_point() {
@@ -283,10 +313,11 @@ void ClosedFormFlow::lift_point() {
         point_.force(c) / resolver_.laws()[static_cast<std::size_t>(c)].stiffness;
   if (oscillator_states_.empty()) return;
   const Regime& r = tables_->regime();
-  Eigen::VectorXd x = x_;
-  if (const DriveOverlay* overlay = regime_->overlay) {
+  Eigen::VectorXd x = x_, all;
+  if (cancels(*regime_, point_.time, x_))
+    anew(*regime_, point_.time, x, all);
+  else if (const DriveOverlay* overlay = regime_->overlay)
     overlay->state.add(phase_at(point_.time), 1.0, x);
-  }
   point_.internal(oscillator_states_) = r.to_oscillators * x;
 }
 

@@ -72,6 +72,9 @@ class ClosedFormFlow {
     std::vector<ContactRole> roles;
     const RegimeTables* tables;
     const DriveOverlay* overlay = nullptr;  ///< null for a belt
+    double entered = 0.0;                   ///< under an overlay: when last,
+    Eigen::VectorXd x_entered{};            ///< and its state then, the steady response included,
+    Eigen::VectorXd inputs_entered{};       ///< and inputs, constant until it is left
     const AuditForms* forms = nullptr;      ///< for a shaker or a force; null where the audit integrates by quadrature
     std::unique_ptr<BeltWork> belt;         ///< for a belt of constant speed; the same
     std::unique_ptr<TangentMaps> maps;      ///< null until tangents are carried
@@ -121,10 +124,18 @@ class ClosedFormFlow {
   void account(double tau, bool ends);
   /// Work of a time tau from a state on, by quadrature.
   [[nodiscard]] StayWork integrate(double t, Eigen::VectorXd x, Eigen::VectorXd inputs, double tau) const;
+  /// Under an overlay: whether x and the steady response at t, each far larger than their sum, leave it few digits. The
+  /// sum is then made `anew`: from where the stay began, with what the drive alone has moved since.
+  [[nodiscard]] bool cancels(const Visited& in, double t, const Eigen::VectorXd& x) const;
+  /// The state of a regime, the steady response included, and its inputs, the drive's part included.
+  void anew(const Visited& in, double t, Eigen::VectorXd& out_x, Eigen::VectorXd& out_inputs) const;
   /// State of the slipping model and contact forces at t, from the regime's.
   void lift(const Visited& in, double t, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs,
             Eigen::VectorXd& out_x, Eigen::VectorXd& out_force) const;
-  /// The same into `point_`, contacts' own states included.
+  /// The same of states and inputs that hold all there is, or of those beside the steady response.
+  void lift_sum(const Visited& in, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs, Eigen::VectorXd& out_x,
+                Eigen::VectorXd& out_force) const;
+  /// State and forces into `point_`, contacts' own states included.
   void lift_point();
   [[nodiscard]] bool settle(int guard, bool touching);
   /// Makes the maps of the regime entered, if tangents are carried.

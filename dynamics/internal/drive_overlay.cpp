@@ -63,6 +63,26 @@ void refuse_resonance(const Regime& r, double w, const Eigen::VectorXcd& load) {
   }
 }
 
+/// ∫ e^{G(h−s)} b e^{iws} ds over 0 ≤ s ≤ h of one pair: Taylor's series of a short time, doubled.
+Eigen::Vector2cd from_rest(const ModalModel& pairs, Eigen::Index i, const Eigen::Vector2cd& b, double w, double rate,
+                           double h) {
+  constexpr double kShort = 0.25;  // radians: twelve terms leave 1e-17
+  const int doublings = std::max(0, 1 + std::ilogb(std::max(rate, w) * h / kShort));
+  h = std::ldexp(h, -doublings);
+  const Eigen::Matrix2d G{{pairs.g11(i), pairs.g12(i)}, {pairs.g21(i), pairs.g22(i)}};
+  Eigen::Vector2cd term = h * b, sum = term;  // hᵏ⁺¹/(k+1)! Σ Gᵏ⁻ʲ (iw)ʲ b
+  Complex turned = h;                         // hᵏ⁺¹/(k+1)! (iw)ᵏ
+  for (int k = 1; k < 12; ++k) {
+    const double factor = h / (k + 1);
+    turned *= Complex(0.0, w * factor);
+    term = (factor * (G * term) + turned * b).eval();
+    sum += term;
+  }
+  for (int k = 0; k < doublings; ++k, h *= 2.0)
+    sum = (pairs.exponential(i, h) * sum + std::polar(1.0, w * h) * sum).eval();
+  return sum;
+}
+
 /// How much of an output is the force of its contact in stick.
 double force_share(RegimeOutput::Kind kind) {
   if (kind == RegimeOutput::Kind::kForce || kind == RegimeOutput::Kind::kReserve) return 1.0;
@@ -70,6 +90,10 @@ double force_share(RegimeOutput::Kind kind) {
 }
 
 }  // namespace
+
+double scaled_size(const Regime& r, const Eigen::VectorXd& x) {
+  return std::hypot(r.scale1.cwiseProduct(x.head(r.pairs.np)).norm(), r.scale2.cwiseProduct(x.tail(r.pairs.np)).norm());
+}
 
 double Amplitudes::at(Eigen::Index k, DrivePhase first) const {
   double sum = c(k, 0) * first.cosine + s(k, 0) * first.sine;
@@ -142,6 +166,7 @@ DriveOverlay::DriveOverlay(const Regime& r, const ModalModel& slipping_model, co
     forces.col(j) = response.force;
   }
   state = {own.real(), -own.imag()};
+  size = scaled_size(r, state.magnitude.rowwise().sum());
   slipping = {lifted.real(), -lifted.imag()};
   force = {forces.real(), -forces.imag()};
   displacement = through(r.displacement_row, r.displacement_coefficient, state, inputs);
@@ -160,6 +185,24 @@ DriveOverlay::DriveOverlay(const Regime& r, const ModalModel& slipping_model, co
   }
   const Amplitudes rest = through(rows, coefficients, state, inputs);
   outputs = {rest.c + shares.transpose() * force.c, rest.s + shares.transpose() * force.s};
+}
+
+Eigen::VectorXd DriveOverlay::from_rest(const Regime& r, double tau, DrivePhase first) const {
+  const auto np = r.pairs.np;
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(2 * np);
+  DrivePhase p;
+  for (Eigen::Index j = 0; j < orders(); ++j) {
+    p = p.times(first);
+    const Complex begin(p.cosine, p.sine);
+    const Eigen::VectorXcd b = r.B * (inputs.c.col(j) - Complex(0.0, 1.0) * inputs.s.col(j));
+    for (Eigen::Index i = 0; i < r.pairs.n; ++i) {
+      const Eigen::Vector2cd moved =
+          dynamics::from_rest(r.pairs, i, {b(i), b(np + i)}, static_cast<double>(j + 1) * omega_, r.pair_rate(i), tau);
+      out(i) += (begin * moved(0)).real();
+      out(np + i) += (begin * moved(1)).real();
+    }
+  }
+  return out;
 }
 
 DrivePhase DriveOverlay::phase(double t) const {

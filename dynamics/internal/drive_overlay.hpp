@@ -21,6 +21,9 @@ struct DrivePhase {
   }
 };
 
+/// Of a regime's state, in the scales in which free motion does not grow.
+[[nodiscard]] double scaled_size(const Regime& regime, const Eigen::VectorXd& x);
+
 /// The steady response of a regime to a periodic drive with harmonics of θ = ωt + phase: a shaker d = A sin θ, or
 /// forces. The state of the closed-form flow is what is left beside it, x − Σ_j X_cj cos jθ + X_sj sin jθ, and moves
 /// freely: tables of a regime serve every frequency and amplitude.
@@ -55,6 +58,9 @@ class DriveOverlay {
   };
 
   [[nodiscard]] DrivePhase phase(double t) const;
+  /// What the drive alone moves in a time tau, from phase p on: ∫ e^{G(τ−s)} B J(s) ds [2np]. The steady response less
+  /// that with which it would have begun, to all digits where these two nearly cancel.
+  [[nodiscard]] Eigen::VectorXd from_rest(const Regime& regime, double tau, DrivePhase p) const;
   [[nodiscard]] double omega() const { return omega_; }
   [[nodiscard]] Eigen::Index orders() const { return state.c.cols(); }
 
@@ -66,6 +72,7 @@ class DriveOverlay {
   Amplitudes displacement;  ///< wᵀq of each contact [nc]
   Amplitudes driven;        ///< d_kᵀq̇ of each force direction [nk]
   Amplitudes slipping;      ///< the state in the slipping model [2np_s]
+  double size = 0.0;        ///< of `state`, at most, as `scaled_size` has it
 
   /// Bernstein coefficients of cos jωτ and sin jωτ over a window 0 ≤ τ ≤ h of this level, and the share of their size
   /// that interpolation leaves out.
