@@ -92,15 +92,11 @@ double ClosedFormFlow::scale(const Guard& guard) const {
   const RegimeOutput& output = r.outputs[static_cast<std::size_t>(guard.output)];
   const ContactForces& law = resolver_.laws()[static_cast<std::size_t>(guard.contact)];
   if (output.kind == RegimeOutput::Kind::kForce) return law.static_limit;
-  if (guard.kind == GuardKind::kStop) {
-    // Not by amplitudes: a slow drift through the gap has a large one.
-    double size = std::abs(guard.constant) + r.row.col(guard.output).cwiseAbs().dot(x_.cwiseAbs()) +
-                  r.coefficient.col(guard.output).cwiseAbs().dot(inputs_.cwiseAbs());
-    if (regime_->overlay) size += regime_->overlay->outputs.size(guard.output);
-    return size;
-  }
-  double size = r.weight.col(guard.output).dot(amplitude_);
+  // By the terms that are summed, not by amplitudes: a slow drift has a large one, however little it has moved.
+  double size = std::abs(guard.constant) + r.row.col(guard.output).cwiseAbs().dot(x_.cwiseAbs()) +
+                r.coefficient.col(guard.output).cwiseAbs().dot(inputs_.cwiseAbs());
   if (regime_->overlay) size += regime_->overlay->outputs.size(guard.output);
+  if (guard.kind == GuardKind::kStop) return size;
   if (output.kind == RegimeOutput::Kind::kSpeed)
     return size + std::abs(inputs_(r.speed_input())) +
            slipping_.mobility(guard.contact, guard.contact) * law.static_limit / r.rate;
