@@ -5,6 +5,9 @@
 #include "rom/internal/check.hpp"
 
 #include <fmt/format.h>
+#include <Eigen/Dense>
+#include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -63,9 +66,30 @@ std::vector<std::string> amplitude_names(Eigen::Index L) {
   return names;
 }
 
+/// A motion that strains nothing must stay one: the projected K is rounded at the size of what cancelled in it, and
+/// that may be far more than of its entries rounding is. Takes out what is left of such motions.
+Eigen::MatrixXd without_rounding(Eigen::MatrixXd K, const Eigen::MatrixXd& M, const fem::Matrix& full,
+                                 const Eigen::MatrixXd& Phi) {
+  constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
+  const auto magnitudes = [](const auto& m) -> fem::Matrix { return m.cwiseAbs().eval(); };
+  const Eigen::MatrixXd size = project(std::visit(magnitudes, full), Phi.cwiseAbs());
+  const Eigen::MatrixXd least = static_cast<double>(K.rows()) * kRounding * size.diagonal().asDiagonal();
+  if (Eigen::LLT<Eigen::MatrixXd>(K - least).info() == Eigen::Success) return K;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(K, M);
+  if (modes.info() != Eigen::Success) return K;
+  for (const auto& shape : modes.eigenvectors().colwise()) {
+    const Eigen::VectorXd force = K * shape, inertia = M * shape, sizes = shape.cwiseAbs();
+    const double stiffness = shape.dot(force);
+    if (!(std::abs(stiffness) <= kRounding * sizes.dot(size * sizes))) continue;
+    K += stiffness * inertia * inertia.transpose() - inertia * force.transpose() - force * inertia.transpose();
+  }
+  return 0.5 * (K + K.transpose());
+}
+
 fem::Structure project_structure(const fem::Structure& full, const Eigen::MatrixXd& Phi) {
-  fem::Matrix M = project_symmetric(full.M(), Phi);
-  fem::Matrix K = project_symmetric(full.K(), Phi);
+  const Eigen::MatrixXd projected = project_symmetric(full.M(), Phi);
+  fem::Matrix K = without_rounding(project_symmetric(full.K(), Phi), projected, full.K(), Phi);
+  fem::Matrix M = projected;
   const std::optional<fem::Rayleigh> rayleigh = full.rayleigh();
   if (rayleigh) return {std::move(M), *rayleigh, std::move(K), amplitude_names(Phi.cols()), full.units()};
   fem::Matrix C = full.has_symmetric_damping() ? project_symmetric(full.C(), Phi) : project(full.C(), Phi);
