@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -16,6 +17,9 @@ namespace {
 constexpr double kOnGuard = 1e-12;
 /// The same where the state says its mode: it may come from a run that ended at an event, whose time was rounded.
 constexpr double kOnGuardAsGiven = 1e-9;
+/// States come from modal coordinates or from a projection, which round by all of the motion, not by what is at the
+/// contact.
+constexpr double kModalRounding = 64.0 * std::numeric_limits<double>::epsilon();
 
 /// @param message  called only when the condition fails: runs are too short to compose it each time
 template <class Message>
@@ -47,7 +51,8 @@ void check_start(const HybridSystem& system, const State& start) {
 struct AtStop {
   const friction::Stop& stop;
   double past, press, rate;
-  double size, press_size;  ///< which rounding is measured by
+  double size, press_size;    ///< which rounding is measured by
+  double on_guard, on_press;  ///< what may be off where the state says its mode
 
   AtStop(const friction::Stop& own, double side, const friction::Contact& contact, const State& start) : stop(own) {
     const double y = contact.direction.dot(start.q) + contact.offset;
@@ -58,21 +63,23 @@ struct AtStop {
     size = contact.direction.cwiseAbs().dot(start.q.cwiseAbs() + std::abs(start.time) * start.v.cwiseAbs()) +
            std::abs(contact.offset) + std::abs(stop.gap);
     press_size = stop.stiffness * size + stop.damping * contact.direction.cwiseAbs().dot(start.v.cwiseAbs());
+    const double all = contact.direction.lpNorm<1>() * start.q.lpNorm<Eigen::Infinity>();
+    const double all_rates = contact.direction.lpNorm<1>() * start.v.lpNorm<Eigen::Infinity>();
+    on_guard = kOnGuardAsGiven * size + kModalRounding * all;
+    on_press = kOnGuardAsGiven * press_size + kModalRounding * (stop.stiffness * all + stop.damping * all_rates);
   }
 };
 
 bool agrees(const friction::Clearance& law, ContactMode mode, const std::optional<AtStop>& left,
             const std::optional<AtStop>& right) {
-  const auto beyond = [](const AtStop& at) { return at.past >= -kOnGuardAsGiven * at.size; };
+  const auto beyond = [](const AtStop& at) { return at.past >= -at.on_guard; };
   const auto pressed = [&](const std::optional<AtStop>& at) {
-    return at && beyond(*at) &&
-           (law.loss == friction::ContactLoss::kGap || at->press >= -kOnGuardAsGiven * at->press_size);
+    return at && beyond(*at) && (law.loss == friction::ContactLoss::kGap || at->press >= -at->on_press);
   };
   const auto flies = [&](const std::optional<AtStop>& at) {
-    return at && beyond(*at) && law.loss == friction::ContactLoss::kZeroForce &&
-           at->press <= kOnGuardAsGiven * at->press_size;
+    return at && beyond(*at) && law.loss == friction::ContactLoss::kZeroForce && at->press <= at->on_press;
   };
-  const auto free = [](const std::optional<AtStop>& at) { return !at || at->past <= kOnGuardAsGiven * at->size; };
+  const auto free = [](const std::optional<AtStop>& at) { return !at || at->past <= at->on_guard; };
   switch (mode) {
     case ContactMode::kGap:
       return free(left) && free(right);
@@ -133,9 +140,10 @@ std::vector<ContactMode> start_modes(const HybridSystem& system, const State& st
     const double sliding = V - contact.direction.dot(start.v);
     const double scale =
         system.drive().velocity_scale(start.time) + contact.direction.cwiseAbs().dot(start.v.cwiseAbs());
-    const ContactMode by_sign = std::abs(sliding) <= 1e-12 * scale ? ContactMode::kStick
-                                : sliding > 0                      ? ContactMode::kSlipPositive
-                                                                   : ContactMode::kSlipNegative;
+    const double rounding = kModalRounding * contact.direction.lpNorm<1>() * start.v.lpNorm<Eigen::Infinity>();
+    const ContactMode by_sign = std::abs(sliding) <= 1e-12 * scale + rounding ? ContactMode::kStick
+                                : sliding > 0                                 ? ContactMode::kSlipPositive
+                                                                              : ContactMode::kSlipNegative;
     const bool compliant = friction::kind(contact.law) == LawKind::kCompliant;
     if (start.modes.empty()) {
       modes[c] = compliant ? ContactMode::kStick : by_sign;
