@@ -70,17 +70,25 @@ int add_scenes(const Session& session, const Request& request, Report& out) {
       out.text += fmt::format("scene {}: {}: {}\n", check.index, violation.property, violation.what);
     }
   }
+  std::int64_t refused = 0;
+  std::string reasons;
+  for (const auto& [reason, count] : all.refused) {
+    refused += count;
+    reasons += fmt::format("{}{} {}", reasons.empty() ? " (" : ", ", count, reason);
+  }
+  if (!reasons.empty()) reasons += ")";
   out.text += fmt::format(
-      "{} random scenes of seed {}: {} with a violation, {} refused with a message, {} in which nothing moves\n"
+      "{} random scenes of seed {}: {} with a violation, {} refused with a message{}, {} in which nothing moves\n"
       "  {} events; guards looked at {} times, deepest {:.1g} below zero; forces off their law by {:.1g}\n"
       "  equations of motion to {:.1g}, energy to {:.1g}, runs taken up at an event to {:.1g}, all modes to {:.1g}\n"
       "  digest {:016x}, the same for any number of threads\n",
-      all.scenes, seed, all.failed.size(), all.refused, all.still, all.scan.events, all.scan.samples, all.scan.guard,
-      all.scan.law, all.scan.motion, all.energy, all.restart, all.reduction, all.digest);
+      all.scenes, seed, all.failed.size(), refused, reasons, all.still, all.scan.events, all.scan.samples,
+      all.scan.guard, all.scan.law, all.scan.motion, all.energy, all.restart, all.reduction, all.digest);
   out.data["scenes"] = {{"seed", seed},
                         {"first", request.first},
                         {"count", all.scenes},
-                        {"refused", all.refused},
+                        {"refused", refused},
+                        {"refusals", all.refused},
                         {"still", all.still},
                         {"events", all.scan.events},
                         {"samples", all.scan.samples},

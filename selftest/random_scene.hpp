@@ -11,14 +11,18 @@ namespace slipmode::selftest {
 /// can be made again alone. What is drawn:
 /// - structure: a chain, masses on links (some floating), full matrices (damping that is not proportional, at times
 /// with
-///   a skew part), a beam of one to three elements of either theory; 1 to 12 degrees of freedom, at times up to 60;
-///   damping from none to far beyond critical;
-/// - one to three contacts, to ground or between masses. Either piecewise-linear laws in any mixture (Coulomb,
+///   a skew part), a beam of one or two spans of either theory; 1 to 12 degrees of freedom, at times up to 200; damping
+///   of every kind, from none to far beyond critical; at times stiff and slow mixed, springs up to 1e6 times one
+///   another;
+/// - one to five contacts, to ground or between masses. Either piecewise-linear laws in any mixture (Coulomb,
 /// compliant,
-///   clearance of both rules; constant, affine or vibrating normal loads; tilt) or laws at constant load in any mixture
-///   (Coulomb, Stribeck, tanh, Dahl, LuGre);
-/// - drive: a belt (at rest, constant, ramp), a shaker, a force of up to three harmonics (piecewise-linear laws);
-/// - start: rest (but for stops without a gap), random, or contacts exactly on their guard (sliding speed zero).
+///   clearance of both rules, springs and stops up to 1e6 times the structure's; constant, affine or vibrating normal
+///   loads; tilt) or laws at constant load in any mixture (Coulomb, Stribeck, tanh, Dahl, LuGre), by collocation where
+///   all are Coulomb's;
+/// - drive: a belt (at rest, constant, ramp), a shaker (amplitude a number or a curve), a force of up to six harmonics
+/// in
+///   several places with a mean (piecewise-linear laws);
+/// - start: rest (but for stops without a gap), static, random, or contacts exactly on their guards.
 [[nodiscard]] std::string random_scene_text(std::uint64_t seed, std::uint64_t index);
 
 }  // namespace slipmode::selftest

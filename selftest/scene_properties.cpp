@@ -124,8 +124,10 @@ class SceneChecker {
     } catch (const NumericalFailure& failure) {
       // Clear failures, as documented: an undamped mode at resonance, pairs that lose too many digits.
       const std::string_view message = failure.what();
-      if (message.find("resonan") != std::string_view::npos || message.find("workable") != std::string_view::npos)
-        result_.refused = true;
+      if (message.find("resonan") != std::string_view::npos)
+        result_.refused = "undamped mode at resonance";
+      else if (message.find("workable") != std::string_view::npos)
+        result_.refused = "nearly defective damping";
       else
         violate(what, failure.what());
     } catch (const InvalidInput& error) {
@@ -285,14 +287,15 @@ SceneSurvey survey_random_scenes(std::uint64_t seed, std::uint64_t first, std::u
   Digest digest;
   for (SceneCheck& check : checks) {
     SceneSurvey one{.scenes = 1,
-                    .refused = check.refused ? 1 : 0,
                     .still = check.still ? 1 : 0,
+                    .refused = {},
                     .scan = check.scan,
                     .energy = check.energy,
                     .restart = check.restart,
                     .reduction = check.reduction,
                     .digest = 0,
                     .failed = {}};
+    if (!check.refused.empty()) one.refused[check.refused] = 1;
     digest.add(check.digest);
     if (!check.violations.empty()) one.failed.push_back(std::move(check));
     survey.merge(std::move(one));
@@ -303,7 +306,7 @@ SceneSurvey survey_random_scenes(std::uint64_t seed, std::uint64_t first, std::u
 
 void SceneSurvey::merge(SceneSurvey next) {
   scenes += next.scenes;
-  refused += next.refused;
+  for (const auto& [reason, count] : next.refused) refused[reason] += count;
   still += next.still;
   scan.merge(next.scan);
   energy = std::max(energy, next.energy);

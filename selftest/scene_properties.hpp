@@ -4,6 +4,7 @@
 #include "selftest/law_scan.hpp"
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -13,11 +14,11 @@ namespace slipmode::selftest {
 struct SceneCheck {
   std::uint64_t index = 0;
   ScanFigures scan;
-  double energy = 0.0;     ///< |residual| of the energy audit
-  double restart = 0.0;    ///< distance at the end between the run and one taken up at an event, mode and all
-  double reduction = 0.0;  ///< distance at the end between full and all-modes reduced model, as a share of sizes
-  bool refused = false;  ///< reported as beyond the method (undamped resonance, pairs that lose digits), with a message
-  bool still = false;    ///< nothing moved: not judged
+  double energy = 0.0;       ///< |residual| of the energy audit
+  double restart = 0.0;      ///< distance at the end between the run and one taken up at an event, mode and all
+  double reduction = 0.0;    ///< distance at the end between full and all-modes reduced model, as a share of sizes
+  std::string refused;       ///< why, in a word or two, where the method says with a message that this is beyond it
+  bool still = false;        ///< nothing moved: not judged
   std::uint64_t digest = 0;  ///< of final state and event times
   std::vector<Violation> violations;
 };
@@ -38,7 +39,8 @@ struct SceneCheck {
 
 /// Many scenes together.
 struct SceneSurvey {
-  std::int64_t scenes = 0, refused = 0, still = 0;
+  std::int64_t scenes = 0, still = 0;
+  std::map<std::string, std::int64_t> refused;  ///< how many for each reason
   ScanFigures scan;
   double energy = 0.0, restart = 0.0, reduction = 0.0;  ///< largest
   std::uint64_t digest = 0;                             ///< of all scenes' digests in order: the same for any threads

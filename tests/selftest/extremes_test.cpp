@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 #include <fstream>
 #include <iterator>
+#include <utility>
+#include <vector>
 
 namespace slipmode::selftest {
 namespace {
@@ -39,7 +41,15 @@ TEST(RandomScenes, MissNoEventAndKeepEveryLaw) {
   const SceneSurvey survey = survey_random_scenes(1, 40, 160, {.threads = 1});
   for (const SceneCheck& check : survey.failed) ADD_FAILURE() << "scene " << check.index << ": " << text_of(check);
   EXPECT_GT(survey.scan.events, 600) << "the scenes are too quiet to mean anything";
-  EXPECT_LT(survey.refused + survey.still, 30);
+  EXPECT_LE(survey.refused.size(), 1U);  // nearly defective damping: 6 in 10,000
+  EXPECT_LT(survey.still, 30);
+}
+
+/// A scene kept as a text, as its generator may change; the checks draw by its numbers.
+void expect_holds(const std::string& name, std::uint64_t seed, std::uint64_t index) {
+  std::ifstream file(SLIPMODE_SOURCE_DIR "/tests/selftest/scenes/" + name + ".toml");
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  EXPECT_EQ(text_of(check_scene(text, seed, index)), "") << "scene " << name;
 }
 
 TEST(RandomScenes, ThatOnceFailedHold) {
@@ -55,15 +65,24 @@ TEST(RandomScenes, ThatOnceFailedHold) {
   // samples that are rounding, judged by themselves (21365, 25824, 78772); a moment's stick on a shaker whose steady
   // answer is 1e6 times the motion (66740); damping and stiffness of rounding alone on what a reduced model leaves free
   // (61839, 7034); a judge whose samples did not resolve what the shaker's acceleration does to the law (73310).
-  // Their texts, as seed 1 had them until 2026-11-22; the checks still go by their numbers.
-  for (const std::uint64_t index :
-       {67,    129,   184,   189,   277,   342,   487,   581,   627,   7034,  13453, 17168,
-        21365, 25824, 28766, 36024, 39028, 40620, 50007, 52296, 54051, 54288, 59219, 60329,
-        61839, 66740, 73310, 73352, 78772, 88377, 89677, 92935, 93775, 94726, 97654, 99232}) {
-    std::ifstream file(SLIPMODE_SOURCE_DIR "/tests/selftest/scenes/" + std::to_string(index) + ".toml");
-    const std::string text(std::istreambuf_iterator<char>(file), {});
-    EXPECT_EQ(text_of(check_scene(text, 1, index)), "") << "scene " << index;
-  }
+  // Texts of seed 1 as it was until 2026-11-22.
+  for (const std::uint64_t index : {67,    129,   184,   189,   277,   342,   487,   581,   627,   7034,  13453, 17168,
+                                    21365, 25824, 28766, 36024, 39028, 40620, 50007, 52296, 54051, 54288, 59219, 60329,
+                                    61839, 66740, 73310, 73352, 78772, 88377, 89677, 92935, 93775, 94726, 97654, 99232})
+    expect_holds(std::to_string(index), 1, index);
+}
+
+TEST(RandomScenes, OfTenSeedsThatOnceFailedHold) {
+  // Guards whose rounding was taken from amplitudes of slow drifts, so that whole windows were passed (3_7211: 7 %
+  // below zero; 2_9773, 3_343); rigid-body modes that a projection's rounding gave a stiffness: Zeno (1_1301, 2_7405,
+  // 4_937); contacts at rest where the motion is elsewhere, their speeds and places judged by themselves (2_1764,
+  // 5_7324, 9_5011 at stops; 7_923, 7_9266 on the counterpart); a load and a stick force that vanish together (8_4623);
+  // speeds that round by the energy of a structure at rest, judged by themselves (4_1189, 4_9909, 9_5410).
+  const std::vector<std::pair<std::uint64_t, std::uint64_t>> scenes = {
+      {1, 1301}, {2, 1764}, {2, 7405}, {2, 9773}, {3, 343},  {3, 7211}, {4, 937}, {4, 1189},
+      {4, 9909}, {5, 7324}, {7, 923},  {7, 9266}, {8, 4623}, {9, 5011}, {9, 5410}};
+  for (const auto& [seed, index] : scenes)
+    expect_holds(std::to_string(seed) + "_" + std::to_string(index), seed, index);
 }
 
 TEST(RandomScenes, AreTheSameTextAndTheSameRunForAnyThreads) {

@@ -1,0 +1,103 @@
+// Random scenes beside the independent reference: Taylor series in long double, in physical coordinates.
+#include <slipmode/core/errors.hpp>
+#include <slipmode/dynamics/modal_model.hpp>
+#include <slipmode/scene/scene.hpp>
+#include "fixtures/against_reference.hpp"
+#include "selftest/random_scene.hpp"
+
+#include <gtest/gtest.h>
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace slipmode::selftest {
+namespace {
+
+/// Of sizes and of the duration. What the reference leaves is 1e-16, so this is the flow's error at its tolerance.
+constexpr double kAgreement = 1e-8;
+
+/// What the reference holds: belts and shakers; Coulomb, Stribeck, tanh, Dahl, LuGre at constant loads, any structure.
+/// No forces, contact springs, clearances, tilts and loads that vary.
+bool held(const dynamics::HybridSystem& system) {
+  return system.size() <= 40 && system.drive().force() == nullptr &&
+         std::ranges::all_of(system.contacts(), [](const friction::Contact& contact) {
+           const friction::LawKind kind = friction::kind(contact.law);
+           return kind != friction::LawKind::kClearance && kind != friction::LawKind::kCompliant &&
+                  contact.tilt == 0.0 && contact.normal_load.is_constant();
+         });
+}
+
+double size_of(const dynamics::State& state) {
+  return std::max({state.q.cwiseAbs().maxCoeff(), state.v.cwiseAbs().maxCoeff(), 1e-300});
+}
+
+/// What the motion multiplies a change of its start by until the end, by the reference alone; infinite where other
+/// events follow.
+double amplification(const dynamics::HybridSystem& system, const dynamics::State& start, double duration) {
+  constexpr double kMoved = 1e-11;
+  const double moved = kMoved * size_of(start);
+  fixtures::TaylorReference<long double> reference(fixtures::reference_of(system));
+  const fixtures::ReferenceRun one = reference.run(start.q, start.v, start.time, duration);
+  const fixtures::ReferenceRun other =
+      reference.run(start.q.array() + moved, start.v.array() - moved, start.time, duration);
+  if (one.events.size() != other.events.size()) return std::numeric_limits<double>::infinity();
+  double change = std::max((one.q - other.q).cwiseAbs().maxCoeff(), (one.v - other.v).cwiseAbs().maxCoeff());
+  for (std::size_t i = 0; i < one.events.size(); ++i)
+    change = std::max(change, std::abs(one.events[i].time - other.events[i].time));
+  return change / moved;
+}
+
+TEST(RandomScenes, AgreeWithAnIndependentReference) {
+  // SLIPMODE_JUDGED=1000 for more of them.
+  const char* asked = std::getenv("SLIPMODE_JUDGED");
+  const int wanted = asked != nullptr ? std::stoi(asked) : 40;
+  int judged = 0, left_out = 0, sensitive = 0;
+  std::size_t events = 0;
+  double worst = 0.0;
+  for (std::uint64_t index = 0; judged < wanted; ++index) {
+    const scene::Scene scene = scene::parse_scene(random_scene_text(11, index));
+    const dynamics::HybridSystem system = scene::build_system(scene);
+    if (!held(system)) {
+      ++left_out;
+      continue;
+    }
+    const dynamics::State start = scene::initial_state(scene, system);
+    // 400 radians of the fastest mode: the reference's steps follow it.
+    const double rate = std::max(dynamics::build_modal_model(system, false).fastest, 1e-3);
+    const double duration = std::min(scene::simulate_options(scene).duration, 400.0 / rate);
+    fixtures::ReferenceGap gap;
+    try {
+      gap = fixtures::gap_to_reference(system, start, duration, {.method = scene.flow.method, .tolerance = 1e-12});
+    } catch (const NumericalFailure&) {  // refused, as other tests judge
+      ++left_out;
+      continue;
+    } catch (const std::runtime_error&) {  // the reference's: nothing moves, and it cannot say which way
+      ++left_out;
+      continue;
+    }
+    ++judged;
+    events += gap.events;
+    const double size = std::max(1e-3, size_of(start));
+    double found = std::max(gap.state / size, gap.event_time / duration);
+    if (!gap.mismatch.empty() || found > kAgreement) {
+      // Motions that multiply what rounding leaves are held to what they make of it.
+      const double grown = amplification(system, start, duration);
+      ++sensitive;
+      if (gap.mismatch.empty()) found /= std::max(1.0, grown);
+      EXPECT_TRUE(gap.mismatch.empty() || std::isinf(grown)) << "scene " << index << ": " << gap.mismatch;
+    }
+    if (!gap.mismatch.empty()) continue;
+    EXPECT_LE(found, kAgreement) << "scene " << index << ": states " << gap.state << ", times " << gap.event_time;
+    worst = std::max(worst, found);
+  }
+  RecordProperty("judged", judged);
+  std::printf("%d scenes, %zu events, largest gap %.2g; %d sensitive; %d that the reference does not hold\n", judged,
+              events, worst, sensitive, left_out);
+  EXPECT_LE(sensitive, judged / 50);
+}
+
+}  // namespace
+}  // namespace slipmode::selftest
