@@ -4,7 +4,9 @@
 #include <slipmode/fem/modes.hpp>
 #include "dynamics/internal/pair_form.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace slipmode::dynamics {
@@ -152,7 +154,14 @@ void separate_rigid_modes(const Eigen::VectorXd& omega, Eigen::MatrixXd& shapes,
   shapes(Eigen::all, rigid) = (shapes(Eigen::all, rigid) * Q).eval();
   damping(rigid, Eigen::all) = (Q.transpose() * damping(rigid, Eigen::all)).eval();
   damping(Eigen::all, rigid) = (damping(Eigen::all, rigid) * Q).eval();
-  const double nothing = kProportionalTolerance * damping_size;
+  // A solver turns a rigid-body shape towards the others by rounding of the largest ω² over theirs, most to the
+  // softest.
+  double softest = omega.maxCoeff();
+  for (const double w : omega)
+    if (w > 0.0) softest = std::min(softest, w);
+  const double turned =
+      softest > 0.0 ? 16.0 * std::numeric_limits<double>::epsilon() * std::pow(omega.maxCoeff() / softest, 2) : 0.0;
+  const double nothing = std::max(kProportionalTolerance, turned) * damping_size;
   for (const Eigen::Index i : rigid)
     if (damping.row(i).norm() <= nothing && damping.col(i).norm() <= nothing) {
       damping.row(i).setZero();

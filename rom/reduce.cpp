@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -66,34 +67,78 @@ std::vector<std::string> amplitude_names(Eigen::Index L) {
   return names;
 }
 
-/// A motion that strains nothing must stay one: the projected K is rounded at the size of what cancelled in it, and
-/// that may be far more than of its entries rounding is. Takes out what is left of such motions.
-Eigen::MatrixXd without_rounding(Eigen::MatrixXd K, const Eigen::MatrixXd& M, const fem::Matrix& full,
-                                 const Eigen::MatrixXd& Phi) {
-  constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
+constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
+
+/// What a projected matrix is summed from, and rounds by: |Φ|ᵀ|A||Φ|.
+Eigen::MatrixXd sizes(const fem::Matrix& A, const Eigen::MatrixXd& Phi) {
   const auto magnitudes = [](const auto& m) -> fem::Matrix { return m.cwiseAbs().eval(); };
-  const Eigen::MatrixXd size = project(std::visit(magnitudes, full), Phi.cwiseAbs());
-  const Eigen::MatrixXd least = static_cast<double>(K.rows()) * kRounding * size.diagonal().asDiagonal();
-  if (Eigen::LLT<Eigen::MatrixXd>(K - least).info() == Eigen::Success) return K;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(K, M);
-  if (modes.info() != Eigen::Success) return K;
-  for (const auto& shape : modes.eigenvectors().colwise()) {
-    const Eigen::VectorXd force = K * shape, inertia = M * shape, sizes = shape.cwiseAbs();
-    const double stiffness = shape.dot(force);
-    if (!(std::abs(stiffness) <= kRounding * sizes.dot(size * sizes))) continue;
-    K += stiffness * inertia * inertia.transpose() - inertia * force.transpose() - force * inertia.transpose();
-  }
-  return 0.5 * (K + K.transpose());
+  return project(std::visit(magnitudes, A), Phi.cwiseAbs());
 }
 
+/// Motions that strain nothing, to the rounding of a projected K, and how far rounding may have turned them.
+struct Unstrained {
+  Eigen::MatrixXd shapes;  ///< orthonormal in M
+  double turned = 0.0;
+};
+
+Unstrained unstrained(const Eigen::MatrixXd& K, const Eigen::MatrixXd& M, const Eigen::MatrixXd& size) {
+  const Eigen::MatrixXd least = static_cast<double>(K.rows()) * kRounding * size.diagonal().asDiagonal();
+  if (Eigen::LLT<Eigen::MatrixXd>(K - least).info() == Eigen::Success) return {};
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(K, M);
+  if (modes.info() != Eigen::Success) return {};
+  std::vector<Eigen::Index> found;
+  double largest = 0.0, softest = std::numeric_limits<double>::infinity();
+  for (Eigen::Index k = 0; k < K.rows(); ++k) {
+    const Eigen::VectorXd shape = modes.eigenvectors().col(k), magnitude = shape.cwiseAbs();
+    const double stiffness = shape.dot(K * shape), summed = magnitude.dot(size * magnitude);
+    largest = std::max(largest, summed);
+    if (std::abs(stiffness) <= kRounding * summed)
+      found.push_back(k);
+    else
+      softest = std::min(softest, stiffness);
+  }
+  return {modes.eigenvectors()(Eigen::all, found), kRounding * (1.0 + largest / softest)};
+}
+
+/// A with nothing left along these shapes.
+Eigen::MatrixXd without(const Eigen::MatrixXd& A, const Eigen::MatrixXd& shapes, const Eigen::MatrixXd& M) {
+  const Eigen::MatrixXd inertia = M * shapes, right = A - (A * shapes) * inertia.transpose();
+  return right - inertia * (shapes.transpose() * right);
+}
+
+/// Those of the motions, turned among themselves, that nothing damps either.
+Eigen::MatrixXd undamped(const Unstrained& free, const Eigen::MatrixXd& C, const Eigen::MatrixXd& size) {
+  const Eigen::MatrixXd own = free.shapes.transpose() * C * free.shapes;
+  const Eigen::MatrixXd shapes =
+      free.shapes * Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(own + own.transpose()).eigenvectors();
+  std::vector<Eigen::Index> found;
+  for (Eigen::Index k = 0; k < shapes.cols(); ++k) {
+    const double rounding = free.turned * (size * shapes.col(k).cwiseAbs()).norm();
+    if ((C * shapes.col(k)).norm() <= rounding && (C.transpose() * shapes.col(k)).norm() <= rounding)
+      found.push_back(k);
+  }
+  return shapes(Eigen::all, found);
+}
+
+/// Motions that strain nothing, and those that nothing damps, must stay such: projected matrices are rounded at the
+/// size of what cancels in them, which may be far more than of their entries rounding is.
 fem::Structure project_structure(const fem::Structure& full, const Eigen::MatrixXd& Phi) {
-  const Eigen::MatrixXd projected = project_symmetric(full.M(), Phi);
-  fem::Matrix K = without_rounding(project_symmetric(full.K(), Phi), projected, full.K(), Phi);
-  fem::Matrix M = projected;
+  const Eigen::MatrixXd M = project_symmetric(full.M(), Phi);
+  Eigen::MatrixXd K = project_symmetric(full.K(), Phi);
+  const Unstrained free = unstrained(K, M, sizes(full.K(), Phi));
+  if (free.shapes.cols() > 0) {
+    K = without(K, free.shapes, M);
+    K = (0.5 * (K + K.transpose())).eval();
+  }
   const std::optional<fem::Rayleigh> rayleigh = full.rayleigh();
-  if (rayleigh) return {std::move(M), *rayleigh, std::move(K), amplitude_names(Phi.cols()), full.units()};
-  fem::Matrix C = full.has_symmetric_damping() ? project_symmetric(full.C(), Phi) : project(full.C(), Phi);
-  return {std::move(M), std::move(C), std::move(K), amplitude_names(Phi.cols()), full.units()};
+  if (rayleigh) return {M, *rayleigh, std::move(K), amplitude_names(Phi.cols()), full.units()};
+  const bool symmetric = full.has_symmetric_damping();
+  Eigen::MatrixXd C = symmetric ? project_symmetric(full.C(), Phi) : project(full.C(), Phi);
+  if (free.shapes.cols() > 0) {
+    C = without(C, undamped(free, C, sizes(full.C(), Phi)), M);
+    if (symmetric) C = (0.5 * (C + C.transpose())).eval();
+  }
+  return {M, std::move(C), std::move(K), amplitude_names(Phi.cols()), full.units()};
 }
 
 }  // namespace
