@@ -69,6 +69,9 @@ std::vector<std::string> amplitude_names(Eigen::Index L) {
 
 constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
+/// What is more than this share is no rounding, however soft the softest motion.
+constexpr double kMostTurned = 1e-9;
+
 /// What a projected matrix is summed from, and rounds by: |Φ|ᵀ|A||Φ|.
 Eigen::MatrixXd sizes(const fem::Matrix& A, const Eigen::MatrixXd& Phi) {
   const auto magnitudes = [](const auto& m) -> fem::Matrix { return m.cwiseAbs().eval(); };
@@ -97,7 +100,7 @@ Unstrained unstrained(const Eigen::MatrixXd& K, const Eigen::MatrixXd& M, const 
     else
       softest = std::min(softest, stiffness);
   }
-  return {modes.eigenvectors()(Eigen::all, found), kRounding * (1.0 + largest / softest)};
+  return {modes.eigenvectors()(Eigen::all, found), std::min(kRounding * (1.0 + largest / softest), kMostTurned)};
 }
 
 /// A with nothing left along these shapes.
