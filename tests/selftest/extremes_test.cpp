@@ -41,7 +41,9 @@ TEST(RandomScenes, MissNoEventAndKeepEveryLaw) {
   const SceneSurvey survey = survey_random_scenes(1, 40, 160, {.threads = 1});
   for (const SceneCheck& check : survey.failed) ADD_FAILURE() << "scene " << check.index << ": " << text_of(check);
   EXPECT_GT(survey.scan.events, 600) << "the scenes are too quiet to mean anything";
-  EXPECT_LE(survey.refused.size(), 1U);  // nearly defective damping: 6 in 10,000
+  std::int64_t refused = 0;
+  for (const auto& [reason, scenes] : survey.refused) refused += scenes;
+  EXPECT_LE(refused, 1);  // nearly defective damping: 8 in 10,000
   EXPECT_LT(survey.still, 30);
 }
 
