@@ -36,5 +36,6 @@ struct Verb {
 [[nodiscard]] Verb add_orbit_map(CLI::App& orbit);
 [[nodiscard]] Verb add_orbit_skeleton(CLI::App& orbit);
 [[nodiscard]] Verb add_orbit_returns(CLI::App& orbit);
+[[nodiscard]] Verb add_orbit_spectrum(CLI::App& orbit);
 
 }  // namespace slipmode::cli

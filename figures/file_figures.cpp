@@ -7,6 +7,7 @@
 #include <slipmode/figures/series_figures.hpp>
 #include <slipmode/figures/shaken_figures.hpp>
 #include <slipmode/figures/skeleton_figures.hpp>
+#include <slipmode/figures/spectrum_figures.hpp>
 #include <slipmode/figures/trade_figures.hpp>
 #include <slipmode/results/provenance.hpp>
 #include <slipmode/scene/shaken.hpp>
@@ -43,6 +44,7 @@ constexpr KindFigures kFigures[] = {
     {FileKind::kMap, map_figures_of},
     {FileKind::kStrobe, strobe_figures_of},
     {FileKind::kSkeleton, skeleton_figures_of},
+    {FileKind::kSpectrum, spectrum_figures_of},
     {FileKind::kTrade, trade_figures_of},
 };
 

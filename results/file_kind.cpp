@@ -22,6 +22,7 @@ constexpr std::pair<const char*, FileKind> kMarks[] = {
     {"verdict", FileKind::kVerdict},
     {"exponents/full", FileKind::kExponentSweep},
     {"exponents", FileKind::kExponents},
+    {"spectrum", FileKind::kSpectrum},
     {"trade", FileKind::kTrade},
     {"orbit", FileKind::kOrbit},
     {"branches", FileKind::kBranches},

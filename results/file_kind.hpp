@@ -29,6 +29,7 @@ enum class FileKind : std::uint8_t {
   kMap,
   kStrobe,
   kSkeleton,
+  kSpectrum,
   kTrade,
 };
 
@@ -61,6 +62,7 @@ inline constexpr std::array kFileKinds{
     FileKindWords{"map", "a map", "periodic orbits over two keys", "slipmode orbit map"},
     FileKindWords{"strobe", "a stroboscopic map", "motion seen once per period over a key", "slipmode orbit map"},
     FileKindWords{"skeleton", "a skeleton", "unstable periodic orbits in an attractor", "slipmode orbit skeleton"},
+    FileKindWords{"spectrum", "a spectrum", "Fourier coefficients of a periodic orbit", "slipmode orbit spectrum"},
     FileKindWords{"trade", "a trade study", "errors and costs of configurations of a scene", "slipmode trade"},
 };
 

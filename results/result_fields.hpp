@@ -11,6 +11,7 @@
 #include <slipmode/dynamics/simulate.hpp>
 #include <slipmode/orbits/continuation.hpp>
 #include <slipmode/orbits/skeleton_compare.hpp>
+#include <slipmode/orbits/spectrum.hpp>
 #include <slipmode/trade/clock.hpp>
 #include <slipmode/trade/schedule.hpp>
 
@@ -76,6 +77,14 @@ inline constexpr auto kFields<orbits::PeriodicOrbit> = [] {
       required("residual", &Own::residual, "1", "largest mismatch after a period, relative"),
       required("iterations", &Own::iterations, "", "Newton steps", kFromZero),
       required("residuals", &Own::residuals, "1", "before each Newton step and after the last")};
+}();
+
+template <>
+inline constexpr auto kFields<orbits::Spectrum> = [] {
+  using Own = orbits::Spectrum;
+  return std::tuple{
+      required("omega", &Own::omega, "rad/s", "2 pi / period of the orbit: order 1", kPositive),
+      required("defect", &Own::defect, "1", "bound on the coefficients' error, as a share of their quantity")};
 }();
 
 template <>

@@ -40,7 +40,7 @@ class OrbitVerbs : public testing::Test {
 };
 
 TEST_F(OrbitVerbs, EachHasHelpWithAnExample) {
-  for (const std::string verb : {"find", "continue", "map"}) {
+  for (const std::string verb : {"find", "continue", "map", "spectrum"}) {
     const Outcome outcome = call({verb, "--help"});
     EXPECT_EQ(outcome.exit_code, 0) << verb;
     EXPECT_THAT(outcome.out, HasSubstr("slipmode orbit " + verb)) << verb;
@@ -93,6 +93,26 @@ TEST_F(OrbitVerbs, StoresTheOrbitAndOnePeriodOfIt) {
     EXPECT_EQ(slipmode_in(folder, {"plot", "orbit.h5", "--figure", figure, "-o", file}).exit_code, 0);
     EXPECT_TRUE(is_figure(folder.path() / file));
   }
+}
+
+TEST_F(OrbitVerbs, SpectrumOfAStoredOrbit) {
+  const auto found = json_of({"find", kSdof, "--start", "2.5,0", "-o", "orbit.h5"});
+  const auto said = json_of({"spectrum", "orbit.h5", "--harmonics", "9", "--dof", "1", "-o", "spectrum.h5"});
+  EXPECT_DOUBLE_EQ(said["omega"], 1.4);
+  const auto& displacement = said["quantities"][0];
+  EXPECT_EQ(displacement["name"], "displacement_1");
+  EXPECT_EQ(displacement["cosine"].size(), 10U);
+  // The row of the only mass is the contact's displacement; ẍ = −cẋ + λ + sin ωt at order 1: cosines of it.
+  EXPECT_EQ(said["quantities"][3]["name"], "q1");
+  EXPECT_EQ(said["quantities"][3]["cosine"], displacement["cosine"]);
+  const double force = said["quantities"][2]["cosine"][1], speed = said["quantities"][1]["cosine"][1];
+  EXPECT_NEAR(-1.4 * 1.4 * displacement["cosine"][1].get<double>(), force - 0.05 * speed, 1e-10);
+  const results::StoreReader store(folder.path() / "spectrum.h5");
+  EXPECT_EQ(store.vector("spectrum/coefficients/force_1_cosine")(1), force);
+  EXPECT_EQ(slipmode_in(folder, {"plot", "spectrum.h5", "-o", "spectrum.svg"}).exit_code, 0);
+  EXPECT_TRUE(is_figure(folder.path() / "spectrum.svg"));
+  expect_refused({"spectrum", "spectrum.h5"}, {"holds a spectrum", "expected an orbit", "slipmode orbit find"});
+  expect_refused({"spectrum", "orbit.h5", "--dof", "2"}, {"--dof 2", "1 to 1"});
 }
 
 TEST_F(OrbitVerbs, SaysHowFarItCameWithoutAnOrbit) {
