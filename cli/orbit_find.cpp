@@ -1,7 +1,9 @@
+#include <slipmode/results/balance_store.hpp>
 #include <slipmode/results/orbit_records.hpp>
 #include <slipmode/results/provenance.hpp>
 #include <slipmode/results/records.hpp>
 #include <slipmode/studies/bases.hpp>
+#include "cli/balance_report.hpp"
 #include "cli/orbit_report.hpp"
 #include "cli/orbit_search.hpp"
 #include "cli/verbs.hpp"
@@ -13,28 +15,49 @@ namespace {
 
 struct OrbitFindArguments {
   OrbitSearchArguments search;
+  BalanceArguments balance;
   std::string output;
 };
 
-/// The orbit and one period of it, sampled.
-void store(const std::string& path, const scene::Scene& scene, const dynamics::HybridSystem& system,
-           const orbits::PeriodicOrbit& orbit) {
-  constexpr double kSamples = 1000.0;
-  const dynamics::Trajectory period = dynamics::simulate(
-      system, orbit.start, {.duration = orbit.period, .sample = orbit.period / kSamples, .flow = {.tolerance = 1e-12}});
-  results::StoreWriter writer(path, results::FileKind::kOrbit, scene.units);
+/// The orbit, if there is one, and one period of it, sampled; and where it came from.
+void save(results::StoreWriter& writer, const scene::Scene& scene, const dynamics::HybridSystem& system,
+          const orbits::PeriodicOrbit* orbit) {
   results::Provenance provenance = results::provenance_of(scene, "slipmode orbit find");
-  provenance.audit = period.audit;
+  if (orbit != nullptr) {
+    constexpr double kSamples = 1000.0;
+    const dynamics::Trajectory period = dynamics::simulate(
+        system, orbit->start,
+        {.duration = orbit->period, .sample = orbit->period / kSamples, .flow = {.tolerance = 1e-12}});
+    provenance.audit = period.audit;
+    results::save(writer, results::kOrbitGroup, *orbit);
+    results::save(writer, results::kTrajectoryGroup, period);
+  }
   results::save(writer, provenance);
-  results::save(writer, results::kOrbitGroup, orbit);
-  results::save(writer, results::kTrajectoryGroup, period);
+}
+
+Report run_balance(const OrbitFindArguments& arguments, const studies::Family& model) {
+  const studies::BalanceSearch search =
+      balance_search_of(arguments.balance, arguments.search.start, arguments.search.search);
+  const studies::BalanceFound found = studies::find_balance(
+      model, search, {.segments = arguments.search.search.segments, .tolerance = arguments.search.search.tolerance});
+  Report report = balance_report(model, found);
+  if (arguments.output.empty() || !found.balance.converged) return report;
+  const scene::Scene& scene = model.scene();
+  const orbits::Certificate* certificate = found.certificate ? &*found.certificate : nullptr;
+  results::StoreWriter writer(arguments.output, results::FileKind::kBalance, scene.units);
+  save(writer, scene, model.own(), certificate != nullptr && certificate->behind ? &certificate->found.orbit : nullptr);
+  results::store_balance(writer, found.balance, certificate, found.trials, results::Units::of(scene.units));
   writer.commit();
+  report.data["file"] = arguments.output;
+  report.text += fmt::format("Balance: {}\n", arguments.output);
+  return report;
 }
 
 Report run(const Session& session, const OrbitFindArguments& arguments) {
   if (!arguments.output.empty()) require_writable(arguments.output);
   const scene::Scene scene = session.load(arguments.search.scene);
   const studies::Family model(scene, {}, studies::model_basis(scene, arguments.search.model, session.run_options()));
+  if (arguments.balance.by == "balance") return run_balance(arguments, model);
   const dynamics::HybridSystem& system = model.own();
   const studies::OrbitSearch search = search_of(arguments.search, scene);
   session.check_interrupt();
@@ -47,7 +70,9 @@ Report run(const Session& session, const OrbitFindArguments& arguments) {
   report.data.update(orbit_json(system, result.orbit, amplitudes));
   report.text = fmt::format("{}, {}: {}", scene.title, model.title(), orbit_text(system, result.orbit, amplitudes));
   if (!arguments.output.empty()) {
-    store(arguments.output, scene, system, result.orbit);
+    results::StoreWriter writer(arguments.output, results::FileKind::kOrbit, scene.units);
+    save(writer, scene, system, &result.orbit);
+    writer.commit();
     report.data["file"] = arguments.output;
     report.text += fmt::format("Orbit: {}\n", arguments.output);
   }
@@ -60,11 +85,13 @@ Verb add_orbit_find(CLI::App& orbit) {
   CLI::App* command = orbit.add_subcommand("find", "a periodic orbit, its multipliers and what it does");
   const auto arguments = std::make_shared<OrbitFindArguments>();
   add_search_options(*command, arguments->search);
+  add_balance_options(*command, arguments->balance);
   command->add_option("-o,--output", arguments->output, "also store the orbit and one period of it (HDF5)");
   command->footer(
       "Example:\n  slipmode orbit find datasets/backlash_sdof/scene.toml --json\n"
       "  slipmode orbit find datasets/backlash_sdof/scene.toml --start 1.2,0.1 -o orbit.h5\n"
-      "  slipmode orbit find datasets/chain10/scene.toml --set drive.speed=0.45");
+      "  slipmode orbit find datasets/chain10/scene.toml --set drive.speed=0.45\n"
+      "  slipmode orbit find datasets/play_oscillator/scene.toml --by balance --harmonics auto --error 1e-4");
   return {command, [arguments](const Session& session) { return run(session, *arguments); }};
 }
 

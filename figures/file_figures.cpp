@@ -1,5 +1,6 @@
 #include <slipmode/figures/file_figures.hpp>
 
+#include <slipmode/figures/balance_figures.hpp>
 #include <slipmode/figures/belt_figures.hpp>
 #include <slipmode/figures/exponents_figures.hpp>
 #include <slipmode/figures/map_figures.hpp>
@@ -45,6 +46,7 @@ constexpr KindFigures kFigures[] = {
     {FileKind::kStrobe, strobe_figures_of},
     {FileKind::kSkeleton, skeleton_figures_of},
     {FileKind::kSpectrum, spectrum_figures_of},
+    {FileKind::kBalance, balance_figures_of},
     {FileKind::kTrade, trade_figures_of},
 };
 

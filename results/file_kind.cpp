@@ -23,6 +23,7 @@ constexpr std::pair<const char*, FileKind> kMarks[] = {
     {"exponents/full", FileKind::kExponentSweep},
     {"exponents", FileKind::kExponents},
     {"spectrum", FileKind::kSpectrum},
+    {"balance", FileKind::kBalance},
     {"trade", FileKind::kTrade},
     {"orbit", FileKind::kOrbit},
     {"branches", FileKind::kBranches},

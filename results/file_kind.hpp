@@ -30,6 +30,7 @@ enum class FileKind : std::uint8_t {
   kStrobe,
   kSkeleton,
   kSpectrum,
+  kBalance,
   kTrade,
 };
 
@@ -63,6 +64,8 @@ inline constexpr std::array kFileKinds{
     FileKindWords{"strobe", "a stroboscopic map", "motion seen once per period over a key", "slipmode orbit map"},
     FileKindWords{"skeleton", "a skeleton", "unstable periodic orbits in an attractor", "slipmode orbit skeleton"},
     FileKindWords{"spectrum", "a spectrum", "Fourier coefficients of a periodic orbit", "slipmode orbit spectrum"},
+    FileKindWords{"balance", "a balance", "a harmonic balance and the orbit behind it",
+                  "slipmode orbit find --by balance"},
     FileKindWords{"trade", "a trade study", "errors and costs of configurations of a scene", "slipmode trade"},
 };
 

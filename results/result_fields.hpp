@@ -9,6 +9,7 @@
 #include <slipmode/diagnostics/validation/driven_validation.hpp>
 #include <slipmode/diagnostics/validation/validate.hpp>
 #include <slipmode/dynamics/simulate.hpp>
+#include <slipmode/orbits/balance/certificate.hpp>
 #include <slipmode/orbits/continuation.hpp>
 #include <slipmode/orbits/skeleton_compare.hpp>
 #include <slipmode/orbits/spectrum.hpp>
@@ -77,6 +78,29 @@ inline constexpr auto kFields<orbits::PeriodicOrbit> = [] {
       required("residual", &Own::residual, "1", "largest mismatch after a period, relative"),
       required("iterations", &Own::iterations, "", "Newton steps", kFromZero),
       required("residuals", &Own::residuals, "1", "before each Newton step and after the last")};
+}();
+
+template <>
+inline constexpr auto kFields<orbits::Balance> = [] {
+  using Own = orbits::Balance;
+  return std::tuple{required("converged", &Own::converged, "", "1: Newton's method arrived", kFromZero),
+                    required("order", &Own::order, "", "period over that of the drive", kCount),
+                    required("omega", &Own::omega, "rad/s", "2 pi / period: order 1", kPositive),
+                    required("harmonics", &Own::harmonics, "", "highest order", kCount),
+                    required("samples", &Own::samples, "", "of the alternating scheme; 0: exact forces", kFromZero),
+                    required("switches", &Own::switches, "", "of contact in a period", kFromZero),
+                    required("family", &Own::family, "", "1: one of a family of motions in the gap", kFromZero),
+                    required("residual", &Own::residual, "1", "largest, as a share of the largest displacement"),
+                    required("iterations", &Own::iterations, "", "Newton steps", kFromZero)};
+}();
+
+template <>
+inline constexpr auto kFields<orbits::OrderTrial> = [] {
+  using Own = orbits::OrderTrial;
+  return std::tuple{
+      required("harmonics", &Own::harmonics, "", "highest order", kCount),
+      required("error", &Own::error, "1", "true error as a share of the half range; NaN: no orbit behind"),
+      required("iterations", &Own::iterations, "", "Newton steps", kFromZero)};
 }();
 
 template <>

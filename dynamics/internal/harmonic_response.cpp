@@ -1,35 +1,16 @@
 #include "dynamics/internal/harmonic_response.hpp"
 
+#include <slipmode/dynamics/receptance.hpp>
+
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <limits>
 
 namespace slipmode::dynamics {
 namespace {
 
 using Complex = std::complex<double>;
-
-/// (iω − G)⁻¹ of the pairs on columns of inputs. On a natural frequency of the slipping structure without damping a
-/// pair's answer has no bound, though contacts may give it one: taken next to it, the error is that of rounding ω.
-Eigen::MatrixXcd receptances(const ModalModel& m, double omega, const Eigen::MatrixXcd& inputs) {
-  const auto np = m.np;
-  Eigen::MatrixXcd out = Eigen::MatrixXcd::Zero(2 * np, inputs.cols());
-  for (Eigen::Index i = 0; i < m.n; ++i) {
-    const Complex a(-m.g11(i), omega), d(-m.g22(i), omega);
-    const double b = -m.g12(i), c = -m.g21(i);
-    const double nearest = std::numeric_limits<double>::epsilon() * omega * omega;
-    Complex determinant = a * d - b * c;
-    if (std::abs(determinant) < nearest) determinant = nearest;
-    for (Eigen::Index k = 0; k < inputs.cols(); ++k) {
-      const Complex f1 = inputs(i, k), f2 = inputs(np + i, k);
-      out(i, k) = (d * f1 - b * f2) / determinant;
-      out(np + i, k) = (a * f2 - c * f1) / determinant;
-    }
-  }
-  return out;
-}
 
 /// ζ of a normal oscillator per wᵀq.
 Complex oscillator_gain(const friction::LoadForm& load, double omega) {
@@ -41,8 +22,8 @@ Complex oscillator_gain(const friction::LoadForm& load, double omega) {
 HarmonicResponse harmonic_response(const Regime& r, const ModalModel& slipping, double omega, Complex way,
                                    const Eigen::VectorXcd& forces) {
   const Eigen::Index nc = r.speed_input();
-  const Eigen::MatrixXcd by_contacts = receptances(slipping, omega, slipping.input.cast<Complex>());
-  const Eigen::MatrixXcd by_forces = receptances(slipping, omega, slipping.force_input * forces);
+  const Eigen::MatrixXcd by_contacts = pair_receptances(slipping, omega, slipping.input.cast<Complex>());
+  const Eigen::MatrixXcd by_forces = pair_receptances(slipping, omega, slipping.force_input * forces);
   const Eigen::MatrixXcd H = slipping.displacement_row.transpose() * by_contacts;
   const Eigen::VectorXcd moved = slipping.displacement_row.transpose() * by_forces;
 

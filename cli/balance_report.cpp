@@ -1,0 +1,134 @@
+#include "cli/balance_report.hpp"
+
+#include "cli/json_values.hpp"
+#include "cli/orbit_report.hpp"
+#include "cli/text_table.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <charconv>
+
+namespace slipmode::cli {
+namespace {
+
+int whole_number(const char* option, const std::string& text, const char* word) {
+  int value = 0;
+  const auto [stopped, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || stopped != text.data() + text.size() || value < 1) {
+    throw InvalidInput(fmt::format("{} {}: valid: a whole number from 1 on, or {}", option, text, word));
+  }
+  return value;
+}
+
+std::string coefficient_table(const orbits::Balance& balance) {
+  constexpr int kShown = 15;
+  std::vector<std::string> header = {"order"};
+  for (std::size_t c = 1; c <= balance.displacement.size(); ++c) {
+    header.push_back(fmt::format("cosine {}", c));
+    header.push_back(fmt::format("sine {}", c));
+  }
+  TextTable table(header);
+  for (int k = 0; k <= std::min(balance.harmonics, kShown); ++k) {
+    std::vector<std::string> row = {std::to_string(k)};
+    for (const orbits::Harmonics& own : balance.displacement) {
+      row.push_back(fmt::format("{:.8f}", own.cosine[k]));
+      row.push_back(fmt::format("{:.8f}", own.sine[k]));
+    }
+    table.add(std::move(row));
+  }
+  return table.str();
+}
+
+}  // namespace
+
+void add_balance_options(CLI::App& command, BalanceArguments& out_arguments) {
+  command
+      .add_option("--by", out_arguments.by, "shooting (exact), or balance: truncated Fourier series of the contacts")
+      ->check(CLI::IsMember({"shooting", "balance"}));
+  command.add_option("--harmonics", out_arguments.harmonics,
+                     "of a balance: highest order, or auto: the order that --error needs");
+  command.add_option("--error", out_arguments.error,
+                     "of --harmonics auto: true error, a share of the half range of the displacement");
+  command.add_option("--samples", out_arguments.samples,
+                     "of a balance: exact force integrals, or the alternating scheme with so many samples");
+  command.add_flag("--certify", out_arguments.certify,
+                   "shoot from the balance to the exact orbit: true error, multipliers");
+}
+
+studies::BalanceSearch balance_search_of(const BalanceArguments& arguments, const std::string& start,
+                                         const studies::OrbitSearch& search) {
+  studies::BalanceSearch out;
+  out.options.order = search.order;
+  out.certify = arguments.certify;
+  if (start != "settle" && start != "contact" && start != "gap") {
+    throw InvalidInput(fmt::format("--start {}: a balance begins at contact (all stops pressing) or gap", start));
+  }
+  out.options.start = start == "gap" ? orbits::BalanceStart::kGap : orbits::BalanceStart::kContact;
+  if (arguments.harmonics == "auto") {
+    if (!(arguments.error > 0.0)) {
+      throw InvalidInput(fmt::format("--error {}: --harmonics auto needs a true error > 0", arguments.error));
+    }
+    out.error = arguments.error;
+  } else {
+    out.options.harmonics = whole_number("--harmonics", arguments.harmonics, "auto");
+  }
+  if (arguments.samples != "exact") out.options.samples = whole_number("--samples", arguments.samples, "exact");
+  return out;
+}
+
+Report balance_report(const studies::Family& model, const studies::BalanceFound& found) {
+  const orbits::Balance& balance = found.balance;
+  const bool good = balance.converged && found.met;
+  Report report;
+  report.exit_code = good ? kDone : kNumericalFailure;
+  report.data =
+      merged({{"verb", "orbit find"}, {"title", model.scene().title}, {"model", model.title()}}, fields_json(balance));
+  report.data["by"] = "balance";
+  Json contacts = Json::array();
+  for (std::size_t c = 0; c < balance.displacement.size(); ++c) {
+    contacts.push_back({{"contact", model.own().contacts()[c].name},
+                        {"displacement",
+                         {{"cosine", results::values_of(balance.displacement[c].cosine)},
+                          {"sine", results::values_of(balance.displacement[c].sine)}}},
+                        {"force",
+                         {{"cosine", results::values_of(balance.force[c].cosine)},
+                          {"sine", results::values_of(balance.force[c].sine)}}}});
+  }
+  report.data["contacts"] = contacts;
+  const std::string forces = balance.samples == 0 ? "exact forces" : fmt::format("{} samples", balance.samples);
+  report.text = fmt::format(
+      "{}, {}: balance of {} harmonics by {}, order 1 at {:.10g} rad/s{}\n  {} switches of contact, "
+      "residual {:.1e} after {} Newton steps\n",
+      model.scene().title, model.title(), balance.harmonics, forces, balance.omega,
+      balance.family ? ", one of a family in the gap" : "", balance.switches, balance.residual, balance.iterations);
+  if (!balance.converged) report.text += balance.message + "\n";
+  if (balance.converged) report.text += coefficient_table(balance);
+  Json trials = Json::array();
+  for (const orbits::OrderTrial& trial : found.trials) {
+    trials.push_back(
+        {{"harmonics", trial.harmonics}, {"error", json_number(trial.error)}, {"iterations", trial.iterations}});
+  }
+  if (!trials.empty()) report.data["trials"] = trials;
+  if (balance.converged && !found.met) {
+    report.data["message"] = fmt::format("the error asked is not met up to {} harmonics", balance.harmonics);
+    report.text += report.data["message"].get<std::string>() + "\n";
+  } else if (!balance.converged) {
+    report.data["message"] = balance.message;
+  }
+  if (!found.certificate) return report;
+  const orbits::Certificate& own = *found.certificate;
+  report.data["certificate"] = {{"behind", own.behind},
+                                {"verdict", own.verdict},
+                                {"error", own.error},
+                                {"relative", own.error.empty() ? Json(nullptr) : json_number(own.relative)}};
+  report.text += fmt::format("Certificate: {}\n", own.verdict);
+  if (own.found.converged()) {
+    const auto amplitudes = orbits::contact_amplitudes(model.own(), own.found.orbit);
+    report.data["certificate"]["orbit"] = orbit_json(model.own(), own.found.orbit, amplitudes);
+    report.text += fmt::format("  as good as the location of events is: docs/limits.md has what is open there\n{}",
+                               orbit_text(model.own(), own.found.orbit, amplitudes));
+  }
+  return report;
+}
+
+}  // namespace slipmode::cli

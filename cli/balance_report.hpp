@@ -1,0 +1,28 @@
+#pragma once
+
+#include <slipmode/studies/balance_search.hpp>
+#include "cli/session.hpp"
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+namespace slipmode::cli {
+
+/// What `orbit find --by balance` adds.
+struct BalanceArguments {
+  std::string by = "shooting", harmonics = "9", samples = "exact";
+  double error = 0.0;
+  bool certify = false;
+};
+
+void add_balance_options(CLI::App& command, BalanceArguments& out_arguments);
+
+/// The search. @param start  settle (the default), contact or gap
+/// @throws InvalidInput  for words that are no numbers, auto without --error
+[[nodiscard]] studies::BalanceSearch balance_search_of(const BalanceArguments& arguments, const std::string& start,
+                                                       const studies::OrbitSearch& search);
+
+/// What was found, with how it ended.
+[[nodiscard]] Report balance_report(const studies::Family& model, const studies::BalanceFound& found);
+
+}  // namespace slipmode::cli

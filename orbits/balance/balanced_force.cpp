@@ -1,0 +1,153 @@
+#include "orbits/balance/internal/balanced_force.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <vector>
+
+namespace slipmode::orbits {
+namespace {
+
+using Complex = std::complex<double>;
+constexpr double kCircle = 2.0 * std::numbers::pi;
+
+/// Where one stop presses, as the moments that coefficients are made of.
+struct Occupation {
+  Eigen::VectorXcd set;  ///< g_m, m = 0 … 2H
+  Eigen::VectorXcd
+      jumps;  ///< Σ_s ±e^{imθ_s}/2π over instants at which the force jumps: + where it is let go, − reached
+  int switches = 0;
+};
+
+/// One stop with its law. @param side  +1 right, −1 left
+struct StopLaw {
+  friction::Stop stop;
+  friction::ContactLoss loss;
+  double side, omega;
+
+  /// Depth beyond the gap, and what it presses with.
+  [[nodiscard]] double depth(double y) const { return side * y - stop.gap; }
+  [[nodiscard]] double press(const TrigonometricPolynomial::Value& v) const {
+    return stop.stiffness * depth(v.y) + stop.damping * omega * side * v.slope;
+  }
+  [[nodiscard]] bool lets_go_early() const { return loss == friction::ContactLoss::kZeroForce && stop.damping > 0.0; }
+  [[nodiscard]] bool presses(const TrigonometricPolynomial::Value& v) const {
+    return depth(v.y) > 0.0 && (!lets_go_early() || press(v) > 0.0);
+  }
+};
+
+Occupation exact_occupation(const StopLaw& law, const TrigonometricPolynomial& y) {
+  const Eigen::Index H = y.phasors.size() - 1;
+  Occupation out{Eigen::VectorXcd::Zero(2 * H + 1), Eigen::VectorXcd::Zero(2 * H + 1), 0};
+  TrigonometricPolynomial guard = y;  // side y − b
+  guard.phasors *= law.side;
+  guard.phasors[0] -= law.stop.gap;
+  struct Border {
+    double theta;
+    bool at_gap;
+  };
+  std::vector<Border> borders;
+  for (const double theta : zeros(guard)) borders.push_back({theta, true});
+  if (borders.empty()) {
+    if (law.depth(y.at(0.0).y) <= 0.0) return out;  // never reached
+  }
+  if (law.lets_go_early()) {
+    TrigonometricPolynomial force = guard;
+    for (Eigen::Index k = 0; k <= H; ++k)
+      force.phasors[k] *= Complex(law.stop.stiffness, law.stop.damping * law.omega * static_cast<double>(k));
+    for (const double theta : zeros(force)) borders.push_back({theta, false});
+  }
+  if (borders.empty()) {
+    out.set[0] = law.presses(y.at(0.0)) ? 1.0 : 0.0;
+    return out;
+  }
+  std::ranges::sort(borders, {}, &Border::theta);
+  const std::size_t count = borders.size();
+  std::vector<bool> pressed(count);  // after each border
+  for (std::size_t i = 0; i < count; ++i) {
+    const double next = i + 1 < count ? borders[i + 1].theta : borders[0].theta + kCircle;
+    pressed[i] = law.presses(y.at(0.5 * (borders[i].theta + next)));
+    if (pressed[i]) out.set[0] += (next - borders[i].theta) / kCircle;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool before = pressed[(i + count - 1) % count], after = pressed[i];
+    if (before == after) continue;
+    ++out.switches;
+    const double sign = after ? -1.0 : 1.0;
+    const Complex turn = std::polar(1.0, borders[i].theta);
+    Complex power = 1.0;
+    for (Eigen::Index m = 0; m <= 2 * H; ++m, power *= turn) {
+      if (m > 0) out.set[m] += sign * power / Complex(0.0, kCircle * static_cast<double>(m));
+      if (borders[i].at_gap) out.jumps[m] += sign / kCircle * power;
+    }
+  }
+  return out;
+}
+
+Occupation sampled_occupation(const StopLaw& law, const TrigonometricPolynomial& y, int samples) {
+  const Eigen::Index H = y.phasors.size() - 1, N = samples;
+  Occupation out{Eigen::VectorXcd::Zero(2 * H + 1), Eigen::VectorXcd::Zero(2 * H + 1), 0};
+  std::vector<Complex> turns;
+  for (Eigen::Index n = 0; n < N; ++n)
+    turns.push_back(std::polar(1.0, kCircle * static_cast<double>(n) / static_cast<double>(N)));
+  bool before = law.presses(y.at(kCircle * static_cast<double>(N - 1) / static_cast<double>(N)));
+  for (Eigen::Index n = 0; n < N; ++n) {
+    const bool now = law.presses(y.at(kCircle * static_cast<double>(n) / static_cast<double>(N)));
+    out.switches += now != before;
+    before = now;
+    if (!now) continue;
+    for (Eigen::Index m = 0; m <= 2 * H; ++m)
+      out.set[m] += turns[static_cast<std::size_t>(m * n % N)] / static_cast<double>(N);
+  }
+  return out;
+}
+
+/// Adds one stop's share.
+void add_stop(const StopLaw& law, const TrigonometricPolynomial& y, const Occupation& where, BalancedForce& out) {
+  if (where.set[0] == 0.0) return;
+  const Eigen::Index H = y.phasors.size() - 1;
+  const auto moment = [](const Eigen::VectorXcd& of, Eigen::Index m) { return m < 0 ? std::conj(of[-m]) : of[m]; };
+  const auto coefficient = [&](Eigen::Index k) {  // double-sided
+    return k == 0 ? y.phasors[0] : k > 0 ? 0.5 * y.phasors[k] : 0.5 * std::conj(y.phasors[-k]);
+  };
+  for (Eigen::Index j = 0; j <= H; ++j) {
+    const double twice = j == 0 ? 1.0 : 2.0;
+    Complex force = law.side * law.stop.stiffness * law.stop.gap * moment(where.set, -j);
+    for (Eigen::Index k = 0; k <= H; ++k) {
+      const Complex gain(-law.stop.stiffness, -law.stop.damping * law.omega * static_cast<double>(k));
+      const Complex plus_set = gain * moment(where.set, k - j), minus_set = std::conj(gain) * moment(where.set, -k - j);
+      force += plus_set * coefficient(k);
+      if (k > 0) force += minus_set * coefficient(-k);
+      const double jump = law.stop.damping * law.omega;
+      const Complex plus = twice * (plus_set + jump * moment(where.jumps, k - j)),
+                    minus = twice * (minus_set + jump * moment(where.jumps, -k - j));
+      // By cosine_k and sine_k: ŷ_{±k} = (cosine ∓ i sine)/2.
+      const Complex by_cosine = k == 0 ? plus : 0.5 * (plus + minus), by_sine = Complex(0.0, -0.5) * (plus - minus);
+      out.jacobian(j, k) += by_cosine.real();
+      if (j > 0) out.jacobian(H + j, k) -= by_cosine.imag();
+      if (k > 0) out.jacobian(j, H + k) += by_sine.real();
+      if (j > 0 && k > 0) out.jacobian(H + j, H + k) -= by_sine.imag();
+    }
+    out.phasors[j] += twice * (j == 0 ? Complex(force.real()) : force);
+  }
+}
+
+}  // namespace
+
+BalancedForce balanced_force(const friction::Clearance& law, const TrigonometricPolynomial& y, double omega,
+                             int samples) {
+  const Eigen::Index H = y.phasors.size() - 1;
+  BalancedForce out{Eigen::VectorXcd::Zero(H + 1), Eigen::MatrixXd::Zero(2 * H + 1, 2 * H + 1), 0};
+  for (const double side : {-1.0, 1.0}) {
+    const auto& stop = side < 0 ? law.left : law.right;
+    if (!stop) continue;
+    const StopLaw own{*stop, law.loss, side, omega};
+    const Occupation where = samples == kExact ? exact_occupation(own, y) : sampled_occupation(own, y, samples);
+    add_stop(own, y, where, out);
+    out.switches += where.switches;
+  }
+  return out;
+}
+
+}  // namespace slipmode::orbits

@@ -1,0 +1,133 @@
+#include <slipmode/orbits/balance/certificate.hpp>
+
+#include <slipmode/core/errors.hpp>
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+namespace slipmode::orbits {
+namespace {
+
+/// Farther from the series than this share of a half range, an orbit is another one.
+constexpr double kNear = 0.25;
+
+std::vector<double> half_ranges(const OrbitSeries& orbit) {
+  constexpr int kLooks = 512;
+  Eigen::VectorXd low, high;
+  for (int k = 0; k < kLooks; ++k) {
+    const Eigen::VectorXd y = orbit.at(orbit.start() + orbit.period() * k / kLooks).head(orbit.contacts());
+    low = k == 0 ? y : Eigen::VectorXd(low.cwiseMin(y));
+    high = k == 0 ? y : Eigen::VectorXd(high.cwiseMax(y));
+  }
+  const Eigen::VectorXd half = 0.5 * (high - low);
+  return {half.begin(), half.end()};
+}
+
+/// The largest error over its contact's half range.
+double largest_share(const std::vector<double>& error, const std::vector<double>& half) {
+  double share = 0.0;
+  for (std::size_t c = 0; c < error.size(); ++c)
+    if (error[c] > 0.0) share = std::max(share, error[c] / half[c]);
+  return share;
+}
+
+void judge(const Balance& balance, const OrbitSeries& series, Certificate& out) {
+  out.error = true_errors(balance, series);
+  out.relative = largest_share(out.error, half_ranges(series));
+  out.behind = out.relative <= kNear;
+  const PeriodicOrbit& orbit = out.found.orbit;
+  if (!out.behind) {
+    out.verdict = fmt::format(
+        "no orbit lies behind this balance: Newton's shooting from it ends on the orbit \"{}\", {:.3g} of a half range "
+        "away",
+        orbit.word, out.relative);
+    return;
+  }
+  out.verdict = fmt::format("true error {:.3g} of a half range; the orbit behind it is \"{}\", {}", out.relative,
+                            orbit.word, to_string(orbit.stability));
+  if (orbit.crossings != balance.switches)
+    out.verdict += fmt::format("; it has {} crossings and the balance {}", orbit.crossings, balance.switches);
+}
+
+}  // namespace
+
+std::vector<double> true_errors(const Balance& balance, const OrbitSeries& orbit) {
+  const int points = std::max(2000, 24 * balance.harmonics);
+  const Eigen::Index contacts = orbit.contacts();
+  Eigen::MatrixXd error(contacts, points);
+  for (int k = 0; k < points; ++k) {
+    const double t = orbit.start() + orbit.period() * k / points;
+    error.col(k) = orbit.at(t).head(contacts);
+    for (Eigen::Index c = 0; c < contacts; ++c)
+      error(c, k) -= value_of(balance.displacement[static_cast<std::size_t>(c)], balance.omega * t);
+  }
+  std::vector<double> largest;
+  for (Eigen::Index c = 0; c < contacts; ++c) {
+    double most = 0.0;
+    for (int k = 0; k < points; ++k) {
+      const double here = error(c, k), sign = here < 0.0 ? -1.0 : 1.0;
+      const double a = sign * error(c, (k + points - 1) % points), b = std::abs(here),
+                   d = sign * error(c, (k + 1) % points);
+      most = std::max(most, b);
+      if (a > b || d > b) continue;
+      if (const double bend = a - 2.0 * b + d; bend < 0.0) most = std::max(most, b - (d - a) * (d - a) / (8.0 * bend));
+    }
+    largest.push_back(most);
+  }
+  return largest;
+}
+
+Certificate certify(const dynamics::HybridSystem& system, const Balance& balance, ShootingOptions options) {
+  options.order = balance.order;
+  Certificate out;
+  out.found = shoot(system, state_of(system, balance), options);
+  if (!out.found.converged()) {
+    out.verdict = "no orbit lies behind this balance: " + out.found.message;
+    return out;
+  }
+  judge(balance, OrbitSeries(system, out.found.orbit), out);
+  return out;
+}
+
+CertifiedBalance balance_to_error(const dynamics::HybridSystem& system, BalanceOptions options, double error, int most,
+                                  const ShootingOptions& shooting) {
+  if (!(error > 0.0 && std::isfinite(error)))
+    throw InvalidInput(fmt::format("error: {}; valid: a number > 0, a share of the half range", error));
+  constexpr int kFirst = 3;
+  constexpr double kGrowth = 1.3;
+  CertifiedBalance out;
+  std::optional<OrbitSeries> series;
+  const auto look = [&] {  // the orbit of an order before serves as long as it is near
+    if (series) judge(out.balance, *series, out.certificate);
+    if (out.certificate.behind) return;
+    out.certificate = certify(system, out.balance, shooting);
+    if (out.certificate.behind) series.emplace(system, out.certificate.found.orbit);
+  };
+  for (int H = kFirst; H <= most; H = std::max(H + 1, static_cast<int>(kGrowth * H))) {
+    options.harmonics = H;
+    Balance next = balance(system, options);
+    if (!next.converged && !options.guess.empty()) {
+      options.guess.clear();
+      next = balance(system, options);
+    }
+    OrderTrial trial{.harmonics = H, .iterations = next.iterations, .error = std::numeric_limits<double>::quiet_NaN()};
+    out.balance = std::move(next);
+    if (out.balance.converged) {
+      look();
+      if (out.certificate.behind) {
+        trial.error = out.certificate.relative;
+        options.guess = out.balance.displacement;
+      }
+    }
+    out.trials.push_back(trial);
+    out.met = trial.error <= error;
+    if (out.met) break;
+  }
+  return out;
+}
+
+}  // namespace slipmode::orbits

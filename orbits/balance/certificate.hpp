@@ -1,0 +1,53 @@
+#pragma once
+
+#include <slipmode/orbits/balance/balance.hpp>
+#include <slipmode/orbits/shooting.hpp>
+
+#include <string>
+#include <vector>
+
+namespace slipmode::orbits {
+
+/// What is true of a balance: the exact orbit that Newton's shooting reaches from it, and how far the series is from
+/// that.
+struct Certificate {
+  /// An orbit was reached, and nowhere farther from the series than a quarter of a contact's half range.
+  bool behind = false;
+  ShootingResult found;       ///< the exact orbit, with its multipliers, events and word
+  std::vector<double> error;  ///< sup over the period of |y_balance − y_orbit|, per contact [m]; empty without an orbit
+  double relative = 0.0;      ///< the largest of them, each as a share of its contact's half range
+  std::string verdict;        ///< in a sentence
+};
+
+/// Shoots from a balance to the exact orbit and measures the distance.
+/// @param options  order is the balance's, whatever is given here
+/// The supremum is that of a grid of 2,000 points or 24 a harmonic, whichever is more, each local largest one improved
+/// by the parabola through three.
+[[nodiscard]] Certificate certify(const dynamics::HybridSystem& system, const Balance& balance,
+                                  ShootingOptions options = {});
+
+/// sup |y_balance − y_orbit| of each contact [m].
+[[nodiscard]] std::vector<double> true_errors(const Balance& balance, const OrbitSeries& orbit);
+
+/// One order that was tried.
+struct OrderTrial {
+  int harmonics = 0, iterations = 0;
+  double error = 0.0;  ///< Certificate::relative; NaN where no orbit lies behind
+};
+
+struct CertifiedBalance {
+  bool met = false;  ///< the error asked is met by `balance`
+  Balance balance;
+  Certificate certificate;
+  std::vector<OrderTrial> trials;
+};
+
+/// The lowest order, to within a factor of 1.5, whose true error is at most `error`: orders grow by at most 1.3 from
+/// one to the next, each begun from the one before.
+/// @param error  as a share of the half range of each contact's displacement, > 0
+/// @param most   orders that are tried at most
+/// @throws InvalidInput  for an error that is not positive; and as `balance`
+[[nodiscard]] CertifiedBalance balance_to_error(const dynamics::HybridSystem& system, BalanceOptions options,
+                                                double error, int most = 400, const ShootingOptions& shooting = {});
+
+}  // namespace slipmode::orbits
