@@ -7,7 +7,7 @@ namespace slipmode::studies {
 BalanceFound find_balance(const Family& model, const BalanceSearch& search, const orbits::ShootingOptions& shooting) {
   if (search.error) {
     orbits::CertifiedBalance chosen =
-        orbits::balance_to_error(model.own(), search.options, *search.error, 400, shooting);
+        orbits::balance_to_error(model.own(), search.options, *search.error, 4000, shooting);
     return {std::move(chosen.balance), std::move(chosen.certificate), std::move(chosen.trials), chosen.met};
   }
   BalanceFound out{.balance = orbits::balance(model.own(), search.options)};

@@ -71,6 +71,24 @@ class ContactResponse {
   [[nodiscard]] Eigen::Index block() const { return 2 * harmonics_ + 1; }
   [[nodiscard]] Eigen::Index unknowns() const { return contacts_ * block() + rigid_rows.cols(); }
 
+  /// The orders that Newton's method solves together: those beyond answer their forces by less than a share of their
+  /// motion, and follow by substitution.
+  [[nodiscard]] Eigen::Index lead(const HybridSystem& system, double omega) const {
+    constexpr Eigen::Index kFew = 120;
+    constexpr double kWeak = 0.005;
+    if (harmonics_ <= kFew) return harmonics_;
+    for (Eigen::Index k = harmonics_; k > kFew / 2; --k) {
+      double most = 0.0;
+      for (Eigen::Index c = 0; c < contacts_; ++c)
+        for (const friction::Stop& stop :
+             friction::clearance(system.contacts()[static_cast<std::size_t>(c)].law)->stops())
+          most = std::max(most, receptance[static_cast<std::size_t>(k)].col(c).cwiseAbs().sum() *
+                                    std::hypot(stop.stiffness, static_cast<double>(k) * omega * stop.damping));
+      if (most > kWeak) return k;
+    }
+    return kFew / 2;
+  }
+
   std::vector<Eigen::MatrixXcd> receptance;  ///< R_k [nc x nc]
   std::vector<Eigen::VectorXcd> own;         ///< e_k
   Eigen::MatrixXd rigid_rows;                ///< Z [nc x nr]
@@ -115,15 +133,17 @@ Harmonics harmonics_of(const Eigen::VectorXcd& phasors) {
 /// Newton's equations at a point.
 struct Evaluation {
   Eigen::VectorXd x, residual;
-  Eigen::MatrixXd jacobian;
+  Eigen::MatrixXd jacobian;  ///< of the leading orders
   std::vector<BalancedForce> forces;
   double relative = 0.0;
 };
 
 class BalanceProblem {
  public:
-  BalanceProblem(const HybridSystem& system, const ContactResponse& response, double omega, int samples)
-      : response_(response), omega_(omega), samples_(samples) {
+  /// @param lead  orders that Newton's method solves together
+  BalanceProblem(const HybridSystem& system, const ContactResponse& response, double omega, int samples,
+                 Eigen::Index lead)
+      : response_(response), omega_(omega), samples_(samples), lead_(lead) {
     set_gaps(system, 1.0);
   }
 
@@ -132,10 +152,11 @@ class BalanceProblem {
   [[nodiscard]] Evaluation evaluate(const Eigen::VectorXd& x) const {
     const Eigen::Index nc = response_.contacts(), H = response_.harmonics(), B = response_.block();
     const Eigen::Index nr = response_.rigid_rows.cols();
-    Evaluation out{x, Eigen::VectorXd(x.size()), Eigen::MatrixXd::Identity(x.size(), x.size()), {}, 0.0};
+    const Eigen::Index own = 2 * lead_ + 1, N = nc * own + nr;
+    Evaluation out{x, Eigen::VectorXd(x.size()), Eigen::MatrixXd::Identity(N, N), {}, 0.0};
     for (Eigen::Index c = 0; c < nc; ++c)
-      out.forces.push_back(
-          balanced_force(laws_[static_cast<std::size_t>(c)], {phasors_of(x.segment(c * B, B), H)}, omega_, samples_));
+      out.forces.push_back(balanced_force(laws_[static_cast<std::size_t>(c)], {phasors_of(x.segment(c * B, B), H)},
+                                          omega_, samples_, lead_));
     for (Eigen::Index c = 0; c < nc; ++c) {
       Eigen::VectorXcd missing = phasors_of(x.segment(c * B, B), H);
       for (Eigen::Index k = 0; k <= H; ++k) {
@@ -147,16 +168,43 @@ class BalanceProblem {
       if (nr > 0) missing[0] -= response_.rigid_rows.row(c).dot(x.tail(nr));
       out.residual.segment(c * B, B) = numbers_of(missing);
       for (Eigen::Index d = 0; d < nc; ++d) take_off(c, d, out);
-      out.jacobian.row(c * B).tail(nr) = -response_.rigid_rows.row(c);
+      out.jacobian.row(c * own).tail(nr) = -response_.rigid_rows.row(c);
     }
     add_equilibrium(out);
     out.relative = out.residual.head(nc * B).cwiseAbs().maxCoeff() / size_of(x);
     if (nr > 0) {  // forces in units of those that the displacements' size makes
       double force = response_.rigid_load.cwiseAbs().maxCoeff();
-      for (const BalancedForce& own : out.forces) force = std::max(force, own.phasors.cwiseAbs().maxCoeff());
+      for (const BalancedForce& f : out.forces) force = std::max(force, f.phasors.cwiseAbs().maxCoeff());
       if (force > 0.0) out.relative = std::max(out.relative, out.residual.tail(nr).cwiseAbs().maxCoeff() / force);
     }
     return out;
+  }
+
+  /// The step: Newton's for the leading orders, of least norm where the equations leave something open, and
+  /// substitution for those beyond.
+  [[nodiscard]] Eigen::VectorXd step(const Evaluation& at, bool& out_open) const {
+    const Eigen::Index H = response_.harmonics(), B = response_.block(), own = 2 * lead_ + 1;
+    const Eigen::Index nc = response_.contacts(), nr = response_.rigid_rows.cols();
+    std::vector<Eigen::Index> leading;
+    for (Eigen::Index c = 0; c < nc; ++c)
+      for (Eigen::Index i = 0; i < own; ++i) leading.push_back(c * B + (i <= lead_ ? i : H + i - lead_));
+    for (Eigen::Index r = 0; r < nr; ++r) leading.push_back(nc * B + r);
+    const Eigen::PartialPivLU<Eigen::MatrixXd> lu(at.jacobian);
+    const Eigen::VectorXd pivots = lu.matrixLU().diagonal().cwiseAbs();
+    Eigen::VectorXd rest(at.jacobian.rows());
+    for (std::size_t i = 0; i < leading.size(); ++i) rest[static_cast<Eigen::Index>(i)] = -at.residual[leading[i]];
+    out_open = !(pivots.minCoeff() > 1e-14 * pivots.maxCoeff());
+    Eigen::VectorXd newton;
+    if (out_open) {
+      Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> orthogonal;
+      orthogonal.setThreshold(1e-12);
+      newton = orthogonal.compute(at.jacobian).solve(rest);
+    } else {
+      newton = lu.solve(rest);
+    }
+    Eigen::VectorXd step = -at.residual;
+    for (std::size_t i = 0; i < leading.size(); ++i) step[leading[i]] = newton[static_cast<Eigen::Index>(i)];
+    return step;
   }
 
  private:
@@ -168,7 +216,7 @@ class BalanceProblem {
 
   /// Jacobian's block of contact c by contact d: less R_k times the force's derivative.
   void take_off(Eigen::Index c, Eigen::Index d, Evaluation& out) const {
-    const Eigen::Index H = response_.harmonics(), B = response_.block();
+    const Eigen::Index H = lead_, B = 2 * lead_ + 1;
     const Eigen::MatrixXd& J = out.forces[static_cast<std::size_t>(d)].jacobian;
     auto block = out.jacobian.block(c * B, d * B, B, B);
     for (Eigen::Index k = 0; k <= H; ++k) {
@@ -182,7 +230,7 @@ class BalanceProblem {
 
   /// Zᵀλ_0 + p = 0 for what floats.
   void add_equilibrium(Evaluation& out) const {
-    const Eigen::Index nc = response_.contacts(), B = response_.block(), nr = response_.rigid_rows.cols();
+    const Eigen::Index nc = response_.contacts(), B = 2 * lead_ + 1, nr = response_.rigid_rows.cols();
     if (nr == 0) return;
     out.residual.tail(nr) = response_.rigid_load;
     out.jacobian.bottomRightCorner(nr, nr).setZero();
@@ -197,26 +245,16 @@ class BalanceProblem {
   const ContactResponse& response_;
   double omega_;
   int samples_;
+  Eigen::Index lead_;
   std::vector<friction::Clearance> laws_;
 };
-
-/// The Newton step, of least norm where the equations leave something open.
-Eigen::VectorXd newton_step(const Evaluation& at, bool& out_open) {
-  const Eigen::PartialPivLU<Eigen::MatrixXd> lu(at.jacobian);
-  const Eigen::VectorXd pivots = lu.matrixLU().diagonal().cwiseAbs();
-  out_open = !(pivots.minCoeff() > 1e-14 * pivots.maxCoeff());
-  if (!out_open) return lu.solve(-at.residual);
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> orthogonal;
-  orthogonal.setThreshold(1e-12);
-  return orthogonal.compute(at.jacobian).solve(-at.residual);
-}
 
 /// Newton's method, steps halved until the residual falls. Spends at most `budget` steps.
 Evaluation descend(const BalanceProblem& problem, const Eigen::VectorXd& from, double tolerance, int most, int& budget,
                    bool& out_open) {
   Evaluation best = problem.evaluate(from);
   for (int turn = 0; turn < most && budget > 0 && !(best.relative <= tolerance); ++turn, --budget) {
-    const Eigen::VectorXd step = newton_step(best, out_open);
+    const Eigen::VectorXd step = problem.step(best, out_open);
     double share = 1.0;
     Evaluation next = problem.evaluate(best.x + step);
     while (!(next.residual.norm() < best.residual.norm()) && share > 1e-2) {
@@ -332,7 +370,7 @@ Balance balance(const HybridSystem& system, const BalanceOptions& options) {
   check(system, options);
   const double omega = system.drive().force()->omega / options.order;
   const ContactResponse response(system, options.order, omega, options.harmonics);
-  BalanceProblem problem(system, response, omega, options.samples);
+  BalanceProblem problem(system, response, omega, options.samples, response.lead(system, omega));
   int budget = options.max_iterations;
   bool open = false;
   const auto arrived = [&](const Evaluation& at) { return at.relative <= options.tolerance; };
@@ -364,7 +402,7 @@ Balance balance(const HybridSystem& system, const BalanceOptions& options) {
     out.switches += force.switches;
   }
   out.rigid = found.x.tail(response.rigid_rows.cols());
-  if (out.rigid.size() > 0) static_cast<void>(newton_step(found, open));  // a start may have been one already
+  if (out.rigid.size() > 0) static_cast<void>(problem.step(found, open));  // a start may have been one already
   out.family = open && out.switches == 0 && out.rigid.size() > 0;
   out.residual = found.relative;
   out.iterations = options.max_iterations - budget;
@@ -378,7 +416,7 @@ Balance balance(const HybridSystem& system, const BalanceOptions& options) {
 
 BalanceEquations balance_equations(const HybridSystem& system, const Balance& at) {
   const ContactResponse response(system, at.order, at.omega, at.harmonics);
-  const BalanceProblem problem(system, response, at.omega, at.samples);
+  const BalanceProblem problem(system, response, at.omega, at.samples, at.harmonics);
   Eigen::VectorXd x = unknowns_of(at.displacement, response);
   x.tail(at.rigid.size()) = at.rigid;
   Evaluation found = problem.evaluate(x);

@@ -106,7 +106,7 @@ Occupation sampled_occupation(const StopLaw& law, const TrigonometricPolynomial&
 /// Adds one stop's share.
 void add_stop(const StopLaw& law, const TrigonometricPolynomial& y, const Occupation& where, BalancedForce& out) {
   if (where.set[0] == 0.0) return;
-  const Eigen::Index H = y.phasors.size() - 1;
+  const Eigen::Index H = y.phasors.size() - 1, L = (out.jacobian.rows() - 1) / 2;
   const auto moment = [](const Eigen::VectorXcd& of, Eigen::Index m) { return m < 0 ? std::conj(of[-m]) : of[m]; };
   const auto coefficient = [&](Eigen::Index k) {  // double-sided
     return k == 0 ? y.phasors[0] : k > 0 ? 0.5 * y.phasors[k] : 0.5 * std::conj(y.phasors[-k]);
@@ -119,15 +119,16 @@ void add_stop(const StopLaw& law, const TrigonometricPolynomial& y, const Occupa
       const Complex plus_set = gain * moment(where.set, k - j), minus_set = std::conj(gain) * moment(where.set, -k - j);
       force += plus_set * coefficient(k);
       if (k > 0) force += minus_set * coefficient(-k);
+      if (j > L || k > L) continue;
       const double jump = law.stop.damping * law.omega;
       const Complex plus = twice * (plus_set + jump * moment(where.jumps, k - j)),
                     minus = twice * (minus_set + jump * moment(where.jumps, -k - j));
       // By cosine_k and sine_k: ŷ_{±k} = (cosine ∓ i sine)/2.
       const Complex by_cosine = k == 0 ? plus : 0.5 * (plus + minus), by_sine = Complex(0.0, -0.5) * (plus - minus);
       out.jacobian(j, k) += by_cosine.real();
-      if (j > 0) out.jacobian(H + j, k) -= by_cosine.imag();
-      if (k > 0) out.jacobian(j, H + k) += by_sine.real();
-      if (j > 0 && k > 0) out.jacobian(H + j, H + k) -= by_sine.imag();
+      if (j > 0) out.jacobian(L + j, k) -= by_cosine.imag();
+      if (k > 0) out.jacobian(j, L + k) += by_sine.real();
+      if (j > 0 && k > 0) out.jacobian(L + j, L + k) -= by_sine.imag();
     }
     out.phasors[j] += twice * (j == 0 ? Complex(force.real()) : force);
   }
@@ -136,9 +137,9 @@ void add_stop(const StopLaw& law, const TrigonometricPolynomial& y, const Occupa
 }  // namespace
 
 BalancedForce balanced_force(const friction::Clearance& law, const TrigonometricPolynomial& y, double omega,
-                             int samples) {
+                             int samples, Eigen::Index lead) {
   const Eigen::Index H = y.phasors.size() - 1;
-  BalancedForce out{Eigen::VectorXcd::Zero(H + 1), Eigen::MatrixXd::Zero(2 * H + 1, 2 * H + 1), 0};
+  BalancedForce out{Eigen::VectorXcd::Zero(H + 1), Eigen::MatrixXd::Zero(2 * lead + 1, 2 * lead + 1), 0};
   for (const double side : {-1.0, 1.0}) {
     const auto& stop = side < 0 ? law.left : law.right;
     if (!stop) continue;

@@ -48,6 +48,6 @@ struct CertifiedBalance {
 /// @param most   orders that are tried at most
 /// @throws InvalidInput  for an error that is not positive; and as `balance`
 [[nodiscard]] CertifiedBalance balance_to_error(const dynamics::HybridSystem& system, BalanceOptions options,
-                                                double error, int most = 400, const ShootingOptions& shooting = {});
+                                                double error, int most = 4000, const ShootingOptions& shooting = {});
 
 }  // namespace slipmode::orbits

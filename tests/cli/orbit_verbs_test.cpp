@@ -115,6 +115,41 @@ TEST_F(OrbitVerbs, SpectrumOfAStoredOrbit) {
   expect_refused({"spectrum", "orbit.h5", "--dof", "2"}, {"--dof 2", "1 to 1"});
 }
 
+TEST_F(OrbitVerbs, BalanceWithItsTrueError) {
+  const std::string play = SLIPMODE_SOURCE_DIR "/datasets/play_oscillator/scene.toml";
+  const std::vector<std::string> find = {"find", play, "--by", "balance"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), find.begin(), find.end());
+    return more;
+  };
+  const auto said =
+      json_of(with({"--set", "drive.amplitude=1.0833", "--harmonics", "auto", "--error", "1e-4", "-o", "b.h5"}));
+  EXPECT_TRUE(said["converged"]);
+  EXPECT_LE(said["certificate"]["relative"], 1e-4);
+  EXPECT_EQ(said["certificate"]["orbit"]["word"], "g l g r");
+  EXPECT_EQ(said["trials"].back()["harmonics"], said["harmonics"]);
+  // S2 Table 2, 7(a): e₁ = −1.1456, d₁ = 0.0486
+  EXPECT_NEAR(said["contacts"][0]["displacement"]["cosine"][1], -1.1456, 1e-4);
+  EXPECT_NEAR(said["contacts"][0]["displacement"]["sine"][1], 0.0486, 1e-4);
+  for (const char* figure : {"portrait", "error"}) {
+    const std::string file = std::string(figure) + ".svg";
+    EXPECT_EQ(slipmode_in(folder, {"plot", "b.h5", "--figure", figure, "-o", file}).exit_code, 0);
+    EXPECT_TRUE(is_figure(folder.path() / file));
+  }
+  const auto sampled = json_of(with({"--harmonics", "11", "--samples", "128"}));
+  EXPECT_EQ(sampled["samples"], 128);
+  EXPECT_FALSE(sampled.contains("certificate"));
+  const auto failed = json_of({"find", kSdof, "--set", "drive.omega=0.4", "--by", "balance", "--harmonics", "5"}, 3);
+  EXPECT_GT(failed["residual"], 0.0);
+  EXPECT_THAT(failed["message"].get<std::string>(), HasSubstr("no balance of 5 harmonics"));
+  expect_refused(with({"--harmonics", "0"}), {"--harmonics 0", "from 1 on"});
+  expect_refused(with({"--harmonics", "9", "--samples", "18"}), {"samples: 18", "more than 18"});
+  expect_refused(with({"--harmonics", "auto"}), {"--error", "needs a true error > 0"});
+  expect_refused(with({"--start", "1,0"}), {"--start 1,0", "contact", "gap"});
+  expect_refused({"find", SLIPMODE_SOURCE_DIR "/datasets/chain10/scene.toml", "--by", "balance"},
+                 {"needs a force drive", "shooting"});
+}
+
 TEST_F(OrbitVerbs, SaysHowFarItCameWithoutAnOrbit) {
   const auto said = json_of({"find", kSdof, "--start", "2.0,0.0", "--iterations", "2"}, 3);
   EXPECT_EQ(said["status"], "failed");

@@ -84,14 +84,17 @@ TEST(Spectrum, ObeysTheEquationsOfMotionOrderByOrder) {
   // Damped stops whose force jumps, four masses of which two touch, two contacts with a constant load and a skew
   // damping, three periods of the drive.
   const HybridSystem backlash = Backlash{.omega = 0.4}.system();
-  expect_equations_of_motion(backlash, find_orbit(backlash, settled(backlash, backlash.rest(), 60.0), {.tolerance = 1e-13}), 60, 2e-12);
+  expect_equations_of_motion(
+      backlash, find_orbit(backlash, settled(backlash, backlash.rest(), 60.0), {.tolerance = 1e-13}), 60, 2e-12);
   const HybridSystem four = four_masses(1.1);
-  expect_equations_of_motion(four, find_orbit(four, settled(four, displaced(four, 0, 1.0), 400.0), {.tolerance = 1e-13}), 40, 2e-12);
+  expect_equations_of_motion(
+      four, find_orbit(four, settled(four, displaced(four, 0, 1.0), 400.0), {.tolerance = 1e-13}), 40, 2e-12);
   const HybridSystem three = three_masses(1.1);
-  expect_equations_of_motion(three, find_orbit(three, settled(three, three.rest(), 200.0), {.tolerance = 1e-13}), 40, 2e-12);
-  const HybridSystem third = Backlash{.omega = 0.475}.system();
-  expect_equations_of_motion(third, find_orbit(third, settled(third, third.rest(), 300.0), {.order = 3, .tolerance = 1e-13}), 60,
+  expect_equations_of_motion(three, find_orbit(three, settled(three, three.rest(), 200.0), {.tolerance = 1e-13}), 40,
                              2e-12);
+  const HybridSystem third = Backlash{.omega = 0.475}.system();
+  expect_equations_of_motion(
+      third, find_orbit(third, settled(third, third.rest(), 300.0), {.order = 3, .tolerance = 1e-13}), 60, 2e-12);
 }
 
 TEST(Spectrum, SlidingWithALawThatNoClosedFormMoves) {

@@ -13,7 +13,7 @@ inline constexpr int kExact = 0;
 /// The Fourier coefficients of a contact's force along a given motion, and their derivatives.
 struct BalancedForce {
   Eigen::VectorXcd phasors;  ///< of λ [H + 1]
-  /// d(λ's)/d(y's), both in the order cosine_0 … cosine_H, sine_1 … sine_H [2H+1 x 2H+1].
+  /// d(λ's)/d(y's) of the orders up to `lead`, both in the order cosine_0 … cosine_L, sine_1 … sine_L [2L+1 x 2L+1].
   Eigen::MatrixXd jacobian;
   int switches = 0;  ///< instants at which a stop is reached or let go; of samples, changes from one to the next
 };
@@ -29,7 +29,8 @@ struct BalancedForce {
 /// the last where the force jumps at a switch: a damped stop that is reached, or let go at its gap. By samples g_m is a
 /// mean over them instead, and there are no switches. Source: docs/theory/harmonic-balance.md, section 2.
 /// @param samples  kExact, or their number
+/// @param lead     L ≤ H
 [[nodiscard]] BalancedForce balanced_force(const friction::Clearance& law, const TrigonometricPolynomial& y,
-                                           double omega, int samples);
+                                           double omega, int samples, Eigen::Index lead);
 
 }  // namespace slipmode::orbits
