@@ -56,7 +56,8 @@ Judged judge_steps(std::uint64_t index, int contacts, double tolerance) {
   constexpr double kDuration = 40.0;
   const scene::Scene scene = scene::parse_scene(random_stribeck_chain(index, contacts));
   const HybridSystem system = scene::build_system(scene);
-  const Prepared p = prepare(system, scene::initial_state(scene, system), {.tolerance = tolerance, .certify = true}, false);
+  const Prepared p =
+      prepare(system, scene::initial_state(scene, system), {.tolerance = tolerance, .certify = true}, false);
   FlowOptions fine = p.options;
   fine.tolerance = 1e-13;
   fine.certify = false;
