@@ -64,15 +64,17 @@ studies::BalanceSearch balance_search_of(const BalanceArguments& arguments, cons
     throw InvalidInput(fmt::format("--start {}: a balance begins at contact (all stops pressing) or gap", start));
   }
   out.options.start = start == "gap" ? orbits::BalanceStart::kGap : orbits::BalanceStart::kContact;
-  if (arguments.harmonics == "auto") {
-    if (!(arguments.error > 0.0)) {
-      throw InvalidInput(fmt::format("--error {}: --harmonics auto needs a true error > 0", arguments.error));
-    }
-    out.error = arguments.error;
-  } else {
-    out.options.harmonics = whole_number("--harmonics", arguments.harmonics, "auto");
+  const std::string harmonics = arguments.harmonics.value_or("9"), samples = arguments.samples.value_or("exact");
+  if ((harmonics == "auto") != arguments.error.has_value()) {
+    throw InvalidInput("--harmonics auto and --error, a true error > 0, go together");
   }
-  if (arguments.samples != "exact") out.options.samples = whole_number("--samples", arguments.samples, "exact");
+  if (arguments.error) {
+    if (!(*arguments.error > 0.0)) throw InvalidInput(fmt::format("--error {}: valid: > 0", *arguments.error));
+    out.error = *arguments.error;
+  } else {
+    out.options.harmonics = whole_number("--harmonics", harmonics, "auto");
+  }
+  if (samples != "exact") out.options.samples = whole_number("--samples", samples, "exact");
   return out;
 }
 

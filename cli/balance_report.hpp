@@ -4,15 +4,19 @@
 #include "cli/session.hpp"
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 
 namespace slipmode::cli {
 
 /// What `orbit find --by balance` adds.
 struct BalanceArguments {
-  std::string by = "shooting", harmonics = "9", samples = "exact";
-  double error = 0.0;
+  std::string by = "shooting";
+  std::optional<std::string> harmonics, samples;  ///< else 9, exact
+  std::optional<double> error;
   bool certify = false;
+
+  bool operator==(const BalanceArguments&) const = default;
 };
 
 void add_balance_options(CLI::App& command, BalanceArguments& out_arguments);

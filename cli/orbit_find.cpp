@@ -58,6 +58,9 @@ Report run(const Session& session, const OrbitFindArguments& arguments) {
   const scene::Scene scene = session.load(arguments.search.scene);
   const studies::Family model(scene, {}, studies::model_basis(scene, arguments.search.model, session.run_options()));
   if (arguments.balance.by == "balance") return run_balance(arguments, model);
+  if (arguments.balance != BalanceArguments{}) {
+    throw InvalidInput("--harmonics, --error, --samples, --certify: of a balance; add --by balance");
+  }
   const dynamics::HybridSystem& system = model.own();
   const studies::OrbitSearch search = search_of(arguments.search, scene);
   session.check_interrupt();

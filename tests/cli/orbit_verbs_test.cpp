@@ -144,7 +144,9 @@ TEST_F(OrbitVerbs, BalanceWithItsTrueError) {
   EXPECT_THAT(failed["message"].get<std::string>(), HasSubstr("no balance of 5 harmonics"));
   expect_refused(with({"--harmonics", "0"}), {"--harmonics 0", "from 1 on"});
   expect_refused(with({"--harmonics", "9", "--samples", "18"}), {"samples: 18", "more than 18"});
-  expect_refused(with({"--harmonics", "auto"}), {"--error", "needs a true error > 0"});
+  expect_refused(with({"--harmonics", "auto"}), {"--error", "a true error > 0"});
+  expect_refused(with({"--harmonics", "9", "--error", "1e-3"}), {"--harmonics auto and --error", "together"});
+  expect_refused({"find", play, "--harmonics", "9"}, {"--harmonics", "add --by balance"});
   expect_refused(with({"--start", "1,0"}), {"--start 1,0", "contact", "gap"});
   expect_refused({"find", SLIPMODE_SOURCE_DIR "/datasets/chain10/scene.toml", "--by", "balance"},
                  {"needs a force drive", "shooting"});
