@@ -89,12 +89,8 @@ Report balance_report(const studies::Family& model, const studies::BalanceFound&
   Json contacts = Json::array();
   for (std::size_t c = 0; c < balance.displacement.size(); ++c) {
     contacts.push_back({{"contact", model.own().contacts()[c].name},
-                        {"displacement",
-                         {{"cosine", results::values_of(balance.displacement[c].cosine)},
-                          {"sine", results::values_of(balance.displacement[c].sine)}}},
-                        {"force",
-                         {{"cosine", results::values_of(balance.force[c].cosine)},
-                          {"sine", results::values_of(balance.force[c].sine)}}}});
+                        {"displacement", harmonics_json(balance.displacement[c])},
+                        {"force", harmonics_json(balance.force[c])}});
   }
   report.data["contacts"] = contacts;
   const std::string forces = balance.samples == 0 ? "exact forces" : fmt::format("{} samples", balance.samples);
@@ -106,10 +102,7 @@ Report balance_report(const studies::Family& model, const studies::BalanceFound&
   if (!balance.converged) report.text += balance.message + "\n";
   if (balance.converged) report.text += coefficient_table(balance);
   Json trials = Json::array();
-  for (const orbits::OrderTrial& trial : found.trials) {
-    trials.push_back(
-        {{"harmonics", trial.harmonics}, {"error", json_number(trial.error)}, {"iterations", trial.iterations}});
-  }
+  for (const orbits::OrderTrial& trial : found.trials) trials.push_back(fields_json(trial));
   if (!trials.empty()) report.data["trials"] = trials;
   if (balance.converged && !found.met) {
     report.data["message"] = fmt::format("the error asked is not met up to {} harmonics", balance.harmonics);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <slipmode/results/result_fields.hpp>
+#include <slipmode/results/table.hpp>
 #include "cli/session.hpp"
 
 #include <cmath>
@@ -19,6 +20,11 @@ template <class S>
     if constexpr (!std::is_same_v<T, Eigen::MatrixXd>) out[field.name] = own.*field.member;
   });
   return out;
+}
+
+/// Fourier coefficients, order by order.
+[[nodiscard]] inline Json harmonics_json(const orbits::Harmonics& own) {
+  return {{"cosine", results::values_of(own.cosine)}, {"sine", results::values_of(own.sine)}};
 }
 
 /// Keys of one object and of those that follow.

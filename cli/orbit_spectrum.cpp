@@ -56,18 +56,18 @@ Report run(const Session& session, const OrbitSpectrumArguments& arguments) {
   report.data =
       merged({{"verb", "orbit spectrum"}, {"title", scene.title}, {"model", model.title()}}, fields_json(spectrum));
   std::vector<std::string> header = {"order"};
+  std::vector<Eigen::VectorXd> amplitudes;
   Json quantities = Json::array();
   for (const results::NamedHarmonics& own : all) {
     header.push_back(own.name);
-    quantities.push_back({{"name", own.name},
-                          {"cosine", results::values_of(own.harmonics->cosine)},
-                          {"sine", results::values_of(own.harmonics->sine)}});
+    quantities.push_back(merged({{"name", own.name}}, harmonics_json(*own.harmonics)));
+    amplitudes.push_back(own.harmonics->amplitude());
   }
   report.data["quantities"] = quantities;
   TextTable table(header);
   for (Eigen::Index k = 0; k <= arguments.harmonics; ++k) {
     std::vector<std::string> row = {std::to_string(k)};
-    for (const results::NamedHarmonics& own : all) row.push_back(fmt::format("{:.6e}", own.harmonics->amplitude()[k]));
+    for (const Eigen::VectorXd& own : amplitudes) row.push_back(fmt::format("{:.6e}", own[k]));
     table.add(std::move(row));
   }
   report.text = fmt::format(
@@ -77,7 +77,7 @@ Report run(const Session& session, const OrbitSpectrumArguments& arguments) {
   if (!arguments.output.empty()) {
     results::StoreWriter writer(arguments.output, results::FileKind::kSpectrum, scene.units);
     results::save(writer, results::provenance_of(scene, "slipmode orbit spectrum"));
-    results::store_spectrum(writer, spectrum, names, results::Units::of(scene.units));
+    results::store_spectrum(writer, spectrum, all);
     writer.commit();
     report.data["file"] = arguments.output;
     report.text += fmt::format("Spectrum: {}\n", arguments.output);

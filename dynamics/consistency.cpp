@@ -181,11 +181,14 @@ Resolution resolve(const Instant& now, const std::vector<ContactMode>& modes, co
     refresh();
   }
   Trial checked = trial;
-  bool consistent = evaluate(now, at_rest, released, checked) || enumerate(now, at_rest, released, checked);
+  const auto find = [&] {
+    return evaluate(now, at_rest, released, checked) || enumerate(now, at_rest, released, checked);
+  };
+  bool consistent = find();
   if (!consistent) {  // forces at a limit that vanishes are told to their rounding
     checked = trial;
     checked.rounding = acceleration_rounding(now, trial.force);
-    consistent = evaluate(now, at_rest, released, checked) || enumerate(now, at_rest, released, checked);
+    consistent = find();
   }
   if (!consistent)
     throw NumericalFailure(

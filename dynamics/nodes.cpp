@@ -77,9 +77,8 @@ void measure_remainders(const VectorL& with_start, RadauTables& t) {
   power(0) = 1;
   for (int k = 0; k <= kNodes; ++k)
     for (int i = k + 1; i >= 0; --i) power(i) = (i > 0 ? power(i - 1) : Real(0)) - with_start(k) * power(i);
-  constexpr int kGrid = 4000;
+  constexpr int kGrid = 400;
   t.remainder = {};
-  t.lebesgue = 0.0;
   const MatrixL basis = interpolation(with_start.tail(kNodes), VectorL::LinSpaced(kGrid + 1, 0, 1)).cwiseAbs();
   t.lebesgue = 1.001 * static_cast<double>(basis.rowwise().sum().maxCoeff());
   for (double& remainder : t.remainder) {

@@ -4,11 +4,12 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 
 namespace slipmode::dynamics {
 
 /// Collocation nodes per step: eight, one vector register.
-inline constexpr int kNodes = 8;
+inline constexpr std::ptrdiff_t kNodes = 8;
 
 /// Universal matrices of an eight-node Radau IIA step on the unit interval (last node at 1).
 ///

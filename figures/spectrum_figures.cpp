@@ -24,10 +24,7 @@ Figure amplitudes(const results::StoreReader& store) {
     for (const auto& [word, unit, colour] :
          {std::tuple{"displacement", units.length, kFullColour}, std::tuple{"velocity", units.velocity, kPomColour},
           std::tuple{"force", units.force, kLnmColour}}) {
-      const std::string name = fmt::format("{}_{}", word, c + 1);
-      const Eigen::ArrayXd size = (to_vector(table.numbers(name + "_cosine")).array().square() +
-                                   to_vector(table.numbers(name + "_sine")).array().square())
-                                      .sqrt();
+      const Eigen::ArrayXd size = results::harmonics_of(table, fmt::format("{}_{}", word, c + 1)).amplitude();
       const Eigen::VectorXd shown = (size <= kLeast * size.maxCoeff()).select(std::nan(""), size);
       panel.series.push_back({c == 0 ? axis_label(word, unit) : "", order, shown, Series::Look::kPoints, colour});
     }

@@ -1,6 +1,7 @@
 #include <slipmode/orbits/orbit_series.hpp>
 
 #include <slipmode/core/errors.hpp>
+#include <slipmode/dynamics/nodes.hpp>
 
 #include <algorithm>
 #include <array>
@@ -35,18 +36,12 @@ struct GaussLegendre {
   Eigen::Matrix<double, kTerms, kTerms> to_terms;
 
   GaussLegendre() {
+    const dynamics::GaussRule rule = dynamics::gauss_rule(kTerms);
     for (int i = 0; i < kTerms; ++i) {
-      double x = -std::cos(std::numbers::pi * (i + 0.75) / (kTerms + 0.5)), slope = 0.0;
-      for (int turn = 0; turn < 6; ++turn) {  // Newton's method on P_16
-        const Eigen::Vector<double, kTerms> p = legendre(x);
-        const double next = ((2 * kTerms - 1) * x * p[kTerms - 1] - (kTerms - 1) * p[kTerms - 2]) / kTerms;
-        slope = kTerms * (x * next - p[kTerms - 1]) / (x * x - 1.0);
-        x -= next / slope;
-      }
+      const double x = 2.0 * rule.node(i) - 1.0;
       point[static_cast<std::size_t>(i)] = x;
-      const double weight = 2.0 / ((1.0 - x * x) * slope * slope);
-      const Eigen::Vector<double, kTerms> p = legendre(x);
-      for (int j = 0; j < kTerms; ++j) to_terms(i, j) = 0.5 * (2 * j + 1) * weight * p[j];
+      to_terms.row(i) = rule.weight(i) * legendre(x);
+      for (int j = 0; j < kTerms; ++j) to_terms(i, j) *= 2 * j + 1;
     }
   }
 };

@@ -1,9 +1,10 @@
 #include <slipmode/results/balance_store.hpp>
 
-#include <slipmode/core/to_vector.hpp>
+#include <slipmode/results/spectrum_store.hpp>
 #include "results/internal/field_record.hpp"
 
 #include <fmt/format.h>
+#include <tuple>
 
 namespace slipmode::results {
 namespace {
@@ -14,22 +15,14 @@ std::string path(const char* name) { return fmt::format("{}/{}", kBalanceGroup, 
 
 void store_balance(StoreWriter& store, const orbits::Balance& balance, const orbits::Certificate* certificate,
                    const std::vector<orbits::OrderTrial>& trials, const Units& units) {
-  Table table{.description = "y = sum over orders k of cosine cos(k omega t) + sine sin(k omega t)", .columns = {}};
-  std::vector<double> orders;
-  for (int k = 0; k <= balance.harmonics; ++k) orders.push_back(k);
-  table.columns.push_back({"order", {"", "k"}, orders});
-  for (std::size_t c = 0; c < balance.displacement.size(); ++c) {
-    const auto add = [&](const char* word, const std::string& unit, const orbits::Harmonics& own) {
-      const std::string name = fmt::format("{}_{}", word, c + 1), what = fmt::format("{} of contact {}", word, c + 1);
-      table.columns.push_back({name + "_cosine", {unit, what + ", cosines"}, values_of(own.cosine)});
-      table.columns.push_back({name + "_sine", {unit, what + ", sines"}, values_of(own.sine)});
-    };
-    add("displacement", units.length, balance.displacement[c]);
-    add("force", units.force, balance.force[c]);
-  }
+  std::vector<NamedHarmonics> all;
+  for (std::size_t c = 0; c < balance.displacement.size(); ++c)
+    for (const auto& [word, unit, own] : {std::tuple{"displacement", units.length, &balance.displacement[c]},
+                                          std::tuple{"force", units.force, &balance.force[c]}})
+      all.push_back({fmt::format("{}_{}", word, c + 1), unit, fmt::format("{} of contact {}", word, c + 1), own});
   store.describe_group(kBalanceGroup, "a truncated Fourier series that balances the equations of motion");
   save_fields(store, kBalanceGroup, balance);
-  save(store, path("coefficients"), table);
+  save(store, path("coefficients"), harmonics_table(all));
   save(store, path("trials"), Table{"orders tried, and their true errors", columns_of(trials)});
   if (certificate == nullptr) return;
   store.write(path("verdict"), certificate->verdict, {"", "what shooting from it says"});
@@ -41,8 +34,7 @@ StoredBalance load_balance(const StoreReader& store) {
       .omega = store.number(path("omega")), .displacement = {}, .trials = load_table(store, path("trials"))};
   const Table table = load_table(store, path("coefficients"));
   for (std::size_t c = 1; table.has(fmt::format("displacement_{}_cosine", c)); ++c)
-    out.displacement.push_back({to_vector(table.numbers(fmt::format("displacement_{}_cosine", c))),
-                                to_vector(table.numbers(fmt::format("displacement_{}_sine", c)))});
+    out.displacement.push_back(harmonics_of(table, fmt::format("displacement_{}", c)));
   if (out.displacement.empty()) store.fail(path("coefficients"), "has no displacement; make the file again");
   return out;
 }

@@ -1,5 +1,6 @@
 #include <slipmode/results/spectrum_store.hpp>
 
+#include <slipmode/core/to_vector.hpp>
 #include "results/internal/field_record.hpp"
 
 #include <fmt/format.h>
@@ -24,22 +25,27 @@ std::vector<NamedHarmonics> named(const orbits::Spectrum& spectrum, const std::v
   return all;
 }
 
-void store_spectrum(StoreWriter& store, const orbits::Spectrum& spectrum, const std::vector<std::string>& rows,
-                    const Units& units) {
+Table harmonics_table(const std::vector<NamedHarmonics>& all) {
   Table table{.description = "y = sum over orders k of cosine cos(k omega t) + sine sin(k omega t)", .columns = {}};
-  for (const NamedHarmonics& own : named(spectrum, rows, units)) {
-    if (table.columns.empty()) {
-      std::vector<double> orders;
-      for (int k = 0; k <= own.harmonics->order(); ++k) orders.push_back(k);
-      table.columns.push_back({"order", {"", "k"}, orders});
-    }
+  std::vector<double> orders;
+  for (int k = 0; k <= all.front().harmonics->order(); ++k) orders.push_back(k);
+  table.columns.push_back({"order", {"", "k"}, orders});
+  for (const NamedHarmonics& own : all) {
     table.columns.push_back(
         {own.name + "_cosine", {own.unit, own.what + ", cosines"}, values_of(own.harmonics->cosine)});
     table.columns.push_back({own.name + "_sine", {own.unit, own.what + ", sines"}, values_of(own.harmonics->sine)});
   }
+  return table;
+}
+
+orbits::Harmonics harmonics_of(const Table& table, const std::string& name) {
+  return {to_vector(table.numbers(name + "_cosine")), to_vector(table.numbers(name + "_sine"))};
+}
+
+void store_spectrum(StoreWriter& store, const orbits::Spectrum& spectrum, const std::vector<NamedHarmonics>& all) {
   store.describe_group(kSpectrumGroup, "Fourier coefficients of a periodic orbit");
   save_fields(store, kSpectrumGroup, spectrum);
-  save(store, fmt::format("{}/coefficients", kSpectrumGroup), table);
+  save(store, fmt::format("{}/coefficients", kSpectrumGroup), harmonics_table(all));
 }
 
 Table load_spectrum(const StoreReader& store) {

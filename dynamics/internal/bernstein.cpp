@@ -138,6 +138,11 @@ bool stays_above(const std::array<double, 8>& coefficients, double bound, int ha
   return stays_above(left, bound, halvings - 1) && stays_above(right, bound, halvings - 1);
 }
 
+BernsteinPolynomial lowered(BernsteinPolynomial p, double by) {
+  for (int k = 0; k <= p.degree; ++k) p.coefficient[static_cast<std::size_t>(k)] -= by;
+  return p;
+}
+
 BernsteinPolynomial part(const BernsteinPolynomial& p, double from, double to) {
   // De Casteljau's scheme twice: what lies after `from`, and of that what lies before `to`.
   BernsteinPolynomial out = p;

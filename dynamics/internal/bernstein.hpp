@@ -23,6 +23,8 @@ struct FirstRoot {
 /// dropped by setting the leading coefficients that vanish there to exactly zero.
 [[nodiscard]] std::optional<FirstRoot> first_root(const BernsteinPolynomial& p);
 
+/// The polynomial less a constant.
+[[nodiscard]] BernsteinPolynomial lowered(BernsteinPolynomial p, double by);
 /// The same polynomial between two places, on [0, 1] again.
 [[nodiscard]] BernsteinPolynomial part(const BernsteinPolynomial& p, double from, double to);
 /// dp/dt, of one degree less.

@@ -190,9 +190,7 @@ void ClosedFormFlow::judge(const BernsteinPolynomial& polynomial, double remaind
   std::optional<FirstRoot> root;
   if (here.resolved) root = first_root(polynomial);
   if (!root || root->touching) {
-    BernsteinPolynomial low = polynomial;
-    for (int k = 0; k < kNodes; ++k) low.coefficient[static_cast<std::size_t>(k)] -= remainder;
-    root = first_root(low);
+    root = first_root(lowered(polynomial, remainder));
     if (!root) return;
     here.touching = here.resolved;
   }

@@ -13,8 +13,6 @@ namespace {
 
 /// An event's time is final when the next correction is below this share of the step.
 constexpr double kNegligibleShift = 1e-15;
-/// A stick force starts at its limit when it is this close (relative).
-constexpr double kAtLimit = 1e-10;
 /// Right after sliding has begun, a guard that vanishes within this share of a step is an error of interpolation.
 constexpr double kEarly = 1.0 / 64.0;
 /// Halvings tried to show that a stick force stays below its limit.
@@ -124,7 +122,7 @@ void CollocationFlow::refine_event(const Guarded& guard, double& tau, Eigen::Vec
   for (int iteration = 0; iteration < kRefinements; ++iteration) {
     const double a = drive_acceleration(begin_, tau), V = drive_velocity(begin_, tau);
     const RadauTables::Vector8 basis = nodes_.lagrange(tau / h);
-    double value, rate, usual_rate;
+    double value = 0.0, rate = 0.0, usual_rate = 0.0;
     if (point_.modes[i] == ContactMode::kStick) {
       const double sign = forces_.segment<kNodes>(kNodes * c).dot(basis) > 0 ? 1.0 : -1.0;
       value = laws()[i].static_limit - sign * stick_force(c, x, tau, basis);

@@ -12,8 +12,6 @@
 namespace slipmode::dynamics {
 namespace {
 
-/// A stick force starts at its limit when it is this close (relative).
-constexpr double kOnLimit = 1e-10;
 /// Shares of a step tried, by halving, over which a guard that starts at zero is shown to rise.
 constexpr int kRiseHalvings = 8;
 /// Of a root found, relative: twice what first_root leaves.
@@ -26,10 +24,7 @@ constexpr double kNewtonRest = 1e-7;
 /// e^x ≤ 1/(1 − x) up to here.
 constexpr double kLargestGrowth = 0.8;
 
-bool positive(BernsteinPolynomial p, double above) {
-  for (int k = 0; k <= p.degree; ++k) p.coefficient[static_cast<std::size_t>(k)] -= above;
-  return p.coefficient[0] > 0.0 && !first_root(p);
-}
+bool positive(const BernsteinPolynomial& p) { return p.coefficient[0] > 0.0 && !first_root(p); }
 
 double least(const BernsteinPolynomial& p) {
   return *std::min_element(p.coefficient.begin(), p.coefficient.begin() + p.degree + 1);
@@ -80,8 +75,7 @@ void CollocationFlow::prepare_proof() {
 double CollocationFlow::drive_ninth(double h) const {
   const friction::Shaker* shaker = drive().shaker();
   if (shaker == nullptr) return 0.0;
-  const double omega = shaker->omega();
-  return std::pow(omega * h, kNodes + 1) * std::hypot(drive().velocity(begin_), drive().acceleration(begin_) / omega);
+  return std::pow(shaker->omega() * h, kNodes + 1) * drive().velocity_scale(begin_);
 }
 
 RadauTables::Vector8 CollocationFlow::scaled_speeds(int c) const {
@@ -170,12 +164,11 @@ double CollocationFlow::clear_after_release(const StepBounds& bounds, const Devi
   const double sign = sign_of(point_.modes[i]);
   const friction::Shaker* shaker = drive().shaker();
   const double omega = shaker != nullptr ? shaker->omega() : 0.0;
-  const double speed =
-      shaker != nullptr ? std::hypot(drive().velocity(begin_), drive().acceleration(begin_) / omega) : 0.0;
-  double now = (shaker != nullptr ? -omega * omega * drive().velocity(begin_) : 0.0) -
-               bounds.second_row.col(c).dot(x_begin_) - bounds.response1(c, nc_);
-  double change = omega * omega * omega * speed + bounds.third_by_state.col(c).dot(x_begin_.cwiseAbs()) +
-                  h * bounds.third_by_load(c) + std::abs(bounds.response2(c, nc_));
+  double now =
+      -omega * omega * drive().velocity(begin_) - bounds.second_row.col(c).dot(x_begin_) - bounds.response1(c, nc_);
+  double change = omega * omega * omega * drive().velocity_scale(begin_) +
+                  bounds.third_by_state.col(c).dot(x_begin_.cwiseAbs()) + h * bounds.third_by_load(c) +
+                  std::abs(bounds.response2(c, nc_));
   double by_rate = 0.0, others = 0.0;
   for (int d = 0; d < nc_; ++d) {
     const ContactForces& other = laws()[static_cast<std::size_t>(d)];
@@ -212,10 +205,9 @@ bool CollocationFlow::stays_clear(const BernsteinPolynomial& guard, double error
     if (rise == end) return true;
     from = rise;
   }
-  if (found == nullptr) return positive(part(guard, from, end), error);
+  if (found == nullptr) return positive(lowered(part(guard, from, end), error));
   // The first root of the guard less its error; from there to the event it falls.
-  BernsteinPolynomial low = part(guard, from, 1.0);
-  for (int k = 0; k <= low.degree; ++k) low.coefficient[static_cast<std::size_t>(k)] -= error;
+  const BernsteinPolynomial low = lowered(part(guard, from, 1.0), error);
   if (!(low.coefficient[0] > 0.0)) return false;
   const auto root = first_root(low);
   if (!root || root->touching) return false;
@@ -295,7 +287,7 @@ bool CollocationFlow::proves(const Guarded& found, double end) {
       const double at_event = nodes_.lagrange(found.theta).dot(forces_.segment<kNodes>(kNodes * c));
       for (const double sign : {1.0, -1.0}) {
         for (int k = 0; k < kNodes; ++k) p.coefficient[static_cast<std::size_t>(k)] = law.static_limit - sign * form(k);
-        if (std::abs(p.coefficient[0]) <= kOnLimit * law.static_limit) p.coefficient[0] = 0.0;
+        if (std::abs(p.coefficient[0]) <= kAtLimit * law.static_limit) p.coefficient[0] = 0.0;
         const bool this_side = reached != nullptr && sign * at_event > 0.0;
         if (!stays_clear(p, off.force, off.force_slope, 0.0, this_side ? reached : nullptr, end)) return false;
       }

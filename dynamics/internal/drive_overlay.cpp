@@ -67,8 +67,8 @@ void refuse_resonance(const Regime& r, double w, const Eigen::VectorXcd& load) {
 }
 
 /// ∫ e^{G(h−s)} b e^{iws} ds over 0 ≤ s ≤ h of one pair: Taylor's series of a short time, doubled.
-Eigen::Vector2cd from_rest(const ModalModel& pairs, Eigen::Index i, const Eigen::Vector2cd& b, double w, double rate,
-                           double h) {
+Eigen::Vector2cd pair_from_rest(const ModalModel& pairs, Eigen::Index i, const Eigen::Vector2cd& b, double w,
+                                double rate, double h) {
   constexpr double kShort = 0.25;  // radians: twelve terms leave 1e-17
   const int doublings = std::max(0, 1 + std::ilogb(std::max(rate, w) * h / kShort));
   h = std::ldexp(h, -doublings);
@@ -202,7 +202,7 @@ Eigen::VectorXd DriveOverlay::from_rest(const Regime& r, double tau, DrivePhase 
     const Eigen::VectorXcd b = r.B * (inputs.c.col(j) - Complex(0.0, 1.0) * inputs.s.col(j));
     for (Eigen::Index i = 0; i < r.pairs.n; ++i) {
       const Eigen::Vector2cd moved =
-          dynamics::from_rest(r.pairs, i, {b(i), b(np + i)}, static_cast<double>(j + 1) * omega_, r.pair_rate(i), tau);
+          pair_from_rest(r.pairs, i, {b(i), b(np + i)}, static_cast<double>(j + 1) * omega_, r.pair_rate(i), tau);
       out(i) += (begin * moved(0)).real();
       out(np + i) += (begin * moved(1)).real();
     }

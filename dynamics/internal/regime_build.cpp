@@ -194,8 +194,8 @@ void RegimeBuilder::make_general_pairs(Regime& out) {
   // First states: scaled displacements of the modes without what is not symmetric or not positive, then scaled ζ;
   // second states: their rates. First ζ that act back, by a friction that follows the load; the others are driven.
   const auto m = Z_.cols();
-  auto [base_omega, base_shapes] = base_modes();
-  Eigen::MatrixXd& shapes = base_shapes;    // a binding cannot be captured
+  fem::Modes base = base_modes();
+  Eigen::MatrixXd& shapes = base.shapes;
   std::vector<Eigen::Index> order, driven;  // in oscillators_
   for (std::size_t j = 0; j < oscillators_.size(); ++j)
     (friction_(oscillators_[j]) != 0.0 ? order : driven).push_back(static_cast<Eigen::Index>(j));
@@ -206,7 +206,7 @@ void RegimeBuilder::make_general_pairs(Regime& out) {
     return oscillators_[static_cast<std::size_t>(order[static_cast<std::size_t>(j)])];
   };
   Eigen::VectorXd omega(N);
-  omega.head(m) = base_omega;
+  omega.head(m) = base.omega;
   for (Eigen::Index j = 0; j < acting; ++j) omega(m + j) = std::sqrt(load(contact(j)).stiffness);
   Eigen::MatrixXd own_damping = shapes.transpose() * (Z_.transpose() * C_ * Z_) * shapes;
   const auto direction = [&](Eigen::Index c) -> Eigen::VectorXd {
@@ -219,7 +219,7 @@ void RegimeBuilder::make_general_pairs(Regime& out) {
   Eigen::MatrixXd W = Eigen::MatrixXd::Zero(m, nc_);  // of the contacts that add what is not in the base modes
   for (Eigen::Index c = 0; c < nc_; ++c)
     if (spring_(c) < 0.0 || (load(c).oscillates() && friction_(c) != 0.0)) W.col(c) = direction(c);
-  separate_rigid_modes(base_omega, shapes, own_damping, C_.norm(), &W);
+  separate_rigid_modes(base.omega, shapes, own_damping, C_.norm(), &W);
   Eigen::MatrixXd damping = Eigen::MatrixXd::Zero(N, N);
   damping.topLeftCorner(m, m) = own_damping;
   Eigen::VectorXd coupling = Eigen::VectorXd::Zero(N);  // squared

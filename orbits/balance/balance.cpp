@@ -20,7 +20,7 @@ using Complex = std::complex<double>;
 using dynamics::HybridSystem;
 
 /// The pairs' inputs of the force drive at order k of the orbit's period, as phasors.
-Eigen::VectorXcd drive_phasors(const HybridSystem& system, int order, Eigen::Index k) {
+Eigen::VectorXcd drive_phasors(const HybridSystem& system, Eigen::Index order, Eigen::Index k) {
   Eigen::VectorXcd forces = Eigen::VectorXcd::Zero(system.force_directions().cols());
   for (const friction::ForceHarmonic& h : system.drive().force()->harmonics)
     if (h.order * order == k) forces[h.direction] += h.amplitude * Complex(std::sin(h.phase), -std::cos(h.phase));
@@ -448,11 +448,6 @@ dynamics::State state_of(const HybridSystem& system, const Balance& balance) {
   return state;
 }
 
-double value_of(const Harmonics& y, double theta) {
-  TrigonometricPolynomial polynomial{Eigen::VectorXcd(y.cosine.size())};
-  polynomial.phasors.real() = y.cosine;
-  polynomial.phasors.imag() = -y.sine;
-  return polynomial.at(theta).y;
-}
+double value_of(const Harmonics& y, double theta) { return polynomial_of(y).at(theta).y; }
 
 }  // namespace slipmode::orbits

@@ -1,6 +1,7 @@
 #include <slipmode/orbits/balance/certificate.hpp>
 
 #include <slipmode/core/errors.hpp>
+#include "orbits/balance/internal/trigonometric.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -35,9 +36,18 @@ double largest_share(const std::vector<double>& error, const std::vector<double>
   return share;
 }
 
-void judge(const Balance& balance, const OrbitSeries& series, Certificate& out) {
-  out.error = true_errors(balance, series);
-  out.relative = largest_share(out.error, half_ranges(series));
+/// What balances are measured by.
+struct OrbitBehind {
+  OrbitSeries series;
+  std::vector<double> half;
+
+  OrbitBehind(const dynamics::HybridSystem& system, const PeriodicOrbit& orbit)
+      : series(system, orbit), half(half_ranges(series)) {}
+};
+
+void judge(const Balance& balance, const OrbitBehind& behind, Certificate& out) {
+  out.error = true_errors(balance, behind.series);
+  out.relative = largest_share(out.error, behind.half);
   out.behind = out.relative <= kNear;
   const PeriodicOrbit& orbit = out.found.orbit;
   if (!out.behind) {
@@ -53,17 +63,35 @@ void judge(const Balance& balance, const OrbitSeries& series, Certificate& out) 
     out.verdict += fmt::format("; it has {} crossings and the balance {}", orbit.crossings, balance.switches);
 }
 
+/// @param out_behind  what shooting from the balance ends on, near or not; empty where it does not end
+Certificate shoot_behind(const dynamics::HybridSystem& system, const Balance& balance, const ShootingOptions& options,
+                         std::optional<OrbitBehind>& out_behind) {
+  ShootingOptions at_order = options;
+  at_order.order = balance.order;
+  Certificate out;
+  out.found = shoot(system, state_of(system, balance), at_order);
+  out_behind.reset();
+  if (!out.found.converged()) {
+    out.verdict = "no orbit lies behind this balance: " + out.found.message;
+    return out;
+  }
+  out_behind.emplace(system, out.found.orbit);
+  judge(balance, *out_behind, out);
+  return out;
+}
+
 }  // namespace
 
 std::vector<double> true_errors(const Balance& balance, const OrbitSeries& orbit) {
   const int points = std::max(2000, 24 * balance.harmonics);
   const Eigen::Index contacts = orbit.contacts();
+  std::vector<TrigonometricPolynomial> own;
+  for (const Harmonics& y : balance.displacement) own.push_back(polynomial_of(y));
   Eigen::MatrixXd error(contacts, points);
   for (int k = 0; k < points; ++k) {
     const double t = orbit.start() + orbit.period() * k / points;
     error.col(k) = orbit.at(t).head(contacts);
-    for (Eigen::Index c = 0; c < contacts; ++c)
-      error(c, k) -= value_of(balance.displacement[static_cast<std::size_t>(c)], balance.omega * t);
+    for (Eigen::Index c = 0; c < contacts; ++c) error(c, k) -= own[static_cast<std::size_t>(c)].at(balance.omega * t).y;
   }
   std::vector<double> largest;
   for (Eigen::Index c = 0; c < contacts; ++c) {
@@ -81,16 +109,9 @@ std::vector<double> true_errors(const Balance& balance, const OrbitSeries& orbit
   return largest;
 }
 
-Certificate certify(const dynamics::HybridSystem& system, const Balance& balance, ShootingOptions options) {
-  options.order = balance.order;
-  Certificate out;
-  out.found = shoot(system, state_of(system, balance), options);
-  if (!out.found.converged()) {
-    out.verdict = "no orbit lies behind this balance: " + out.found.message;
-    return out;
-  }
-  judge(balance, OrbitSeries(system, out.found.orbit), out);
-  return out;
+Certificate certify(const dynamics::HybridSystem& system, const Balance& balance, const ShootingOptions& options) {
+  std::optional<OrbitBehind> behind;
+  return shoot_behind(system, balance, options, behind);
 }
 
 CertifiedBalance balance_to_error(const dynamics::HybridSystem& system, BalanceOptions options, double error, int most,
@@ -100,12 +121,10 @@ CertifiedBalance balance_to_error(const dynamics::HybridSystem& system, BalanceO
   constexpr int kFirst = 3;
   constexpr double kGrowth = 1.3;
   CertifiedBalance out;
-  std::optional<OrbitSeries> series;
+  std::optional<OrbitBehind> behind;
   const auto look = [&] {  // the orbit of an order before serves as long as it is near
-    if (series) judge(out.balance, *series, out.certificate);
-    if (out.certificate.behind) return;
-    out.certificate = certify(system, out.balance, shooting);
-    if (out.certificate.behind) series.emplace(system, out.certificate.found.orbit);
+    if (behind) judge(out.balance, *behind, out.certificate);
+    if (!out.certificate.behind) out.certificate = shoot_behind(system, out.balance, shooting, behind);
   };
   for (int H = kFirst; H <= most; H = std::max(H + 1, static_cast<int>(kGrowth * H))) {
     options.harmonics = H;

@@ -24,7 +24,7 @@ struct Certificate {
 /// The supremum is that of a grid of 2,000 points or 24 a harmonic, whichever is more, each local largest one improved
 /// by the parabola through three.
 [[nodiscard]] Certificate certify(const dynamics::HybridSystem& system, const Balance& balance,
-                                  ShootingOptions options = {});
+                                  const ShootingOptions& options = {});
 
 /// sup |y_balance − y_orbit| of each contact [m].
 [[nodiscard]] std::vector<double> true_errors(const Balance& balance, const OrbitSeries& orbit);

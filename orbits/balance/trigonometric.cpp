@@ -66,6 +66,13 @@ TrigonometricPolynomial::Value TrigonometricPolynomial::at(double theta) const {
   return {re + phasors[0].real(), -slope_im};
 }
 
+TrigonometricPolynomial polynomial_of(const Harmonics& y) {
+  TrigonometricPolynomial polynomial{Eigen::VectorXcd(y.cosine.size())};
+  polynomial.phasors.real() = y.cosine;
+  polynomial.phasors.imag() = -y.sine;
+  return polynomial;
+}
+
 std::vector<double> zeros(const TrigonometricPolynomial& polynomial) {
   ZeroSearch search(polynomial);
   const auto parts = 4 * polynomial.phasors.size();

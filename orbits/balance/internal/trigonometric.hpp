@@ -1,5 +1,7 @@
 #pragma once
 
+#include <slipmode/orbits/spectrum.hpp>
+
 #include <Eigen/Core>
 #include <vector>
 
@@ -15,6 +17,8 @@ struct TrigonometricPolynomial {
   /// y and dy/dθ.
   [[nodiscard]] Value at(double theta) const;
 };
+
+[[nodiscard]] TrigonometricPolynomial polynomial_of(const Harmonics& y);
 
 /// All zeros in [0, 2π), ascending. The circle is halved until each part is proved free of zeros, or monotone and then
 /// has one where its ends differ in sign: |y(θ) − y(m) − y′(m)(θ − m)| ≤ ½ Σ k²|p_k| (θ − m)². Parts shorter than 1e-9
