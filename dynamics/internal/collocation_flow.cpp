@@ -28,7 +28,8 @@ constexpr double kLargestDrivePhase = 2.0;
 int halvings(double excess) {
   int exponent = 0;
   std::frexp(excess, &exponent);
-  return std::clamp(1 + exponent / kNodes, 1, 4);
+  constexpr int order = kNodes;
+  return std::clamp(1 + exponent / order, 1, 4);
 }
 
 /// Level of the largest step over which the polynomial of degree 7 through the nodes follows the drive's velocity to
