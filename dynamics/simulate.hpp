@@ -77,7 +77,7 @@ struct FlowStatistics {
   std::int64_t steps = 0;
   std::int64_t rejected = 0;
   /// Steps in which it is proved that the true motion from the step's start passes no event but the one located at its
-  /// end, if any. Not: grazings; steps of laws nothing is known of between speeds (characteristics, bristles).
+  /// end, if any. Not: grazings; steps of laws nothing is known of between speeds (characteristics).
   std::int64_t certified = 0;
   std::int64_t events = 0;
   int regimes_built = 0;

@@ -77,6 +77,11 @@ class CollocationFlow {
   struct Deviation {
     double force = 0.0, force_slope = 0.0;  ///< of any contact force, and of a sticking one's rate times the step [N]
     double speed = 0.0, speed_slope = 0.0;  ///< of any contact's speed, and of its rate times the step [m/s]
+    double room = std::numeric_limits<double>::infinity();  ///< what `speed` was taken to be at most, of bristles [m/s]
+  };
+  /// What a bristle brings to that: μ ≤ force · e^{growth t}, as long as speeds are off by no more than `room`.
+  struct BristleDefect {
+    double force = 0.0, growth = 0.0, room = 0.0;
   };
   void prepare_proof();
   /// Whether no guard but the one found vanishes up to this share of the solved step, nor that one before, in the true
@@ -90,6 +95,8 @@ class CollocationFlow {
   [[nodiscard]] bool far_from_guards(const StepBounds& bounds, double h) const;
   /// @param at_rest  sliding may come as near to rest as zero speed
   [[nodiscard]] Deviation deviation(const StepBounds& bounds, double h, bool at_rest) const;
+  /// @param reach  max |γ|, see StepBounds::response
+  [[nodiscard]] BristleDefect bristle_defect(int c, double reach, double h, bool at_rest) const;
   /// Share of the step for which a slip that starts with neither speed nor acceleration goes on; 0: not known.
   [[nodiscard]] double clear_after_release(const StepBounds& bounds, const Deviation& off, double h, int c) const;
   /// |dλ/dt| of a contact within the step, of the true motion [N/s].

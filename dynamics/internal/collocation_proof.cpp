@@ -24,6 +24,8 @@ constexpr double kNewtonRest = 1e-7;
 /// e^x ≤ 1/(1 − x) up to here.
 constexpr double kLargestGrowth = 0.8;
 
+bool has_guard(const ContactForces& law) { return law.sticks() || law.kind == LawKind::kBristle; }
+
 bool positive(const BernsteinPolynomial& p) { return p.coefficient[0] > 0.0 && !first_root(p); }
 
 double least(const BernsteinPolynomial& p) {
@@ -44,17 +46,46 @@ struct Ellipses {
   }
 };
 
-/// ln of a bound on what the polynomial of degree 7 through the nodes leaves out of e^{−s(t)}: the Chebyshev
-/// coefficients of e^{−s} are at most 2 max|e^{−s}| ϱ^{−k}, the maximum taken over an ellipse in whose foci the
-/// interval ends (Trefethen, Approximation Theory and Approximation Practice, theorem 8.1).
-/// @param mean, s  Chebyshev coefficient 0 of s, and 1 to 8
-double exponential_remainder(double mean, const RadauTables::Vector8& s) {
-  static const Ellipses ellipses;
+using PerEllipse = Eigen::Array<double, kNodes, 1>;
+
+const Ellipses& ellipses() {
+  static const Ellipses all;
+  return all;
+}
+
+/// A polynomial of degree 8 in Chebyshev's form.
+struct ChebyshevSeries {
+  double mean = 0.0;                       ///< coefficient 0
+  alignas(64) RadauTables::Vector8 other;  ///< 1 to 8
+
+  ChebyshevSeries(const kernels::Kernels& kernels, double start, const RadauTables::Vector8& at_nodes)
+      : mean(radau().chebyshev_mean.dot(at_nodes) + start * radau().chebyshev_mean_start) {
+    kernels.matrix8(radau().chebyshev.data(), at_nodes.data(), other.data());
+    other += start * radau().chebyshev_start;
+  }
+  /// How far from the mean it is on each ellipse at most.
+  [[nodiscard]] PerEllipse swing() const {
+    PerEllipse outward = PerEllipse::Zero();
+    for (int k = kNodes; k-- > 0;) outward = (outward + std::abs(other(k))) * ellipses().sum;
+    return 0.5 * (outward + spread() * ellipses().inverse);
+  }
+  /// The same within the step.
+  [[nodiscard]] double spread() const { return other.cwiseAbs().sum(); }
+};
+
+/// ln of a bound on what the polynomial of degree 7 through the nodes leaves out of a function: its Chebyshev
+/// coefficients are at most 2 max|f| ϱ^{−k}, the maximum taken over an ellipse in whose foci the interval ends
+/// (Trefethen, Approximation Theory and Approximation Practice, theorem 8.1).
+/// @param log_most  ln max|f| on each ellipse
+double log_remainder(const PerEllipse& log_most) {
   static const double scale = std::log(2.0 * (1.0 + radau().lebesgue));
-  Eigen::Array<double, kNodes, 1> outward = Eigen::Array<double, kNodes, 1>::Zero();
-  for (int k = kNodes; k-- > 0;) outward = (outward + std::abs(s(k))) * ellipses.sum;
-  const double inward = s.cwiseAbs().sum();
-  return (0.5 * (outward + inward * ellipses.inverse) - ellipses.cost).minCoeff() - mean + scale;
+  return (log_most - ellipses().cost).minCoeff() + scale;
+}
+
+/// What a polynomial of degree 8 has beyond the one of degree 7 through the nodes: most at the step's start.
+double eighth_degree(double start, const RadauTables::Vector8& at_nodes) {
+  static const RadauTables::Vector8 at_start = radau().lagrange(0.0);
+  return std::abs(start - at_start.dot(at_nodes));
 }
 
 /// e^x or more, for x ≥ 0.
@@ -63,11 +94,11 @@ double exponential_bound(double x) { return x < 0.25 ? 1.0 / (1.0 - x) : std::ex
 }  // namespace
 
 void CollocationFlow::prepare_proof() {
-  const auto needs = [](const ContactForces& law) { return law.sticks() || law.kind == LawKind::kBristle; };
   const auto known = [](const ContactForces& law) {
-    return law.is_constant() || (law.kind == LawKind::kSpeedDependent && law.characteristic == nullptr);
+    return law.is_constant() || law.kind == LawKind::kBristle ||
+           (law.kind == LawKind::kSpeedDependent && law.characteristic == nullptr);
   };
-  guarded_ = std::ranges::any_of(laws(), needs);
+  guarded_ = std::ranges::any_of(laws(), has_guard);
   provable_ = halving_proves_ = options_.certify && (!guarded_ || std::ranges::all_of(laws(), known));
   ninth_.resize(nc_);
 }
@@ -86,19 +117,79 @@ RadauTables::Vector8 CollocationFlow::scaled_speeds(int c) const {
 
 double CollocationFlow::between_nodes(int c) const {
   const ContactForces& law = laws()[static_cast<std::size_t>(c)];
-  const RadauTables::Vector8 s = scaled_speeds(c);
-  const double start = law.alpha * guard_start_(c);
-  alignas(64) RadauTables::Vector8 series;
-  kernels_.matrix8(nodes_.chebyshev.data(), s.data(), series.data());
-  series += start * nodes_.chebyshev_start;
-  const double mean = nodes_.chebyshev_mean.dot(s) + start * nodes_.chebyshev_mean_start;
-  return law.drop * std::exp(exponential_remainder(mean, series));
+  alignas(64) const RadauTables::Vector8 scaled = scaled_speeds(c);
+  const ChebyshevSeries s(kernels_, law.alpha * guard_start_(c), scaled);
+  return law.drop * std::exp(log_remainder(s.swing() - s.mean));
+}
+
+CollocationFlow::BristleDefect CollocationFlow::bristle_defect(int c, double reach, double h, bool at_rest) const {
+  // In the direction of sliding: ż = s − κ(s) z, κ = σ0 s/g, g even and not growing with |s|.
+  const auto i = static_cast<std::size_t>(c);
+  const friction::BristleForces& law = laws()[i].bristle;
+  const double sign = sign_of(point_.modes[i]), between = nodes_.remainder[0] * ninth_.maxCoeff();
+  using Vector8 = RadauTables::Vector8;
+  alignas(64) const Vector8 s =
+      sign * (drive_nodes_.segment<kNodes>(kNodes * c) - velocity_.segment<kNodes>(kNodes * c));
+  alignas(64) const Vector8 z = sign * bristle_nodes_.segment<kNodes>(kNodes * c);
+  const double s_begin = guard_start_(c), z_begin = sign * internal_begin_(bristle_at_[i]);
+  const ChebyshevSeries speed(kernels_, s_begin, s), bristle(kernels_, z_begin, z);
+  Vector8 rate;
+  for (int j = 0; j < kNodes; ++j) rate(j) = law.rate(1.0, s(j), z(j));
+  // Newton's and the linear solution's rests, at the nodes.
+  const Vector8 force = law.stiffness * z + law.damping * rate + law.viscous * s;
+  const double left = (sign * forces_.segment<kNodes>(kNodes * c) - force).cwiseAbs().maxCoeff();
+  const Vector8 missing = z - Vector8::Constant(z_begin) - h * (nodes_.integral * rate);
+  const double off = nodes_.lebesgue * (missing.array() / nodes_.node.array()).abs().maxCoeff();
+
+  BristleDefect out;
+  const double fastest = std::max(s_begin, guard_forms_.segment<kNodes>(kNodes * c).maxCoeff());
+  out.room = at_rest ? fastest : 0.5 * (guard_least_(c) - between);
+  const double slow = at_rest ? 0.0 : out.room, fast = fastest + between + out.room;
+  const auto share = [&](double v) { return v * v / (law.stribeck_speed * law.stribeck_speed); };
+  const auto limit = [&](double v) { return law.kinetic + law.drop * std::exp(-share(v)); };
+  const auto bend = [&](double v) { return share(v) * std::exp(-share(v)); };  // −s g′/(2 drop)
+  const double most_bend = share(slow) <= 1.0 && share(fast) >= 1.0 ? std::exp(-1.0) : std::max(bend(slow), bend(fast));
+  const double g_slow = limit(slow), g_fast = limit(fast);
+  const double slopes[] = {law.stiffness * (1.0 + 2.0 * law.drop * std::min(bend(slow), bend(fast)) / g_slow) / g_slow,
+                           law.stiffness * (1.0 + 2.0 * law.drop * most_bend / g_fast) / g_fast};
+  double by_speed = 0.0;  // of ż
+  for (const double slope : slopes)
+    for (const double side : {-1.0, 1.0})
+      by_speed = std::max(by_speed, std::abs(1.0 - slope * (bristle.mean + side * (bristle.spread() + off))));
+  const double decay = law.stiffness * slow / g_slow, most_decay = law.stiffness * fast / g_fast;
+  const double by_bristle =
+      std::max(std::abs(law.stiffness - law.damping * decay), std::abs(law.stiffness - law.damping * most_decay));
+
+  // What the nodes leave out of ż: a bound on s, z and 1/g on ellipses.
+  const PerEllipse s_swing = speed.swing(), z_most = std::abs(bristle.mean) + bristle.swing();
+  const double stribeck = law.drop * std::exp(-share(speed.mean));
+  PerEllipse g = PerEllipse::Constant(law.kinetic);
+  if (law.drop != 0.0)
+    g += stribeck *
+         (2.0 - ((2.0 * std::abs(speed.mean) + s_swing) * s_swing / (law.stribeck_speed * law.stribeck_speed)).exp());
+  const PerEllipse most = (g > 0.0).select((std::abs(speed.mean) + s_swing) * (1.0 + law.stiffness * z_most / g),
+                                           PerEllipse::Constant(std::numeric_limits<double>::infinity()));
+  const double rest = std::exp(log_remainder(most.log())) + by_speed * between + most_decay * off;
+  if (!std::isfinite(rest)) {
+    out.force = rest;
+    return out;
+  }
+
+  const double of_force = nodes_.lebesgue * left + law.stiffness * eighth_degree(z_begin, z) + law.damping * rest +
+                          law.viscous * (eighth_degree(s_begin, s) + between) + by_bristle * off;
+  out.force = of_force + by_bristle * rest * (decay * h > 1.0 ? 1.0 / decay : h);
+  // μ grows no faster than e^{ηt}, (η − a)(η + κ) = b: a by the speed itself, b by the bristle it moves.
+  const double a = reach * (law.damping * by_speed + law.viscous), b = reach * by_bristle * by_speed;
+  out.growth = 0.5 * (a - decay + std::sqrt((a + decay) * (a + decay) + 4.0 * b));
+  return out;
 }
 
 CollocationFlow::Deviation CollocationFlow::deviation(const StepBounds& bounds, double h, bool at_rest) const {
   const double between = nodes_.remainder[0] * ninth_.maxCoeff();
   double defect = 0.0, slope = 0.0, cross = 0.0, rate = 0.0, curve = 0.0;
   std::vector<Eigen::Index> stuck;
+  const auto& [reach, reach1, reach2] = bounds.response;
+  Deviation out;
   for (int c = 0; c < nc_; ++c) {
     const auto i = static_cast<std::size_t>(c);
     const ContactForces& law = laws()[i];
@@ -107,6 +198,12 @@ CollocationFlow::Deviation CollocationFlow::deviation(const StepBounds& bounds, 
       rate = std::max(rate, nodes_.remainder[1] * ninth_(c) / h);
       curve = std::max(curve, nodes_.remainder[2] * ninth_(c) / (h * h));
       continue;
+    }
+    if (bristled(c)) {
+      const BristleDefect own = bristle_defect(c, reach, h, at_rest);
+      defect = std::max(defect, own.force);
+      slope = std::max(slope, own.growth / reach);
+      out.room = std::min(out.room, own.room);
     }
     if (law.kind != LawKind::kSpeedDependent) continue;
     const double sign = sign_of(point_.modes[i]);
@@ -135,10 +232,8 @@ CollocationFlow::Deviation CollocationFlow::deviation(const StepBounds& bounds, 
       }
     }
   }
-  const auto& [reach, reach1, reach2] = bounds.response;
   const double first = std::max(defect, hold * (rate + cross * defect)),
                growth = std::max(slope * reach, hold * (cross * slope * reach + reach1));
-  Deviation out;
   out.force = first * exponential_bound(growth * h);
   out.speed = reach * h * out.force;
   out.speed_slope = h * (reach + reach1 * h) * out.force;
@@ -150,6 +245,7 @@ CollocationFlow::Deviation CollocationFlow::deviation(const StepBounds& bounds, 
 double CollocationFlow::largest_force_rate(int d, const Deviation& off, double h) const {
   const auto i = static_cast<std::size_t>(d);
   const ContactForces& law = laws()[i];
+  if (bristled(d)) return std::numeric_limits<double>::infinity();
   const auto form = guard_forms_.segment<kNodes>(kNodes * d);
   const double steps = (form.tail<kNodes - 1>() - form.head<kNodes - 1>()).cwiseAbs().maxCoeff();
   if (point_.modes[i] == ContactMode::kStick) return ((kNodes - 1) * steps + off.force_slope) / h;
@@ -250,7 +346,7 @@ bool CollocationFlow::proves(const Guarded& found, double end) {
   const double by_drive = drive_ninth(h);
   for (int c = 0; c < nc_; ++c)
     ninth_(c) = bounds.ninth_by_load(c) + by_drive + bounds.ninth_by_state.col(c).dot(x_begin_.cwiseAbs());
-  if (nc_ == 1 && found.contact < 0 && far_from_guards(bounds, h)) return true;
+  if (nc_ == 1 && !any_bristle_ && found.contact < 0 && far_from_guards(bounds, h)) return true;
   alignas(64) std::array<double, kNodes> series;
   for (int d = 0; d < nc_; ++d) {
     kernels_.matrix8(nodes_.legendre.data(), forces_.data() + kNodes * d, series.data());
@@ -264,7 +360,7 @@ bool CollocationFlow::proves(const Guarded& found, double end) {
   const auto faster_than = [&](double speed) {  // of the computed motion
     for (int c = 0; c < nc_; ++c) {
       const auto i = static_cast<std::size_t>(c);
-      if (point_.modes[i] == ContactMode::kStick || !laws()[i].sticks()) continue;
+      if (point_.modes[i] == ContactMode::kStick || !has_guard(laws()[i])) continue;
       if (!(guard_least_(c) - between > speed)) return false;
     }
     return true;
@@ -272,12 +368,13 @@ bool CollocationFlow::proves(const Guarded& found, double end) {
   const bool moving = faster_than(0.0);
   Deviation off = deviation(bounds, h, !moving);
   if (moving && !faster_than(2.0 * off.speed)) off = deviation(bounds, h, true);
+  if (!(off.speed <= off.room)) return false;
 
   BernsteinPolynomial p;
   for (int c = 0; c < nc_; ++c) {
     const auto i = static_cast<std::size_t>(c);
     const ContactForces& law = laws()[i];
-    if (!law.sticks()) continue;
+    if (!has_guard(law)) continue;
     const Guarded* reached = found.contact == c ? &found : nullptr;
     const auto form = guard_forms_.segment<kNodes>(kNodes * c);
     if (point_.modes[i] == ContactMode::kStick) {
@@ -299,6 +396,7 @@ bool CollocationFlow::proves(const Guarded& found, double end) {
     p.degree = kNodes;
     p.coefficient[0] = guard_start_(c);
     for (int k = 0; k < kNodes; ++k) p.coefficient[static_cast<std::size_t>(k) + 1] = form(k);
+    if (point_.multiplicity[i] == 2 && bristled(c)) return false;
     const double from = point_.multiplicity[i] == 2 ? clear_after_release(bounds, off, h, c) : 0.0;
     if (point_.multiplicity[i] == 2 && from == 0.0) return false;
     if (!stays_clear(p, error, slope_error, from, reached, end)) return false;

@@ -13,8 +13,26 @@
 namespace slipmode::dynamics {
 namespace {
 
-/// A chain with one or two Stribeck contacts: any damping, belts, ramps and shakers, laws from flat to steep.
-std::string random_stribeck_chain(std::uint64_t index, int contacts) {
+enum class Laws { kStribeck, kBristles, kMixed };
+
+/// One contact's law, from flat to steep, from soft to stiff.
+std::string random_law(slipmode::Random& r, bool bristle) {
+  const double mu_k = r.uniform(0.05, 0.4), mu_s = mu_k + r.uniform(0.0, 0.5);
+  const double alpha = r.uniform() < 0.2 ? r.uniform(10.0, 200.0) : r.uniform(0.2, 10.0);
+  if (!bristle)
+    return fmt::format("law = \"stribeck\"\nmu_s = {}\nmu_k = {}\nnormal_load = 1.0\nalpha = {}\n", mu_s, mu_k, alpha);
+  const double stiffness = std::pow(10.0, r.uniform(0.0, 4.0));
+  if (r.uniform() < 0.3)
+    return fmt::format("law = \"dahl\"\nmu = {}\nnormal_load = 1.0\nstiffness = {}\n", mu_s, stiffness);
+  return fmt::format(
+      "law = \"lugre\"\nmu_s = {}\nmu_k = {}\nnormal_load = 1.0\nstiffness = {}\ndamping = {}\nviscous = "
+      "{}\nstribeck_speed = {}\n",
+      mu_s, mu_k, stiffness, r.uniform() < 0.3 ? 0.0 : r.uniform(0.0, 1.0) * std::sqrt(stiffness), r.uniform(0.0, 0.1),
+      1.0 / alpha);
+}
+
+/// A chain with one or two contacts: any damping, belts, ramps and shakers.
+std::string random_chain(std::uint64_t index, int contacts, Laws laws) {
   slipmode::Random r = slipmode::Random::stream(77, index);
   const int n = contacts + static_cast<int>(r.uniform() * 8);
   std::string text = fmt::format(
@@ -22,11 +40,8 @@ std::string random_stribeck_chain(std::uint64_t index, int contacts) {
       "damping = {}\n",
       n, r.uniform() < 0.2 ? 0.0 : r.uniform(0.0, 0.05));
   for (int c = 0; c < contacts; ++c) {
-    const double mu_k = r.uniform(0.05, 0.4), mu_s = mu_k + r.uniform(0.0, 0.5);
-    const double alpha = r.uniform() < 0.2 ? r.uniform(10.0, 200.0) : r.uniform(0.2, 10.0);
-    text +=
-        fmt::format("[[contact]]\nat = {}\nlaw = \"stribeck\"\nmu_s = {}\nmu_k = {}\nnormal_load = 1.0\nalpha = {}\n",
-                    n - c, mu_s, mu_k, alpha);
+    const bool bristle = laws == Laws::kBristles || (laws == Laws::kMixed && c == 1);
+    text += fmt::format("[[contact]]\nat = {}\n{}", n - c, random_law(r, bristle));
   }
   const double kind = r.uniform(), from = r.uniform(-0.6, 0.6), to = r.uniform(-0.6, 0.6);
   if (kind < 0.5)
@@ -52,9 +67,9 @@ struct Judged {
 
 /// Every step of a run beside the motion from the step's own start at tolerance 1e-13: does that pass an event where
 /// the step has none?
-Judged judge_steps(std::uint64_t index, int contacts, double tolerance) {
+Judged judge_steps(std::uint64_t index, int contacts, Laws laws, double tolerance) {
   constexpr double kDuration = 40.0;
-  const scene::Scene scene = scene::parse_scene(random_stribeck_chain(index, contacts));
+  const scene::Scene scene = scene::parse_scene(random_chain(index, contacts, laws));
   const HybridSystem system = scene::build_system(scene);
   const Prepared p =
       prepare(system, scene::initial_state(scene, system), {.tolerance = tolerance, .certify = true}, false);
@@ -79,9 +94,14 @@ Judged judge_steps(std::uint64_t index, int contacts, double tolerance) {
       ++out.judged;
       if (reference.events().empty()) continue;
       const Event& event = reference.events().front();
-      // The step's own event; or the one it began with, seen again: a release at its limit but for the tolerance.
-      const bool own = !flow.events().empty() && flow.events().front().contact == event.contact &&
-                       end - event.time < 10.0 * tolerance;
+      // The step's own event, by time or where it is shallow by the guard; or the one it began with, seen again: a
+      // release at its limit but for the tolerance.
+      const bool same = !flow.events().empty() && flow.events().front().contact == event.contact;
+      Eigen::VectorXd x, force(contacts);
+      flow.evaluate(event.time, x, force);
+      const double speed = system.drive().velocity(event.time) - resolver.contact_velocity(event.contact, x.data());
+      const bool own = same && (end - event.time < 10.0 * tolerance ||
+                                (event.before != ContactMode::kStick && std::abs(speed) < 10.0 * tolerance));
       const auto c = static_cast<std::size_t>(event.contact);
       const bool begun = event.contact >= 0 && begin.multiplicity[c] > 0 && event.after == begin.modes[c] &&
                          event.time - begin.time < tolerance;
@@ -92,13 +112,13 @@ Judged judge_steps(std::uint64_t index, int contacts, double tolerance) {
   return out;
 }
 
-class CertifiedSteps : public testing::TestWithParam<std::tuple<int, double>> {};
+class CertifiedSteps : public testing::TestWithParam<std::tuple<int, Laws, double>> {};
 
 TEST_P(CertifiedSteps, PassNoEventAtAnyTolerance) {
-  const auto [contacts, tolerance] = GetParam();
+  const auto [contacts, laws, tolerance] = GetParam();
   Judged all;
   for (std::uint64_t index = 0; index < 60; ++index) {
-    const Judged one = judge_steps(index, contacts, tolerance);
+    const Judged one = judge_steps(index, contacts, laws, tolerance);
     all.steps += one.steps;
     all.certified += one.certified;
     all.judged += one.judged;
@@ -106,23 +126,35 @@ TEST_P(CertifiedSteps, PassNoEventAtAnyTolerance) {
   }
   EXPECT_EQ(all.wrong, 0) << "of " << all.judged;
   EXPECT_GT(all.judged, 9 * all.certified / 10);
-  // What stays open: grazings, starts at two limits at once.
-  EXPECT_GT(all.certified, (contacts == 1 ? 0.99 : 0.9) * all.steps) << all.steps;
+  // What stays open: grazings, starts at two limits at once, bristles at rest; and the way of a bristle near a reversal
+  // which a loose tolerance does not resolve.
+  const double share = laws == Laws::kStribeck ? (contacts == 1 ? 0.99 : 0.9) : tolerance > 1e-5 ? 0.3 : 0.9;
+  EXPECT_GT(all.certified, share * all.steps) << all.steps;
 }
 
-INSTANTIATE_TEST_SUITE_P(Tolerances, CertifiedSteps,
-                         testing::Combine(testing::Values(1, 2), testing::Values(1e-1, 1e-3, 1e-6, 1e-9)),
-                         [](const auto& cell) {
-                           return fmt::format("Contacts{}Tolerance1em{:.0f}", std::get<0>(cell.param),
-                                              -std::log10(std::get<1>(cell.param)));
-                         });
+std::string name_of(const testing::TestParamInfo<std::tuple<int, Laws, double>>& cell) {
+  const auto [contacts, laws, tolerance] = cell.param;
+  const char* names[] = {"Stribeck", "Bristles", "Mixed"};
+  return fmt::format("Contacts{}{}Tolerance1em{:.0f}", contacts, names[static_cast<int>(laws)], -std::log10(tolerance));
+}
+
+INSTANTIATE_TEST_SUITE_P(Single, CertifiedSteps,
+                         testing::Combine(testing::Values(1), testing::Values(Laws::kStribeck, Laws::kBristles),
+                                          testing::Values(1e-1, 1e-3, 1e-6, 1e-9)),
+                         name_of);
+INSTANTIATE_TEST_SUITE_P(Coupled, CertifiedSteps,
+                         testing::Combine(testing::Values(2),
+                                          testing::Values(Laws::kStribeck, Laws::kBristles, Laws::kMixed),
+                                          testing::Values(1e-1, 1e-3, 1e-6, 1e-9)),
+                         name_of);
 
 TEST(EventProof, BoundsWhatTheInterpolantOfASpeedLeavesOut) {
   // Exact motion under polynomial forces at 65 times, beside the polynomial of degree 8 through nodes and start.
   slipmode::Random random = slipmode::Random::stream(5, 0);
   double tightest = 0.0;
   for (std::uint64_t index = 0; index < 12; ++index) {
-    const scene::Scene scene = scene::parse_scene(random_stribeck_chain(index, 1 + static_cast<int>(index % 2)));
+    const scene::Scene scene =
+        scene::parse_scene(random_chain(index, 1 + static_cast<int>(index % 2), Laws::kStribeck));
     const HybridSystem system = scene::build_system(scene);
     const Prepared p = prepare(system, scene::initial_state(scene, system), {}, false);
     const StepTables& tables = p.tables.steps;
