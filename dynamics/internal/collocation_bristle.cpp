@@ -6,6 +6,14 @@
 #include <cmath>
 
 namespace slipmode::dynamics {
+namespace {
+
+/// What collocation leaves out of a rate changes sign between the nodes: of it stays this share, where it is resolved.
+constexpr double kOscillates = 1.0 / 16.0;
+/// Before a reversal a bristle is looked at from this multiple of the Stribeck speed on.
+constexpr double kStribeckSpeeds = 1.5;
+
+}  // namespace
 
 void CollocationFlow::start_bristles() {
   for (int c = 0; c < nc_; ++c) {
@@ -125,11 +133,59 @@ void CollocationFlow::settle_bristle(int c, bool touching) {
   record_bristle(c, point_.modes[i] == before ? EventKind::kGrazing : EventKind::kReversal, before);
 }
 
+double CollocationFlow::bristle_error(int c, const Between& at) const {
+  const auto i = static_cast<std::size_t>(c);
+  const friction::BristleForces& law = laws()[i].bristle;
+  const double sign = sign_of(point_.modes[i]), h = tables_.step(step_level_);
+  using Vector8 = RadauTables::Vector8;
+  const Vector8 s = sign * (drive_nodes_.segment<kNodes>(kNodes * c) - velocity_.segment<kNodes>(kNodes * c));
+  const Vector8 z = sign * bristle_nodes_.segment<kNodes>(kNodes * c);
+  const Vector8 force = sign * forces_.segment<kNodes>(kNodes * c);
+  const double s_begin = sign * (drive_velocity(begin_, 0.0) - resolver_.contact_velocity(c, x_begin_.data())),
+               z_begin = sign * internal_begin_(bristle_at_[i]);
+  Vector8 rate;
+  for (int j = 0; j < kNodes; ++j) rate(j) = law.rate(1.0, s(j), z(j));
+  double worst = 0.0;
+  for (Eigen::Index k = 0; k < at.begin.size(); ++k) {
+    const double speed = at.eighth.row(k).dot(s) + at.begin(k) * s_begin;
+    const double bristle = at.eighth.row(k).dot(z) + at.begin(k) * z_begin;
+    const double decay = law.decay(1.0, speed).value, exact = speed - decay * bristle;
+    const double off_rate = at.seventh.row(k).dot(rate) - exact;
+    const double off_force = at.seventh.row(k).dot(force) - law.force(1.0, speed, bristle);
+    const double lasts = std::min(h, 1.0 / std::max(decay, 1.0 / h));
+    worst = std::max(
+        {worst, kOscillates * law.stiffness * std::abs(off_rate) * lasts, 0.5 * std::abs(off_force) * h * over_top_});
+  }
+  return worst * over_limit_[i];
+}
+
+CollocationFlow::Between CollocationFlow::between(const Eigen::VectorXd& shares) const {
+  Between out;
+  out.seventh.resize(shares.size(), kNodes);
+  for (Eigen::Index k = 0; k < shares.size(); ++k) out.seventh.row(k) = nodes_.lagrange(shares(k));
+  out.eighth = shares.asDiagonal() * out.seventh * nodes_.node.cwiseInverse().asDiagonal();
+  out.begin = 1.0 - out.eighth.rowwise().sum().array();
+  return out;
+}
+
 double CollocationFlow::bristle_error(int c) const {
-  // z is a state: what its polynomial of degree 8 leaves out stays. The first coefficient left out, by the last two.
-  const ContactForces& law = laws()[static_cast<std::size_t>(c)];
-  const auto [last, ratio] = ending(bristle_nodes_.data() + kNodes * c);
-  return last * ratio * ratio * law.bristle.stiffness / law.static_limit;
+  static const Between halfway = [this] {
+    Eigen::VectorXd shares = Eigen::VectorXd::Zero(kNodes);
+    shares.tail(kNodes - 1) = 0.5 * (nodes_.node.head<kNodes - 1>() + nodes_.node.tail<kNodes - 1>());
+    return between(shares);
+  }();
+  return bristle_error(c, halfway);
+}
+
+double CollocationFlow::reversal_error(const Guarded& guard) const {
+  // A stiff bristle follows g(s), which changes within the Stribeck speed: no node need be there.
+  const auto i = static_cast<std::size_t>(guard.contact);
+  const double slope = nodes_.lagrange_slope(guard.theta)
+                           .dot(drive_nodes_.segment<kNodes>(kNodes * guard.contact) -
+                                velocity_.segment<kNodes>(kNodes * guard.contact));
+  const double fall = std::min(guard.theta / kStribeckSpeeds, laws()[i].bristle.stribeck_speed / std::abs(slope));
+  return bristle_error(guard.contact,
+                       between(Eigen::VectorXd::LinSpaced(4, guard.theta - kStribeckSpeeds * fall, guard.theta)));
 }
 
 }  // namespace slipmode::dynamics

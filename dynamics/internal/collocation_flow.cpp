@@ -134,6 +134,7 @@ bool CollocationFlow::step(double t_limit) {
       continue;
     }
     guard = first_guard();
+    if (guard.contact >= 0 && bristled(guard.contact)) error = std::max(error, reversal_error(guard));
     tau = std::min(guard.contact >= 0 ? guard.theta * h : h, remaining);
     tolerance = options_.tolerance * (tau < h ? 1.0 : 1.0 / kEndNodeGain);
     if (!(error <= tolerance) && !smallest) {

@@ -138,7 +138,18 @@ class CollocationFlow {
   void record_reversals(const std::vector<ContactMode>& before);
   void record_bristle(int c, EventKind kind, ContactMode before);
   void settle_bristle(int c, bool touching);
+  /// Polynomials through the nodes at other shares of the step: of degree 7, and of degree 8 through the start too.
+  struct Between {
+    Eigen::Matrix<double, Eigen::Dynamic, kNodes> seventh, eighth;
+    Eigen::VectorXd begin;  ///< share of the start's value in the latter
+  };
+  [[nodiscard]] Between between(const Eigen::VectorXd& shares) const;
+  /// What the polynomials leave of a bristle's equations there: the error of its force, by the static limit.
+  [[nodiscard]] double bristle_error(int c, const Between& at) const;
+  /// The same at the start and halfway between nodes.
   [[nodiscard]] double bristle_error(int c) const;
+  /// The same at a reversal and shortly before.
+  [[nodiscard]] double reversal_error(const Guarded& guard) const;
   /// How the Legendre coefficients of a polynomial through the nodes end.
   struct Ending {
     double last = 0.0;   ///< size of the last

@@ -115,6 +115,21 @@ TEST(Bristle, AgreesWithTheTaylorReferenceOnRandomScenes) {
   EXPECT_GT(events, 60u);
 }
 
+TEST(Bristle, FindsReversalsWhereTheFrictionRisesBetweenTheNodes) {
+  // A stiff bristle follows g(s), and g rises threefold within v_s = 0.006, the last hundredth of a way from 0.7 on.
+  // Seen at the nodes alone, it was constant: the first reversal came 2.3e-3 late, at tolerance 1e-9 as at 1e-6.
+  const HybridSystem system =
+      oscillator(1.0, 1.0, 0.0129, LuGre{0.27, 0.08, 0.006, 5700.0, 69.0, 0.06}, 1.0, Belt::constant(-0.0035));
+  const State start = state(Eigen::VectorXd::Constant(1, -0.12), Eigen::VectorXd::Constant(1, 0.73));
+  for (const double tolerance : {1e-6, 1e-8, 1e-10}) {
+    const ReferenceGap gap = gap_to_reference(system, start, 20.0, {.tolerance = tolerance});
+    EXPECT_EQ(gap.mismatch, "") << tolerance;
+    EXPECT_GE(gap.events, 6u);
+    EXPECT_LT(gap.event_time, 300.0 * tolerance) << tolerance;
+    EXPECT_LT(gap.state, 300.0 * tolerance) << tolerance;
+  }
+}
+
 TEST(Bristle, ErrorsFollowTheTolerance) {
   const RandomScene scene = random_bristles(3, false, 6);
   const auto end = [&](double tolerance) {
