@@ -1,7 +1,8 @@
 #include "cli/orbit_search.hpp"
 
+#include <slipmode/core/numbers.hpp>
+
 #include <fmt/format.h>
-#include <charconv>
 #include <cmath>
 #include <vector>
 
@@ -12,13 +13,13 @@ std::vector<double> numbers_of(const std::string& text) {
   std::vector<double> numbers;
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
-    double value = 0.0;
-    const auto [stopped, error] = std::from_chars(text.data() + begin, text.data() + end, value);
-    if (error != std::errc() || stopped != text.data() + end || !std::isfinite(value)) {
-      throw InvalidInput(fmt::format("--start {}: '{}' is no number; valid: settle, initial, or q1,...,qn,v1,...,vn",
-                                     text, text.substr(begin, end - begin)));
+    const std::string word = text.substr(begin, end - begin);
+    const auto value = number_in<double>(word);
+    if (!value || !std::isfinite(*value)) {
+      throw InvalidInput(
+          fmt::format("--start {}: '{}' is no number; valid: settle, initial, or q1,...,qn,v1,...,vn", text, word));
     }
-    numbers.push_back(value);
+    numbers.push_back(*value);
     begin = end + 1;
   }
   return numbers;

@@ -1,11 +1,11 @@
 #include "cli/sweep_request.hpp"
 
+#include <slipmode/core/numbers.hpp>
 #include <slipmode/diagnostics/attractors/sweep.hpp>
 #include <slipmode/results/journal.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <charconv>
 
 namespace slipmode::cli {
 
@@ -19,12 +19,10 @@ Over parse_over(const std::string& text) {
   std::vector<double> numbers;
   for (std::size_t begin = equals + 1; begin <= text.size();) {
     const std::size_t end = std::min(text.find(':', begin), text.size());
-    double value = 0.0;
-    const auto [stopped, error] = std::from_chars(text.data() + begin, text.data() + end, value);
-    if (error != std::errc() || stopped != text.data() + end) {
-      throw complain(fmt::format("'{}' is not a number", text.substr(begin, end - begin)));
-    }
-    numbers.push_back(value);
+    const std::string word = text.substr(begin, end - begin);
+    const auto value = number_in<double>(word);
+    if (!value) throw complain(fmt::format("'{}' is not a number", word));
+    numbers.push_back(*value);
     begin = end + 1;
   }
   if (numbers.size() != 3) throw complain(fmt::format("{} numbers found", numbers.size()));

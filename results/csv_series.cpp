@@ -1,10 +1,10 @@
 #include <slipmode/results/csv_series.hpp>
 
 #include <slipmode/core/errors.hpp>
+#include <slipmode/core/numbers.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -48,9 +48,7 @@ std::optional<double> cell_number(std::string_view cell, bool decimal_comma) {
     std::ranges::replace(changed, ',', '.');
     cell = changed;
   }
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (error == std::errc() && end == cell.data() + cell.size()) return value;
+  if (const auto value = number_in<double>(cell)) return value;
   if (lower_case(cell) == "na" || lower_case(cell) == "null") return std::numeric_limits<double>::quiet_NaN();
   return std::nullopt;
 }
@@ -116,10 +114,8 @@ std::size_t CsvFile::column(const std::string& wanted) const {
   for (std::size_t k = 0; k < names_.size(); ++k) {
     if (names_[k].name == wanted || fmt::format("{} [{}]", names_[k].name, names_[k].unit) == wanted) return k;
   }
-  std::size_t count = 0;
-  const auto [end, error] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), count);
-  const bool is_number = error == std::errc() && end == wanted.data() + wanted.size();
-  if (is_number && count >= 1 && count <= names_.size()) return count - 1;
+  const auto count = number_in<std::size_t>(wanted);
+  if (count && *count >= 1 && *count <= names_.size()) return *count - 1;
   throw InvalidInput(
       fmt::format("'{}' has no column '{}'; there are {}", path_.string(), wanted, listed_columns(names_)));
 }

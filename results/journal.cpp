@@ -1,6 +1,7 @@
 #include <slipmode/results/journal.hpp>
 
 #include <slipmode/core/errors.hpp>
+#include <slipmode/core/numbers.hpp>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -74,8 +75,9 @@ std::string_view take_word(std::string_view& rest) {
 
 template <class Number>
 bool parse(std::string_view word, Number& out_value) {
-  const auto result = std::from_chars(word.data(), word.data() + word.size(), out_value);
-  return result.ec == std::errc() && result.ptr == word.data() + word.size();
+  const auto value = number_in<Number>(word);
+  out_value = value.value_or(out_value);
+  return value.has_value();
 }
 
 /// Nothing if the line is torn or altered.

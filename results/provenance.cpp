@@ -1,8 +1,8 @@
+#include <slipmode/core/numbers.hpp>
 #include <slipmode/results/provenance.hpp>
 
 #include <slipmode/results/records.hpp>
 
-#include <charconv>
 #include <utility>
 
 namespace slipmode::results {
@@ -52,10 +52,9 @@ Provenance load_provenance(const StoreReader& store) {
   provenance.git_commit = store.text(inside("git_commit"));
   provenance.compiler = store.text(inside("compiler"));
   const std::string seed = store.text(inside("seed"));
-  const auto read = std::from_chars(seed.data(), seed.data() + seed.size(), provenance.seed);
-  if (read.ec != std::errc() || read.ptr != seed.data() + seed.size()) {
-    store.fail(inside("seed"), "'" + seed + "'; expected an unsigned integer");
-  }
+  const auto number = number_in<decltype(provenance.seed)>(seed);
+  if (!number) store.fail(inside("seed"), "'" + seed + "'; expected an unsigned integer");
+  provenance.seed = *number;
   if (store.has(kAuditGroup)) provenance.audit = load_audit(store, kAuditGroup);
   return provenance;
 }

@@ -1,6 +1,7 @@
 #include <slipmode/results/series_input.hpp>
 
 #include <slipmode/core/errors.hpp>
+#include <slipmode/core/numbers.hpp>
 #include <slipmode/diagnostics/attractors/farthest_dof.hpp>
 #include <slipmode/results/csv_series.hpp>
 #include <slipmode/results/provenance.hpp>
@@ -12,7 +13,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <vector>
@@ -235,12 +235,11 @@ class RecordFile {
     const std::int64_t columns = shape.size() == 1 ? 1 : shape.back();
     const auto named = std::ranges::find(names_, word);
     if (named != names_.end() && static_cast<std::int64_t>(names_.size()) == columns) return named - names_.begin();
-    std::int64_t number = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-    if (error != std::errc() || end != word.data() + word.size() || number < 1 || number > columns) {
+    const auto number = number_in<std::int64_t>(word);
+    if (!number || *number < 1 || *number > columns) {
       throw InvalidInput(fmt::format("{}: '{}' has columns 1 to {}, found '{}'", source_.file, dataset, columns, word));
     }
-    return number - 1;
+    return *number - 1;
   }
 
   /// The samples with their instants; of an ensemble one member's.

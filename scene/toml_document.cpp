@@ -1,11 +1,11 @@
 #include <slipmode/core/errors.hpp>
+#include <slipmode/core/numbers.hpp>
 #include "scene/internal/toml_reader.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <numeric>
 #include <sstream>
 #include <utility>
@@ -45,13 +45,6 @@ toml::table parse_value(const std::string& value) {
     return table;
   }
   return toml::parse("value = " + value);
-}
-
-std::optional<std::size_t> as_index(const std::string& part) {
-  std::size_t index = 0;
-  const auto result = std::from_chars(part.data(), part.data() + part.size(), index);
-  if (result.ec != std::errc() || result.ptr != part.data() + part.size()) return std::nullopt;
-  return index;
 }
 
 std::string lower(std::string text) {
@@ -132,7 +125,7 @@ void TomlDocument::apply(const std::string& override_text) {
     const std::string parent = so_far.empty() ? "the scene" : so_far;
     so_far += (so_far.empty() ? "" : ".") + part;
     if (toml::array* array = here->as_array()) {
-      const auto index = as_index(part);
+      const auto index = number_in<std::size_t>(part);
       if (!index || *index >= array->size()) {
         fail_override(path_, override_text,
                       fmt::format("{} has {} entries; valid: 0 to {}", parent, array->size(),

@@ -2,6 +2,7 @@
 
 #include <slipmode/core/errors.hpp>
 #include <slipmode/core/none.hpp>
+#include <slipmode/core/numbers.hpp>
 #include <slipmode/fem/modes.hpp>
 #include <slipmode/pod/mode_shares.hpp>
 #include <slipmode/results/ensemble_store.hpp>
@@ -15,7 +16,6 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <ctime>
 #include <utility>
 
@@ -169,10 +169,8 @@ std::vector<trade::OfferedBasis> offered_on_belt(const scene::Scene& scene, cons
 std::optional<Eigen::Index> mode_count(const std::string& model) {
   const std::size_t colon = model.find(':');
   if (colon == std::string::npos) return std::nullopt;
-  Eigen::Index modes = 0;
-  const char* end = model.data() + model.size();
-  const auto [stopped, error] = std::from_chars(model.data() + colon + 1, end, modes);
-  return error == std::errc() && stopped == end && modes >= 1 ? std::optional(modes) : std::nullopt;
+  const auto modes = number_in<Eigen::Index>(std::string_view(model).substr(colon + 1));
+  return modes.value_or(0) >= 1 ? modes : std::nullopt;
 }
 
 /// "pomf:3": a basis of the scene's own words, made as its ensemble says.
