@@ -1,6 +1,5 @@
 #include <slipmode/orbits/orbit_map.hpp>
 
-#include <slipmode/core/decompositions.hpp>
 #include <slipmode/core/errors.hpp>
 #include "orbits/internal/map_waveform.hpp"
 #include "orbits/internal/motion_scale.hpp"
@@ -9,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <utility>
 #include <variant>
 
@@ -45,18 +43,16 @@ class Settling {
         state_(start),
         section_(2 * system.size(), 0) {}
 
-  MapPoint run() {
-    MapPoint point;
-    while (point.periods < options_.max_periods) {
-      const int count = std::min(options_.block, options_.max_periods - point.periods);
+  SettledMotion run() {
+    SettledMotion motion;
+    while (motion.periods < options_.max_periods && !motion.orbit) {
+      const int count = std::min(options_.block, options_.max_periods - motion.periods);
       advance(count);
-      point.periods += count;
-      if (const auto orbit = orbit_near()) {
-        describe(*orbit, point);
-        break;
-      }
+      motion.periods += count;
+      motion.orbit = orbit_near();
     }
-    return point;
+    motion.end = state_;
+    return motion;
   }
 
  private:
@@ -131,31 +127,6 @@ class Settling {
     return distance(stacked(orbit.start), stacked(here)) <= kReserve * gap / (1.0 - orbit.leading_modulus) + kSame;
   }
 
-  void describe(const PeriodicOrbit& orbit, MapPoint& out_point) const {
-    out_point.order = orbit.order;
-    out_point.crossings = orbit.crossings;
-    out_point.multiplier = orbit.multipliers.size() > 0 ? std::abs(orbit.multipliers(0)) : 0.0;
-    out_point.symmetric = orbit.symmetric;
-    out_point.floating = orbit.family.cols() > 0;
-    out_point.residual = orbit.residual;
-    if (options_.row.size() > 0) out_point.alternating = alternating(orbit);
-  }
-
-  /// From samples of one run: to 1e-8 of the amplitude where the motion is smooth, at a tenth of orbits::amplitude.
-  [[nodiscard]] double alternating(const PeriodicOrbit& orbit) const {
-    constexpr int kSamples = 256;  // per period of the drive
-    const Eigen::Index steps = Eigen::Index{kSamples} * orbit.order;
-    const double step = orbit.period / static_cast<double>(steps);
-    // A little longer than needed: the last sample must not be lost to rounding.
-    const dynamics::Trajectory run = dynamics::simulate(
-        system_, orbit.start,
-        {.duration = orbit.period + 0.5 * step, .sample = step, .keep_events = false, .flow = options_.shooting.flow});
-    const Eigen::VectorXd y = run.q.transpose() * options_.row, slope = run.v.transpose() * options_.row;
-    detail::Waveform waveform(step);
-    for (Eigen::Index k = 0; k < steps; ++k) waveform.add(y(k), slope(k), y(k + 1), slope(k + 1));
-    return waveform.alternating();
-  }
-
   static constexpr double kSame = 1e-7;
 
   const dynamics::HybridSystem& system_;
@@ -166,48 +137,42 @@ class Settling {
   detail::MotionScale scale_;  ///< of the last block
 };
 
-/// The sum of harmonics at time 0: real part and time derivative of Σ_m Im(X_m e^{imωt}).
-void add_harmonic(const dynamics::HybridSystem& system, const friction::ForceHarmonic& harmonic, double base,
-                  dynamics::State& out_state) {
-  const double omega = harmonic.order * base;
-  const std::complex<double> i(0.0, 1.0);
-  const Eigen::MatrixXcd stiffness = fem::to_dense(system.structure().K()).cast<std::complex<double>>() +
-                                     i * omega * fem::to_dense(system.structure().C()) -
-                                     omega * omega * fem::to_dense(system.structure().M());
-  const Eigen::VectorXcd force =
-      system.force_directions().col(harmonic.direction) * (harmonic.amplitude * std::exp(i * harmonic.phase));
-  const Eigen::FullPivLU<Eigen::MatrixXcd> factor(stiffness);
-  if (!factor.isInvertible()) {
-    throw InvalidInput(
-        fmt::format("linear response: expected a frequency at which the structure does not resonate, "
-                    "found {} rad/s. Give it damping, or another start",
-                    omega));
-  }
-  const Eigen::VectorXcd response = factor.solve(force);
-  out_state.q += response.imag();
-  out_state.v += (i * omega * response).imag();
+/// From samples of one run: to 1e-8 of the amplitude where the motion is smooth, at a tenth of orbits::amplitude.
+double alternating(const dynamics::HybridSystem& system, const PeriodicOrbit& orbit, const MapOptions& options) {
+  constexpr int kSamples = 256;  // per period of the drive
+  const Eigen::Index steps = Eigen::Index{kSamples} * orbit.order;
+  const double step = orbit.period / static_cast<double>(steps);
+  // A little longer than needed: the last sample must not be lost to rounding.
+  const dynamics::Trajectory run = dynamics::simulate(
+      system, orbit.start,
+      {.duration = orbit.period + 0.5 * step, .sample = step, .keep_events = false, .flow = options.shooting.flow});
+  const Eigen::VectorXd y = run.q.transpose() * options.row, slope = run.v.transpose() * options.row;
+  detail::Waveform waveform(step);
+  for (Eigen::Index k = 0; k < steps; ++k) waveform.add(y(k), slope(k), y(k + 1), slope(k + 1));
+  return waveform.alternating();
 }
 
 }  // namespace
 
-MapPoint settled_orbit(const dynamics::HybridSystem& system, const dynamics::State& start, const MapOptions& options) {
+SettledMotion settled_motion(const dynamics::HybridSystem& system, const dynamics::State& start,
+                             const MapOptions& options) {
   check(system, options);
   return Settling(system, start, options).run();
 }
 
-dynamics::State linear_response(const dynamics::HybridSystem& system) {
-  const friction::Force* force = system.drive().force();
-  if (force == nullptr) {
-    throw InvalidInput("linear response: expected a force drive, found a belt or a shaker. Give the start itself");
-  }
-  dynamics::State state = system.rest();
-  state.modes = {};
-  if (system.load().size() > 0) {
-    state.q = Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(fem::to_dense(system.structure().K()))
-                  .solve(system.load());
-  }
-  for (const friction::ForceHarmonic& harmonic : force->harmonics) add_harmonic(system, harmonic, force->omega, state);
-  return state;
+MapPoint settled_orbit(const dynamics::HybridSystem& system, const dynamics::State& start, const MapOptions& options) {
+  const SettledMotion motion = settled_motion(system, start, options);
+  MapPoint point{.periods = motion.periods};
+  if (!motion.orbit) return point;
+  const PeriodicOrbit& orbit = *motion.orbit;
+  point.order = orbit.order;
+  point.crossings = orbit.crossings;
+  point.multiplier = orbit.multipliers.size() > 0 ? std::abs(orbit.multipliers(0)) : 0.0;
+  point.symmetric = orbit.symmetric;
+  point.floating = orbit.family.cols() > 0;
+  point.residual = orbit.residual;
+  if (options.row.size() > 0) point.alternating = alternating(system, orbit, options);
+  return point;
 }
 
 OrbitMap orbit_map(const std::function<dynamics::HybridSystem(double x, double y)>& system,

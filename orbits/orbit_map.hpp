@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,17 +39,22 @@ struct MapOptions {
   ShootingOptions shooting = {};
 };
 
+/// Where a driven motion was followed to.
+struct SettledMotion {
+  std::optional<PeriodicOrbit> orbit;  ///< the stable orbit it ends on, or one of a floating family; none found
+  int periods = 0;                     ///< of the drive simulated before shooting took over
+  dynamics::State end;                 ///< after them, at the phase of the start
+};
+
 /// The orbit a motion settles to: periods of the drive are simulated until the section nearly repeats, then shooting
 /// finds the orbit. It counts when it is stable (or one of a floating family) and as near as its multipliers say the
 /// motion must be; otherwise the simulation goes on. An orbit of a divisor of the order is recognised.
 /// @throws InvalidInput  for options out of range, a drive without period, and as simulate
+[[nodiscard]] SettledMotion settled_motion(const dynamics::HybridSystem& system, const dynamics::State& start,
+                                           const MapOptions& options);
+/// The same in the numbers a map shows.
 [[nodiscard]] MapPoint settled_orbit(const dynamics::HybridSystem& system, const dynamics::State& start,
                                      const MapOptions& options);
-
-/// Steady motion of the structure under its force drive with no contact force, at time 0: S0's start in the centre of
-/// the gap. Where the structure floats its place is that of minimum norm.
-/// @throws InvalidInput  for a drive that is no force, or a frequency at which the structure resonates undamped
-[[nodiscard]] dynamics::State linear_response(const dynamics::HybridSystem& system);
 
 /// A grid of two parameters. Row j belongs to y[j], point i of it to x[i].
 struct MapGrid {

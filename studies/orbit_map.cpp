@@ -1,6 +1,7 @@
 #include <slipmode/studies/orbit_map.hpp>
 
 #include <slipmode/core/errors.hpp>
+#include <slipmode/orbits/gap_motion.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>

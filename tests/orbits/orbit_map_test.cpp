@@ -1,6 +1,7 @@
 #include <slipmode/orbits/orbit_map.hpp>
 
 #include <slipmode/core/errors.hpp>
+#include <slipmode/orbits/gap_motion.hpp>
 #include "fixtures/clearance_scenes.hpp"
 #include "fixtures/scenes.hpp"
 #include "fixtures/shaken_scenes.hpp"

@@ -1,6 +1,7 @@
 #include <slipmode/orbits/strobe_map.hpp>
 
 #include <slipmode/core/errors.hpp>
+#include <slipmode/orbits/gap_motion.hpp>
 #include <slipmode/orbits/orbit_map.hpp>
 #include "fixtures/clearance_scenes.hpp"
 #include "fixtures/scenes.hpp"
