@@ -15,6 +15,7 @@ namespace {
 constexpr std::pair<const char*, FileKind> kMarks[] = {
     {"map", FileKind::kMap},
     {"strobe", FileKind::kStrobe},
+    {"basins", FileKind::kBasins},
     {"skeleton", FileKind::kSkeleton},
     {"diagnosis", FileKind::kSeries},
     {"validation", FileKind::kValidation},

@@ -1,29 +1,17 @@
 #include <slipmode/results/map_store.hpp>
 
 #include <slipmode/core/none.hpp>
+#include "results/internal/grid_rows.hpp"
 #include "results/internal/journal_line.hpp"
 
 #include <fmt/format.h>
-#include <functional>
-#include <sstream>
-#include <utility>
+#include <algorithm>
 
 namespace slipmode::results {
 namespace {
 
 using orbits::MapPoint;
 using orbits::StrobePoint;
-
-/// Failures of a row, one line per point; lines of points that went well are empty.
-std::string failure_lines(const std::vector<MapPoint>& row) {
-  std::string text;
-  bool any = false;
-  for (const MapPoint& point : row) {
-    text += point.failure + '\n';
-    any = any || !point.failure.empty();
-  }
-  return any ? text : std::string();
-}
 
 void list_point(detail::Line& line, MapPoint& point) {
   line(point.order, point.crossings, point.multiplier, point.symmetric, point.floating, point.alternating,
@@ -35,55 +23,12 @@ void list_row(detail::Line& line, orbits::MapRow& row) {
   line(size);
   row.settled.resize(size);
   for (MapPoint& point : row.settled) list_point(line, point);
-  if (!line.reads()) {
-    row.failure = failure_lines(row.settled);
-    return;
-  }
-  std::istringstream failures(std::exchange(row.failure, {}));
-  for (MapPoint& point : row.settled) std::getline(failures, point.failure);
+  detail::list_failures(line, row.failure, row.settled);
 }
 
 void list_strobe(detail::Line& line, StrobePoint& point) {
   orbits::Strobe& own = point.settled;
   line(own.order, own.mismatch, own.section, own.alternating, own.effective, own.end);
-}
-
-void store_axis(StoreWriter& writer, const std::string& group, const SweepAxis& axis,
-                const std::vector<double>& values) {
-  writer.write(group + "/key", axis.key, {"", "the scene's key"});
-  writer.write(group + "/label", axis.label, {"", "name of the key for an axis"});
-  writer.write(group + "/values", values, {axis.units, axis.key});
-}
-
-/// One number of every point [y x x].
-Eigen::MatrixXd layer(const orbits::OrbitMap& map, std::size_t columns,
-                      const std::function<double(const MapPoint&)>& number) {
-  Eigen::MatrixXd values(static_cast<Eigen::Index>(map.rows.size()), static_cast<Eigen::Index>(columns));
-  for (std::size_t j = 0; j < map.rows.size(); ++j) {
-    for (std::size_t i = 0; i < columns; ++i) {
-      values(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(i)) = number(map.rows[j][i]);
-    }
-  }
-  return values;
-}
-
-void store_failures(StoreWriter& writer, const std::string& group, const orbits::MapGrid& grid,
-                    const orbits::OrbitMap& map) {
-  std::vector<double> x, y;
-  std::vector<std::string> text;
-  for (std::size_t j = 0; j < map.rows.size(); ++j) {
-    for (std::size_t i = 0; i < map.rows[j].size(); ++i) {
-      if (map.rows[j][i].failure.empty()) continue;
-      x.push_back(grid.x[i]);
-      y.push_back(grid.y[j]);
-      text.push_back(map.rows[j][i].failure);
-    }
-  }
-  save(writer, group,
-       Table{"points at which the flow failed",
-             {{"x", {"", "value of the first key"}, x},
-              {"y", {"", "value of the second key"}, y},
-              {"failure", {"", "why"}, text}}});
 }
 
 }  // namespace
@@ -107,7 +52,7 @@ void store_map(StoreWriter& writer, const SweepAxis& x, const SweepAxis& y, cons
     writer.describe_group(group, started.start == "centre" ? "from the steady linear motion in the middle of the gap"
                                                            : "from the scene's initial state");
     const auto write = [&](const std::string& name, const Meaning& meaning, auto number) {
-      writer.write(group + "/" + name, layer(started.map, grid.x.size(), number), meaning);
+      writer.write(group + "/" + name, detail::layer(started.map.rows, grid.x.size(), number), meaning);
     };
     write("order", {"", "period in periods of the drive; 0: not periodic"}, [](const MapPoint& p) { return p.order; });
     write("crossings", {"", "changes of force law in a period; 0 also where not periodic"},
@@ -120,7 +65,7 @@ void store_map(StoreWriter& writer, const SweepAxis& x, const SweepAxis& y, cons
           [](const MapPoint& p) { return p.alternating; });
     write("residual", {"1", "mismatch of the orbit after its period"}, [](const MapPoint& p) { return p.residual; });
     write("periods", {"", "periods of the drive simulated"}, [](const MapPoint& p) { return p.periods; });
-    store_failures(writer, group + "/failures", grid, started.map);
+    detail::store_failures(writer, group + "/failures", grid, started.map.rows);
   }
 }
 

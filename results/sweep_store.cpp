@@ -1,6 +1,7 @@
 #include <slipmode/results/sweep_store.hpp>
 
 #include <slipmode/core/none.hpp>
+#include <slipmode/core/numbers.hpp>
 #include "results/internal/journal_line.hpp"
 
 #include <fmt/format.h>
@@ -36,8 +37,23 @@ SweepAxis sweep_axis(const scene::Scene& scene, const std::string& key) {
   if (key == "drive.amplitude" && scene.force) return {key, "amplitude of the force A", units.force};
   if (key == "drive.amplitude") return {key, "amplitude of the shaker", units.length};
   if (key.starts_with("contact.") && key.ends_with(".stiffness")) return {key, "contact stiffness", units.stiffness};
+  for (const std::string coordinate : {"displacement", "velocity"}) {
+    const std::string start = "initial." + coordinate + ".";
+    if (!key.starts_with(start)) continue;
+    const auto dof = number_in<int>(key.substr(start.size()));
+    if (!dof) continue;
+    return {key, fmt::format("{} at the start, {}_{{{}}}", coordinate, coordinate.front() == 'd' ? "q" : "v", *dof + 1),
+            coordinate.front() == 'd' ? units.length : units.velocity};
+  }
   const bool load = key.ends_with("normal_load") || key.ends_with("normal_load.constant");
   return {key, load ? "normal load" : key, load ? units.force : "1"};
+}
+
+void store_axis(StoreWriter& writer, const std::string& group, const SweepAxis& axis,
+                const std::vector<double>& values) {
+  writer.write(group + "/key", axis.key, {"", "the scene's key"});
+  writer.write(group + "/label", axis.label, {"", "name of the key for an axis"});
+  writer.write(group + "/values", values, {axis.units, axis.key});
 }
 
 void store_sweep(StoreWriter& writer, const std::string& group, const std::string& title, const SweepAxis& axis,

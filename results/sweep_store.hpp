@@ -22,6 +22,9 @@ struct SweepAxis {
   std::string units;
 };
 [[nodiscard]] SweepAxis sweep_axis(const scene::Scene& scene, const std::string& key);
+/// Writes `key`, `label` and `values` of an axis into a group.
+void store_axis(StoreWriter& writer, const std::string& group, const SweepAxis& axis,
+                const std::vector<double>& values);
 
 /// Writes `group`: a table `values` (one row per value), a table `slips` (one row per slip state) and a title.
 void store_sweep(StoreWriter& writer, const std::string& group, const std::string& title, const SweepAxis& axis,

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <slipmode/results/basins_store.hpp>
+#include <slipmode/studies/family.hpp>
+#include <slipmode/studies/run_options.hpp>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace slipmode::studies {
+
+/// A coordinate of the start, "initial.displacement.0" or "initial.velocity.2", and its values.
+struct StartAxis {
+  std::string key;
+  std::vector<double> values;
+};
+
+/// A plane of starts; what the two keys leave is as the scene's start has it.
+struct BasinsRequest {
+  std::array<StartAxis, 2> over;   ///< across, up
+  std::vector<double> along = {};  ///< values of the family's key, where it has one
+};
+
+struct BasinsOptions {
+  int max_order = 8;                    ///< longest period looked for, in periods of the drive
+  int periods = 1000;                   ///< of the drive, simulated at most where a start arrives at nothing known
+  int sample = 16;                      ///< starts each way that are followed first, to find attractors
+  results::Journal* journal = nullptr;  ///< keeps finished rows and gives back earlier ones
+};
+
+/// Basins of a driven scene over two coordinates of the start, and along a key of the scene.
+struct BasinsStudy {
+  orbits::MapGrid grid;
+  orbits::Basins basins = {};                    ///< of the scene's own values
+  std::vector<results::BasinsAlong> along = {};  ///< by value of the third key
+  bool interrupted = false;
+};
+
+/// @throws InvalidInput  for a key that is no coordinate of the start, two alike, no values or values that are not
+///                       finite, a third key that is one of the start, a drive without period
+void check(const Family& family, const BasinsRequest& request);
+
+/// @param family  over the third key, or none
+/// @throws InvalidInput  as check and orbits::basins
+[[nodiscard]] BasinsStudy basins(const Family& family, const BasinsRequest& request, const BasinsOptions& options = {},
+                                 const RunOptions& run = {});
+
+/// Writes the group `basins`.
+void store(results::StoreWriter& writer, const Family& family, const BasinsRequest& request, const BasinsStudy& study);
+
+}  // namespace slipmode::studies
