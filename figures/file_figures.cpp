@@ -1,6 +1,7 @@
 #include <slipmode/figures/file_figures.hpp>
 
 #include <slipmode/figures/balance_figures.hpp>
+#include <slipmode/figures/basins_figures.hpp>
 #include <slipmode/figures/belt_figures.hpp>
 #include <slipmode/figures/exponents_figures.hpp>
 #include <slipmode/figures/map_figures.hpp>
@@ -44,6 +45,7 @@ constexpr KindFigures kFigures[] = {
     {FileKind::kBranches, branch_figures_of},
     {FileKind::kMap, map_figures_of},
     {FileKind::kStrobe, strobe_figures_of},
+    {FileKind::kBasins, basins_figures_of},
     {FileKind::kSkeleton, skeleton_figures_of},
     {FileKind::kSpectrum, spectrum_figures_of},
     {FileKind::kBalance, balance_figures_of},

@@ -13,7 +13,7 @@ namespace {
 /// Smaller than this share of the largest amplitude is rounding, and would stretch the axis.
 constexpr double kLeast = 1e-15;
 
-Figure amplitudes(const results::StoreReader& store) {
+Figure harmonic_amplitudes(const results::StoreReader& store) {
   const scene::Scene scene = results::load_scene_of(store);
   const results::Units units = results::Units::of(scene.units);
   const results::Table table = results::load_spectrum(store);
@@ -42,7 +42,7 @@ Figure amplitudes(const results::StoreReader& store) {
 }  // namespace
 
 std::vector<FileFigure> spectrum_figures_of(const results::StoreReader&) {
-  return {{"spectrum", "amplitude over order at the contacts", amplitudes}};
+  return {{"spectrum", "amplitude over order at the contacts", harmonic_amplitudes}};
 }
 
 }  // namespace slipmode::figures

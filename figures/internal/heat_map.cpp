@@ -72,11 +72,13 @@ std::string colour_tics(const HeatMapLayout& layout, const Scale& scale) {
   std::string tics = fmt::format("set cbtics (\"{}\" {:.9g}", literal(layout.missing.empty() ? "none" : layout.missing),
                                  scale.missing());
   const int count = layout.steps > 1 ? layout.steps - 1 : 5;
-  const int every = std::max(1, (count + 7) / 8);
+  const int every = layout.words.empty() ? std::max(1, (count + 7) / 8) : 1;
   for (int k = 0; k <= count; k += every) {
     const double value = layout.low + k * (layout.high - layout.low) / count;
     const bool open = k + every > count && layout.steps > 1;
-    tics += fmt::format(", \"{}{:.3g}\" {:.9g}", open ? "≥ " : "", value, value);
+    const std::string word = layout.words.empty() ? fmt::format("{}{:.3g}", open ? "≥ " : "", value)
+                                                  : literal(layout.words[static_cast<std::size_t>(k)]);
+    tics += fmt::format(", \"{}\" {:.9g}", word, value);
   }
   return tics + ")";
 }
@@ -117,7 +119,8 @@ Figure heat_maps(const std::vector<HeatMapPanel>& panels, const HeatMapLayout& l
   figure.command(fmt::format("set cbrange [{:.9g}:{:.9g}]", scale.bottom(), scale.colour_high()));
   figure.command(colour_tics(layout, scale));
   const double height = figure.height();
-  figure.command(fmt::format("set multiplot layout 1,{} margins 0.075,0.83,{:.4f},{:.4f} spacing 0.03,0", count,
+  const double right = layout.words.empty() ? 0.83 : 0.76;
+  figure.command(fmt::format("set multiplot layout 1,{} margins 0.085,{},{:.4f},{:.4f} spacing 0.03,0", count, right,
                              85.0 / height, 1.0 - 45.0 / height));
   for (int i = 0; i < count; ++i) {
     const HeatMapPanel& panel = panels[static_cast<std::size_t>(i)];
@@ -126,13 +129,19 @@ Figure heat_maps(const std::vector<HeatMapPanel>& panels, const HeatMapLayout& l
     figure.command(fmt::format("set xlabel \"{}\"", layout.x_label));
     figure.command(i == 0 ? fmt::format("set ylabel \"{}\"", layout.y_label) : std::string("unset ylabel"));
     figure.command(i == 0 ? "set format y '%g'" : "set format y ''");
-    figure.command(last ? "set colorbox user origin screen 0.845,graph 0 size 0.022,graph 1" : "unset colorbox");
+    figure.command(last ? fmt::format("set colorbox user origin screen {},graph 0 size 0.022,graph 1", right + 0.015)
+                        : std::string("unset colorbox"));
     if (last) {
       figure.command(
           fmt::format("set label 1 \"{}\" at screen 0.99,{:.4f} right", layout.value_label, 1.0 - 22.0 / height));
     }
     figure.command(fmt::format("set xrange {}; set yrange {}", cell_range(panel.x), cell_range(panel.y)));
-    figure.command(fmt::format("plot {} using 1:2:3 with image", image_data(figure, panel, scale)));
+    std::string plot = fmt::format("plot {} using 1:2:3 with image", image_data(figure, panel, scale));
+    if (panel.line_x.size() > 0) {
+      plot += fmt::format(", {} using 1:2 with lines lw 2 lc rgb '{}'", figure.data({panel.line_x, panel.line_y}),
+                          kLnmColour);
+    }
+    figure.command(plot);
   }
   figure.command("unset multiplot");
   return figure;

@@ -13,6 +13,8 @@ struct HeatMapPanel {
   std::string title;
   Eigen::VectorXd x, y;   ///< equally spaced, ascending or descending
   Eigen::MatrixXd value;  ///< [y x x]; not finite: no value
+  /// Lines drawn over it; a point that is not finite breaks one.
+  Eigen::VectorXd line_x = {}, line_y = {};
 };
 
 struct HeatMapLayout {
@@ -22,8 +24,9 @@ struct HeatMapLayout {
     kSequential,  ///< dark to light, for counts and sizes
     kGrey,        ///< black at `low` to white at `high`, as S0 draws multipliers
   } colours = Colours::kSequential;
-  int steps = 0;             ///< > 0: so many distinct colours between low and high, for counts
-  std::string missing = {};  ///< what "no value" means, for the colour bar; empty: "none"
+  int steps = 0;                        ///< > 0: so many distinct colours between low and high, for counts
+  std::vector<std::string> words = {};  ///< what the steps are called, where they are no numbers
+  std::string missing = {};             ///< what "no value" means, for the colour bar; empty: "none"
 };
 
 /// Panels side by side on shared axes and colours. A point without a value is drawn in a colour outside the scale.
