@@ -34,6 +34,7 @@ struct Verb {
 [[nodiscard]] Verb add_orbit_find(CLI::App& orbit);
 [[nodiscard]] Verb add_orbit_continue(CLI::App& orbit);
 [[nodiscard]] Verb add_orbit_map(CLI::App& orbit);
+[[nodiscard]] Verb add_orbit_basins(CLI::App& orbit);
 [[nodiscard]] Verb add_orbit_skeleton(CLI::App& orbit);
 [[nodiscard]] Verb add_orbit_returns(CLI::App& orbit);
 [[nodiscard]] Verb add_orbit_spectrum(CLI::App& orbit);

@@ -40,7 +40,7 @@ class OrbitVerbs : public testing::Test {
 };
 
 TEST_F(OrbitVerbs, EachHasHelpWithAnExample) {
-  for (const std::string verb : {"find", "continue", "map", "spectrum"}) {
+  for (const std::string verb : {"find", "continue", "map", "basins", "spectrum"}) {
     const Outcome outcome = call({verb, "--help"});
     EXPECT_EQ(outcome.exit_code, 0) << verb;
     EXPECT_THAT(outcome.out, HasSubstr("slipmode orbit " + verb)) << verb;

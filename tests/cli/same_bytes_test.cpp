@@ -93,11 +93,44 @@ transient = 0.0
 sample = 0.5
 )";
 
+/// Six attractors over a plane of starts: one in the gap, orbits of periods 3, 4 and 7.
+const std::string kBetweenStops = R"(
+title = "two masses, one between stops"
+units = "dimensionless"
+[structure]
+kind = "masses"
+mass = [1.0, 1.0]
+[[structure.link]]
+at = 1
+stiffness = 1.0
+damping = 0.02
+[[structure.link]]
+between = [1, 2]
+stiffness = 1.0
+damping = 0.02
+[[contact]]
+at = 2
+law = "clearance"
+loss = "zero-force"
+stop = { stiffness = 30.0, damping = 0.1, gap = 0.5 }
+[drive]
+kind = "force"
+omega = 2.0
+amplitude = 0.6
+at = 1
+[time]
+cycles = 10
+)";
+
 INSTANTIATE_TEST_SUITE_P(
     Commands, SameBytes,
     testing::Values(Command{"Stribeck", kStribeck100, {"simulate", "scene.toml"}},
                     Command{"TwoCoulombContacts", kTwoContacts, {"simulate", "scene.toml"}},
-                    Command{"StribeckSweep", kFreeEnds, {"sweep", "scene.toml", "--over", "drive.speed=0.1:0.4:0.02"}}),
+                    Command{"StribeckSweep", kFreeEnds, {"sweep", "scene.toml", "--over", "drive.speed=0.1:0.4:0.02"}},
+                    Command{"Basins",
+                            kBetweenStops,
+                            {"orbit", "basins", "scene.toml", "--over", "initial.displacement.1=-2:2:0.8", "--over",
+                             "initial.velocity.1=-2:2:0.8"}}),
     [](const auto& one) { return one.param.name; });
 
 TEST(KernelChoice, NamesTheSetsThereAreWhenAskedForAnother) {

@@ -1,0 +1,210 @@
+#include <slipmode/studies/basins.hpp>
+
+#include <slipmode/studies/result_file.hpp>
+#include "cli/orbit_report.hpp"
+#include "cli/sweep_request.hpp"
+#include "cli/text_table.hpp"
+#include "cli/verbs.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace slipmode::cli {
+namespace {
+
+using orbits::BasinAttractor;
+
+struct OrbitBasinsArguments {
+  std::string scene, output, along;
+  std::vector<std::string> over;
+  studies::BasinsOptions options;
+};
+
+/// Smallest and largest coordinate of the starts that end there.
+std::pair<double, double> coordinates_of(const orbits::Basins& basins, int attractor) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const auto& row : basins.rows) {
+    for (const orbits::BasinCell& cell : row) {
+      if (cell.attractor != attractor || std::isnan(cell.coordinate)) continue;
+      low = std::min(low, cell.coordinate);
+      high = std::max(high, cell.coordinate);
+    }
+  }
+  return {low, high};
+}
+
+Json attractor_json(const std::vector<BasinAttractor>& attractors, const diagnostics::BasinShare& own) {
+  Json json{{"attractor", own.attractor}, {"motion", results::attractor_text(attractors, own.attractor)},
+            {"starts", own.cells},        {"share", own.share},
+            {"share_error", own.error},   {"met_event", own.met_event}};
+  if (own.attractor < 0) return json;
+  const BasinAttractor& one = attractors[static_cast<std::size_t>(own.attractor)];
+  json["kind"] = to_string(one.kind);
+  if (one.kind == BasinAttractor::Kind::kChaotic) {
+    json["exponent"] = one.exponent;
+    json["exponent_error"] = one.exponent_error;
+    return json;
+  }
+  json["order"] = one.orbit.order;
+  json["crossings"] = one.orbit.crossings;
+  json["symmetric"] = one.orbit.symmetric;
+  json["multipliers"] = complex_json(one.orbit.multipliers);
+  return json;
+}
+
+/// "multipliers 0.72", "coordinate -0.33 to 0.33", "exponent 0.05 ± 0.01".
+std::string note_of(const orbits::Basins& basins, int attractor) {
+  if (attractor < 0) return "";
+  const BasinAttractor& one = basins.attractors[static_cast<std::size_t>(attractor)];
+  if (one.kind == BasinAttractor::Kind::kChaotic) {
+    return fmt::format("exponent {:.3g} ± {:.1g}", one.exponent, one.exponent_error);
+  }
+  const auto [low, high] = coordinates_of(basins, attractor);
+  if (low <= high) return fmt::format("coordinate {:.4g} to {:.4g}", low, high);
+  return "multipliers " + multipliers_text(one.orbit.multipliers);
+}
+
+Report summary(const studies::Family& family, const studies::BasinsRequest& request,
+               const studies::BasinsStudy& study) {
+  Report report;
+  const auto& [across, up] = request.over;
+  report.text = fmt::format("{}: {} x {} starts over {} and {}\n", family.scene().title, across.values.size(),
+                            up.values.size(), across.key, up.key);
+  report.data = {{"verb", "orbit basins"},
+                 {"keys", {across.key, up.key}},
+                 {"starts", {across.values.size(), up.values.size()}},
+                 {"attractors", Json::array()}};
+  TextTable table({"attractor", "share %", "±", "met events %", ""});
+  std::size_t undecided = 0;
+  for (const diagnostics::BasinShare& own : diagnostics::basin_shares(study.basins)) {
+    Json json = attractor_json(study.basins.attractors, own);
+    if (const auto [low, high] = coordinates_of(study.basins, own.attractor); low <= high) {
+      json["coordinate"] = {low, high};
+    }
+    report.data["attractors"].push_back(std::move(json));
+    if (own.attractor < 0) undecided = own.cells;
+    if (own.cells == 0) continue;
+    const std::string text = results::attractor_text(study.basins.attractors, own.attractor);
+    table.add({own.attractor < 0 ? text : fmt::format("{} {}", own.attractor, text), fixed(100.0 * own.share, 2),
+               fixed(100.0 * own.error, 2), fixed(100.0 * own.met_event, 1), note_of(study.basins, own.attractor)});
+  }
+  report.text += table.str();
+  const diagnostics::BoundaryUncertainty boundary = diagnostics::boundary_uncertainty(study.basins.closed_labels());
+  report.data["uncertainty"] = {{"exponent", boundary.exponent}, {"error", boundary.error}};
+  if (std::isfinite(boundary.exponent)) {
+    report.text +=
+        fmt::format("Boundary: uncertainty exponent {:.3f} ± {:.3f} (1: smooth)\n", boundary.exponent, boundary.error);
+  }
+  const Eigen::MatrixXd& room = study.basins.room;
+  if (room.size() > 0) {
+    std::size_t inside = 0, met = 0;
+    for (Eigen::Index j = 0; j < room.rows(); ++j) {
+      for (Eigen::Index i = 0; i < room.cols(); ++i) {
+        if (!(room(j, i) > 0.0)) continue;
+        ++inside;
+        met += study.basins.rows[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)].met_event ? 1 : 0;
+      }
+    }
+    const double share = static_cast<double>(inside) / static_cast<double>(room.size());
+    report.data["strip"] = {{"share", share},
+                            {"met_event", inside > 0 ? static_cast<double>(met) / static_cast<double>(inside) : 0.0}};
+    if (inside > 0) {
+      report.text += fmt::format("Linear strip: {:.2f} % of the starts, {:.1f} % of which meet an event first\n",
+                                 100.0 * share, 100.0 * static_cast<double>(met) / static_cast<double>(inside));
+    }
+  }
+  if (undecided > 0) {
+    report.text +=
+        "Undecided: no orbit up to --max-order within --periods, and not chaotic by its exponent. Chaos that only "
+        "passes "
+        "settles with more --periods\n";
+  }
+  for (const results::BasinsAlong& along : study.along) {
+    Json json = Json::array();
+    for (const diagnostics::BasinShare& own : along.shares) json.push_back(attractor_json(along.attractors, own));
+    report.data["along"].push_back({{"value", along.value}, {"attractors", json}});
+  }
+  return report;
+}
+
+Report run(const Session& session, const OrbitBasinsArguments& arguments) {
+  require_writable(arguments.output);
+  const scene::Scene scene = session.load(arguments.scene);
+  if (arguments.over.size() != 2) {
+    throw InvalidInput(
+        fmt::format("--over: given {} times; twice, each a coordinate of the start: "
+                    "--over initial.displacement.0=-2:2:0.01 --over initial.velocity.0=-2:2:0.01",
+                    arguments.over.size()));
+  }
+  studies::BasinsRequest request;
+  for (std::size_t k = 0; k < 2; ++k) {
+    Over over = parse_over(arguments.over[k]);
+    request.over[k] = {std::move(over.key), std::move(over.values)};
+  }
+  std::vector<std::string> keys;
+  if (!arguments.along.empty()) {
+    const Over along = parse_over(arguments.along);
+    keys.push_back(along.key);
+    request.along = along.values;
+  }
+  const studies::Family family(scene, keys);
+  studies::check(family, request);
+  if (!keys.empty()) check_values(scene, {keys.front(), request.along});
+  studies::BasinsOptions options = arguments.options;
+  studies::ResultFile file(
+      arguments.output, scene, results::FileKind::kBasins,
+      fmt::format("slipmode orbit basins --over {}{} --max-order {} --periods {} --sample {}",
+                  fmt::join(arguments.over, " --over "), keys.empty() ? "" : " --along " + arguments.along,
+                  options.max_order, options.periods, options.sample));
+  options.journal = &file.journal();
+  const studies::BasinsStudy study = studies::basins(family, request, options, session.run_options());
+  if (study.interrupted) {
+    Report report = interrupted_at(arguments.output);
+    report.data["verb"] = "orbit basins";
+    return report;
+  }
+  file.finish([&](results::StoreWriter& writer) { studies::store(writer, family, request, study); });
+  Report report = summary(family, request, study);
+  report.data["file"] = arguments.output;
+  tell_resumed(file.resumed(), "rows", report);
+  report.text += fmt::format("Basins: {}\n", arguments.output);
+  return report;
+}
+
+}  // namespace
+
+Verb add_orbit_basins(CLI::App& orbit) {
+  CLI::App* command =
+      orbit.add_subcommand("basins", "which attractor each start of a plane ends on, with shares and boundary");
+  const auto arguments = std::make_shared<OrbitBasinsArguments>();
+  command->add_option("SCENE", arguments->scene, "scene file (TOML) with a force or a shaker")->required();
+  command
+      ->add_option("--over", arguments->over,
+                   "coordinate of the start and range, twice: initial.displacement.K=FROM:TO:STEP, "
+                   "initial.velocity.K=FROM:TO:STEP, K from 0; the first across")
+      ->required()
+      ->allow_extra_args(false);
+  command->add_option("-o,--output", arguments->output, "result file (HDF5)")->required();
+  command->add_option("--along", arguments->along, "a third key, KEY=FROM:TO:STEP: shares at each of its values too");
+  command->add_option("--max-order", arguments->options.max_order, "longest period looked for, in periods of the drive")
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--periods", arguments->options.periods,
+                   "periods of the drive simulated at most where a start arrives at no attractor known before")
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--sample", arguments->options.sample, "starts each way that are followed first to find attractors")
+      ->check(CLI::PositiveNumber);
+  command->footer(
+      "Attractors: orbits found by shooting, all motions in the gap as one with a coordinate, chaotic motions by their "
+      "exponent.\nThe other coordinates of the start are those of the scene's [initial].\n"
+      "Example:\n  slipmode orbit basins datasets/play_oscillator/scene.toml --set drive.amplitude=0.3 "
+      "--set drive.omega=0.5005 --set structure.link.0.damping=0.4 --over initial.displacement.0=-2:2:0.04 "
+      "--over initial.velocity.0=-2:2:0.04 -o basins.h5");
+  return {command, [arguments](const Session& session) { return run(session, *arguments); }};
+}
+
+}  // namespace slipmode::cli
