@@ -1,4 +1,5 @@
 // Speed and accuracy beside the peers, measured in one process: see bench/README.md.
+#include "bench/basin_cases.hpp"
 #include "bench/beam_cases.hpp"
 #include "bench/cases.hpp"
 #include "bench/extras_cases.hpp"
@@ -48,6 +49,7 @@ std::vector<LibraryCase> library_cases() {
           {"sweep-coulomb", [](bool quick) { return measure_sweep(true, quick); }},
           {"reduction", measure_reduction},
           {"orbit", measure_orbits},
+          {"basins", measure_basins},
           {"extras", measure_extras},
           {"chain10000", measure_long_chain, true},
           {"series", measure_series, true},
