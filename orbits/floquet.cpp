@@ -30,11 +30,13 @@ void require_solved(bool solved) {
 
 }  // namespace
 
+Eigen::VectorXcd sorted_by_modulus(const Eigen::VectorXcd& values) { return values(order_by_modulus(values)); }
+
 Eigen::VectorXcd sorted_eigenvalues(const Eigen::MatrixXd& matrix) {
   if (matrix.size() == 0) return {};
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(matrix, false);
   require_solved(solver.info() == Eigen::Success);
-  return solver.eigenvalues()(order_by_modulus(solver.eigenvalues()));
+  return sorted_by_modulus(solver.eigenvalues());
 }
 
 std::vector<FloquetMode> floquet_modes(const Eigen::MatrixXd& matrix) {
@@ -63,7 +65,7 @@ std::vector<Eigen::Index> trivial_indices(const Eigen::VectorXcd& multipliers, i
 }
 
 void set_stability(PeriodicOrbit& orbit, double marginal_band) {
-  orbit.multipliers = sorted_eigenvalues(orbit.monodromy);
+  if (orbit.monodromy.size() > 0) orbit.multipliers = sorted_eigenvalues(orbit.monodromy);
   const std::vector<Eigen::Index> trivial = trivial_indices(orbit.multipliers, orbit.trivial_multipliers);
   const double zero = 1e-8 * std::max(1.0, orbit.monodromy.norm());
   orbit.leading_modulus = 0.0;

@@ -66,6 +66,9 @@ struct BalanceEquations {
 /// The state of the whole structure at time 0 that the series stand for.
 [[nodiscard]] dynamics::State state_of(const dynamics::HybridSystem& system, const Balance& balance);
 
+/// Sizes of the contacts' displacements as the series have them, one per contact.
+[[nodiscard]] std::vector<Amplitude> contact_amplitudes(const Balance& balance);
+
 /// y(t) of a series. @param theta  Ωt [rad]
 [[nodiscard]] double value_of(const Harmonics& y, double theta);
 

@@ -37,9 +37,20 @@ struct StopLaw {
   }
 };
 
-Occupation exact_occupation(const StopLaw& law, const TrigonometricPolynomial& y) {
+template <class Visit>
+void for_each_stop(const friction::Clearance& law, double omega, const Visit& visit) {
+  if (law.left) visit(StopLaw{*law.left, law.loss, -1.0, omega});
+  if (law.right) visit(StopLaw{*law.right, law.loss, 1.0, omega});
+}
+
+/// A stop's switches, and whether it presses before the first.
+struct OwnSwitches {
+  bool pressed = false;
+  std::vector<StopSwitch> switches;
+};
+
+OwnSwitches switches_of(const StopLaw& law, const TrigonometricPolynomial& y) {
   const Eigen::Index H = y.phasors.size() - 1;
-  Occupation out{Eigen::VectorXcd::Zero(2 * H + 1), Eigen::VectorXcd::Zero(2 * H + 1), 0};
   TrigonometricPolynomial guard = y;  // side y − b
   guard.phasors *= law.side;
   guard.phasors[0] -= law.stop.gap;
@@ -49,37 +60,46 @@ Occupation exact_occupation(const StopLaw& law, const TrigonometricPolynomial& y
   };
   std::vector<Border> borders;
   for (const double theta : zeros(guard)) borders.push_back({theta, true});
-  if (borders.empty()) {
-    if (law.depth(y.at(0.0).y) <= 0.0) return out;  // never reached
-  }
+  if (borders.empty() && law.depth(y.at(0.0).y) <= 0.0) return {};  // never reached
   if (law.lets_go_early()) {
     TrigonometricPolynomial force = guard;
     for (Eigen::Index k = 0; k <= H; ++k)
       force.phasors[k] *= Complex(law.stop.stiffness, law.stop.damping * law.omega * static_cast<double>(k));
     for (const double theta : zeros(force)) borders.push_back({theta, false});
   }
-  if (borders.empty()) {
-    out.set[0] = law.presses(y.at(0.0)) ? 1.0 : 0.0;
-    return out;
-  }
+  if (borders.empty()) return {law.presses(y.at(0.0)), {}};
   std::ranges::sort(borders, {}, &Border::theta);
   const std::size_t count = borders.size();
-  std::vector<bool> pressed(count);  // after each border
-  for (std::size_t i = 0; i < count; ++i) {
+  const auto after = [&](std::size_t i) {
     const double next = i + 1 < count ? borders[i + 1].theta : borders[0].theta + kCircle;
-    pressed[i] = law.presses(y.at(0.5 * (borders[i].theta + next)));
-    if (pressed[i]) out.set[0] += (next - borders[i].theta) / kCircle;
-  }
+    return law.presses(y.at(0.5 * (borders[i].theta + next)));
+  };
+  OwnSwitches out{after(count - 1), {}};
+  bool before = out.pressed;
   for (std::size_t i = 0; i < count; ++i) {
-    const bool before = pressed[(i + count - 1) % count], after = pressed[i];
-    if (before == after) continue;
-    ++out.switches;
-    const double sign = after ? -1.0 : 1.0;
-    const Complex turn = std::polar(1.0, borders[i].theta);
+    const bool now = after(i);
+    if (now != before)
+      out.switches.push_back(
+          {borders[i].theta, law.side < 0 ? -1 : 1, now, borders[i].at_gap && law.stop.damping > 0.0});
+    before = now;
+  }
+  return out;
+}
+
+/// @param moments  of the set and the jumps
+Occupation exact_occupation(const StopLaw& law, const TrigonometricPolynomial& y, Eigen::Index moments) {
+  Occupation out{Eigen::VectorXcd::Zero(moments + 1), Eigen::VectorXcd::Zero(moments + 1), 0};
+  const OwnSwitches own = switches_of(law, y);
+  out.switches = static_cast<int>(own.switches.size());
+  if (own.pressed) out.set[0] = 1.0;
+  for (const StopSwitch& at : own.switches) {
+    const double sign = at.pressed ? -1.0 : 1.0;
+    out.set[0] += sign * at.theta / kCircle;
+    const Complex turn = std::polar(1.0, at.theta);
     Complex power = 1.0;
-    for (Eigen::Index m = 0; m <= 2 * H; ++m, power *= turn) {
+    for (Eigen::Index m = 0; m <= moments; ++m, power *= turn) {
       if (m > 0) out.set[m] += sign * power / Complex(0.0, kCircle * static_cast<double>(m));
-      if (borders[i].at_gap) out.jumps[m] += sign / kCircle * power;
+      if (at.jumps) out.jumps[m] += sign / kCircle * power;
     }
   }
   return out;
@@ -136,18 +156,38 @@ void add_stop(const StopLaw& law, const TrigonometricPolynomial& y, const Occupa
 
 }  // namespace
 
+StopSwitches stop_switches(const friction::Clearance& law, const TrigonometricPolynomial& y, double omega) {
+  StopSwitches out;
+  for_each_stop(law, omega, [&](const StopLaw& own) {
+    OwnSwitches found = switches_of(own, y);
+    if (found.pressed) out.side = own.side < 0 ? -1 : 1;
+    out.switches.insert(out.switches.end(), found.switches.begin(), found.switches.end());
+  });
+  std::ranges::sort(out.switches, {}, &StopSwitch::theta);
+  return out;
+}
+
+StopTangent stop_tangent(const friction::Clearance& law, const TrigonometricPolynomial& y, double omega,
+                         Eigen::Index moments, bool jumps) {
+  StopTangent out{Eigen::VectorXcd::Zero(moments + 1), Eigen::VectorXcd::Zero(moments + 1)};
+  for_each_stop(law, omega, [&](const StopLaw& own) {
+    const Occupation where = exact_occupation(own, y, moments);
+    out.stiffness -= own.stop.stiffness * where.set;
+    if (jumps) out.stiffness += own.stop.damping * omega * where.jumps;
+    out.damping -= own.stop.damping * where.set;
+  });
+  return out;
+}
+
 BalancedForce balanced_force(const friction::Clearance& law, const TrigonometricPolynomial& y, double omega,
                              int samples, Eigen::Index lead) {
   const Eigen::Index H = y.phasors.size() - 1;
   BalancedForce out{Eigen::VectorXcd::Zero(H + 1), Eigen::MatrixXd::Zero(2 * lead + 1, 2 * lead + 1), 0};
-  for (const double side : {-1.0, 1.0}) {
-    const auto& stop = side < 0 ? law.left : law.right;
-    if (!stop) continue;
-    const StopLaw own{*stop, law.loss, side, omega};
-    const Occupation where = samples == kExact ? exact_occupation(own, y) : sampled_occupation(own, y, samples);
+  for_each_stop(law, omega, [&](const StopLaw& own) {
+    const Occupation where = samples == kExact ? exact_occupation(own, y, 2 * H) : sampled_occupation(own, y, samples);
     add_stop(own, y, where, out);
     out.switches += where.switches;
-  }
+  });
   return out;
 }
 

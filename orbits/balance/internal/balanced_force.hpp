@@ -4,8 +4,34 @@
 #include "orbits/balance/internal/trigonometric.hpp"
 
 #include <Eigen/Core>
+#include <vector>
 
 namespace slipmode::orbits {
+
+/// An instant at which a stop begins to press, or lets go.
+struct StopSwitch {
+  double theta = 0.0;
+  int side = 1;          ///< −1 the left stop, +1 the right one
+  bool pressed = false;  ///< after it
+  bool jumps = false;    ///< the force does, by ∓ c ẏ: a damped stop that is reached, or let go at its gap
+};
+
+/// What a contact's stops do along a motion.
+struct StopSwitches {
+  int side = 0;                      ///< the stop that presses before the first of them, 0: none
+  std::vector<StopSwitch> switches;  ///< in [0, 2π), ascending
+};
+[[nodiscard]] StopSwitches stop_switches(const friction::Clearance& law, const TrigonometricPolynomial& y,
+                                         double omega);
+
+/// How a contact's force answers a motion beside y, δλ = s(θ) δy + d(θ) δẏ, as g_m = (1/2π) ∫ e^{imθ} s dθ of s and d.
+struct StopTangent {
+  Eigen::VectorXcd stiffness, damping;  ///< m = 0 … M
+};
+/// @param moments  M
+/// @param jumps    with s = Σ_s [λ]/|ẏ| at the switches at which the force jumps by [λ]
+[[nodiscard]] StopTangent stop_tangent(const friction::Clearance& law, const TrigonometricPolynomial& y, double omega,
+                                       Eigen::Index moments, bool jumps);
 
 /// How many instants a force is looked at: 0 for the exact integrals between its switches.
 inline constexpr int kExact = 0;

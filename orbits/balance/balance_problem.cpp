@@ -1,0 +1,239 @@
+#include "orbits/balance/internal/balance_problem.hpp"
+
+#include <slipmode/dynamics/cache.hpp>
+#include <slipmode/dynamics/receptance.hpp>
+
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+namespace slipmode::orbits {
+namespace {
+
+using Complex = std::complex<double>;
+using dynamics::HybridSystem;
+
+Eigen::VectorXcd phasors_of(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::Index H) {
+  Eigen::VectorXcd p(H + 1);
+  p[0] = x[0];
+  for (Eigen::Index k = 1; k <= H; ++k) p[k] = Complex(x[k], -x[H + k]);
+  return p;
+}
+
+Eigen::VectorXd numbers_of(const Eigen::VectorXcd& phasors) {
+  const Eigen::Index H = phasors.size() - 1;
+  Eigen::VectorXd x(2 * H + 1);
+  x << phasors.real(), -phasors.imag().tail(H);
+  return x;
+}
+
+Harmonics harmonics_of(const Eigen::VectorXcd& phasors) {
+  Harmonics y{phasors.real(), -phasors.imag()};
+  y.sine[0] = 0.0;
+  return y;
+}
+
+}  // namespace
+
+Eigen::VectorXcd drive_phasors(const HybridSystem& system, Eigen::Index order, Eigen::Index k) {
+  Eigen::VectorXcd forces = Eigen::VectorXcd::Zero(system.force_directions().cols());
+  for (const friction::ForceHarmonic& h : system.drive().force()->harmonics)
+    if (h.order * order == k) forces[h.direction] += h.amplitude * Complex(std::sin(h.phase), -std::cos(h.phase));
+  return forces;
+}
+
+ContactResponse::ContactResponse(const HybridSystem& system, int order, Eigen::Index harmonics)
+    : contacts_(static_cast<Eigen::Index>(system.contacts().size())),
+      harmonics_(harmonics),
+      omega_(system.drive().force()->omega / order) {
+  const dynamics::ModalModel& model = system.cache().tables(system, false).model;
+  const dynamics::ModalCoordinates& modal = model.modal;
+  const Eigen::Index n = modal.omega.size();
+  Eigen::MatrixXd R = Eigen::MatrixXd::Zero(contacts_, contacts_);
+  Eigen::VectorXd e(contacts_);
+  for (Eigen::Index c = 0; c < contacts_; ++c) e[c] = system.contacts()[static_cast<std::size_t>(c)].offset;
+  std::vector<Eigen::Index> floating;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (modal.omega[i] == 0.0) {
+      floating.push_back(i);
+      continue;
+    }
+    const Eigen::VectorXd row = modal.directions.row(i).transpose() / modal.omega[i];
+    R += row * row.transpose();
+    e += row * (modal.load[i] / modal.omega[i]);
+  }
+  rigid_rows.resize(contacts_, static_cast<Eigen::Index>(floating.size()));
+  rigid_load.resize(rigid_rows.cols());
+  for (Eigen::Index r = 0; r < rigid_rows.cols(); ++r) {
+    rigid_rows.col(r) = modal.directions.row(floating[static_cast<std::size_t>(r)]).transpose();
+    rigid_load[r] = modal.load[floating[static_cast<std::size_t>(r)]];
+  }
+  receptance.emplace_back(R.cast<Complex>());
+  own.emplace_back(e.cast<Complex>());
+  for (Eigen::Index k = 1; k <= harmonics; ++k) {
+    Eigen::MatrixXcd inputs(2 * model.np, contacts_ + 1);
+    inputs << model.input.cast<Complex>(), model.force_input * drive_phasors(system, order, k);
+    const Eigen::MatrixXcd answers =
+        model.displacement_row.transpose() * pair_receptances(model, static_cast<double>(k) * omega_, inputs);
+    receptance.emplace_back(answers.leftCols(contacts_));
+    own.emplace_back(answers.col(contacts_));
+  }
+}
+
+Eigen::Index ContactResponse::lead(const HybridSystem& system) const {
+  constexpr Eigen::Index kFew = 120;
+  constexpr double kWeak = 0.005;
+  if (harmonics_ <= kFew) return harmonics_;
+  for (Eigen::Index k = harmonics_; k > kFew / 2; --k) {
+    double most = 0.0;
+    for (Eigen::Index c = 0; c < contacts_; ++c)
+      for (const friction::Stop& stop :
+           friction::clearance(system.contacts()[static_cast<std::size_t>(c)].law)->stops())
+        most = std::max(most, receptance[static_cast<std::size_t>(k)].col(c).cwiseAbs().sum() *
+                                  std::hypot(stop.stiffness, static_cast<double>(k) * omega_ * stop.damping));
+    if (most > kWeak) return k;
+  }
+  return kFew / 2;
+}
+
+BalanceProblem::BalanceProblem(const HybridSystem& system, const ContactResponse& response, int samples,
+                               Eigen::Index lead)
+    : response_(response), samples_(samples), lead_(lead) {
+  set_gaps(system, 1.0);
+}
+
+void BalanceProblem::set_gaps(const HybridSystem& system, double share) {
+  laws_.clear();
+  for (const friction::Contact& contact : system.contacts()) {
+    friction::Clearance law = *friction::clearance(contact.law);
+    if (law.left) law.left->gap *= share;
+    if (law.right) law.right->gap *= share;
+    laws_.push_back(law);
+  }
+}
+
+BalanceEvaluation BalanceProblem::evaluate(const Eigen::VectorXd& x) const {
+  const Eigen::Index nc = response_.contacts(), H = response_.harmonics(), B = response_.block();
+  const Eigen::Index nr = response_.rigid_rows.cols();
+  const Eigen::Index own = 2 * lead_ + 1, N = nc * own + nr;
+  BalanceEvaluation out{x, Eigen::VectorXd(x.size()), Eigen::MatrixXd::Identity(N, N), {}, 0.0};
+  for (Eigen::Index c = 0; c < nc; ++c)
+    out.forces.push_back(balanced_force(laws_[static_cast<std::size_t>(c)], {phasors_of(x.segment(c * B, B), H)},
+                                        response_.omega(), samples_, lead_));
+  for (Eigen::Index c = 0; c < nc; ++c) {
+    Eigen::VectorXcd missing = phasors_of(x.segment(c * B, B), H);
+    for (Eigen::Index k = 0; k <= H; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      missing[k] -= response_.own[at][c];
+      for (Eigen::Index d = 0; d < nc; ++d)
+        missing[k] -= response_.receptance[at](c, d) * out.forces[static_cast<std::size_t>(d)].phasors[k];
+    }
+    if (nr > 0) missing[0] -= response_.rigid_rows.row(c).dot(x.tail(nr));
+    out.residual.segment(c * B, B) = numbers_of(missing);
+    for (Eigen::Index d = 0; d < nc; ++d) take_off(c, d, out);
+    out.jacobian.row(c * own).tail(nr) = -response_.rigid_rows.row(c);
+  }
+  add_equilibrium(out);
+  out.relative = out.residual.head(nc * B).cwiseAbs().maxCoeff() / size_of(x);
+  if (nr > 0) {  // forces in units of those that the displacements' size makes
+    double force = response_.rigid_load.cwiseAbs().maxCoeff();
+    for (const BalancedForce& f : out.forces) force = std::max(force, f.phasors.cwiseAbs().maxCoeff());
+    if (force > 0.0) out.relative = std::max(out.relative, out.residual.tail(nr).cwiseAbs().maxCoeff() / force);
+  }
+  return out;
+}
+
+Eigen::VectorXd BalanceProblem::step(const BalanceEvaluation& at, bool& out_open) const {
+  const Eigen::Index H = response_.harmonics(), B = response_.block(), own = 2 * lead_ + 1;
+  const Eigen::Index nc = response_.contacts(), nr = response_.rigid_rows.cols();
+  std::vector<Eigen::Index> leading;
+  for (Eigen::Index c = 0; c < nc; ++c)
+    for (Eigen::Index i = 0; i < own; ++i) leading.push_back(c * B + (i <= lead_ ? i : H + i - lead_));
+  for (Eigen::Index r = 0; r < nr; ++r) leading.push_back(nc * B + r);
+  const Eigen::PartialPivLU<Eigen::MatrixXd> lu(at.jacobian);
+  const Eigen::VectorXd pivots = lu.matrixLU().diagonal().cwiseAbs();
+  Eigen::VectorXd rest(at.jacobian.rows());
+  for (std::size_t i = 0; i < leading.size(); ++i) rest[static_cast<Eigen::Index>(i)] = -at.residual[leading[i]];
+  out_open = !(pivots.minCoeff() > 1e-14 * pivots.maxCoeff());
+  Eigen::VectorXd newton;
+  if (out_open) {
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> orthogonal;
+    orthogonal.setThreshold(1e-12);
+    newton = orthogonal.compute(at.jacobian).solve(rest);
+  } else {
+    newton = lu.solve(rest);
+  }
+  Eigen::VectorXd step = -at.residual;
+  for (std::size_t i = 0; i < leading.size(); ++i) step[leading[i]] = newton[static_cast<Eigen::Index>(i)];
+  return step;
+}
+
+double BalanceProblem::size_of(const Eigen::VectorXd& x) const {
+  double size = x.head(response_.contacts() * response_.block()).cwiseAbs().maxCoeff();
+  for (const Eigen::VectorXcd& e : response_.own) size = std::max(size, e.cwiseAbs().maxCoeff());
+  return size > 0.0 ? size : 1.0;
+}
+
+void BalanceProblem::take_off(Eigen::Index c, Eigen::Index d, BalanceEvaluation& out) const {
+  const Eigen::Index H = lead_, B = 2 * lead_ + 1;
+  const Eigen::MatrixXd& J = out.forces[static_cast<std::size_t>(d)].jacobian;
+  auto block = out.jacobian.block(c * B, d * B, B, B);
+  for (Eigen::Index k = 0; k <= H; ++k) {
+    const Complex R = response_.receptance[static_cast<std::size_t>(k)](c, d);
+    block.row(k) -= R.real() * J.row(k);
+    if (k == 0) continue;
+    block.row(k) -= R.imag() * J.row(H + k);
+    block.row(H + k) -= R.real() * J.row(H + k) - R.imag() * J.row(k);
+  }
+}
+
+void BalanceProblem::add_equilibrium(BalanceEvaluation& out) const {
+  const Eigen::Index nc = response_.contacts(), B = 2 * lead_ + 1, nr = response_.rigid_rows.cols();
+  if (nr == 0) return;
+  out.residual.tail(nr) = response_.rigid_load;
+  out.jacobian.bottomRightCorner(nr, nr).setZero();
+  for (Eigen::Index d = 0; d < nc; ++d) {
+    const BalancedForce& force = out.forces[static_cast<std::size_t>(d)];
+    const Eigen::VectorXd z = response_.rigid_rows.row(d).transpose();
+    out.residual.tail(nr) += z * force.phasors[0].real();
+    out.jacobian.block(nc * B, d * B, nr, B) = z * force.jacobian.row(0);
+  }
+}
+
+Balance BalanceProblem::series_of(const BalanceEvaluation& at, int order) const {
+  Balance out;
+  out.order = order;
+  out.omega = response_.omega();
+  out.harmonics = static_cast<int>(response_.harmonics());
+  out.samples = samples_;
+  const Eigen::Index B = response_.block();
+  for (Eigen::Index c = 0; c < response_.contacts(); ++c) {
+    const BalancedForce& force = at.forces[static_cast<std::size_t>(c)];
+    out.displacement.push_back(harmonics_of(phasors_of(at.x.segment(c * B, B), response_.harmonics())));
+    out.force.push_back(harmonics_of(force.phasors));
+    out.switches += force.switches;
+  }
+  out.rigid = at.x.tail(response_.rigid_rows.cols());
+  out.residual = at.relative;
+  return out;
+}
+
+Eigen::VectorXd unknowns_of(const std::vector<Harmonics>& guess, const ContactResponse& response) {
+  const Eigen::Index H = response.harmonics(), B = response.block();
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(response.unknowns());
+  Eigen::VectorXd mean(response.contacts());
+  for (Eigen::Index c = 0; c < response.contacts(); ++c) {
+    const Harmonics& y = guess[static_cast<std::size_t>(c)];
+    const Eigen::Index common = std::min<Eigen::Index>(H, y.order());
+    x.segment(c * B, common + 1) = y.cosine.head(common + 1);
+    x.segment(c * B + H + 1, common) = y.sine.segment(1, common);
+    mean[c] = y.cosine[0] - response.own[0][c].real();
+  }
+  if (const Eigen::Index nr = response.rigid_rows.cols(); nr > 0)
+    x.tail(nr) = response.rigid_rows.completeOrthogonalDecomposition().solve(mean);
+  return x;
+}
+
+}  // namespace slipmode::orbits

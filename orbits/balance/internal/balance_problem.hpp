@@ -1,0 +1,84 @@
+#pragma once
+
+#include <slipmode/orbits/balance/balance.hpp>
+#include "orbits/balance/internal/balanced_force.hpp"
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace slipmode::orbits {
+
+/// The pairs' inputs of the force drive at order k of the orbit's period, as phasors. @param order  Balance::order
+[[nodiscard]] Eigen::VectorXcd drive_phasors(const dynamics::HybridSystem& system, Eigen::Index order, Eigen::Index k);
+
+/// How the structure answers at its contacts, order by order.
+class ContactResponse {
+ public:
+  /// @param order  periods of the drive in one of the balance
+  ContactResponse(const dynamics::HybridSystem& system, int order, Eigen::Index harmonics);
+
+  [[nodiscard]] double omega() const { return omega_; }
+  [[nodiscard]] Eigen::Index contacts() const { return contacts_; }
+  [[nodiscard]] Eigen::Index harmonics() const { return harmonics_; }
+  [[nodiscard]] Eigen::Index block() const { return 2 * harmonics_ + 1; }
+  [[nodiscard]] Eigen::Index unknowns() const { return contacts_ * block() + rigid_rows.cols(); }
+
+  /// The orders that Newton's method solves together: those beyond answer their forces by less than a share of their
+  /// motion, and follow by substitution.
+  [[nodiscard]] Eigen::Index lead(const dynamics::HybridSystem& system) const;
+
+  std::vector<Eigen::MatrixXcd> receptance;  ///< R_k [nc x nc]
+  std::vector<Eigen::VectorXcd> own;         ///< e_k
+  Eigen::MatrixXd rigid_rows;                ///< Z [nc x nr]
+  Eigen::VectorXd rigid_load;                ///< of the modes that float [nr]
+
+ private:
+  Eigen::Index contacts_, harmonics_;
+  double omega_;
+};
+
+/// Newton's equations at a point.
+struct BalanceEvaluation {
+  Eigen::VectorXd x, residual;
+  Eigen::MatrixXd jacobian;  ///< of the leading orders
+  std::vector<BalancedForce> forces;
+  double relative = 0.0;
+};
+
+/// The equations of `balance`. Unknowns contact after contact (cosine_0 … cosine_H, sine_1 … sine_H), then what floats.
+class BalanceProblem {
+ public:
+  /// @param response  outlives this
+  /// @param lead      orders that Newton's method solves together
+  BalanceProblem(const dynamics::HybridSystem& system, const ContactResponse& response, int samples, Eigen::Index lead);
+
+  /// Gaps in this share of their own.
+  void set_gaps(const dynamics::HybridSystem& system, double share);
+
+  [[nodiscard]] BalanceEvaluation evaluate(const Eigen::VectorXd& x) const;
+
+  /// The step: Newton's for the leading orders, of least norm where the equations leave something open, and
+  /// substitution for those beyond.
+  [[nodiscard]] Eigen::VectorXd step(const BalanceEvaluation& at, bool& out_open) const;
+
+  /// The series at a point; `iterations`, `family`, `converged` and `message` are left to the caller.
+  /// @param order  periods of the drive in one of the balance
+  [[nodiscard]] Balance series_of(const BalanceEvaluation& at, int order) const;
+
+ private:
+  [[nodiscard]] double size_of(const Eigen::VectorXd& x) const;
+  /// Jacobian's block of contact c by contact d: less R_k times the force's derivative.
+  void take_off(Eigen::Index c, Eigen::Index d, BalanceEvaluation& out) const;
+  /// Zᵀλ_0 + p = 0 for what floats.
+  void add_equilibrium(BalanceEvaluation& out) const;
+
+  const ContactResponse& response_;
+  int samples_;
+  Eigen::Index lead_;
+  std::vector<friction::Clearance> laws_;
+};
+
+/// A guess's coefficients as unknowns of this order; what floats is given the mean that fits best.
+[[nodiscard]] Eigen::VectorXd unknowns_of(const std::vector<Harmonics>& guess, const ContactResponse& response);
+
+}  // namespace slipmode::orbits
