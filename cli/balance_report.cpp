@@ -55,6 +55,11 @@ void add_balance_options(CLI::App& command, BalanceArguments& out_arguments) {
                    "shoot from the balance to the exact orbit: true error, multipliers");
 }
 
+void require_no_balance_options(const BalanceArguments& arguments) {
+  if (arguments != BalanceArguments{})
+    throw InvalidInput("--harmonics, --error, --samples, --certify: of a balance; add --by balance");
+}
+
 studies::BalanceSearch balance_search_of(const BalanceArguments& arguments, const std::string& start,
                                          const studies::OrbitSearch& search) {
   studies::BalanceSearch out;
@@ -78,13 +83,13 @@ studies::BalanceSearch balance_search_of(const BalanceArguments& arguments, cons
   return out;
 }
 
-Report balance_report(const studies::Family& model, const studies::BalanceFound& found) {
+Report balance_report(const std::string& verb, const studies::Family& model, const studies::BalanceFound& found) {
   const orbits::Balance& balance = found.balance;
   const bool good = balance.converged && found.met;
   Report report;
   report.exit_code = good ? kDone : kNumericalFailure;
   report.data =
-      merged({{"verb", "orbit find"}, {"title", model.scene().title}, {"model", model.title()}}, fields_json(balance));
+      merged({{"verb", verb}, {"title", model.scene().title}, {"model", model.title()}}, fields_json(balance));
   report.data["by"] = "balance";
   Json contacts = Json::array();
   for (std::size_t c = 0; c < balance.displacement.size(); ++c) {

@@ -1,7 +1,8 @@
 #include <slipmode/results/branch_store.hpp>
 #include <slipmode/results/provenance.hpp>
+#include <slipmode/studies/balance_search.hpp>
 #include <slipmode/studies/bases.hpp>
-#include <slipmode/studies/orbit_search.hpp>
+#include "cli/balance_report.hpp"
 #include "cli/json_values.hpp"
 #include "cli/orbit_report.hpp"
 #include "cli/orbit_search.hpp"
@@ -18,6 +19,8 @@ namespace {
 
 struct OrbitContinueArguments {
   OrbitSearchArguments search;
+  BalanceArguments balance;
+  std::optional<int> every;  ///< else 1
   std::string over, output;
   studies::ContinuationRequest request;
 };
@@ -98,36 +101,36 @@ std::string branch_text(const results::NamedBranch& named) {
   return text;
 }
 
-Report run(const Session& session, const OrbitContinueArguments& arguments) {
-  require_writable(arguments.output);
-  const OrbitRange range = parse_range(arguments.over);
-  const scene::Scene scene = session.load(arguments.search.scene);
-  const studies::RunOptions run_options = session.run_options();
-  const auto basis = studies::model_basis(scene, arguments.search.model, run_options);
-  studies::ContinuationRequest request = arguments.request;
-  request.from = range.from;
-  request.to = range.to;
-  const studies::Continuation found =
-      studies::continue_orbit(scene, range.key, basis, search_of(arguments.search, scene), request, run_options);
-  if (!found.found.converged()) return not_found("orbit continue", found.found);
-  const studies::Family model(scene, {range.key}, basis);
-  results::StoreWriter writer(arguments.output, results::FileKind::kBranches, scene.units);
+/// What is continued, and where its branches go.
+struct Followed {
+  scene::Scene scene;
+  std::string key;
+  std::optional<pod::NamedBasis> basis;
+  studies::ContinuationRequest request;
+};
+
+/// The branches stored and told; exit 3 where the main one was lost on its way.
+Report store_and_tell(const OrbitContinueArguments& arguments, const Followed& followed, double start,
+                      const std::vector<results::NamedBranch>& branches) {
+  const studies::Family model(followed.scene, {followed.key}, followed.basis);
+  results::StoreWriter writer(arguments.output, results::FileKind::kBranches, followed.scene.units);
   const std::string command =
       fmt::format("slipmode orbit continue --over {} --model {}", arguments.over, arguments.search.model);
-  results::save(writer, results::provenance_of(scene::set_key(scene, range.key, found.start), command));
-  results::store_branches(writer, range.key, found.branches, model.systems());
+  results::save(writer, results::provenance_of(scene::set_key(followed.scene, followed.key, start), command));
+  results::store_branches(writer, followed.key, branches, model.systems());
   writer.commit();
 
   Report report;
   Json list = Json::array();
-  for (const results::NamedBranch& branch : found.branches) {
+  for (const results::NamedBranch& branch : branches) {
     list.push_back(branch_json(branch));
     report.text += branch_text(branch);
   }
-  report.data = {{"verb", "orbit continue"}, {"model", model.title()}, {"file", arguments.output}, {"key", range.key},
-                 {"from", range.from},       {"to", range.to},         {"start", found.start},     {"branches", list}};
+  report.data = {
+      {"verb", "orbit continue"},      {"model", model.title()},    {"file", arguments.output}, {"key", followed.key},
+      {"from", followed.request.from}, {"to", followed.request.to}, {"start", start},           {"branches", list}};
   report.text += fmt::format("Branches: {}\n", arguments.output);
-  if (found.branches.front().branch.end == orbits::BranchEnd::kLost) {
+  if (branches.front().branch.end == orbits::BranchEnd::kLost) {
     report.exit_code = kNumericalFailure;
     report.text = "the branch was lost before the end of its range; what was found is kept\n" + report.text;
     report.data["message"] = report.text;
@@ -136,12 +139,76 @@ Report run(const Session& session, const OrbitContinueArguments& arguments) {
   return report;
 }
 
+Report run_balance(const Session& session, const OrbitContinueArguments& arguments, const Followed& followed) {
+  if (followed.request.switches)
+    throw InvalidInput("--switch: not along balances; follow the branch that leaves by shooting (--by shooting)");
+  if (arguments.balance.samples.value_or("exact") != "exact")
+    throw InvalidInput(fmt::format("--samples {}: a balance is followed by exact forces alone; leave it out",
+                                   *arguments.balance.samples));
+  if (arguments.every && !arguments.balance.certify && !arguments.balance.error)
+    throw InvalidInput(fmt::format("--every {}: which points to certify; add --certify", *arguments.every));
+  const studies::OrbitSearch& search = arguments.search.search;
+  const studies::BalanceContinuation found = studies::continue_balance(
+      followed.scene, followed.key, followed.basis,
+      balance_search_of(arguments.balance, arguments.search.start, search), followed.request,
+      arguments.every.value_or(1), {.segments = search.segments, .tolerance = search.tolerance}, session.run_options());
+  if (found.branch.points.empty()) {
+    const studies::Family at_start(scene::set_key(followed.scene, followed.key, found.start), {}, followed.basis);
+    return balance_report("orbit continue", at_start, found.found);
+  }
+  const int harmonics = found.found.balance.harmonics;
+  Report report =
+      store_and_tell(arguments, followed, found.start,
+                     {{.title = fmt::format("balance of {} harmonics", harmonics), .branch = found.branch}});
+  report.data["by"] = "balance";
+  report.data["harmonics"] = harmonics;
+  if (!found.certificate) return report;
+  const orbits::BranchCertificate& certificate = *found.certificate;
+  report.data["certificate"] = {
+      {"certified", certificate.certified}, {"behind", certificate.behind}, {"worst", certificate.worst}};
+  report.text += fmt::format(
+      "Certificate: true error at most {:.3g} of a half range at the {} of {} points looked at "
+      "that have an orbit behind\n",
+      certificate.worst, certificate.behind, certificate.certified);
+  Json trials = Json::array();
+  for (const orbits::OrderTrial& trial : found.trials) trials.push_back(fields_json(trial));
+  if (!trials.empty()) report.data["trials"] = trials;
+  if (!found.found.met) {
+    report.exit_code = kNumericalFailure;
+    report.text =
+        fmt::format("the error asked is not met up to {} harmonics; what was found is kept\n", harmonics) + report.text;
+    report.data["message"] = report.text;
+  }
+  return report;
+}
+
+Report run(const Session& session, const OrbitContinueArguments& arguments) {
+  require_writable(arguments.output);
+  const OrbitRange range = parse_range(arguments.over);
+  const scene::Scene scene = session.load(arguments.search.scene);
+  const studies::RunOptions run_options = session.run_options();
+  Followed followed{scene, range.key, studies::model_basis(scene, arguments.search.model, run_options),
+                    arguments.request};
+  followed.request.from = range.from;
+  followed.request.to = range.to;
+  if (arguments.balance.by == "balance") return run_balance(session, arguments, followed);
+  require_no_balance_options(arguments.balance);
+  if (arguments.every) throw InvalidInput("--every: of a balance's certificates; add --by balance --certify");
+  const studies::Continuation found = studies::continue_orbit(
+      scene, range.key, followed.basis, search_of(arguments.search, scene), followed.request, run_options);
+  if (!found.found.converged()) return not_found("orbit continue", found.found);
+  return store_and_tell(arguments, followed, found.start, found.branches);
+}
+
 }  // namespace
 
 Verb add_orbit_continue(CLI::App& orbit) {
   CLI::App* command = orbit.add_subcommand("continue", "follow an orbit over one key of the scene");
   const auto arguments = std::make_shared<OrbitContinueArguments>();
   add_search_options(*command, arguments->search);
+  add_balance_options(*command, arguments->balance);
+  command->add_option("--every", arguments->every, "with --certify: every so many points, and the last")
+      ->check(CLI::PositiveNumber);
   command->add_option("--over", arguments->over, "key and range: KEY=FROM:TO")->required();
   command->add_option("-o,--output", arguments->output, "result file (HDF5)")->required();
   command->add_flag("--switch", arguments->request.switches,
@@ -159,7 +226,9 @@ Verb add_orbit_continue(CLI::App& orbit) {
       "The branch starts at the scene's own value of the key when that lies in the range, and is then followed both "
       "ways; else at FROM.\n"
       "Example:\n  slipmode orbit continue datasets/backlash_sdof/scene.toml --over drive.omega=1.8:0.5 --start 2.5,0 "
-      "--switch -o branch.h5\n  slipmode plot branch.h5 -o response.svg");
+      "--switch -o branch.h5\n  slipmode plot branch.h5 -o response.svg\n"
+      "  slipmode orbit continue datasets/play_oscillator/scene.toml --over drive.omega=0.9:1.1 --by balance "
+      "--harmonics 9 --certify -o balances.h5");
   return {command, [arguments](const Session& session) { return run(session, *arguments); }};
 }
 

@@ -40,7 +40,7 @@ Report run_balance(const OrbitFindArguments& arguments, const studies::Family& m
       balance_search_of(arguments.balance, arguments.search.start, arguments.search.search);
   const studies::BalanceFound found = studies::find_balance(
       model, search, {.segments = arguments.search.search.segments, .tolerance = arguments.search.search.tolerance});
-  Report report = balance_report(model, found);
+  Report report = balance_report("orbit find", model, found);
   if (arguments.output.empty() || !found.balance.converged) return report;
   const scene::Scene& scene = model.scene();
   const orbits::Certificate* certificate = found.certificate ? &*found.certificate : nullptr;
@@ -58,9 +58,7 @@ Report run(const Session& session, const OrbitFindArguments& arguments) {
   const scene::Scene scene = session.load(arguments.search.scene);
   const studies::Family model(scene, {}, studies::model_basis(scene, arguments.search.model, session.run_options()));
   if (arguments.balance.by == "balance") return run_balance(arguments, model);
-  if (arguments.balance != BalanceArguments{}) {
-    throw InvalidInput("--harmonics, --error, --samples, --certify: of a balance; add --by balance");
-  }
+  require_no_balance_options(arguments.balance);
   const dynamics::HybridSystem& system = model.own();
   const studies::OrbitSearch search = search_of(arguments.search, scene);
   session.check_interrupt();

@@ -94,21 +94,25 @@ std::string axis_label_of(const scene::Scene& scene, const std::string& key) {
 ResponseBranch response_branch(const results::StoredBranch& branch, std::string_view colour) {
   const std::vector<bool> stable = stable_points(branch.points);
   const auto& before = branch.special.numbers("before");
-  std::vector<double> parameter, value;
+  const bool has_band = branch.points.has("true_error");
+  std::vector<double> parameter, value, band;
   ResponseBranch curve{.title = branch.title, .parameter = {}, .value = {}, .stable = {}, .colour = colour};
   for (std::size_t k = 0; k < stable.size(); ++k) {
     parameter.push_back(branch.points.numbers("parameter")[k]);
     value.push_back(branch.points.numbers("alternating_1")[k]);
+    if (has_band) band.push_back(branch.points.numbers("true_error")[k]);
     curve.stable.push_back(stable[k]);
     for (std::size_t s = 0; s < before.size() && k + 1 < stable.size(); ++s) {
       if (before[s] != static_cast<double>(k)) continue;
       parameter.push_back(branch.special.numbers("parameter")[s]);
       value.push_back(branch.special.numbers("alternating")[s]);
+      if (has_band) band.push_back(std::nan(""));
       curve.stable.push_back(stable[k]);
     }
   }
   curve.parameter = to_vector(parameter);
   curve.value = to_vector(value);
+  curve.band = to_vector(band);
   return curve;
 }
 
@@ -171,7 +175,9 @@ std::vector<FileFigure> orbit_figures_of(const StoreReader&) {
 }
 
 std::vector<FileFigure> branch_figures_of(const StoreReader&) {
-  return {{"response", "amplitude over the key, unstable orbits dashed, special points marked", response},
+  return {{"response",
+           "amplitude over the key, unstable orbits dashed, special points marked; of balances with their true error",
+           response},
           {"multipliers", "moduli of the Floquet multipliers over the key", branch_multipliers}};
 }
 

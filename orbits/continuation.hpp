@@ -1,10 +1,12 @@
 #pragma once
 
 #include <slipmode/dynamics/system_family.hpp>
+#include <slipmode/orbits/balance/balance.hpp>
 #include <slipmode/orbits/shooting.hpp>
 
 #include <Eigen/Core>
 #include <complex>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -52,6 +54,10 @@ struct BranchPoint {
   double parameter = 0.0;
   PeriodicOrbit orbit;
   double arclength = 0.0;  ///< from the first point, scaled
+  /// On branches of balances: the series that `orbit` is said of (see continue_balance), and the true error of the first
+  /// contact's displacement [m]; NaN: not looked at, infinite: no orbit lies behind.
+  std::optional<Balance> balance = {};
+  double true_error = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// A point where the branch changes its kind, found by root finding on converged orbits.
@@ -62,8 +68,9 @@ struct SpecialPoint {
   PeriodicOrbit orbit;                   ///< the converged orbit nearest to it
   std::size_t before = 0;                ///< it lies between points[before] and points[before + 1]
   std::complex<double> multiplier = {};  ///< the critical one; of the half-period map at a symmetry breaking
-  Eigen::VectorXd direction;             ///< its eigenvector, real part (q, q̇, internal) [N]; empty for word changes
-  std::string note;                      ///< e.g. the words on both sides
+  Eigen::VectorXd direction;  ///< its eigenvector, real part (q, q̇, internal) [N]; empty for word changes and balances
+  std::string note;           ///< e.g. the words on both sides
+  std::optional<Balance> balance = {};  ///< on branches of balances, as BranchPoint has it
 };
 
 /// A curve of orbits over a parameter. Kept as far as it was found.

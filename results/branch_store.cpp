@@ -18,11 +18,17 @@ std::vector<double> gather(const std::vector<BranchPoint>& points, Get get) {
   return values;
 }
 
+/// Of a branch's or a special point: of its series where it is a balance.
+template <class Point>
+std::vector<orbits::Amplitude> amplitudes_of(const Point& point, const dynamics::SystemFamily& family) {
+  return point.balance ? orbits::contact_amplitudes(*point.balance)
+                       : orbits::contact_amplitudes(family(point.parameter), point.orbit);
+}
+
 /// Columns of the contacts' displacements: "alternating_1" and so on.
 std::vector<Column> amplitude_columns(const std::vector<BranchPoint>& points, const dynamics::SystemFamily& family) {
   std::vector<std::vector<orbits::Amplitude>> all;
-  for (const BranchPoint& point : points)
-    all.push_back(orbits::contact_amplitudes(family(point.parameter), point.orbit));
+  for (const BranchPoint& point : points) all.push_back(amplitudes_of(point, family));
   std::vector<Column> columns;
   const std::size_t contacts = all.empty() ? 0 : all.front().size();
   for (std::size_t c = 0; c < contacts; ++c) {
@@ -61,6 +67,10 @@ Table point_table(const std::string& key, const std::vector<BranchPoint>& points
       add("residual", "1", "mismatch after a period", [](const BranchPoint& p) { return p.orbit.residual; }),
       {"word", {"", "regimes"}, words}};
   for (Column& column : amplitude_columns(points, family)) table.columns.push_back(std::move(column));
+  if (!points.empty() && points.front().balance)
+    table.columns.push_back(add("true_error", "m",
+                                "sup |y - exact| of the first contact; NaN: not looked at, infinite: no orbit behind",
+                                [](const BranchPoint& p) { return p.true_error; }));
   return table;
 }
 
@@ -72,7 +82,7 @@ Table special_table(const orbits::Branch& branch, const dynamics::SystemFamily& 
     before.push_back(static_cast<double>(point.before));
     real.push_back(point.multiplier.real());
     imaginary.push_back(point.multiplier.imag());
-    amplitude.push_back(orbits::contact_amplitudes(family(point.parameter), point.orbit).front().alternating);
+    amplitude.push_back(amplitudes_of(point, family).front().alternating);
   }
   return {.description = "points where the branch changes its kind",
           .columns = joined(
@@ -126,6 +136,9 @@ void store_branches(StoreWriter& writer, const std::string& key, const std::vect
                  {"1", "Floquet multipliers, point x (real parts, imaginary parts)"});
     writer.write(group + "/start", start_rows(branch.points),
                  {"", "where each orbit starts, point x (displacements, velocities)"});
+    if (branch.points.empty() || !branch.points.front().balance) continue;
+    writer.write(group + "/harmonics", static_cast<double>(branch.points.front().balance->harmonics),
+                 {"", "highest order of the balances"});
   }
 }
 

@@ -1,5 +1,6 @@
 #include <slipmode/studies/balance_search.hpp>
 
+#include <algorithm>
 #include <utility>
 
 namespace slipmode::studies {
@@ -12,6 +13,33 @@ BalanceFound find_balance(const Family& model, const BalanceSearch& search, cons
   }
   BalanceFound out{.balance = orbits::balance(model.own(), search.options)};
   if (search.certify && out.balance.converged) out.certificate = orbits::certify(model.own(), out.balance, shooting);
+  return out;
+}
+
+BalanceContinuation continue_balance(const scene::Scene& scene, const std::string& key,
+                                     const std::optional<pod::NamedBasis>& basis, BalanceSearch search,
+                                     const ContinuationRequest& request, int every,
+                                     const orbits::ShootingOptions& shooting, const RunOptions& run) {
+  constexpr int kMostHarmonics = 500;  // exponents of a point take (n H)³
+  constexpr double kGrowth = 1.3;
+  KeyFamily over = family_over(scene, key, basis, request, run);
+  over.options.shooting = shooting;
+  BalanceContinuation out{.found = find_balance(over.family, search, shooting), .start = over.start};
+  const std::optional<double> error = std::exchange(search.error, std::nullopt);
+  search.certify |= error.has_value();
+  while (out.found.balance.converged && out.found.met) {
+    const orbits::Balance& first = out.found.balance;
+    out.branch = orbits::continue_balance(over.systems, first, over.start, over.options);
+    if (search.certify) out.certificate = orbits::certify_branch(over.systems, out.branch, every, shooting);
+    if (!error) break;
+    out.trials.push_back({first.harmonics, first.iterations, out.certificate->worst});
+    if (out.certificate->worst <= *error) break;
+    out.found.met = first.harmonics < kMostHarmonics;
+    if (!out.found.met) break;
+    search.options.harmonics = std::max(first.harmonics + 1, static_cast<int>(kGrowth * first.harmonics));
+    search.options.guess = first.displacement;
+    out.found = find_balance(over.family, search, shooting);
+  }
   return out;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <slipmode/orbits/balance/certificate.hpp>
+#include <slipmode/orbits/balance/balance_branch.hpp>
 #include <slipmode/studies/orbit_search.hpp>
 
 #include <optional>
@@ -27,5 +27,24 @@ struct BalanceFound {
 /// @throws InvalidInput  as orbits::balance and orbits::balance_to_error
 [[nodiscard]] BalanceFound find_balance(const Family& model, const BalanceSearch& search,
                                         const orbits::ShootingOptions& shooting = {});
+
+/// A branch of balances over a key, of one order throughout.
+struct BalanceContinuation {
+  BalanceFound found;          ///< the balance it begins with
+  double start = 0.0;          ///< the key's value there
+  orbits::Branch branch = {};  ///< empty where no balance was found
+  std::optional<orbits::BranchCertificate> certificate = {};
+  std::vector<orbits::OrderTrial> trials = {};  ///< of an order that is chosen: the worst error along each
+};
+
+/// Finds a balance where continue_orbit would find its orbit, and follows it. With `search.error` the order grows, by
+/// 1.3 at a time, until every certified point that has an orbit behind meets the error.
+/// @param every  certify every k-th point, where `search` asks for certificates; ≥ 1
+/// @throws InvalidInput  as family_over, find_balance and continue_balance
+/// @throws Interrupted   when the stop flag was set
+[[nodiscard]] BalanceContinuation continue_balance(const scene::Scene& scene, const std::string& key,
+                                                   const std::optional<pod::NamedBasis>& basis, BalanceSearch search,
+                                                   const ContinuationRequest& request, int every,
+                                                   const orbits::ShootingOptions& shooting, const RunOptions& run = {});
 
 }  // namespace slipmode::studies

@@ -115,35 +115,44 @@ orbits::ShootingResult find_orbit(const Family& model, const OrbitSearch& search
   return orbits::shoot(model.own(), start.guess, start.options);
 }
 
-Continuation continue_orbit(const scene::Scene& scene, const std::string& key,
-                            const std::optional<pod::NamedBasis>& basis, const OrbitSearch& search,
-                            const ContinuationRequest& request, const RunOptions& run) {
+KeyFamily family_over(const scene::Scene& scene, const std::string& key, const std::optional<pod::NamedBasis>& basis,
+                      const ContinuationRequest& request, const RunOptions& run) {
   const double own = scene::get_continuous_key(scene, key);
   const auto [low, high] = std::minmax(request.from, request.to);
-  Continuation out;
-  out.start = low <= own && own <= high ? own : request.from;
-  const Family family(out.start == own ? scene : scene::set_key(scene, key, out.start), {key}, basis);
+  const double start = low <= own && own <= high ? own : request.from;
+  const Family family(start == own ? scene : scene::set_key(scene, key, start), {key}, basis);
   for (const double end : {request.from, request.to}) {
     (void)scene::set_key(scene, key, end);
     (void)family.at({end});
   }
-  const dynamics::SystemFamily systems = [&family, &run](double value) {
-    run.check_interrupt();
-    return family.at({value});
-  };
-  const SearchStart start = search_start(family, search);
-  out.found = orbits::shoot(systems(out.start), start.guess, start.options);
+  return {.start = start,
+          .family = family,
+          .systems =
+              [family, run](double value) {
+                run.check_interrupt();
+                return family.at({value});
+              },
+          .options = {.from = request.from,
+                      .to = request.to,
+                      .direction = request.to > request.from ? 1 : -1,
+                      .both_ways = start != request.from && start != request.to,
+                      .step = request.step,
+                      .max_step = request.max_step,
+                      .max_points = request.max_points,
+                      .arclength = !request.sequential}};
+}
+
+Continuation continue_orbit(const scene::Scene& scene, const std::string& key,
+                            const std::optional<pod::NamedBasis>& basis, const OrbitSearch& search,
+                            const ContinuationRequest& request, const RunOptions& run) {
+  KeyFamily over = family_over(scene, key, basis, request, run);
+  const SearchStart start = search_start(over.family, search);
+  Continuation out{.found = orbits::shoot(over.systems(over.start), start.guess, start.options),
+                   .start = over.start,
+                   .branches = {}};
   if (!out.found.converged()) return out;
-  const orbits::ContinuationOptions options{.from = request.from,
-                                            .to = request.to,
-                                            .direction = request.to > request.from ? 1 : -1,
-                                            .both_ways = out.start != request.from && out.start != request.to,
-                                            .step = request.step,
-                                            .max_step = request.max_step,
-                                            .max_points = request.max_points,
-                                            .arclength = !request.sequential,
-                                            .shooting = start.options};
-  out.branches = follow(systems, out.found.orbit, out.start, options, request.switches);
+  over.options.shooting = start.options;
+  out.branches = follow(over.systems, out.found.orbit, out.start, over.options, request.switches);
   return out;
 }
 

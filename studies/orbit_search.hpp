@@ -46,6 +46,19 @@ struct ContinuationRequest {
   int max_points = 2000;
 };
 
+/// A model over one key, where it starts and how it is followed.
+struct KeyFamily {
+  double start = 0.0;  ///< the scene's own value where the range holds it, else its first end
+  Family family;
+  dynamics::SystemFamily systems;  ///< stops when the run is interrupted
+  orbits::ContinuationOptions options;
+};
+
+/// @throws InvalidInput  for a key that cannot be varied continuously, and a scene that refuses an end of the range
+[[nodiscard]] KeyFamily family_over(const scene::Scene& scene, const std::string& key,
+                                    const std::optional<pod::NamedBasis>& basis, const ContinuationRequest& request,
+                                    const RunOptions& run);
+
 /// Branches of periodic orbits over a key.
 struct Continuation {
   orbits::ShootingResult found;                ///< the orbit they begin with
@@ -55,8 +68,7 @@ struct Continuation {
 
 /// Finds an orbit at the scene's own value of the key when that lies in the range, and follows it both ways; else at
 /// `from`, one way.
-/// @throws InvalidInput  for a key that cannot be varied continuously, a scene that refuses an end of the range, and as
-///                       search_start
+/// @throws InvalidInput  as family_over and search_start
 /// @throws Interrupted   when the stop flag was set
 [[nodiscard]] Continuation continue_orbit(const scene::Scene& scene, const std::string& key,
                                           const std::optional<pod::NamedBasis>& basis, const OrbitSearch& search,

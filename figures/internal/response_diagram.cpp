@@ -44,6 +44,25 @@ Looks looks_of(const ResponseBranch& branch) {
   return looks;
 }
 
+/// Outlines of a branch's band, one for each stretch along which it is known.
+std::string band_data(Figure& figure, const ResponseBranch& branch) {
+  Pieces outlines, back;
+  const auto close = [&] {
+    for (std::size_t k = back.x.size(); k-- > 0;) outlines.add(back.x[k], back.y[k]);
+    if (!back.x.empty()) outlines.break_here();
+    back = {};
+  };
+  for (Eigen::Index k = 0; k < branch.band.size(); ++k) {
+    const double half = branch.band[k];
+    if (std::isinf(half)) close();
+    if (!std::isfinite(half)) continue;
+    outlines.add(branch.parameter[k], branch.value[k] + half);
+    back.add(branch.parameter[k], branch.value[k] - half);
+  }
+  close();
+  return outlines.x.empty() ? "" : outlines.data(figure);
+}
+
 std::vector<std::string> kinds_of(const std::vector<ResponseMark>& marks) {
   std::vector<std::string> kinds;
   for (const ResponseMark& mark : marks) {
@@ -82,12 +101,19 @@ Figure response_diagram(const std::vector<ResponseBranch>& branches, const std::
   common_style(figure);
   double low_x = INFINITY, high_x = -INFINITY, low_y = INFINITY, high_y = -INFINITY;
   std::vector<std::string> plots;
+  bool has_band = false;
   for (const ResponseBranch& branch : branches) {
     if (branch.parameter.size() == 0) continue;
     low_x = std::min(low_x, branch.parameter.minCoeff());
     high_x = std::max(high_x, branch.parameter.maxCoeff());
     low_y = std::min(low_y, branch.value.minCoeff());
     high_y = std::max(high_y, branch.value.maxCoeff());
+    if (const std::string band = band_data(figure, branch); !band.empty()) {
+      plots.push_back(fmt::format(
+          "{} using 1:2 with filledcurves closed fillstyle transparent solid 0.3 noborder fillcolor rgb '{}' {}", band,
+          kPomColour, has_band ? "notitle" : "title 'true error'"));
+      has_band = true;
+    }
     const Looks looks = looks_of(branch);
     if (!looks.stable.x.empty()) {
       plots.push_back(fmt::format(

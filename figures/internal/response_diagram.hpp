@@ -14,6 +14,9 @@ struct ResponseBranch {
   Eigen::VectorXd parameter, value;  ///< same length
   std::vector<bool> stable;          ///< one per point
   std::string_view colour;
+  /// Half the height of a band about it, in the order of the points: NaN where it is not known (the band goes straight
+  /// on), infinite where there is none (it ends). Empty: no band.
+  Eigen::VectorXd band = {};
 };
 
 /// A point of a branch where it changes its kind.

@@ -213,10 +213,28 @@ Eigen::VectorXd BranchSolver::difference(const BranchUnknowns& b, const BranchUn
   return out;
 }
 
-BranchSolver BranchSolver::by_half_periods(const PeriodicOrbit& orbit, double parameter) const {
+BranchSolver::Symmetric BranchSolver::symmetric_beside(const BranchEvaluation& near, const PeriodicOrbit& orbit) const {
   ContinuationOptions halves = options_;
   halves.shooting.half_period = true;
-  return {family_, orbit, parameter, halves};
+  PeriodicOrbit middle = orbit;
+  middle.start.modes.clear();
+  middle.start = with_coordinates(middle.start, stacked(middle.start) - 0.5 * scale_.cwiseProduct(skew(near)));
+  BranchSolver solver(family_, middle, near.at.parameter, halves);
+  BranchUnknowns guess = solver.unknowns_of(middle, near.at.parameter);
+  return {std::move(solver), std::move(guess)};
+}
+
+Eigen::MatrixXd BranchSolver::half_map(const BranchEvaluation& at) const {
+  if (!half_period()) return {};
+  const Eigen::Index n = scale_.size();
+  return scale_.asDiagonal() * (Eigen::MatrixXd::Identity(n, n) - at.J.topLeftCorner(n, n)) *
+         scale_.cwiseInverse().asDiagonal();
+}
+
+Eigen::VectorXd BranchSolver::skew(const BranchEvaluation& at) const {
+  const Eigen::VectorXd& half = at.shooting.half_state;
+  if (half.size() == 0) return {};
+  return half + at.problem->scaled(stacked(at.at.point.nodes[0]));
 }
 
 PeriodicOrbit BranchSolver::describe(const BranchEvaluation& at) const {

@@ -29,11 +29,18 @@ struct BranchEvaluation {
 /// Predictor and corrector of a branch. For one thread.
 class BranchSolver {
  public:
+  using Unknowns = BranchUnknowns;
+  using Evaluation = BranchEvaluation;
+  static constexpr bool kMovesOrigin = true;  ///< an orbit's origin is a choice, and kept off events
+
   /// @param orbit  fixes kind, order and scales
   BranchSolver(dynamics::SystemFamily family, const PeriodicOrbit& orbit, double parameter,
                const ContinuationOptions& options);
 
   [[nodiscard]] BranchUnknowns unknowns_of(const PeriodicOrbit& orbit, double parameter) const;
+  [[nodiscard]] BranchUnknowns unknowns_of(const BranchPoint& point) const {
+    return unknowns_of(point.orbit, point.parameter);
+  }
 
   /// @throws NumericalFailure  when the flow fails; InvalidInput when the family does
   [[nodiscard]] BranchEvaluation evaluate(const BranchUnknowns& at) const;
@@ -62,10 +69,18 @@ class BranchSolver {
   /// b − a, scaled [N + e]; both at the same phase of the drive.
   [[nodiscard]] Eigen::VectorXd difference(const BranchUnknowns& b, const BranchUnknowns& a) const;
 
-  /// The same family solved by half periods, for the symmetric orbits near `orbit` (symmetric itself, or nearly).
-  [[nodiscard]] BranchSolver by_half_periods(const PeriodicOrbit& orbit, double parameter) const;
+  /// The same family solved by half periods, for the symmetric orbits near a point that is nearly symmetric, and the
+  /// nearest of them as a guess.
+  struct Symmetric;
+  [[nodiscard]] Symmetric symmetric_beside(const BranchEvaluation& near, const PeriodicOrbit& orbit) const;
 
   [[nodiscard]] PeriodicOrbit describe(const BranchEvaluation& at) const;
+  /// What describes a point beside its orbit: nothing.
+  [[nodiscard]] std::optional<Balance> balance_of(const BranchEvaluation& /*at*/) const { return std::nullopt; }
+  /// −Φ(T/2) where solved by half periods, else empty.
+  [[nodiscard]] Eigen::MatrixXd half_map(const BranchEvaluation& at) const;
+  /// x(T/2) + x(0), scaled [N], where the passes are run in halves; else empty.
+  [[nodiscard]] Eigen::VectorXd skew(const BranchEvaluation& at) const;
   /// The unit vector of the parameter [N + e].
   [[nodiscard]] Eigen::VectorXd parameter_row() const;
   [[nodiscard]] double range() const { return range_; }
@@ -89,6 +104,11 @@ class BranchSolver {
   OrbitKind kind_;
   double range_ = 1.0;
   Eigen::VectorXd scale_;
+};
+
+struct BranchSolver::Symmetric {
+  BranchSolver solver;
+  BranchUnknowns guess;
 };
 
 }  // namespace slipmode::orbits

@@ -1,6 +1,8 @@
 #include "orbits/internal/branch_tests.hpp"
 
 #include <slipmode/orbits/floquet.hpp>
+#include "orbits/balance/internal/balance_branch_solver.hpp"
+#include "orbits/internal/branch_solver.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -11,7 +13,8 @@
 namespace slipmode::orbits {
 namespace {
 
-using Test = double WatchedPoint::*;
+template <class Solver>
+using Test = double WatchedPoint<Solver>::*;
 
 constexpr int kMaxEvaluations = 80;
 
@@ -46,16 +49,18 @@ Critical critical_multiplier(const PeriodicOrbit& orbit, SpecialKind kind) {
   return best;
 }
 
+template <class Solver>
 struct Located {
-  WatchedPoint low, high;  ///< on both sides
-  double s = 0.0;          ///< along a's tangent
+  WatchedPoint<Solver> low, high;  ///< on both sides
+  double s = 0.0;                  ///< along a's tangent
 };
 
 /// The point a share of the way from the low side to the high one, corrected across a's tangent.
-std::optional<WatchedPoint> between(const BranchSolver& solver, const Eigen::VectorXd& tangent, const Located& sides,
-                                    double share) {
+template <class Solver>
+std::optional<WatchedPoint<Solver>> between(const Solver& solver, const Eigen::VectorXd& tangent,
+                                            const Located<Solver>& sides, double share) {
   const Eigen::VectorXd chord = solver.difference(sides.high.at.at, sides.low.at.at);
-  const BranchUnknowns guess = solver.moved(sides.low.at, share * chord, 0.0);
+  const typename Solver::Unknowns guess = solver.moved(sides.low.at, share * chord, 0.0);
   auto corrected = solver.correct(guess, tangent);
   if (!corrected) return std::nullopt;
   return watch(solver, solver.polished(std::move(corrected->at), guess, tangent), tangent);
@@ -63,9 +68,10 @@ std::optional<WatchedPoint> between(const BranchSolver& solver, const Eigen::Vec
 
 /// Narrows [low at s = 0, high at s] until the sides are the same to rounding or the parameter is known.
 /// `value` must have opposite signs at both; steps by Illinois' rule where it is smooth, else halves.
-Located narrow(const BranchSolver& solver, const WatchedPoint& a, const WatchedPoint& b, double s, double tolerance,
-               const std::function<double(const WatchedPoint&)>& value, bool smooth) {
-  Located found{a, b, s};
+template <class Solver>
+Located<Solver> narrow(const Solver& solver, const WatchedPoint<Solver>& a, const WatchedPoint<Solver>& b, double s,
+                       double tolerance, const std::function<double(const WatchedPoint<Solver>&)>& value, bool smooth) {
+  Located<Solver> found{a, b, s};
   double low = 0.0, high = s, at_low = value(a), at_high = value(b);
   for (int k = 0; k < kMaxEvaluations; ++k) {
     const double apart = std::abs(found.high.at.at.parameter - found.low.at.at.parameter);
@@ -76,7 +82,7 @@ Located narrow(const BranchSolver& solver, const WatchedPoint& a, const WatchedP
       const double margin = 1e-3 * (high - low);
       middle = std::clamp(secant, low + margin, high - margin);
     }
-    std::optional<WatchedPoint> next;
+    std::optional<WatchedPoint<Solver>> next;
     for (const double at : {middle, low + 0.5 * (high - low), low + 0.2 * (high - low), low + 0.8 * (high - low)}) {
       next = between(solver, a.tangent, found, (at - low) / (high - low));
       middle = at;
@@ -96,9 +102,12 @@ Located narrow(const BranchSolver& solver, const WatchedPoint& a, const WatchedP
   return found;
 }
 
-Eigen::VectorXd critical_direction(const WatchedPoint& point, SpecialKind kind, std::complex<double> multiplier) {
+template <class Solver>
+Eigen::VectorXd critical_direction(const WatchedPoint<Solver>& point, SpecialKind kind,
+                                   std::complex<double> multiplier) {
   const bool half = kind == SpecialKind::kSymmetryBreaking && point.half_map.size() > 0;
   const Eigen::MatrixXd& matrix = half ? point.half_map : point.orbit.monodromy;
+  if (matrix.size() == 0) return {};
   const std::vector<FloquetMode> modes = floquet_modes(matrix);
   const auto nearest = std::min_element(modes.begin(), modes.end(), [&](const FloquetMode& x, const FloquetMode& y) {
     return std::abs(x.multiplier - multiplier) < std::abs(y.multiplier - multiplier);
@@ -106,13 +115,15 @@ Eigen::VectorXd critical_direction(const WatchedPoint& point, SpecialKind kind, 
   return nearest->direction.real();
 }
 
-SpecialPoint special_of(const Located& found, SpecialKind kind, double tolerance) {
+template <class Solver>
+SpecialPoint special_of(const Located<Solver>& found, SpecialKind kind, double tolerance) {
   SpecialPoint out;
-  const WatchedPoint& nearest = found.low;
+  const WatchedPoint<Solver>& nearest = found.low;
   out.kind = kind;
   out.parameter = 0.5 * (found.low.at.at.parameter + found.high.at.at.parameter);
   out.uncertainty = std::abs(found.high.at.at.parameter - found.low.at.at.parameter);
   out.orbit = nearest.orbit;
+  out.balance = nearest.balance;
   if (out.uncertainty > tolerance)
     out.note = fmt::format("located to {:.1e} only: the branch is not found nearer. ", out.uncertainty);
   return out;
@@ -123,11 +134,12 @@ struct Found {
   SpecialPoint point;
 };
 
-void add_smooth(const BranchSolver& solver, const WatchedPoint& a, const WatchedPoint& b, double s, double tolerance,
-                SpecialKind kind, Test test, std::vector<Found>& out_found) {
+template <class Solver>
+void add_smooth(const Solver& solver, const WatchedPoint<Solver>& a, const WatchedPoint<Solver>& b, double s,
+                double tolerance, SpecialKind kind, Test<Solver> test, std::vector<Found>& out_found) {
   if ((a.*test < 0) == (b.*test < 0)) return;
-  const Located at = narrow(
-      solver, a, b, s, tolerance, [&](const WatchedPoint& p) { return p.*test; }, true);
+  const Located<Solver> at = narrow<Solver>(
+      solver, a, b, s, tolerance, [&](const WatchedPoint<Solver>& p) { return p.*test; }, true);
   Critical critical = critical_multiplier(at.low.orbit, kind);
   const Critical other = critical_multiplier(at.high.orbit, kind);
   if (other.distance < critical.distance) critical = other;
@@ -146,27 +158,27 @@ void add_smooth(const BranchSolver& solver, const WatchedPoint& a, const Watched
 }
 
 /// True when the branch passed through a symmetric orbit to the mirror images of its own: a pitchfork from its side.
-bool turns_over(const WatchedPoint& a, const WatchedPoint& b) {
+template <class Solver>
+bool turns_over(const WatchedPoint<Solver>& a, const WatchedPoint<Solver>& b) {
   const bool asymmetric = !a.orbit.symmetric && !b.orbit.symmetric;
   return asymmetric && a.skew.size() > 0 && b.skew.size() > 0 && a.skew.dot(b.skew) < 0;
 }
 
 /// Where the symmetric orbits beside a nearly symmetric one lose their symmetry, by secants on ∏(1 + μ) of half
 /// periods: regular, where the asymmetric branch is not.
-std::optional<WatchedPoint> breaking_beside(const BranchSolver& solver, const WatchedPoint& near) {
-  const Eigen::VectorXd& scale = solver.scale();
-  PeriodicOrbit middle = near.orbit;
-  middle.start.modes.clear();
-  middle.start = with_coordinates(middle.start, stacked(middle.start) - 0.5 * scale.cwiseProduct(near.skew));
+template <class Solver>
+std::optional<WatchedPoint<Solver>> breaking_beside(const Solver& solver, const WatchedPoint<Solver>& near) {
   const double start = near.at.at.parameter, reach = 1e-2 * solver.range();
-  const BranchSolver halves = solver.by_half_periods(middle, start);
-  const auto orbit_at = [&](double parameter) -> std::optional<WatchedPoint> {
-    const auto corrected = halves.correct(halves.unknowns_of(middle, parameter), halves.parameter_row());
+  const auto [halves, middle] = solver.symmetric_beside(near.at, near.orbit);
+  const auto orbit_at = [&](double parameter) -> std::optional<WatchedPoint<Solver>> {
+    typename Solver::Unknowns guess = middle;
+    guess.parameter = parameter;
+    const auto corrected = halves.correct(guess, halves.parameter_row());
     if (!corrected) return std::nullopt;
     return watch(halves, corrected->at, halves.parameter_row());
   };
   double last = start, here = start + 1e-3 * reach;
-  std::optional<WatchedPoint> found = orbit_at(last);
+  std::optional<WatchedPoint<Solver>> found = orbit_at(last);
   if (!found) return std::nullopt;
   double at_last = found->breaking;
   for (int k = 0; k < 20; ++k) {
@@ -181,15 +193,17 @@ std::optional<WatchedPoint> breaking_beside(const BranchSolver& solver, const Wa
   return std::nullopt;
 }
 
-void add_turning_over(const BranchSolver& solver, const WatchedPoint& a, const WatchedPoint& b, double s,
+template <class Solver>
+void add_turning_over(const Solver& solver, const WatchedPoint<Solver>& a, const WatchedPoint<Solver>& b, double s,
                       double tolerance, std::vector<Found>& out_found) {
-  const Located at = narrow(
-      solver, a, b, s, tolerance, [&](const WatchedPoint& p) { return p.skew.dot(a.skew); }, true);
+  const Located<Solver> at = narrow<Solver>(
+      solver, a, b, s, tolerance, [&](const WatchedPoint<Solver>& p) { return p.skew.dot(a.skew); }, true);
   SpecialPoint special = special_of(at, SpecialKind::kSymmetryBreaking, tolerance);
   if (const auto exact = breaking_beside(solver, at.low)) {
     special.parameter = exact->at.at.parameter;
     special.uncertainty = 1e-12 * solver.range();
     special.orbit = exact->orbit;
+    special.balance = exact->balance;
     special.multiplier = critical_multiplier(exact->orbit, SpecialKind::kSymmetryBreaking).multiplier;
     special.direction = critical_direction(*exact, SpecialKind::kSymmetryBreaking, special.multiplier);
     special.note.clear();
@@ -208,18 +222,15 @@ SpecialKind kind_of_word_change(const std::string& before, const std::string& af
   return SpecialKind::kWordChange;
 }
 
-WatchedPoint watch(const BranchSolver& solver, BranchEvaluation at, const Eigen::VectorXd& along) {
-  WatchedPoint out;
+template <class Solver>
+WatchedPoint<Solver> watch(const Solver& solver, typename Solver::Evaluation at, const Eigen::VectorXd& along) {
+  WatchedPoint<Solver> out;
   out.orbit = solver.describe(at);
+  out.balance = solver.balance_of(at);
   out.tangent = solver.tangent(at, along);
+  out.half_map = solver.half_map(at);
+  out.skew = solver.skew(at);
   out.at = std::move(at);
-  const Eigen::VectorXd& scale = solver.scale();
-  const Eigen::Index n = scale.size();
-  if (solver.half_period())
-    out.half_map = scale.asDiagonal() * (Eigen::MatrixXd::Identity(n, n) - out.at.J.topLeftCorner(n, n)) *
-                   scale.cwiseInverse().asDiagonal();
-  if (const Eigen::VectorXd& half = out.at.shooting.half_state; half.size() > 0)
-    out.skew = half + out.at.problem->scaled(stacked(out.at.at.point.nodes[0]));
   out.fold = out.tangent[out.tangent.size() - 1];
   const std::vector<std::complex<double>> multipliers = watched_multipliers(out.orbit);
   std::complex<double> plus = 1.0, pairs = 1.0;
@@ -233,24 +244,25 @@ WatchedPoint watch(const BranchSolver& solver, BranchEvaluation at, const Eigen:
   return out;
 }
 
-std::vector<SpecialPoint> special_points_between(const BranchSolver& solver, const WatchedPoint& a,
-                                                 const WatchedPoint& b, double s, double tolerance) {
+template <class Solver>
+std::vector<SpecialPoint> special_points_between(const Solver& solver, const WatchedPoint<Solver>& a,
+                                                 const WatchedPoint<Solver>& b, double s, double tolerance) {
+  using Point = WatchedPoint<Solver>;
   std::vector<Found> found;
   if (turns_over(a, b)) {
     add_turning_over(solver, a, b, s, tolerance, found);
   } else {
-    add_smooth(solver, a, b, s, tolerance, SpecialKind::kFold, &WatchedPoint::fold, found);
+    add_smooth(solver, a, b, s, tolerance, SpecialKind::kFold, &Point::fold, found);
   }
   const bool same_symmetry = a.orbit.symmetric == b.orbit.symmetric;
   if (same_symmetry) {
-    add_smooth(solver, a, b, s, tolerance, SpecialKind::kSymmetryBreaking, &WatchedPoint::breaking, found);
-    add_smooth(solver, a, b, s, tolerance, SpecialKind::kPeriodDoubling, &WatchedPoint::doubling, found);
-    add_smooth(solver, a, b, s, tolerance, SpecialKind::kNeimarkSacker, &WatchedPoint::torus, found);
+    add_smooth(solver, a, b, s, tolerance, SpecialKind::kSymmetryBreaking, &Point::breaking, found);
+    add_smooth(solver, a, b, s, tolerance, SpecialKind::kPeriodDoubling, &Point::doubling, found);
+    add_smooth(solver, a, b, s, tolerance, SpecialKind::kNeimarkSacker, &Point::torus, found);
   }
   if (a.orbit.word != b.orbit.word && !turns_over(a, b)) {
-    const Located at = narrow(
-        solver, a, b, s, tolerance, [&](const WatchedPoint& p) { return p.orbit.word == a.orbit.word ? -1.0 : 1.0; },
-        false);
+    const Located<Solver> at = narrow<Solver>(
+        solver, a, b, s, tolerance, [&](const Point& p) { return p.orbit.word == a.orbit.word ? -1.0 : 1.0; }, false);
     SpecialPoint special = special_of(at, kind_of_word_change(at.low.orbit.word, at.high.orbit.word), tolerance);
     special.note += fmt::format("word \"{}\" before, \"{}\" after", at.low.orbit.word, at.high.orbit.word);
     found.push_back({at.s, std::move(special)});
@@ -260,5 +272,14 @@ std::vector<SpecialPoint> special_points_between(const BranchSolver& solver, con
   for (Found& one : found) points.push_back(std::move(one.point));
   return points;
 }
+
+template WatchedPoint<BranchSolver> watch(const BranchSolver&, BranchEvaluation, const Eigen::VectorXd&);
+template std::vector<SpecialPoint> special_points_between(const BranchSolver&, const WatchedPoint<BranchSolver>&,
+                                                          const WatchedPoint<BranchSolver>&, double, double);
+template WatchedPoint<BalanceBranchSolver> watch(const BalanceBranchSolver&, BalanceBranchEvaluation,
+                                                 const Eigen::VectorXd&);
+template std::vector<SpecialPoint> special_points_between(const BalanceBranchSolver&,
+                                                          const WatchedPoint<BalanceBranchSolver>&,
+                                                          const WatchedPoint<BalanceBranchSolver>&, double, double);
 
 }  // namespace slipmode::orbits

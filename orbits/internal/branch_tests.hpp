@@ -1,21 +1,26 @@
 #pragma once
 
-#include "orbits/internal/branch_solver.hpp"
+#include <slipmode/orbits/continuation.hpp>
 
 #include <Eigen/Core>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace slipmode::orbits {
 
 /// A converged point of a branch with all that is watched along it.
+///
+/// A Solver corrects points of a branch, and says of them what is watched: BranchSolver by shooting,
+/// BalanceBranchSolver by balance.
+template <class Solver>
 struct WatchedPoint {
-  BranchEvaluation at;
+  typename Solver::Evaluation at;
   PeriodicOrbit orbit;
-  Eigen::VectorXd tangent;   ///< scaled [N + e]
-  Eigen::MatrixXd half_map;  ///< −Φ(T/2), where the branch is solved by half periods; else empty
-
-  Eigen::VectorXd skew;  ///< x(T/2) + x(0), scaled [N], where the passes are run in halves; else empty
+  std::optional<Balance> balance;  ///< of a branch of these
+  Eigen::VectorXd tangent;         ///< scaled [N + e]
+  Eigen::MatrixXd half_map;        ///< −Φ(T/2), where the branch is solved by half periods; else empty
+  Eigen::VectorXd skew;            ///< what of the motion is not symmetric, scaled; else empty
 
   /// Test functions: each changes sign where its kind of special point lies.
   double fold = 1.0;      ///< the parameter's share of the tangent
@@ -25,14 +30,18 @@ struct WatchedPoint {
 };
 
 /// @param along  direction of travel, scaled [N + e]
-[[nodiscard]] WatchedPoint watch(const BranchSolver& solver, BranchEvaluation at, const Eigen::VectorXd& along);
+template <class Solver>
+[[nodiscard]] WatchedPoint<Solver> watch(const Solver& solver, typename Solver::Evaluation at,
+                                         const Eigen::VectorXd& along);
 
 /// What a change of word is: sticks that come or go, touches, or reversals.
 [[nodiscard]] SpecialKind kind_of_word_change(const std::string& before, const std::string& after);
 
 /// Special points between two neighbours, in order along the branch. `b` lies at the length `s` along a's tangent.
 /// @param tolerance  of the parameter, absolute
-[[nodiscard]] std::vector<SpecialPoint> special_points_between(const BranchSolver& solver, const WatchedPoint& a,
-                                                               const WatchedPoint& b, double s, double tolerance);
+template <class Solver>
+[[nodiscard]] std::vector<SpecialPoint> special_points_between(const Solver& solver, const WatchedPoint<Solver>& a,
+                                                               const WatchedPoint<Solver>& b, double s,
+                                                               double tolerance);
 
 }  // namespace slipmode::orbits

@@ -1,6 +1,8 @@
 #include "orbits/internal/branch_walk.hpp"
 
 #include <slipmode/core/errors.hpp>
+#include "orbits/balance/internal/balance_branch_solver.hpp"
+#include "orbits/internal/branch_solver.hpp"
 #include "orbits/internal/branch_tests.hpp"
 #include "orbits/internal/describe_orbit.hpp"
 
@@ -19,20 +21,23 @@ constexpr std::size_t kRemembered = 40;
 constexpr double kSamePlace = 5.0;
 
 /// One way along a branch.
+template <class Solver>
 class Walk {
  public:
-  Walk(const BranchSolver& solver, const ContinuationOptions& options)
+  using Point = WatchedPoint<Solver>;
+
+  Walk(const Solver& solver, const ContinuationOptions& options)
       : solver_(solver),
         options_(options),
         low_(std::min(options.from, options.to)),
         high_(std::max(options.from, options.to)) {}
 
-  [[nodiscard]] Branch follow(const PeriodicOrbit& orbit, double parameter, int direction) {
-    const auto first = solver_.correct(solver_.unknowns_of(orbit, parameter), solver_.parameter_row());
+  [[nodiscard]] Branch follow(const BranchPoint& from, int direction) {
+    const auto first = solver_.correct(solver_.unknowns_of(from), solver_.parameter_row());
     if (!first) {
       branch_.end = BranchEnd::kLost;
       branch_.reason =
-          fmt::format("the orbit handed in does not close at parameter {:.8g}: solve it there first", parameter);
+          fmt::format("the orbit handed in does not close at parameter {:.8g}: solve it there first", from.parameter);
       return std::move(branch_);
     }
     current_ = watch(solver_, first->at, static_cast<double>(direction) * solver_.parameter_row());
@@ -50,9 +55,9 @@ class Walk {
   }
 
  private:
-  void add(const WatchedPoint& point, double step) {
+  void add(const Point& point, double step) {
     const double arclength = branch_.points.empty() ? 0.0 : branch_.points.back().arclength + step;
-    branch_.points.push_back({point.at.at.parameter, point.orbit, arclength});
+    branch_.points.push_back({point.at.at.parameter, point.orbit, arclength, point.balance});
   }
 
   void end(BranchEnd how, std::string reason) {
@@ -68,7 +73,7 @@ class Walk {
     while (true) {
       if (leaves_range(step_) && finish_at_range()) return;
       int iterations = 0;
-      std::optional<WatchedPoint> next = attempt(step_, iterations);
+      std::optional<Point> next = attempt(step_, iterations);
       if (next) {
         step_ = std::min((iterations <= 4 ? 1.6 : 1.1) * step_, options_.max_step);
         return accept(std::move(*next));
@@ -79,7 +84,7 @@ class Walk {
   }
 
   /// The next point at a length s, if it is one of this branch.
-  [[nodiscard]] std::optional<WatchedPoint> attempt(double s, int& out_iterations) const {
+  [[nodiscard]] std::optional<Point> attempt(double s, int& out_iterations) const {
     const double length = length_of(s);
     const Eigen::VectorXd row = options_.arclength ? current_.tangent : solver_.parameter_row();
     const auto corrected = solver_.correct(solver_.moved(current_.at, length * current_.tangent, 0.0), row);
@@ -87,7 +92,7 @@ class Walk {
     out_iterations = corrected->iterations;
     const Eigen::VectorXd way = solver_.difference(corrected->at.at, current_.at.at);
     if ((way - length * current_.tangent).norm() > 0.5 * length + 1e-7) return std::nullopt;  // another branch
-    WatchedPoint next = watch(solver_, corrected->at, way);
+    Point next = watch(solver_, corrected->at, way);
     const bool lands = !current_.orbit.symmetric && next.orbit.symmetric;
     if (lands && length > kLandingStep) return std::nullopt;  // symmetric orbits are joined in small steps
     const bool kink = next.orbit.word != current_.orbit.word && length < 1e-3;
@@ -107,7 +112,7 @@ class Walk {
     return ahead < low_ || ahead > high_;
   }
 
-  void accept(WatchedPoint next) {
+  void accept(Point next) {
     const double taken = current_.tangent.dot(solver_.difference(next.at.at, current_.at.at));
     const bool lands = !current_.orbit.symmetric && next.orbit.symmetric;
     if (options_.locate) locate(next, taken);
@@ -118,7 +123,7 @@ class Walk {
                              "of symmetric orbits there",
                              next.at.at.parameter));
     current_ = std::move(next);
-    keep_off_guards();
+    if constexpr (Solver::kMovesOrigin) keep_off_guards();
     if (branch_.points.size() > 10 && back_at_start(taken))
       end(BranchEnd::kClosed, "the branch is back where it began");
   }
@@ -128,7 +133,7 @@ class Walk {
            branch_.special.back().kind == SpecialKind::kSymmetryBreaking && !current_.orbit.symmetric;
   }
 
-  void locate(const WatchedPoint& next, double length) {
+  void locate(const Point& next, double length) {
     const double tolerance = std::min(options_.locate_tolerance * solver_.range(), 1e-8);
     for (SpecialPoint& special : special_points_between(solver_, current_, next, length, tolerance)) {
       special.before = branch_.points.size() - 1;
@@ -141,13 +146,13 @@ class Walk {
     const double bound = share() < 0 ? low_ : high_;
     const double length = (bound - current_.at.at.parameter) / (solver_.range() * share());
     if (length > 1e-12) {
-      BranchUnknowns guess = solver_.moved(current_.at, length * current_.tangent, 0.0);
+      typename Solver::Unknowns guess = solver_.moved(current_.at, length * current_.tangent, 0.0);
       guess.parameter = bound;
       const auto corrected = solver_.correct(guess, solver_.parameter_row());
       if (!corrected) return false;
       const Eigen::VectorXd way = solver_.difference(corrected->at.at, current_.at.at);
       if ((way - length * current_.tangent).norm() > 0.5 * length + 1e-7) return false;
-      WatchedPoint last = watch(solver_, corrected->at, way);
+      Point last = watch(solver_, corrected->at, way);
       if (options_.locate) locate(last, current_.tangent.dot(way));
       add(last, way.norm());
     }
@@ -169,6 +174,7 @@ class Walk {
         corner.parameter = current_.at.at.parameter;
         corner.uncertainty = std::abs(next->at.at.parameter - corner.parameter);
         corner.orbit = current_.orbit;
+        corner.balance = current_.balance;
         corner.before = branch_.points.size() - 1;
         corner.note = fmt::format("word \"{}\" before, \"{}\" after", current_.orbit.word, next->orbit.word);
         branch_.special.push_back(std::move(corner));
@@ -191,13 +197,13 @@ class Walk {
     end(BranchEnd::kLost, std::move(seen));
   }
 
-  [[nodiscard]] std::optional<WatchedPoint> around_corner(double s, double sign) const {
+  [[nodiscard]] std::optional<Point> around_corner(double s, double sign) const {
     try {
-      const BranchEvaluation across = solver_.evaluate(solver_.moved(current_.at, s * current_.tangent, 0.0));
+      const auto across = solver_.evaluate(solver_.moved(current_.at, s * current_.tangent, 0.0));
       const Eigen::VectorXd tangent = sign * solver_.tangent(across, current_.tangent);
       const auto corrected = solver_.correct(solver_.moved(current_.at, s * tangent, 0.0), tangent);
       if (!corrected) return std::nullopt;
-      WatchedPoint next = watch(solver_, corrected->at, solver_.difference(corrected->at.at, current_.at.at));
+      Point next = watch(solver_, corrected->at, solver_.difference(corrected->at.at, current_.at.at));
       const bool near = solver_.difference(next.at.at, current_.at.at).norm() < 3.0 * s;
       const bool goes_on = near && next.orbit.word != current_.orbit.word && !was_here(next, s);
       return goes_on ? std::optional(std::move(next)) : std::nullopt;
@@ -207,7 +213,7 @@ class Walk {
   }
 
   /// True when one of the last points is the same orbit within s: the way round a corner led back.
-  [[nodiscard]] bool was_here(const WatchedPoint& next, double s) const {
+  [[nodiscard]] bool was_here(const Point& next, double s) const {
     const std::size_t count = branch_.points.size();
     for (std::size_t k = count > kRemembered ? count - kRemembered : 0; k < count; ++k) {
       const BranchPoint& old = branch_.points[k];
@@ -230,8 +236,8 @@ class Walk {
     if (distance_to_events(orbit.start.time + shift, orbit.period, orbit.events) < 2.0 * distance) return;
     try {
       const double share = shift / orbit.period;
-      const BranchEvaluation later = solver_.shifted(current_.at, share);
-      BranchEvaluation ahead = solver_.evaluate(solver_.moved(current_.at, 1e-4 * current_.tangent, 0.0));
+      const typename Solver::Evaluation later = solver_.shifted(current_.at, share);
+      typename Solver::Evaluation ahead = solver_.evaluate(solver_.moved(current_.at, 1e-4 * current_.tangent, 0.0));
       ahead = solver_.shifted(ahead, share);
       current_ = watch(solver_, later, solver_.difference(ahead.at, later.at));
     } catch (const NumericalFailure&) {
@@ -242,27 +248,79 @@ class Walk {
   [[nodiscard]] bool back_at_start(double taken) const {
     const BranchPoint& first = branch_.points.front();
     if (std::abs(first.parameter - current_.at.at.parameter) > taken * solver_.range()) return false;
-    const BranchUnknowns began = solver_.unknowns_of(first.orbit, first.parameter);
-    double share = (began.phase - current_.at.at.phase) / current_.orbit.order;
-    if (share < 0) share += 1.0 / current_.orbit.order;
-    const BranchEvaluation here = share > 0 ? solver_.shifted(current_.at, share) : current_.at;
-    return solver_.difference(began, here.at).norm() < taken;
+    const typename Solver::Unknowns began = solver_.unknowns_of(first);
+    return solver_.difference(began, with_origin_of(began).at).norm() < taken;
   }
 
-  const BranchSolver& solver_;
+  /// The current point with its origin at another one's phase of the drive, where origins move.
+  [[nodiscard]] typename Solver::Evaluation with_origin_of(const typename Solver::Unknowns& other) const {
+    if constexpr (Solver::kMovesOrigin) {
+      double share = (other.phase - current_.at.at.phase) / current_.orbit.order;
+      if (share < 0) share += 1.0 / current_.orbit.order;
+      if (share > 0) return solver_.shifted(current_.at, share);
+    }
+    return current_.at;
+  }
+
+  const Solver& solver_;
   const ContinuationOptions& options_;
   double low_, high_;
   Branch branch_;
-  WatchedPoint current_;
+  Point current_;
   double step_ = 0.0;
   bool ended_ = false;
 };
 
+/// The second way's points behind the first's start, in order along the branch.
+Branch joined(Branch backward, Branch forward) {
+  Branch out;
+  const std::size_t count = backward.points.size();
+  const double whole = count > 0 ? backward.points.back().arclength : 0.0;
+  for (std::size_t k = count; k-- > 1;) {
+    out.points.push_back(std::move(backward.points[k]));
+    out.points.back().arclength = whole - out.points.back().arclength;
+  }
+  for (std::size_t k = backward.special.size(); k-- > 0;) {
+    out.special.push_back(std::move(backward.special[k]));
+    out.special.back().before = count - 2 - std::min(out.special.back().before, count - 2);
+  }
+  const std::size_t offset = out.points.size();
+  for (BranchPoint& point : forward.points) {
+    point.arclength += whole;
+    out.points.push_back(std::move(point));
+  }
+  for (SpecialPoint& special : forward.special) {
+    special.before += offset;
+    out.special.push_back(std::move(special));
+  }
+  out.end = forward.end;
+  out.reason = "one way: " + backward.reason + "; other way: " + forward.reason;
+  return out;
+}
+
 }  // namespace
 
-Branch walk_branch(const BranchSolver& solver, const ContinuationOptions& options, const PeriodicOrbit& orbit,
-                   double parameter, int direction) {
-  return Walk(solver, options).follow(orbit, parameter, direction);
+void check_continuation(double parameter, const ContinuationOptions& options) {
+  const double low = std::min(options.from, options.to), high = std::max(options.from, options.to);
+  if (!(high > low && std::isfinite(high) && std::isfinite(low)))
+    throw InvalidInput(fmt::format("the range of a continuation needs two different finite ends, not {} and {}",
+                                   options.from, options.to));
+  if (!(parameter >= low && parameter <= high))
+    throw InvalidInput(
+        fmt::format("the continuation starts at {}, outside its range {} … {}", parameter, options.from, options.to));
+  if (!(options.step > 0 && options.min_step > 0 && options.max_step >= options.min_step && options.max_points >= 1))
+    throw InvalidInput("continuation steps must be positive, max_step ≥ min_step, max_points ≥ 1");
 }
+
+template <class Solver>
+Branch walk_branch(const Solver& solver, const ContinuationOptions& options, const BranchPoint& from) {
+  const int direction = options.direction < 0 ? -1 : 1;
+  Branch first = Walk<Solver>(solver, options).follow(from, direction);
+  if (!options.both_ways) return first;
+  return joined(Walk<Solver>(solver, options).follow(from, -direction), std::move(first));
+}
+
+template Branch walk_branch(const BranchSolver&, const ContinuationOptions&, const BranchPoint&);
+template Branch walk_branch(const BalanceBranchSolver&, const ContinuationOptions&, const BranchPoint&);
 
 }  // namespace slipmode::orbits

@@ -1,12 +1,15 @@
 #pragma once
 
-#include "orbits/internal/branch_solver.hpp"
+#include <slipmode/orbits/continuation.hpp>
 
 namespace slipmode::orbits {
 
-/// One way along a branch, from an orbit at `parameter` on: steps, special points, and why it ended.
-/// @param direction  ±1, of the parameter at first
-[[nodiscard]] Branch walk_branch(const BranchSolver& solver, const ContinuationOptions& options,
-                                 const PeriodicOrbit& orbit, double parameter, int direction);
+/// A branch from a point on: steps, special points, and why it ended. One way, or both ways in order along the branch.
+/// @param solver  BranchSolver or BalanceBranchSolver
+template <class Solver>
+[[nodiscard]] Branch walk_branch(const Solver& solver, const ContinuationOptions& options, const BranchPoint& from);
+
+/// @throws InvalidInput  for a range without length, a start outside it, steps that are not positive
+void check_continuation(double parameter, const ContinuationOptions& options);
 
 }  // namespace slipmode::orbits

@@ -1,0 +1,205 @@
+#include "orbits/balance/internal/balance_branch_solver.hpp"
+
+#include <slipmode/core/errors.hpp>
+#include "orbits/balance/internal/balance_orbit.hpp"
+
+#include <fmt/format.h>
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+namespace slipmode::orbits {
+namespace {
+
+constexpr int kMaxCorrections = 20;
+constexpr double kDifferenceStep = 1e-5;  ///< in the parameter, of its range: the equations are smooth in it
+/// Residuals that stall below this are rounding.
+constexpr double kRounding = 1e-10;
+
+/// The solution of a square system, of least norm where it is singular: a structure that floats in the gap.
+Eigen::VectorXd solution(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
+  const Eigen::PartialPivLU<Eigen::MatrixXd> lu(A);
+  const Eigen::VectorXd pivots = lu.matrixLU().diagonal().cwiseAbs();
+  if (pivots.minCoeff() > 1e-14 * pivots.maxCoeff()) return lu.solve(b);
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> orthogonal;
+  orthogonal.setThreshold(1e-12);
+  return orthogonal.compute(A).solve(b);
+}
+
+/// Entries of a vector. By loop, as GCC 12 takes Eigen's indexed views for a bad free.
+Eigen::VectorXd picked(const Eigen::VectorXd& x, const std::vector<Eigen::Index>& entries) {
+  Eigen::VectorXd out(std::ssize(entries));
+  for (Eigen::Index i = 0; i < out.size(); ++i) out[i] = x[entries[static_cast<std::size_t>(i)]];
+  return out;
+}
+
+}  // namespace
+
+BalanceAt::BalanceAt(dynamics::HybridSystem own, int order, int harmonics)
+    : system(std::move(own)), response(system, order, harmonics), problem(system, response, kExact, harmonics) {}
+
+BalanceBranchSolver::BalanceBranchSolver(dynamics::SystemFamily family, const Balance& from, double parameter,
+                                         const ContinuationOptions& options, bool symmetric)
+    : family_(std::move(family)),
+      options_(options),
+      first_(from),
+      symmetric_(symmetric),
+      range_(std::abs(options.to - options.from)) {
+  const Eigen::VectorXd x = unknowns_of({.parameter = parameter, .orbit = {}, .balance = from}).x;
+  const Eigen::Index H = from.harmonics, B = 2 * H + 1, nc = std::ssize(from.displacement);
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const Eigen::Index own = i < nc * B ? i % B : 0, order = own <= H ? own : own - H;
+    if (order % 2 == 0) even_.push_back(i);
+    if (order % 2 == 1 || !symmetric) solved_.push_back(i);
+  }
+  size_ = x.cwiseAbs().maxCoeff();
+  if (!(size_ > 0.0)) size_ = 1.0;
+  const dynamics::HybridSystem system = family_(parameter);
+  for (const friction::Contact& contact : system.contacts())
+    for (const friction::Stop& stop : friction::clearance(contact.law)->stops())
+      stiffness_ = std::max(stiffness_, stop.stiffness);
+}
+
+BalanceUnknowns BalanceBranchSolver::unknowns_of(const BranchPoint& point) const {
+  const Balance& balance = *point.balance;
+  const BalanceAt own(family_(point.parameter), balance.order, balance.harmonics);
+  BalanceUnknowns out{orbits::unknowns_of(balance.displacement, own.response), point.parameter};
+  out.x.tail(balance.rigid.size()) = balance.rigid;
+  if (symmetric_) clear_even(out.x);
+  return out;
+}
+
+void BalanceBranchSolver::clear_even(Eigen::VectorXd& x) const {
+  for (const Eigen::Index i : even_) x[i] = 0.0;
+}
+
+Eigen::VectorXd BalanceBranchSolver::scaled(const Eigen::VectorXd& column) const {
+  Eigen::VectorXd out = picked(column, solved_);
+  const Eigen::Index displacements = std::ssize(first_.displacement) * (2 * first_.harmonics + 1);
+  for (Eigen::Index i = 0; i < out.size(); ++i)
+    if (solved_[static_cast<std::size_t>(i)] >= displacements) out[i] /= stiffness_;
+  return out / size_;
+}
+
+BalanceBranchEvaluation BalanceBranchSolver::evaluate(const BalanceUnknowns& at) const {
+  const double slack = 1e-12 * range_, low = std::min(options_.from, options_.to),
+               high = std::max(options_.from, options_.to);
+  if (at.parameter < low - slack || at.parameter > high + slack)
+    throw NumericalFailure(fmt::format("the parameter {:.9g} is outside the range of the branch", at.parameter), 0.0,
+                           at.x, 0.0);
+  const auto equations_at = [&](double parameter) {
+    return std::make_shared<const BalanceAt>(family_(parameter), first_.order, first_.harmonics);
+  };
+  BalanceBranchEvaluation out{at, equations_at(at.parameter), {}, {}, {}};
+  out.balance = out.own->problem.evaluate(at.x);
+  const auto N = std::ssize(solved_);
+  out.r = scaled(out.balance.residual);
+  out.J.resize(N, N + 1);
+  for (Eigen::Index j = 0; j < N; ++j)
+    out.J.col(j) = size_ * scaled(out.balance.jacobian.col(solved_[static_cast<std::size_t>(j)]));
+  const double h = kDifferenceStep * range_, above = std::min(at.parameter + h, high),
+               below = std::max(at.parameter - h, low);
+  out.J.col(N) = (scaled(equations_at(above)->problem.evaluate(at.x).residual) -
+                  scaled(equations_at(below)->problem.evaluate(at.x).residual)) *
+                 (range_ / (above - below));
+  return out;
+}
+
+Eigen::VectorXd BalanceBranchSolver::tangent(const BalanceBranchEvaluation& at, const Eigen::VectorXd& along) const {
+  const Eigen::Index N = at.J.rows();
+  Eigen::MatrixXd bordered(N + 1, N + 1);
+  bordered << at.J, along.transpose();
+  return solution(bordered, Eigen::VectorXd::Unit(N + 1, N)).normalized();
+}
+
+BalanceUnknowns BalanceBranchSolver::moved(const BalanceBranchEvaluation& from, const Eigen::VectorXd& step,
+                                           double /*share*/) const {
+  BalanceUnknowns out = from.at;
+  for (std::size_t i = 0; i < solved_.size(); ++i) out.x[solved_[i]] += size_ * step[static_cast<Eigen::Index>(i)];
+  out.parameter += range_ * step[step.size() - 1];
+  return out;
+}
+
+Eigen::VectorXd BalanceBranchSolver::newton_step(const BalanceBranchEvaluation& at, const BalanceUnknowns& guess,
+                                                 const Eigen::VectorXd& row) const {
+  const Eigen::Index N = at.J.rows();
+  Eigen::MatrixXd bordered(N + 1, N + 1);
+  bordered << at.J, row.transpose();
+  Eigen::VectorXd rest(N + 1);
+  rest << -at.r, -row.dot(difference(at.at, guess));
+  return solution(bordered, rest);
+}
+
+std::optional<BalanceBranchSolver::Corrected> BalanceBranchSolver::correct(const BalanceUnknowns& guess,
+                                                                           const Eigen::VectorXd& row) const {
+  const double tolerance = options_.shooting.tolerance;
+  try {
+    Corrected out{evaluate(guess), 0};
+    const auto defect = [this](const BalanceBranchEvaluation& at) {
+      return at.r.cwiseAbs().maxCoeff() / std::max(1.0, at.at.x.cwiseAbs().maxCoeff() / size_);
+    };
+    while (defect(out.at) > tolerance) {
+      if (out.iterations++ == kMaxCorrections) return std::nullopt;
+      const Eigen::VectorXd step = newton_step(out.at, guess, row);
+      double share = 1.0;
+      BalanceBranchEvaluation next = evaluate(moved(out.at, step, share));
+      while (!(next.r.norm() < out.at.r.norm()) && share > 0.05) {
+        share *= 0.5;
+        next = evaluate(moved(out.at, share * step, share));
+      }
+      if (!(next.r.norm() < out.at.r.norm()))
+        return defect(out.at) <= kRounding ? std::optional(std::move(out)) : std::nullopt;
+      out.at = std::move(next);
+    }
+    return out;
+  } catch (const NumericalFailure&) {
+    return std::nullopt;  // beyond the range: a shorter step may not be
+  }
+}
+
+BalanceBranchEvaluation BalanceBranchSolver::polished(BalanceBranchEvaluation at, const BalanceUnknowns& guess,
+                                                      const Eigen::VectorXd& row) const {
+  BalanceBranchEvaluation next = evaluate(moved(at, newton_step(at, guess, row), 1.0));
+  return next.r.norm() < at.r.norm() ? next : at;
+}
+
+Eigen::VectorXd BalanceBranchSolver::difference(const BalanceUnknowns& b, const BalanceUnknowns& a) const {
+  const auto N = std::ssize(solved_);
+  Eigen::VectorXd out(N + 1);
+  out.head(N) = picked(b.x - a.x, solved_) / size_;
+  out[N] = (b.parameter - a.parameter) / range_;
+  return out;
+}
+
+std::optional<Balance> BalanceBranchSolver::balance_of(const BalanceBranchEvaluation& at) const {
+  Balance out = at.own->problem.series_of(at.balance, first_.order);
+  out.converged = true;
+  out.family = first_.family && out.switches == 0;
+  return out;
+}
+
+PeriodicOrbit BalanceBranchSolver::describe(const BalanceBranchEvaluation& at) const {
+  return in_terms_of_an_orbit(at.own->system, *balance_of(at), options_.shooting.marginal_band,
+                              options_.shooting.symmetry_tolerance);
+}
+
+Eigen::VectorXd BalanceBranchSolver::skew(const BalanceBranchEvaluation& at) const {
+  if (symmetric_ || !is_symmetric(at.own->system) || first_.order % 2 == 0) return {};
+  return picked(at.at.x, even_) / size_;
+}
+
+BalanceBranchSolver::Symmetric BalanceBranchSolver::symmetric_beside(const BalanceBranchEvaluation& near,
+                                                                     const PeriodicOrbit& /*orbit*/) const {
+  BalanceBranchSolver solver(family_, *balance_of(near), near.at.parameter, options_, true);
+  BalanceUnknowns guess = near.at;
+  solver.clear_even(guess.x);
+  return {std::move(solver), std::move(guess)};
+}
+
+Eigen::VectorXd BalanceBranchSolver::parameter_row() const {
+  const auto N = std::ssize(solved_);
+  return Eigen::VectorXd::Unit(N + 1, N);
+}
+
+}  // namespace slipmode::orbits
