@@ -147,7 +147,7 @@ Balance balance(const HybridSystem& system, const BalanceOptions& options) {
   if (!out.converged)
     out.message = fmt::format(
         "no balance of {} harmonics found: residual {:.2e} after {} Newton steps (asked {:.0e}). Try other harmonics, "
-        "another start, or shooting",
+        "another start, following one from another frequency (continuation), or shooting",
         options.harmonics, found.relative, out.iterations, options.tolerance);
   return out;
 }

@@ -10,19 +10,21 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 namespace slipmode::orbits {
 namespace {
 
-/// Functions 1, √2 cos kθ …, √2 sin kθ … that perturbations are made of: k = step, 2 step … ≤ last.
+/// Functions √2 cos kθ …, √2 sin kθ … that perturbations are made of, 1 where k = 0: k = first, first + step … ≤ last.
 struct Grid {
-  Eigen::Index step, last;
+  Eigen::Index first, step, last;
 
-  [[nodiscard]] Eigen::Index sines() const { return last / step; }
-  [[nodiscard]] Eigen::Index size() const { return 2 * sines() + 1; }
-  [[nodiscard]] bool is_sine(Eigen::Index i) const { return i > sines(); }
-  [[nodiscard]] Eigen::Index order(Eigen::Index i) const { return step * (is_sine(i) ? i - sines() : i); }
+  [[nodiscard]] Eigen::Index cosines() const { return (last - first) / step + 1; }
+  [[nodiscard]] Eigen::Index sines() const { return cosines() - (first == 0 ? 1 : 0); }
+  [[nodiscard]] Eigen::Index size() const { return cosines() + sines(); }
+  [[nodiscard]] bool is_sine(Eigen::Index i) const { return i >= cosines(); }
+  [[nodiscard]] Eigen::Index order(Eigen::Index i) const { return first + step * (is_sine(i) ? i - sines() : i); }
 };
 
 /// Multiplication by p(θ), from its moments g_m = (1/2π) ∫ e^{imθ} p dθ.
@@ -35,7 +37,8 @@ Eigen::MatrixXd multiplication(const Eigen::VectorXcd& g, const Grid& grid) {
       const double entry = !grid.is_sine(i)  ? difference.real() + g[sum].real()
                            : grid.is_sine(j) ? difference.real() - g[sum].real()
                                              : g[sum].imag() + difference.imag();
-      out(i, j) = out(j, i) = entry * (i == 0 ? 0.5 : j == 0 ? std::sqrt(0.5) : 1.0);
+      const double weight = (grid.order(i) == 0 ? 0.5 : 1.0) * (grid.order(j) == 0 ? 0.5 : 1.0);
+      out(i, j) = out(j, i) = entry * std::sqrt(weight);
     }
   return out;
 }
@@ -64,8 +67,8 @@ Eigen::MatrixXd hill_matrix(const dynamics::HybridSystem& system, const Balance&
         out.block(half + i * n, half + j * n, n, n) += damping(i, j) * along;
       }
   }
-  for (Eigen::Index cosine = 1; cosine <= grid.sines(); ++cosine) {  // less d/dt of the functions themselves
-    const Eigen::Index sine = cosine + grid.sines();
+  for (Eigen::Index sine = grid.cosines(); sine < B; ++sine) {  // less d/dt of the functions themselves
+    const Eigen::Index cosine = sine - grid.sines();
     const double rate = static_cast<double>(grid.order(sine)) * balance.omega;
     for (Eigen::Index i = 0; i < 2 * half; i += half) {
       out.block(i + cosine * n, i + sine * n, n, n).diagonal().array() -= rate;
@@ -110,6 +113,32 @@ std::vector<std::complex<double>> of_the_strip(const Eigen::VectorXcd& exponents
   return inside;
 }
 
+/// Multipliers of −Φ(T/2): even and odd orders stay among themselves, and come back reversed or as they were. Of both
+/// together those with the least imaginary part, |Im α| ≤ Ω/2; near that edge one is seen in both.
+Eigen::VectorXcd of_half_periods(const Eigen::VectorXcd& even, const Eigen::VectorXcd& odd, double omega,
+                                 Eigen::Index count) {
+  constexpr double kSame = 0.1, kSeenTwice = 0.8;
+  struct Candidate {
+    double off_centre;
+    std::complex<double> multiplier;
+  };
+  std::vector<Candidate> all;
+  for (const auto& [sign, exponents] : {std::pair{-1.0, &even}, std::pair{1.0, &odd}})
+    for (const std::complex<double>& alpha : *exponents)
+      all.push_back({std::abs(alpha.imag()), sign * std::exp(alpha * (std::numbers::pi / omega))});
+  std::ranges::stable_sort(all, {}, &Candidate::off_centre);
+  std::vector<std::complex<double>> taken;
+  for (const Candidate& candidate : all) {
+    const std::complex<double> mu = candidate.multiplier;
+    const bool again = candidate.off_centre > kSeenTwice * 0.5 * omega &&
+                       std::ranges::any_of(taken, [&](const std::complex<double>& other) {
+                         return std::abs(other - mu) < kSame * std::abs(mu);
+                       });
+    if (!again && std::ssize(taken) < count) taken.push_back(mu);
+  }
+  return sorted_by_modulus(Eigen::Map<const Eigen::VectorXcd>(taken.data(), std::ssize(taken)));
+}
+
 }  // namespace
 
 Eigen::VectorXcd hill_multipliers(const dynamics::HybridSystem& system, const Balance& balance,
@@ -122,16 +151,17 @@ Eigen::VectorXcd hill_multipliers(const dynamics::HybridSystem& system, const Ba
   for (std::size_t c = 0; c < system.contacts().size(); ++c)
     answers.push_back(stop_tangent(*friction::clearance(system.contacts()[c].law),
                                    polynomial_of(balance.displacement[c]), balance.omega, 2 * L, options.jumps));
-  // Over half a period even orders stay among themselves: what moves in them comes back with its sign.
-  const Eigen::Index step = options.half_period ? 2 : 1;
-  const double edge = 0.5 * static_cast<double>(step) * balance.omega, time = std::numbers::pi / edge;
-  const Eigen::VectorXcd exponents = sorted_eigenvalues(hill_matrix(system, balance, answers, {step, L}));
-  const std::vector<std::complex<double>> taken = of_the_strip(exponents, edge, 2 * system.size());
+  const Eigen::Index count = 2 * system.size();
+  const auto exponents = [&](const Grid& grid) {
+    return sorted_eigenvalues(hill_matrix(system, balance, answers, grid));
+  };
+  if (options.half_period) return of_half_periods(exponents({0, 2, L}), exponents({1, 2, L}), balance.omega, count);
+  const double edge = 0.5 * balance.omega, period = std::numbers::pi / edge;
+  const std::vector<std::complex<double>> taken = of_the_strip(exponents({0, 1, L}), edge, count);
   Eigen::VectorXcd out(std::ssize(taken));
   for (Eigen::Index i = 0; i < out.size(); ++i) {
     const std::complex<double> alpha = taken[static_cast<std::size_t>(i)];
-    const std::complex<double> mu = alpha.imag() == edge ? -std::exp(alpha.real() * time) : std::exp(alpha * time);
-    out[i] = options.half_period ? 0.0 - mu : mu;
+    out[i] = alpha.imag() == edge ? -std::exp(alpha.real() * period) : std::exp(alpha * period);
   }
   return sorted_by_modulus(out);
 }

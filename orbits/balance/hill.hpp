@@ -22,7 +22,8 @@ struct HillOptions {
 /// s, d the contacts' answers along the series, by exact integrals. Of the 2n(2L + 1) exponents the 2n with the least
 /// imaginary part are taken, |Im α| ≤ Ω/2, where truncation is felt least; on the edge of that strip, where truncation
 /// splits and doubles them, each pair that is no complex one's stands for one negative multiplier −e^{aT}. With L the
-/// balance's order a multiplier passes 1 exactly where Newton's matrix is singular.
+/// balance's order a multiplier passes 1 exactly where Newton's matrix is singular; by half periods, where that of the
+/// odd orders is, and −1 where that of the even ones is.
 /// @return  by modulus, descending [2n]
 /// @throws InvalidInput      for a perturbation < 0
 /// @throws NumericalFailure  when the eigenvalues are not found
