@@ -106,6 +106,12 @@ Report balance_report(const std::string& verb, const studies::Family& model, con
       balance.family ? ", one of a family in the gap" : "", balance.switches, balance.residual, balance.iterations);
   if (!balance.converged) report.text += balance.message + "\n";
   if (balance.converged) report.text += coefficient_table(balance);
+  if (found.hill.size() > 0) {
+    report.data["hill"] = {{"multipliers", complex_json(found.hill)},
+                           {"without_jumps", complex_json(found.hill_without_jumps)}};
+    report.text += fmt::format("  multipliers by Hill's method {}; were the jumps at stops left out, {}\n",
+                               multipliers_text(found.hill), multipliers_text(found.hill_without_jumps));
+  }
   Json trials = Json::array();
   for (const orbits::OrderTrial& trial : found.trials) trials.push_back(fields_json(trial));
   if (!trials.empty()) report.data["trials"] = trials;

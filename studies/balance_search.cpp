@@ -1,18 +1,33 @@
 #include <slipmode/studies/balance_search.hpp>
 
+#include <slipmode/orbits/balance/hill.hpp>
+
 #include <algorithm>
 #include <utility>
 
 namespace slipmode::studies {
+namespace {
+
+void add_exponents(const Family& model, BalanceFound& out_found) {
+  const orbits::Balance& balance = out_found.balance;
+  if (!balance.converged || model.own().size() * balance.harmonics > kMostForHill) return;
+  out_found.hill = orbits::hill_multipliers(model.own(), balance);
+  out_found.hill_without_jumps = orbits::hill_multipliers(model.own(), balance, {.jumps = false});
+}
+
+}  // namespace
 
 BalanceFound find_balance(const Family& model, const BalanceSearch& search, const orbits::ShootingOptions& shooting) {
+  BalanceFound out;
   if (search.error) {
     orbits::CertifiedBalance chosen =
         orbits::balance_to_error(model.own(), search.options, *search.error, 4000, shooting);
-    return {std::move(chosen.balance), std::move(chosen.certificate), std::move(chosen.trials), chosen.met};
+    out = {std::move(chosen.balance), std::move(chosen.certificate), std::move(chosen.trials), chosen.met};
+  } else {
+    out.balance = orbits::balance(model.own(), search.options);
+    if (search.certify && out.balance.converged) out.certificate = orbits::certify(model.own(), out.balance, shooting);
   }
-  BalanceFound out{.balance = orbits::balance(model.own(), search.options)};
-  if (search.certify && out.balance.converged) out.certificate = orbits::certify(model.own(), out.balance, shooting);
+  add_exponents(model, out);
   return out;
 }
 

@@ -21,7 +21,13 @@ struct BalanceFound {
   std::optional<orbits::Certificate> certificate = {};
   std::vector<orbits::OrderTrial> trials = {};  ///< of an order that is chosen
   bool met = true;                              ///< the error asked is
+  /// Multipliers by Hill's method, and by what it leaves when jumps are left out; empty without a balance, and where n
+  /// H is above kMostForHill.
+  Eigen::VectorXcd hill = {}, hill_without_jumps = {};
 };
+
+/// Degrees of freedom times harmonics up to which exponents are taken: they cost its third power, here seconds.
+inline constexpr int kMostForHill = 400;
 
 /// @param shooting  tolerance, iterations, segments of the shooting that certifies
 /// @throws InvalidInput  as orbits::balance and orbits::balance_to_error

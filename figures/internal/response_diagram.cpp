@@ -108,6 +108,11 @@ Figure response_diagram(const std::vector<ResponseBranch>& branches, const std::
     high_x = std::max(high_x, branch.parameter.maxCoeff());
     low_y = std::min(low_y, branch.value.minCoeff());
     high_y = std::max(high_y, branch.value.maxCoeff());
+    for (Eigen::Index k = 0; k < branch.band.size(); ++k) {
+      if (!std::isfinite(branch.band[k])) continue;
+      low_y = std::min(low_y, branch.value[k] - branch.band[k]);
+      high_y = std::max(high_y, branch.value[k] + branch.band[k]);
+    }
     if (const std::string band = band_data(figure, branch); !band.empty()) {
       plots.push_back(fmt::format(
           "{} using 1:2 with filledcurves closed fillstyle transparent solid 0.3 noborder fillcolor rgb '{}' {}", band,

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 
 namespace {
@@ -136,6 +137,11 @@ TEST_F(OrbitVerbs, BalanceWithItsTrueError) {
     EXPECT_EQ(slipmode_in(folder, {"plot", "b.h5", "--figure", figure, "-o", file}).exit_code, 0);
     EXPECT_TRUE(is_figure(folder.path() / file));
   }
+  // Backlash at 1.4, orbit C: S0's 0.6086; without jumps Hill's method tends to 1.409.
+  const auto c = json_of({"find", kSdof, "--by", "balance", "--harmonics", "25", "--certify"});
+  EXPECT_EQ(c["certificate"]["orbit"]["word"], "g l g r");
+  EXPECT_NEAR(c["hill"]["multipliers"][0][0], 0.6086, 2e-4);
+  EXPECT_NEAR(c["hill"]["without_jumps"][0][0], 1.409, 1e-3);
   const auto sampled = json_of(with({"--harmonics", "11", "--samples", "128"}));
   EXPECT_EQ(sampled["samples"], 128);
   EXPECT_FALSE(sampled.contains("certificate"));
@@ -149,6 +155,61 @@ TEST_F(OrbitVerbs, BalanceWithItsTrueError) {
   expect_refused({"find", play, "--harmonics", "9"}, {"--harmonics", "add --by balance"});
   expect_refused(with({"--start", "1,0"}), {"--start 1,0", "contact", "gap"});
   expect_refused({"find", SLIPMODE_SOURCE_DIR "/datasets/chain10/scene.toml", "--by", "balance"},
+                 {"needs a force drive", "shooting"});
+}
+
+TEST_F(OrbitVerbs, ContinueByBalanceWithItsTrueError) {
+  const std::string two = SLIPMODE_SOURCE_DIR "/datasets/stop_2mass/scene.toml";
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"continue", two, "--by", "balance", "--set", "drive.omega=0.8", "--over",
+                               "drive.omega=0.8:0.65", "-o", "b.h5"});
+    return more;
+  };
+  const auto said = json_of(with({"--harmonics", "9", "--certify", "--every", "20"}));
+  EXPECT_EQ(said["harmonics"], 9);
+  EXPECT_GT(said["certificate"]["behind"], 0);
+  // Doublings by shooting, `orbit continue` without --by balance. What 9 harmonics miss:
+  // docs/theory/harmonic-balance.md, section 5.
+  std::vector<double> folds, doublings;
+  for (const auto& point : said["branches"][0]["special"]) {
+    if (point["kind"] == "fold") folds.push_back(point["parameter"]);
+    if (point["kind"] == "period doubling") doublings.push_back(point["parameter"]);
+  }
+  EXPECT_FALSE(folds.empty());
+  ASSERT_EQ(doublings.size(), 2U);
+  EXPECT_NEAR(doublings[0], 0.755586159, 6e-4);
+  EXPECT_NEAR(doublings[1], 0.738783025, 4e-3);
+  for (const char* figure : {"response", "multipliers"}) {
+    const std::string file = std::string(figure) + ".svg";
+    EXPECT_EQ(slipmode_in(folder, {"plot", "b.h5", "--figure", figure, "-o", file}).exit_code, 0);
+    EXPECT_TRUE(is_figure(folder.path() / file));
+  }
+  const results::StoreReader store(folder.path() / "b.h5");
+  EXPECT_EQ(store.number("branches/0/harmonics"), 9.0);
+
+  const std::string play = SLIPMODE_SOURCE_DIR "/datasets/play_oscillator/scene.toml";
+  const auto chosen = json_of({"continue", play, "--by", "balance", "--over", "drive.omega=1:1.05", "--harmonics",
+                               "auto", "--error", "1e-3", "--every", "5", "-o", "auto.h5"});
+  EXPECT_LE(chosen["certificate"]["worst"], 1e-3);
+  EXPECT_EQ(chosen["trials"].back()["harmonics"], chosen["harmonics"]);
+
+  const auto failed = json_of({"continue", kSdof, "--set", "drive.omega=0.4", "--over", "drive.omega=0.4:0.5", "--by",
+                               "balance", "--harmonics", "5", "-o", "none.h5"},
+                              3);
+  EXPECT_THAT(failed["message"].get<std::string>(), HasSubstr("no balance of 5 harmonics"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "none.h5"));
+  const auto cut =
+      json_of({"continue", play, "--by", "balance", "--over", "drive.omega=1:0.98", "--sequential", "-o", "cut.h5"}, 3);
+  EXPECT_TRUE(cut["incomplete"]);
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "cut.h5"));
+  expect_refused(with({"--switch"}), {"--switch", "--by shooting"});
+  expect_refused(with({"--samples", "128"}), {"--samples 128", "exact forces"});
+  expect_refused(with({"--every", "3"}), {"--every 3", "--certify"});
+  expect_refused(with({"--start", "1,0,0,0"}), {"--start 1,0,0,0", "contact", "gap"});
+  expect_refused({"continue", play, "--over", "drive.omega=1:1.05", "--every", "3", "-o", "x.h5"},
+                 {"--every", "--by balance"});
+  expect_refused({"continue", SLIPMODE_SOURCE_DIR "/datasets/chain10/scene.toml", "--by", "balance", "--over",
+                  "drive.speed=0.4:0.5", "-o", "x.h5"},
                  {"needs a force drive", "shooting"});
 }
 
