@@ -48,12 +48,13 @@ BalanceContinuation continue_balance(const scene::Scene& scene, const std::strin
     if (search.certify) out.certificate = orbits::certify_branch(over.systems, out.branch, every, shooting);
     if (!error) break;
     out.trials.push_back({first.harmonics, first.iterations, out.certificate->worst});
-    if (out.certificate->worst <= *error) break;
-    out.found.met = first.harmonics < kMostHarmonics;
-    if (!out.found.met) break;
+    if (out.certificate->behind > 0 && out.certificate->worst <= *error) break;
     search.options.harmonics = std::max(first.harmonics + 1, static_cast<int>(kGrowth * first.harmonics));
     search.options.guess = first.displacement;
-    out.found = find_balance(over.family, search, shooting);
+    BalanceFound next;
+    if (search.options.harmonics <= kMostHarmonics) next = find_balance(over.family, search, shooting);
+    out.found.met = next.balance.converged;  // else what was found is kept
+    if (out.found.met) out.found = std::move(next);
   }
   return out;
 }

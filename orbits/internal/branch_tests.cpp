@@ -143,6 +143,8 @@ void add_smooth(const Solver& solver, const WatchedPoint<Solver>& a, const Watch
   Critical critical = critical_multiplier(at.low.orbit, kind);
   const Critical other = critical_multiplier(at.high.orbit, kind);
   if (other.distance < critical.distance) critical = other;
+  // None passes: truncation hands a balance's multipliers from one choice to another.
+  if (kind != SpecialKind::kFold && critical.distance > 0.1) return;
   const bool jumps = at.low.orbit.word != at.high.orbit.word;
   if (kind == SpecialKind::kNeimarkSacker && critical.distance > 1e-4) return;  // two real ones of product 1
   SpecialPoint special = special_of(at, kind, tolerance);
