@@ -117,6 +117,20 @@ Eigen::MatrixXd start_rows(const std::vector<BranchPoint>& points) {
   return rows;
 }
 
+/// Coefficients of all balances' displacements, a row each: contact after contact cosines of orders 0 to H, sines of 1
+/// to H.
+Eigen::MatrixXd coefficient_rows(const std::vector<BranchPoint>& points) {
+  const Eigen::Index H = points.front().balance->harmonics, contacts = std::ssize(points.front().balance->displacement);
+  Eigen::MatrixXd rows(std::ssize(points), contacts * (2 * H + 1));
+  for (Eigen::Index k = 0; k < rows.rows(); ++k)
+    for (Eigen::Index c = 0; c < contacts; ++c) {
+      const orbits::Harmonics& y =
+          points[static_cast<std::size_t>(k)].balance->displacement[static_cast<std::size_t>(c)];
+      rows.row(k).segment(c * (2 * H + 1), 2 * H + 1) << y.cosine.transpose(), y.sine.tail(H).transpose();
+    }
+  return rows;
+}
+
 }  // namespace
 
 void store_branches(StoreWriter& writer, const std::string& key, const std::vector<NamedBranch>& branches,
@@ -139,6 +153,9 @@ void store_branches(StoreWriter& writer, const std::string& key, const std::vect
     if (branch.points.empty() || !branch.points.front().balance) continue;
     writer.write(group + "/harmonics", static_cast<double>(branch.points.front().balance->harmonics),
                  {"", "highest order of the balances"});
+    writer.write(
+        group + "/coefficients", coefficient_rows(branch.points),
+        {"m", "displacements of the contacts, point x (cosines of orders 0 to H, sines of 1 to H, each contact)"});
   }
 }
 

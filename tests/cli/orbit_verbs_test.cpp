@@ -186,6 +186,10 @@ TEST_F(OrbitVerbs, ContinueByBalanceWithItsTrueError) {
   }
   const results::StoreReader store(folder.path() / "b.h5");
   EXPECT_EQ(store.number("branches/0/harmonics"), 9.0);
+  // At 0.8 the motion stays in the gap: order 1 alone, of the amplitude that the table has.
+  const Eigen::VectorXd first = store.matrix("branches/0/coefficients").row(0);
+  ASSERT_EQ(first.size(), 19);
+  EXPECT_NEAR(std::hypot(first[1], first[10]), store.vector("branches/0/points/alternating_1")[0], 1e-12);
 
   const std::string play = SLIPMODE_SOURCE_DIR "/datasets/play_oscillator/scene.toml";
   const auto chosen = json_of({"continue", play, "--by", "balance", "--over", "drive.omega=1:1.05", "--harmonics",
