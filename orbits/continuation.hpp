@@ -54,8 +54,8 @@ struct BranchPoint {
   double parameter = 0.0;
   PeriodicOrbit orbit;
   double arclength = 0.0;  ///< from the first point, scaled
-  /// On branches of balances: the series that `orbit` is said of (see continue_balance), and the true error of the first
-  /// contact's displacement [m]; NaN: not looked at, infinite: no orbit lies behind.
+  /// On branches of balances: the series that `orbit` is said of (see continue_balance), and the true error of the
+  /// first contact's displacement [m]; NaN: not looked at, infinite: no orbit lies behind.
   std::optional<Balance> balance = {};
   double true_error = std::numeric_limits<double>::quiet_NaN();
 };

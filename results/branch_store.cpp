@@ -8,7 +8,6 @@ namespace slipmode::results {
 namespace {
 
 using orbits::BranchPoint;
-using orbits::PeriodicOrbit;
 
 template <class Get>
 std::vector<double> gather(const std::vector<BranchPoint>& points, Get get) {
@@ -28,6 +27,7 @@ std::vector<orbits::Amplitude> amplitudes_of(const Point& point, const dynamics:
 /// Columns of the contacts' displacements: "alternating_1" and so on.
 std::vector<Column> amplitude_columns(const std::vector<BranchPoint>& points, const dynamics::SystemFamily& family) {
   std::vector<std::vector<orbits::Amplitude>> all;
+  all.reserve(points.size());
   for (const BranchPoint& point : points) all.push_back(amplitudes_of(point, family));
   std::vector<Column> columns;
   const std::size_t contacts = all.empty() ? 0 : all.front().size();
