@@ -161,7 +161,8 @@ std::optional<BalanceBranchSolver::Corrected> BalanceBranchSolver::correct(const
 BalanceBranchEvaluation BalanceBranchSolver::polished(BalanceBranchEvaluation at, const BalanceUnknowns& guess,
                                                       const Eigen::VectorXd& row) const {
   BalanceBranchEvaluation next = evaluate(moved(at, newton_step(at, guess, row), 1.0));
-  return next.r.norm() < at.r.norm() ? next : at;
+  if (next.r.norm() < at.r.norm()) return next;
+  return at;
 }
 
 Eigen::VectorXd BalanceBranchSolver::difference(const BalanceUnknowns& b, const BalanceUnknowns& a) const {

@@ -171,9 +171,10 @@ bool turns_over(const WatchedPoint<Solver>& a, const WatchedPoint<Solver>& b) {
 template <class Solver>
 std::optional<WatchedPoint<Solver>> breaking_beside(const Solver& solver, const WatchedPoint<Solver>& near) {
   const double start = near.at.at.parameter, reach = 1e-2 * solver.range();
-  const auto [halves, middle] = solver.symmetric_beside(near.at, near.orbit);
+  const auto symmetric = solver.symmetric_beside(near.at, near.orbit);
+  const Solver& halves = symmetric.solver;
   const auto orbit_at = [&](double parameter) -> std::optional<WatchedPoint<Solver>> {
-    typename Solver::Unknowns guess = middle;
+    typename Solver::Unknowns guess = symmetric.guess;
     guess.parameter = parameter;
     const auto corrected = halves.correct(guess, halves.parameter_row());
     if (!corrected) return std::nullopt;
