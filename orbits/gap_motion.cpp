@@ -135,6 +135,7 @@ std::optional<GapMotion> GapMotion::of(const dynamics::HybridSystem& system) {
     return std::nullopt;
   }
   std::vector<Eigen::VectorXcd> responses;
+  responses.reserve(force->harmonics.size());
   for (const auto& harmonic : force->harmonics) responses.push_back(harmonic_response(system, harmonic, force->omega));
   for (Eigen::Index c = 0; c < count; ++c) {
     const friction::Contact& contact = contacts[static_cast<std::size_t>(c)];
@@ -142,6 +143,7 @@ std::optional<GapMotion> GapMotion::of(const dynamics::HybridSystem& system) {
     gap.mean_(c) = contact.direction.dot(mean) + contact.offset;
     gap.seen_.row(c) = contact.direction.transpose() * gap.vectors_.topRows(n);
     std::vector<Complex> coefficients;
+    coefficients.reserve(responses.size());
     for (const Eigen::VectorXcd& response : responses) coefficients.push_back(contact.direction.dot(response));
     gap.reach_.row(c) = reach_of(coefficients, *force).transpose();
     if (law.right) gap.sides_.push_back({c, 1.0, law.right->gap});
