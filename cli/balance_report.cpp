@@ -4,19 +4,17 @@
 #include "cli/orbit_report.hpp"
 #include "cli/text_table.hpp"
 
+#include <slipmode/core/numbers.hpp>
+
 #include <fmt/format.h>
 #include <algorithm>
-#include <charconv>
 
 namespace slipmode::cli {
 namespace {
 
 int whole_number(const char* option, const std::string& text, const char* word) {
-  int value = 0;
-  const auto [stopped, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || stopped != text.data() + text.size() || value < 1) {
-    throw InvalidInput(fmt::format("{} {}: valid: a whole number from 1 on, or {}", option, text, word));
-  }
+  const int value = number_in<int>(text).value_or(0);
+  if (value < 1) throw InvalidInput(fmt::format("{} {}: valid: a whole number from 1 on, or {}", option, text, word));
   return value;
 }
 

@@ -1,3 +1,4 @@
+#include <slipmode/core/numbers.hpp>
 #include <slipmode/results/branch_store.hpp>
 #include <slipmode/results/provenance.hpp>
 #include <slipmode/studies/balance_search.hpp>
@@ -11,7 +12,6 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 namespace slipmode::cli {
@@ -40,12 +40,10 @@ OrbitRange parse_range(const std::string& text) {
   if (equals == std::string::npos || equals == 0) throw complain("no KEY=");
   if (colon == std::string::npos) throw complain("no range FROM:TO");
   const auto number = [&](std::size_t begin, std::size_t end) {
-    double value = 0.0;
-    const auto [stopped, error] = std::from_chars(text.data() + begin, text.data() + end, value);
-    if (error != std::errc() || stopped != text.data() + end || !std::isfinite(value)) {
-      throw complain(fmt::format("'{}' is not a number", text.substr(begin, end - begin)));
-    }
-    return value;
+    const std::string word = text.substr(begin, end - begin);
+    const auto value = number_in<double>(word);
+    if (!value || !std::isfinite(*value)) throw complain(fmt::format("'{}' is not a number", word));
+    return *value;
   };
   OrbitRange range{text.substr(0, equals), number(equals + 1, colon), number(colon + 1, text.size())};
   if (range.from == range.to) throw complain("the range has no length");
