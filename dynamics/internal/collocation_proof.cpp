@@ -1,11 +1,11 @@
 #include "dynamics/internal/collocation_flow.hpp"
+#include "dynamics/internal/left_out.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 // That a step passes over no event: docs/theory/flow.md, section 4.
 
@@ -34,58 +34,6 @@ double least(const BernsteinPolynomial& p) {
 
 double most(const BernsteinPolynomial& p) {
   return *std::max_element(p.coefficient.begin(), p.coefficient.begin() + p.degree + 1);
-}
-
-/// Semi-axes' sums of the ellipses about [0, 1] in which e^{−s} is bounded: 2 to 256.
-struct Ellipses {
-  Eigen::Array<double, kNodes, 1> sum, inverse, cost;  ///< cost: ln(ϱ⁸ (1 − 1/ϱ))
-  Ellipses() {
-    for (int k = 0; k < kNodes; ++k) sum(k) = std::exp2(k + 1);
-    inverse = sum.inverse();
-    cost = kNodes * sum.log() + (1.0 - inverse).log();
-  }
-};
-
-using PerEllipse = Eigen::Array<double, kNodes, 1>;
-
-const Ellipses& ellipses() {
-  static const Ellipses all;
-  return all;
-}
-
-/// A polynomial of degree 8 in Chebyshev's form.
-struct ChebyshevSeries {
-  double mean = 0.0;                       ///< coefficient 0
-  alignas(64) RadauTables::Vector8 other;  ///< 1 to 8
-
-  ChebyshevSeries(const kernels::Kernels& kernels, double start, const RadauTables::Vector8& at_nodes)
-      : mean(radau().chebyshev_mean.dot(at_nodes) + start * radau().chebyshev_mean_start) {
-    kernels.matrix8(radau().chebyshev.data(), at_nodes.data(), other.data());
-    other += start * radau().chebyshev_start;
-  }
-  /// How far from the mean it is on each ellipse at most.
-  [[nodiscard]] PerEllipse swing() const {
-    PerEllipse outward = PerEllipse::Zero();
-    for (int k = kNodes; k-- > 0;) outward = (outward + std::abs(other(k))) * ellipses().sum;
-    return 0.5 * (outward + spread() * ellipses().inverse);
-  }
-  /// The same within the step.
-  [[nodiscard]] double spread() const { return other.cwiseAbs().sum(); }
-};
-
-/// ln of a bound on what the polynomial of degree 7 through the nodes leaves out of a function: its Chebyshev
-/// coefficients are at most 2 max|f| ϱ^{−k}, the maximum taken over an ellipse in whose foci the interval ends
-/// (Trefethen, Approximation Theory and Approximation Practice, theorem 8.1).
-/// @param log_most  ln max|f| on each ellipse
-double log_remainder(const PerEllipse& log_most) {
-  static const double scale = std::log(2.0 * (1.0 + radau().lebesgue));
-  return (log_most - ellipses().cost).minCoeff() + scale;
-}
-
-/// What a polynomial of degree 8 has beyond the one of degree 7 through the nodes: most at the step's start.
-double eighth_degree(double start, const RadauTables::Vector8& at_nodes) {
-  static const RadauTables::Vector8 at_start = radau().lagrange(0.0);
-  return std::abs(start - at_start.dot(at_nodes));
 }
 
 /// e^x or more, for x ≥ 0.
@@ -120,68 +68,6 @@ double CollocationFlow::between_nodes(int c) const {
   alignas(64) const RadauTables::Vector8 scaled = scaled_speeds(c);
   const ChebyshevSeries s(kernels_, law.alpha * guard_start_(c), scaled);
   return law.drop * std::exp(log_remainder(s.swing() - s.mean));
-}
-
-CollocationFlow::BristleDefect CollocationFlow::bristle_defect(int c, double reach, double h, bool at_rest) const {
-  // In the direction of sliding: ż = s − κ(s) z, κ = σ0 s/g, g even and not growing with |s|.
-  const auto i = static_cast<std::size_t>(c);
-  const friction::BristleForces& law = laws()[i].bristle;
-  const double sign = sign_of(point_.modes[i]), between = nodes_.remainder[0] * ninth_.maxCoeff();
-  using Vector8 = RadauTables::Vector8;
-  alignas(64) const Vector8 s =
-      sign * (drive_nodes_.segment<kNodes>(kNodes * c) - velocity_.segment<kNodes>(kNodes * c));
-  alignas(64) const Vector8 z = sign * bristle_nodes_.segment<kNodes>(kNodes * c);
-  const double s_begin = guard_start_(c), z_begin = sign * internal_begin_(bristle_at_[i]);
-  const ChebyshevSeries speed(kernels_, s_begin, s), bristle(kernels_, z_begin, z);
-  Vector8 rate;
-  for (int j = 0; j < kNodes; ++j) rate(j) = law.rate(1.0, s(j), z(j));
-  // Newton's and the linear solution's rests, at the nodes.
-  const Vector8 force = law.stiffness * z + law.damping * rate + law.viscous * s;
-  const double left = (sign * forces_.segment<kNodes>(kNodes * c) - force).cwiseAbs().maxCoeff();
-  const Vector8 missing = z - Vector8::Constant(z_begin) - h * (nodes_.integral * rate);
-  const double off = nodes_.lebesgue * (missing.array() / nodes_.node.array()).abs().maxCoeff();
-
-  BristleDefect out;
-  const double fastest = std::max(s_begin, guard_forms_.segment<kNodes>(kNodes * c).maxCoeff());
-  out.room = at_rest ? fastest : 0.5 * (guard_least_(c) - between);
-  const double slow = at_rest ? 0.0 : out.room, fast = fastest + between + out.room;
-  const auto share = [&](double v) { return v * v / (law.stribeck_speed * law.stribeck_speed); };
-  const auto limit = [&](double v) { return law.kinetic + law.drop * std::exp(-share(v)); };
-  const auto bend = [&](double v) { return share(v) * std::exp(-share(v)); };  // −s g′/(2 drop)
-  const double most_bend = share(slow) <= 1.0 && share(fast) >= 1.0 ? std::exp(-1.0) : std::max(bend(slow), bend(fast));
-  const double g_slow = limit(slow), g_fast = limit(fast);
-  const double slopes[] = {law.stiffness * (1.0 + 2.0 * law.drop * std::min(bend(slow), bend(fast)) / g_slow) / g_slow,
-                           law.stiffness * (1.0 + 2.0 * law.drop * most_bend / g_fast) / g_fast};
-  double by_speed = 0.0;  // of ż
-  for (const double slope : slopes)
-    for (const double side : {-1.0, 1.0})
-      by_speed = std::max(by_speed, std::abs(1.0 - slope * (bristle.mean + side * (bristle.spread() + off))));
-  const double decay = law.stiffness * slow / g_slow, most_decay = law.stiffness * fast / g_fast;
-  const double by_bristle =
-      std::max(std::abs(law.stiffness - law.damping * decay), std::abs(law.stiffness - law.damping * most_decay));
-
-  // What the nodes leave out of ż: a bound on s, z and 1/g on ellipses.
-  const PerEllipse s_swing = speed.swing(), z_most = std::abs(bristle.mean) + bristle.swing();
-  const double stribeck = law.drop * std::exp(-share(speed.mean));
-  PerEllipse g = PerEllipse::Constant(law.kinetic);
-  if (law.drop != 0.0)
-    g += stribeck *
-         (2.0 - ((2.0 * std::abs(speed.mean) + s_swing) * s_swing / (law.stribeck_speed * law.stribeck_speed)).exp());
-  const PerEllipse most = (g > 0.0).select((std::abs(speed.mean) + s_swing) * (1.0 + law.stiffness * z_most / g),
-                                           PerEllipse::Constant(std::numeric_limits<double>::infinity()));
-  const double rest = std::exp(log_remainder(most.log())) + by_speed * between + most_decay * off;
-  if (!std::isfinite(rest)) {
-    out.force = rest;
-    return out;
-  }
-
-  const double of_force = nodes_.lebesgue * left + law.stiffness * eighth_degree(z_begin, z) + law.damping * rest +
-                          law.viscous * (eighth_degree(s_begin, s) + between) + by_bristle * off;
-  out.force = of_force + by_bristle * rest * (decay * h > 1.0 ? 1.0 / decay : h);
-  // μ grows no faster than e^{ηt}, (η − a)(η + κ) = b: a by the speed itself, b by the bristle it moves.
-  const double a = reach * (law.damping * by_speed + law.viscous), b = reach * by_bristle * by_speed;
-  out.growth = 0.5 * (a - decay + std::sqrt((a + decay) * (a + decay) + 4.0 * b));
-  return out;
 }
 
 CollocationFlow::Deviation CollocationFlow::deviation(const StepBounds& bounds, double h, bool at_rest) const {
