@@ -117,8 +117,12 @@ dynamics::SimulateOptions record(const Case& c, double length, double sample) {
 }
 
 std::vector<double> energy_share_cumulative(const Case& c) {
+  // Of 40 ensembles of the scene's eight members six modes' share has a standard deviation of 0.024 %, and one was off
+  // by 0.09: four times as many members halve that.
+  scene::Scene many = c.scene;
+  many.ensemble.members *= 4;
   const diagnostics::EnsembleRun run = diagnostics::run_ensemble(
-      diagnostics::belt_model(c.system), {c.scene.drive.velocity(0.0)}, ensemble_states(c.scene, c.system),
+      diagnostics::belt_model(c.system), {c.scene.drive.velocity(0.0)}, ensemble_states(many, c.system),
       {.duration = c.scene.time.duration,
        .transient = c.scene.time.transient,
        .sample = c.scene.time.sample,
