@@ -37,7 +37,7 @@ void CollocationFlow::guess_forces(int level, bool retry) {
     if (solved_ && retry) {
       halve(finer);
     } else if (solved_ && finer >= -1 && finer + 1 < static_cast<int>(t.following.size())) {
-      const double* ahead = t.following[static_cast<std::size_t>(finer + 1)].data();
+      const double* ahead = (t.following.begin() + (finer + 1))->data();
       const auto i = static_cast<std::size_t>(c);
       if (laws()[i].kind == LawKind::kSpeedDependent && single_ && point_.modes[i] != ContactMode::kStick)
         ahead_ = ahead;  // sliding speed is smoother than the force, and continues better
@@ -195,7 +195,7 @@ bool CollocationFlow::solve_coupled(const Collocation& table, double h) {
           jacobian.row(row) = table.kernel.row(row);
           continue;
         }
-        double lambda, slope;  // dλ/dv
+        double lambda = 0.0, slope = 0.0;  // dλ/dv
         const double s = drive_nodes_(row) - velocity_(row);
         if (!law.sticks()) {
           lambda = law.smooth(s, slope);
@@ -253,7 +253,7 @@ bool CollocationFlow::solve_coupled(const Collocation& table, double h) {
 
 CollocationFlow::Ending CollocationFlow::ending(const double* values) const {
   const double fifth = std::abs(kernels_.dot(nodes_.legendre5.data(), values, kNodes));
-  double sixth, seventh;
+  double sixth = 0.0, seventh = 0.0;
   kernels_.two_dots(nodes_.legendre6.data(), nodes_.legendre7.data(), values, sixth, seventh);
   sixth = std::abs(sixth);
   seventh = std::abs(seventh);
