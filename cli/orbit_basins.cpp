@@ -10,7 +10,6 @@
 #include <fmt/ranges.h>
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace slipmode::cli {
 namespace {
@@ -23,23 +22,13 @@ struct OrbitBasinsArguments {
   studies::BasinsOptions options;
 };
 
-/// Smallest and largest coordinate of the starts that end there.
-std::pair<double, double> coordinates_of(const orbits::Basins& basins, int attractor) {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const auto& row : basins.rows) {
-    for (const orbits::BasinCell& cell : row) {
-      if (cell.attractor != attractor || std::isnan(cell.coordinate)) continue;
-      low = std::min(low, cell.coordinate);
-      high = std::max(high, cell.coordinate);
-    }
-  }
-  return {low, high};
-}
-
 Json attractor_json(const std::vector<BasinAttractor>& attractors, const diagnostics::BasinShare& own) {
   Json json{{"attractor", own.attractor}, {"motion", results::attractor_text(attractors, own.attractor)},
             {"starts", own.cells},        {"share", own.share},
             {"share_error", own.error},   {"met_event", own.met_event}};
+  if (own.least_coordinate <= own.largest_coordinate) {
+    json["coordinate"] = {own.least_coordinate, own.largest_coordinate};
+  }
   if (own.attractor < 0) return json;
   const BasinAttractor& one = attractors[static_cast<std::size_t>(own.attractor)];
   json["kind"] = to_string(one.kind);
@@ -56,14 +45,15 @@ Json attractor_json(const std::vector<BasinAttractor>& attractors, const diagnos
 }
 
 /// "multipliers 0.72", "coordinate -0.33 to 0.33", "exponent 0.05 ± 0.01".
-std::string note_of(const orbits::Basins& basins, int attractor) {
-  if (attractor < 0) return "";
-  const BasinAttractor& one = basins.attractors[static_cast<std::size_t>(attractor)];
+std::string note_of(const std::vector<BasinAttractor>& attractors, const diagnostics::BasinShare& own) {
+  if (own.attractor < 0) return "";
+  const BasinAttractor& one = attractors[static_cast<std::size_t>(own.attractor)];
   if (one.kind == BasinAttractor::Kind::kChaotic) {
     return fmt::format("exponent {:.3g} ± {:.1g}", one.exponent, one.exponent_error);
   }
-  const auto [low, high] = coordinates_of(basins, attractor);
-  if (low <= high) return fmt::format("coordinate {:.4g} to {:.4g}", low, high);
+  if (own.least_coordinate <= own.largest_coordinate) {
+    return fmt::format("coordinate {:.4g} to {:.4g}", own.least_coordinate, own.largest_coordinate);
+  }
   return "multipliers " + multipliers_text(one.orbit.multipliers);
 }
 
@@ -79,48 +69,32 @@ Report summary(const studies::Family& family, const studies::BasinsRequest& requ
                  {"attractors", Json::array()}};
   TextTable table({"attractor", "share %", "±", "met events %", ""});
   std::size_t undecided = 0;
-  for (const diagnostics::BasinShare& own : diagnostics::basin_shares(study.basins)) {
-    Json json = attractor_json(study.basins.attractors, own);
-    if (const auto [low, high] = coordinates_of(study.basins, own.attractor); low <= high) {
-      json["coordinate"] = {low, high};
-    }
-    report.data["attractors"].push_back(std::move(json));
+  for (const diagnostics::BasinShare& own : study.measures.shares) {
+    report.data["attractors"].push_back(attractor_json(study.basins.attractors, own));
     if (own.attractor < 0) undecided = own.cells;
     if (own.cells == 0) continue;
     const std::string text = results::attractor_text(study.basins.attractors, own.attractor);
     table.add({own.attractor < 0 ? text : fmt::format("{} {}", own.attractor, text), fixed(100.0 * own.share, 2),
-               fixed(100.0 * own.error, 2), fixed(100.0 * own.met_event, 1), note_of(study.basins, own.attractor)});
+               fixed(100.0 * own.error, 2), fixed(100.0 * own.met_event, 1), note_of(study.basins.attractors, own)});
   }
   report.text += table.str();
-  const diagnostics::BoundaryUncertainty boundary = diagnostics::boundary_uncertainty(study.basins.closed_labels());
+  const diagnostics::BoundaryUncertainty& boundary = study.measures.boundary;
   report.data["uncertainty"] = {{"exponent", boundary.exponent}, {"error", boundary.error}};
   if (std::isfinite(boundary.exponent)) {
     report.text +=
         fmt::format("Boundary: uncertainty exponent {:.3f} ± {:.3f} (1: smooth)\n", boundary.exponent, boundary.error);
   }
-  const Eigen::MatrixXd& room = study.basins.room;
-  if (room.size() > 0) {
-    std::size_t inside = 0, met = 0;
-    for (Eigen::Index j = 0; j < room.rows(); ++j) {
-      for (Eigen::Index i = 0; i < room.cols(); ++i) {
-        if (!(room(j, i) > 0.0)) continue;
-        ++inside;
-        met += study.basins.rows[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)].met_event ? 1 : 0;
-      }
-    }
-    const double share = static_cast<double>(inside) / static_cast<double>(room.size());
-    report.data["strip"] = {{"share", share},
-                            {"met_event", inside > 0 ? static_cast<double>(met) / static_cast<double>(inside) : 0.0}};
-    if (inside > 0) {
+  if (const auto& strip = study.measures.strip) {
+    report.data["strip"] = {{"share", strip->share}, {"met_event", strip->met_event}};
+    if (strip->share > 0.0) {
       report.text += fmt::format("Linear strip: {:.2f} % of the starts, {:.1f} % of which meet an event first\n",
-                                 100.0 * share, 100.0 * static_cast<double>(met) / static_cast<double>(inside));
+                                 100.0 * strip->share, 100.0 * strip->met_event);
     }
   }
   if (undecided > 0) {
     report.text +=
         "Undecided: no orbit up to --max-order within --periods, and not chaotic by its exponent. Chaos that only "
-        "passes "
-        "settles with more --periods\n";
+        "passes settles with more --periods\n";
   }
   for (const results::BasinsAlong& along : study.along) {
     Json json = Json::array();

@@ -75,23 +75,46 @@ Eigen::MatrixXd state_matrix(const fem::Structure& structure) {
   return G;
 }
 
+/// Steady motion under a force, by its parts.
+struct Response {
+  Eigen::VectorXd mean;
+  std::vector<Eigen::VectorXcd> harmonics;  ///< as the force's
+
+  explicit Response(const dynamics::HybridSystem& system) : mean(mean_response(system)) {
+    const friction::Force* force = system.drive().force();
+    if (force == nullptr) {
+      throw InvalidInput("linear response: expected a force drive, found a belt or a shaker. Give the start itself");
+    }
+    harmonics.reserve(force->harmonics.size());
+    for (const auto& harmonic : force->harmonics) {
+      harmonics.push_back(harmonic_response(system, harmonic, force->omega));
+    }
+  }
+
+  [[nodiscard]] dynamics::State at_start(const dynamics::HybridSystem& system) const {
+    const friction::Force& force = *system.drive().force();
+    dynamics::State state = system.rest();
+    state.modes = {};
+    state.q = mean;
+    for (std::size_t m = 0; m < harmonics.size(); ++m) {
+      state.q += harmonics[m].imag();
+      state.v += (Complex(0.0, force.harmonics[m].order * force.omega) * harmonics[m]).imag();
+    }
+    return state;
+  }
+};
+
+std::optional<Response> response_of(const dynamics::HybridSystem& system) {
+  try {
+    return Response(system);
+  } catch (const InvalidInput&) {
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
-dynamics::State linear_response(const dynamics::HybridSystem& system) {
-  const friction::Force* force = system.drive().force();
-  if (force == nullptr) {
-    throw InvalidInput("linear response: expected a force drive, found a belt or a shaker. Give the start itself");
-  }
-  dynamics::State state = system.rest();
-  state.modes = {};
-  state.q = mean_response(system);
-  for (const friction::ForceHarmonic& harmonic : force->harmonics) {
-    const Eigen::VectorXcd response = harmonic_response(system, harmonic, force->omega);
-    state.q += response.imag();
-    state.v += (Complex(0.0, harmonic.order * force->omega) * response).imag();
-  }
-  return state;
-}
+dynamics::State linear_response(const dynamics::HybridSystem& system) { return Response(system).at_start(system); }
 
 std::optional<GapMotion> GapMotion::of(const dynamics::HybridSystem& system) {
   const friction::Force* force = system.drive().force();
@@ -100,14 +123,12 @@ std::optional<GapMotion> GapMotion::of(const dynamics::HybridSystem& system) {
     return friction::clearance(contact.law) != nullptr;
   };
   if (force == nullptr || contacts.empty() || !std::ranges::all_of(contacts, is_clearance)) return std::nullopt;
+  const std::optional<Response> response = response_of(system);
+  if (!response) return std::nullopt;
   GapMotion gap;
-  try {
-    const dynamics::State response = linear_response(system);
-    gap.steady_.resize(2 * system.size());
-    gap.steady_ << response.q, response.v;
-  } catch (const InvalidInput&) {
-    return std::nullopt;
-  }
+  const dynamics::State start = response->at_start(system);
+  gap.steady_.resize(2 * system.size());
+  gap.steady_ << start.q, start.v;
   const Eigen::Index n = system.size(), count = static_cast<Eigen::Index>(contacts.size());
   gap.tiny_ = 1e-9 * force->omega;
   gap.rates_.resize(2 * n);
@@ -127,24 +148,21 @@ std::optional<GapMotion> GapMotion::of(const dynamics::HybridSystem& system) {
   gap.mean_.resize(count);
   gap.reach_.resize(count, 2);
   gap.seen_.resize(count, 2 * n);
-  const Eigen::VectorXd mean = mean_response(system);
   // A load that a floating structure carries away has no place to rest.
   constexpr double kBalanced = 1e-9;
   const Eigen::VectorXd& load = system.load();
-  if (load.size() > 0 && (fem::to_dense(system.structure().K()) * mean - load).norm() > kBalanced * load.norm()) {
+  if (load.size() > 0 &&
+      (fem::to_dense(system.structure().K()) * response->mean - load).norm() > kBalanced * load.norm()) {
     return std::nullopt;
   }
-  std::vector<Eigen::VectorXcd> responses;
-  responses.reserve(force->harmonics.size());
-  for (const auto& harmonic : force->harmonics) responses.push_back(harmonic_response(system, harmonic, force->omega));
   for (Eigen::Index c = 0; c < count; ++c) {
     const friction::Contact& contact = contacts[static_cast<std::size_t>(c)];
     const friction::Clearance& law = *friction::clearance(contact.law);
-    gap.mean_(c) = contact.direction.dot(mean) + contact.offset;
+    gap.mean_(c) = contact.direction.dot(response->mean) + contact.offset;
     gap.seen_.row(c) = contact.direction.transpose() * gap.vectors_.topRows(n);
     std::vector<Complex> coefficients;
-    coefficients.reserve(responses.size());
-    for (const Eigen::VectorXcd& response : responses) coefficients.push_back(contact.direction.dot(response));
+    coefficients.reserve(response->harmonics.size());
+    for (const Eigen::VectorXcd& one : response->harmonics) coefficients.push_back(contact.direction.dot(one));
     gap.reach_.row(c) = reach_of(coefficients, *force).transpose();
     if (law.right) gap.sides_.push_back({c, 1.0, law.right->gap});
     if (law.left) gap.sides_.push_back({c, -1.0, law.left->gap});

@@ -16,9 +16,9 @@ namespace slipmode::orbits {
 namespace {
 
 void check(const dynamics::HybridSystem& system, const MapOptions& options) {
-  if (options.max_order < 1 || options.block < 1 || options.max_periods < options.block || !(options.near > 0.0)) {
+  if (options.max_order < 1 || options.block < 1 || options.max_periods < 1 || !(options.near > 0.0)) {
     throw InvalidInput(
-        fmt::format("orbit map: expected max_order >= 1, 1 <= block <= max_periods, near > 0, found {}, "
+        fmt::format("orbit map: expected max_order >= 1, block >= 1, max_periods >= 1, near > 0, found {}, "
                     "{}, {}, {}",
                     options.max_order, options.block, options.max_periods, options.near));
   }

@@ -32,7 +32,7 @@ struct MapPoint {
 struct MapOptions {
   int max_order = 8;       ///< subharmonics looked for, ≥ 1
   int block = 16;          ///< periods of the drive between looks at the section, > 0
-  int max_periods = 1000;  ///< simulated at most, ≥ block
+  int max_periods = 1000;  ///< simulated at most, > 0
   /// Shooting takes over when section points `order` periods apart differ by less than this, relative to the motion.
   double near = 1e-3;
   Eigen::VectorXd row = {};  ///< r of the displacement rᵀq whose amplitude is mapped [n]; empty: no amplitude

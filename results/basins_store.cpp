@@ -109,8 +109,8 @@ std::string attractor_text(const std::vector<BasinAttractor>& attractors, int at
 }
 
 void store_basins(StoreWriter& writer, const SweepAxis& x, const SweepAxis& y, const orbits::MapGrid& grid,
-                  const Basins& basins, const SweepAxis& third, const std::vector<BasinsAlong>& along,
-                  const Units& units) {
+                  const Basins& basins, const diagnostics::BasinMeasures& measures, const SweepAxis& third,
+                  const std::vector<BasinsAlong>& along, const Units& units) {
   const std::string root = kBasinsGroup;
   writer.describe_group(root, "which attractor each start ends on; datasets are y x x");
   store_axis(writer, root + "/x", x, grid.x);
@@ -133,12 +133,12 @@ void store_basins(StoreWriter& writer, const SweepAxis& x, const SweepAxis& y, c
   }
   detail::store_failures(writer, root + "/failures", grid, basins.rows);
   AttractorColumns attractors;
-  attractors.add(kNone, basins.attractors, diagnostics::basin_shares(basins));
+  attractors.add(kNone, basins.attractors, measures.shares);
   save(writer, root + "/attractors", attractors.table(nullptr, units));
   for (std::size_t k = 0; k < basins.attractors.size(); ++k) {
     store_points(writer, fmt::format("{}/attractor_{:03}", root, k), basins.attractors[k]);
   }
-  const diagnostics::BoundaryUncertainty boundary = diagnostics::boundary_uncertainty(basins.closed_labels());
+  const diagnostics::BoundaryUncertainty& boundary = measures.boundary;
   save(writer, root + "/uncertainty",
        Table{"starts from which a step along either key leads to another attractor",
              {{"displacement", {"", "the step, in cells of the grid"}, boundary.displacement},

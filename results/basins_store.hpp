@@ -31,7 +31,7 @@ struct BasinsAlong {
 /// as records of orbits have it) and its share; the boundary's uncertainty; shares along a third key.
 /// @param along  empty: no third key, `third` is not read
 void store_basins(StoreWriter& writer, const SweepAxis& x, const SweepAxis& y, const orbits::MapGrid& grid,
-                  const orbits::Basins& basins, const SweepAxis& third, const std::vector<BasinsAlong>& along,
-                  const Units& units);
+                  const orbits::Basins& basins, const diagnostics::BasinMeasures& measures, const SweepAxis& third,
+                  const std::vector<BasinsAlong>& along, const Units& units);
 
 }  // namespace slipmode::results

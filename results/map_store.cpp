@@ -48,7 +48,7 @@ void store_map(StoreWriter& writer, const SweepAxis& x, const SweepAxis& y, cons
   store_axis(writer, root + "/x", x, grid.x);
   store_axis(writer, root + "/y", y, grid.y);
   for (const StartedMap& started : maps) {
-    const std::string group = root + "/from_" + started.start;
+    const std::string group = fmt::format("{}/from_{}", root, started.start);
     writer.describe_group(group, started.start == "centre" ? "from the steady linear motion in the middle of the gap"
                                                            : "from the scene's initial state");
     const auto write = [&](const std::string& name, const Meaning& meaning, auto number) {
@@ -100,7 +100,7 @@ void store_strobe(StoreWriter& writer, const SweepAxis& axis, const std::vector<
         }
       }
     }
-    const std::string group = root + "/from_" + start;
+    const std::string group = fmt::format("{}/from_{}", root, start);
     save(writer, group + "/values",
          Table{"one row per value of the key and contact",
                {{"parameter", {axis.units, axis.key}, parameter},

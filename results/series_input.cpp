@@ -107,6 +107,7 @@ SeriesInput read_csv(const FileAndSeries& source, const SeriesRequest& request) 
   }
   if (source.series.empty() && others.size() != 1) {
     std::vector<std::string> choices;
+    choices.reserve(others.size());
     for (const std::size_t k : others) choices.push_back(fmt::format("{}:{}", source.file, file.names()[k].name));
     throw InvalidInput(fmt::format("'{}' has {} columns of samples; say which: {}", source.file, others.size(),
                                    fmt::join(choices, ", ")));

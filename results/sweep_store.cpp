@@ -121,6 +121,7 @@ std::vector<MotionCount> count_motions(const std::vector<SweepPoint>& points) {
     ++count.values;
   }
   std::vector<MotionCount> out;
+  out.reserve(counts.size());
   for (const auto& entry : counts) out.push_back(entry.second);
   return out;
 }

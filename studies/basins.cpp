@@ -38,7 +38,6 @@ orbits::BasinOptions options_of(const Family& family, const BasinsOptions& optio
   orbits::BasinOptions all{.sample = options.sample};
   all.settle.max_order = options.max_order;
   all.settle.max_periods = options.periods;
-  all.settle.block = std::min(all.settle.block, options.periods);
   all.settle.shooting.flow.method = family.scene().flow.method;
   const int periods = std::max(options.periods, 200);  // a stretch of 25 in each of the eight that give the error
   all.exponent = [periods, flow = scene::uncertified(family.scene().flow)](const dynamics::HybridSystem& system,
@@ -97,6 +96,7 @@ BasinsStudy basins(const Family& family, const BasinsRequest& request, const Bas
                           run.parallel(part), sink);
   };
   study.basins = basins_of(family.own(), "basins");
+  study.measures = diagnostics::basin_measures(study.basins);
   study.interrupted = study.basins.interrupted;
   for (std::size_t k = 0; k < request.along.size() && !study.interrupted; ++k) {
     orbits::Basins here = basins_of(family.at({request.along[k]}), fmt::format("basins_along_{}", k));
@@ -111,7 +111,7 @@ BasinsStudy basins(const Family& family, const BasinsRequest& request, const Bas
 void store(results::StoreWriter& writer, const Family& family, const BasinsRequest& request, const BasinsStudy& study) {
   const auto axis = [&](const std::string& key) { return results::sweep_axis(family.scene(), key); };
   results::store_basins(writer, axis(request.over[0].key), axis(request.over[1].key), study.grid, study.basins,
-                        family.keys().empty() ? results::SweepAxis() : family.axis(), study.along,
+                        study.measures, family.keys().empty() ? results::SweepAxis() : family.axis(), study.along,
                         results::Units::of(family.scene().units));
 }
 

@@ -33,6 +33,7 @@ struct BasinsOptions {
 struct BasinsStudy {
   orbits::MapGrid grid;
   orbits::Basins basins = {};                    ///< of the scene's own values
+  diagnostics::BasinMeasures measures = {};      ///< of these
   std::vector<results::BasinsAlong> along = {};  ///< by value of the third key
   bool interrupted = false;
 };

@@ -23,7 +23,6 @@ orbits::OrbitMap map_from(const Family& family, const orbits::MapGrid& grid, con
   orbits::MapOptions map;
   map.max_order = options.max_order;
   map.max_periods = options.periods;
-  map.block = std::min(map.block, map.max_periods);
   map.shooting.flow.method = family.scene().flow.method;
   if (!family.own().contacts().empty()) map.row = family.own().contacts().front().direction;
   orbits::MapSink sink;

@@ -35,8 +35,12 @@ std::vector<BasinShare> basin_shares(const orbits::Basins& basins) {
     own.error = std::sqrt(kPerCrossing * crossings_of(labels, own.attractor)) / all;
     std::size_t met = 0;
     for (const auto& row : basins.rows) {
-      met += static_cast<std::size_t>(std::ranges::count_if(
-          row, [&](const BasinCell& cell) { return cell.attractor == own.attractor && cell.met_event; }));
+      for (const BasinCell& cell : row) {
+        if (cell.attractor != own.attractor) continue;
+        met += cell.met_event ? 1 : 0;
+        own.least_coordinate = std::fmin(own.least_coordinate, cell.coordinate);  // of NaN and a number, the number
+        own.largest_coordinate = std::fmax(own.largest_coordinate, cell.coordinate);
+      }
     }
     if (own.cells > 0) own.met_event = static_cast<double>(met) / static_cast<double>(own.cells);
   }
@@ -74,6 +78,23 @@ BoundaryUncertainty boundary_uncertainty(const Eigen::MatrixXi& labels) {
   found.exponent = line.slope;
   found.error = line.residual * std::sqrt(count / (count - 2.0)) / (along.array() - along.mean()).matrix().norm();
   return found;
+}
+
+BasinMeasures basin_measures(const orbits::Basins& basins) {
+  BasinMeasures all{
+      .shares = basin_shares(basins), .boundary = boundary_uncertainty(basins.closed_labels()), .strip = {}};
+  if (basins.room.size() == 0) return all;
+  double inside = 0.0, met = 0.0;
+  for (std::size_t j = 0; j < basins.rows.size(); ++j) {
+    for (std::size_t i = 0; i < basins.rows[j].size(); ++i) {
+      if (!(basins.room(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(i)) > 0.0)) continue;
+      inside += 1.0;
+      met += basins.rows[j][i].met_event ? 1.0 : 0.0;
+    }
+  }
+  all.strip = {.share = inside / static_cast<double>(basins.room.size()),
+               .met_event = inside > 0.0 ? met / inside : 0.0};
+  return all;
 }
 
 }  // namespace slipmode::diagnostics

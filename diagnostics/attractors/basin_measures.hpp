@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace slipmode::diagnostics {
@@ -16,6 +17,9 @@ struct BasinShare {
   double share = 0.0;      ///< of all cells
   double error = 0.0;      ///< standard error, of the grid's resolution
   double met_event = 0.0;  ///< share of the own cells that met an event on the way; 0 without cells
+  /// Range of the gap's coordinate over the own cells; NaN where they have none.
+  double least_coordinate = std::numeric_limits<double>::quiet_NaN();
+  double largest_coordinate = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// One per attractor, in their order, then the undecided.
@@ -38,5 +42,18 @@ struct BoundaryUncertainty {
 /// Over ε = 1, 2, 4, … cells, up to a sixteenth of the grid. @param labels  [y x x]
 /// Source: McDonald, Grebogi, Ott, Yorke, Physica D 17 (1985) 125.
 [[nodiscard]] BoundaryUncertainty boundary_uncertainty(const Eigen::MatrixXi& labels);
+
+/// Starts whose linear motion would fit in the gap, the strip of S2 (15).
+struct BasinStrip {
+  double share = 0.0;      ///< of all cells
+  double met_event = 0.0;  ///< share of the strip's cells that met an event on the way; 0 without cells
+};
+
+struct BasinMeasures {
+  std::vector<BasinShare> shares;
+  BoundaryUncertainty boundary;     ///< of the labels with the gap's edge closed
+  std::optional<BasinStrip> strip;  ///< none without a gap motion
+};
+[[nodiscard]] BasinMeasures basin_measures(const orbits::Basins& basins);
 
 }  // namespace slipmode::diagnostics

@@ -133,6 +133,18 @@ void CollocationFlow::settle_bristle(int c, bool touching) {
   record_bristle(c, point_.modes[i] == before ? EventKind::kGrazing : EventKind::kReversal, before);
 }
 
+/// Polynomials through the nodes at other shares of the step: of degree 7, and of degree 8 through the start too.
+struct CollocationFlow::Between {
+  Eigen::Matrix<double, Eigen::Dynamic, kNodes> seventh, eighth;
+  Eigen::VectorXd begin;  ///< share of the start's value in the latter
+
+  explicit Between(const Eigen::VectorXd& shares) : seventh(shares.size(), kNodes) {
+    for (Eigen::Index k = 0; k < shares.size(); ++k) seventh.row(k) = radau().lagrange(shares(k));
+    eighth = shares.asDiagonal() * seventh * radau().node.cwiseInverse().asDiagonal();
+    begin = 1.0 - eighth.rowwise().sum().array();
+  }
+};
+
 double CollocationFlow::bristle_error(int c, const Between& at) const {
   const auto i = static_cast<std::size_t>(c);
   const friction::BristleForces& law = laws()[i].bristle;
@@ -151,7 +163,8 @@ double CollocationFlow::bristle_error(int c, const Between& at) const {
     const double bristle = at.eighth.row(k).dot(z) + at.begin(k) * z_begin;
     const double decay = law.decay(1.0, speed).value, exact = speed - decay * bristle;
     const double off_rate = at.seventh.row(k).dot(rate) - exact;
-    const double off_force = at.seventh.row(k).dot(force) - law.force(1.0, speed, bristle);
+    const double off_force =
+        at.seventh.row(k).dot(force) - (law.stiffness * bristle + law.damping * exact + law.viscous * speed);
     const double lasts = std::min(h, 1.0 / std::max(decay, 1.0 / h));
     worst = std::max(
         {worst, kOscillates * law.stiffness * std::abs(off_rate) * lasts, 0.5 * std::abs(off_force) * h * over_top_});
@@ -159,21 +172,13 @@ double CollocationFlow::bristle_error(int c, const Between& at) const {
   return worst * over_limit_[i];
 }
 
-CollocationFlow::Between CollocationFlow::between(const Eigen::VectorXd& shares) const {
-  Between out;
-  out.seventh.resize(shares.size(), kNodes);
-  for (Eigen::Index k = 0; k < shares.size(); ++k) out.seventh.row(k) = nodes_.lagrange(shares(k));
-  out.eighth = shares.asDiagonal() * out.seventh * nodes_.node.cwiseInverse().asDiagonal();
-  out.begin = 1.0 - out.eighth.rowwise().sum().array();
-  return out;
-}
-
 double CollocationFlow::bristle_error(int c) const {
-  static const Between halfway = [this] {
+  static const Between halfway([] {
+    const RadauTables::Vector8& node = radau().node;
     Eigen::VectorXd shares = Eigen::VectorXd::Zero(kNodes);
-    shares.tail(kNodes - 1) = 0.5 * (nodes_.node.head<kNodes - 1>() + nodes_.node.tail<kNodes - 1>());
-    return between(shares);
-  }();
+    shares.tail(kNodes - 1) = 0.5 * (node.head<kNodes - 1>() + node.tail<kNodes - 1>());
+    return shares;
+  }());
   return bristle_error(c, halfway);
 }
 
@@ -185,7 +190,7 @@ double CollocationFlow::reversal_error(const Guarded& guard) const {
                                 velocity_.segment<kNodes>(kNodes * guard.contact));
   const double fall = std::min(guard.theta / kStribeckSpeeds, laws()[i].bristle.stribeck_speed / std::abs(slope));
   return bristle_error(guard.contact,
-                       between(Eigen::VectorXd::LinSpaced(4, guard.theta - kStribeckSpeeds * fall, guard.theta)));
+                       Between(Eigen::VectorXd::LinSpaced(4, guard.theta - kStribeckSpeeds * fall, guard.theta)));
 }
 
 }  // namespace slipmode::dynamics

@@ -138,13 +138,9 @@ class CollocationFlow {
   void record_reversals(const std::vector<ContactMode>& before);
   void record_bristle(int c, EventKind kind, ContactMode before);
   void settle_bristle(int c, bool touching);
-  /// Polynomials through the nodes at other shares of the step: of degree 7, and of degree 8 through the start too.
-  struct Between {
-    Eigen::Matrix<double, Eigen::Dynamic, kNodes> seventh, eighth;
-    Eigen::VectorXd begin;  ///< share of the start's value in the latter
-  };
-  [[nodiscard]] Between between(const Eigen::VectorXd& shares) const;
-  /// What the polynomials leave of a bristle's equations there: the error of its force, by the static limit.
+  struct Between;
+  /// What the polynomials leave of a bristle's equations between the nodes: the error of its force, by the static
+  /// limit.
   [[nodiscard]] double bristle_error(int c, const Between& at) const;
   /// The same at the start and halfway between nodes.
   [[nodiscard]] double bristle_error(int c) const;

@@ -141,6 +141,7 @@ double CollocationFlow::largest_force_rate(int d, const Deviation& off, double h
 
 double CollocationFlow::clear_after_release(const StepBounds& bounds, const Deviation& off, double h, int c) const {
   // s″ − κ s′ = B(t) with κ the law's slope times the mobility: as long as B > 0, s′ and s are.
+  if (bristled(c)) return 0.0;  // its force is no function of the speed alone
   const auto i = static_cast<std::size_t>(c);
   const ContactForces& law = laws()[i];
   const double sign = sign_of(point_.modes[i]);
@@ -282,7 +283,6 @@ bool CollocationFlow::proves(const Guarded& found, double end) {
     p.degree = kNodes;
     p.coefficient[0] = guard_start_(c);
     for (int k = 0; k < kNodes; ++k) p.coefficient[static_cast<std::size_t>(k) + 1] = form(k);
-    if (point_.multiplicity[i] == 2 && bristled(c)) return false;
     const double from = point_.multiplicity[i] == 2 ? clear_after_release(bounds, off, h, c) : 0.0;
     if (point_.multiplicity[i] == 2 && from == 0.0) return false;
     if (!stays_clear(p, error, slope_error, from, reached, end)) return false;

@@ -4,8 +4,6 @@
 #include "orbits/balance/internal/balance_orbit.hpp"
 
 #include <fmt/format.h>
-#include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -17,14 +15,9 @@ constexpr double kDifferenceStep = 1e-5;  ///< in the parameter, of its range: t
 /// Residuals that stall below this are rounding.
 constexpr double kRounding = 1e-10;
 
-/// The solution of a square system, of least norm where it is singular: a structure that floats in the gap.
 Eigen::VectorXd solution(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
-  const Eigen::PartialPivLU<Eigen::MatrixXd> lu(A);
-  const Eigen::VectorXd pivots = lu.matrixLU().diagonal().cwiseAbs();
-  if (pivots.minCoeff() > 1e-14 * pivots.maxCoeff()) return lu.solve(b);
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> orthogonal;
-  orthogonal.setThreshold(1e-12);
-  return orthogonal.compute(A).solve(b);
+  bool singular = false;
+  return least_norm_solution(A, b, singular);
 }
 
 /// Entries of a vector. By loop, as GCC 12 takes Eigen's indexed views for a bad free.

@@ -152,19 +152,9 @@ Eigen::VectorXd BalanceProblem::step(const BalanceEvaluation& at, bool& out_open
   for (Eigen::Index c = 0; c < nc; ++c)
     for (Eigen::Index i = 0; i < own; ++i) leading.push_back(c * B + (i <= lead_ ? i : H + i - lead_));
   for (Eigen::Index r = 0; r < nr; ++r) leading.push_back(nc * B + r);
-  const Eigen::PartialPivLU<Eigen::MatrixXd> lu(at.jacobian);
-  const Eigen::VectorXd pivots = lu.matrixLU().diagonal().cwiseAbs();
   Eigen::VectorXd rest(at.jacobian.rows());
   for (std::size_t i = 0; i < leading.size(); ++i) rest[static_cast<Eigen::Index>(i)] = -at.residual[leading[i]];
-  out_open = !(pivots.minCoeff() > 1e-14 * pivots.maxCoeff());
-  Eigen::VectorXd newton;
-  if (out_open) {
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> orthogonal;
-    orthogonal.setThreshold(1e-12);
-    newton = orthogonal.compute(at.jacobian).solve(rest);
-  } else {
-    newton = lu.solve(rest);
-  }
+  const Eigen::VectorXd newton = least_norm_solution(at.jacobian, rest, out_open);
   Eigen::VectorXd step = -at.residual;
   for (std::size_t i = 0; i < leading.size(); ++i) step[leading[i]] = newton[static_cast<Eigen::Index>(i)];
   return step;
@@ -218,6 +208,16 @@ Balance BalanceProblem::series_of(const BalanceEvaluation& at, int order) const 
   out.rigid = at.x.tail(response_.rigid_rows.cols());
   out.residual = at.relative;
   return out;
+}
+
+Eigen::VectorXd least_norm_solution(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, bool& out_singular) {
+  const Eigen::PartialPivLU<Eigen::MatrixXd> lu(A);
+  const Eigen::VectorXd pivots = lu.matrixLU().diagonal().cwiseAbs();
+  out_singular = !(pivots.minCoeff() > 1e-14 * pivots.maxCoeff());
+  if (!out_singular) return lu.solve(b);
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> orthogonal;
+  orthogonal.setThreshold(1e-12);
+  return orthogonal.compute(A).solve(b);
 }
 
 Eigen::VectorXd unknowns_of(const std::vector<Harmonics>& guess, const ContactResponse& response) {

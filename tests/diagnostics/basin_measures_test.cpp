@@ -52,6 +52,26 @@ TEST(BasinShares, CountTheUndecidedAndWhatMetAnEvent) {
   EXPECT_DOUBLE_EQ(shares[1].share, 0.5);
 }
 
+// Half of the plane in the gap with coordinates by column, 0.1 and 0.2; of the three cells of the strip one met a stop.
+TEST(BasinMeasures, GiveTheRangeOfTheCoordinateAndWhatTheStripHolds) {
+  orbits::Basins basins = plane(4, [](double x, double) { return x < 0.5; });
+  EXPECT_FALSE(basin_measures(basins).strip);
+  for (auto& row : basins.rows) {
+    row[0].coordinate = 0.1;
+    row[1].coordinate = 0.2;
+  }
+  basins.room = Eigen::MatrixXd::Constant(4, 4, -1.0);
+  basins.room(0, 0) = basins.room(1, 0) = basins.room(2, 3) = 1.0;
+  basins.rows[2][3].met_event = true;
+  const BasinMeasures found = basin_measures(basins);
+  EXPECT_EQ(found.shares[0].least_coordinate, 0.1);
+  EXPECT_EQ(found.shares[0].largest_coordinate, 0.2);
+  EXPECT_TRUE(std::isnan(found.shares[1].least_coordinate));
+  ASSERT_TRUE(found.strip);
+  EXPECT_DOUBLE_EQ(found.strip->share, 3.0 / 16.0);
+  EXPECT_DOUBLE_EQ(found.strip->met_event, 1.0 / 3.0);
+}
+
 // A straight line of the plane: f = 2ε over the width that is looked at, 200 cells less 8 on either side.
 TEST(BoundaryUncertainty, OfAStraightLineIsOne) {
   const BoundaryUncertainty found =

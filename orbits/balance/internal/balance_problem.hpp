@@ -78,6 +78,10 @@ class BalanceProblem {
   std::vector<friction::Clearance> laws_;
 };
 
+/// The solution of a square system, of least norm where it is singular: a structure that floats in the gap.
+[[nodiscard]] Eigen::VectorXd least_norm_solution(const Eigen::MatrixXd& A, const Eigen::VectorXd& b,
+                                                  bool& out_singular);
+
 /// A guess's coefficients as unknowns of this order; what floats is given the mean that fits best.
 [[nodiscard]] Eigen::VectorXd unknowns_of(const std::vector<Harmonics>& guess, const ContactResponse& response);
 
