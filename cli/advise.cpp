@@ -63,13 +63,18 @@ Report run(const Session& session, const AdviseArguments& arguments) {
   if (!arguments.measure.empty()) only = parse_measure(arguments.measure);
   const trade::Schedule schedule = trade::schedule_of(scene);
   const std::vector<trade::Effect> effects = trade::effects_of(scene);
+  const std::vector<trade::Variant> variants = variants_of(scene, effects);
   std::optional<studies::ResultFile> file;
-  if (!arguments.output.empty()) file.emplace(arguments.output, scene, results::FileKind::kTrade, "slipmode advise");
+  if (!arguments.output.empty()) {
+    file.emplace(arguments.output, scene, results::FileKind::kTrade, "slipmode advise", "", session.division(),
+                 studies::Pieces{variants.size(), "configurations"});
+  }
   trade::StudyOptions options{.schedule = schedule};
   options.parallel = session.run_options().parallel("advise");
   if (file) results::keep_in(file->journal(), options);
-  const trade::Study done = trade::study(scene, trade::as_it_stands(scene), variants_of(scene, effects), {}, options);
+  const trade::Study done = trade::study(scene, trade::as_it_stands(scene), variants, {}, options);
   if (file) file->finish([&](results::StoreWriter& writer) { results::store_study(writer, done, scene); });
+  if (session.shard) return part_made(session, *file, arguments.output, "configurations");
 
   Report report;
   std::vector<trade::EffectAdvice> advice;
@@ -84,7 +89,7 @@ Report run(const Session& session, const AdviseArguments& arguments) {
   report.data = {{"verb", "advise"}, {"limit_percent", limit}, {"effects", list}, {"study", to_json(done, scene)}};
   if (!file) return report;
   report.data["file"] = arguments.output;
-  tell_resumed(file->resumed(), "configurations", report);
+  tell_resumed(session, file->resumed(), "configurations", report);
   report.text += fmt::format("Result: {}\n", arguments.output);
   return report;
 }
@@ -100,7 +105,9 @@ Verb add_advise(CLI::App& app) {
                       "the one output that counts: dX, dE, points, spread, energy, stick; default: all");
   command->add_option("--error", arguments->error, "change of an output that matters; default 1%");
   command->footer("Example:\n  slipmode advise datasets/beam_12hz/scene.toml");
-  return {command, [arguments](const Session& session) { return run(session, *arguments); }};
+  return {.command = command,
+          .run = [arguments](const Session& session) { return run(session, *arguments); },
+          .divides = true};
 }
 
 }  // namespace slipmode::cli

@@ -223,14 +223,16 @@ Verb add_diagnose(CLI::App& app) {
   const std::size_t begin = command->get_options().size();
   const ModelDiagnosis diagnose_model = add_model_diagnosis(*command);
   const ModelOptions of_models{begin, command->get_options().size()};
-  return {command, [command, arguments, of_models, diagnose_model](const Session& session) {
-            arguments->request.bits = arguments->unit == "bits";
-            if (fs::path(arguments->request.input).extension() == ".toml") {
-              return diagnose_model(session, arguments->request);
-            }
-            refuse_model_options(*command, of_models);
-            return diagnose_series(session, *arguments);
-          }};
+  const auto run = [command, arguments, of_models, diagnose_model](const Session& session) {
+    arguments->request.bits = arguments->unit == "bits";
+    if (fs::path(arguments->request.input).extension() == ".toml") {
+      return diagnose_model(session, arguments->request);
+    }
+    refuse_model_options(*command, of_models);
+    if (session.shard) throw InvalidInput("--shard: for a scene with --over; a record is one piece");
+    return diagnose_series(session, *arguments);
+  };
+  return {.command = command, .run = run, .divides = true};
 }
 
 }  // namespace slipmode::cli

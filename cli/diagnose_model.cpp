@@ -44,9 +44,10 @@ Report diagnose_scene(const Session& session, const DiagnoseRequest& request, co
     DiagnoseRequest with_file = request;
     with_file.output = model_file(request);
     Report report = diagnose_over(session, scene, with_file, models);
-    draw_diagnosis(request, with_file.output, report);
+    if (!session.shard) draw_diagnosis(request, with_file.output, report);
     return report;
   }
+  if (session.shard) throw InvalidInput("--shard: values of a key are divided; give one with --over");
   const studies::Subjects subjects = studies::subjects_of(scene, models.files, models.modes);
   const diagnostics::TangentOptions options =
       studies::tangent_options(scene, subjects.full, models.exponents, session.run_options());

@@ -79,18 +79,19 @@ Report diagnose_over(const Session& session, const scene::Scene& scene, const Di
 
   std::string identity;
   for (const std::string& file : models.files) identity += studies::identity_of(std::filesystem::path(file));
+  studies::ExponentSweepOptions options{.tangent = tangent, .follow = models.follow};
   studies::ResultFile file(
       request.output, scene, results::FileKind::kExponentSweep,
       fmt::format("slipmode diagnose --over {}{} --exponents {} --transient {} --duration {} --renormalise {} {}",
                   models.over, models.follow ? " --follow" : "", tangent.exponents, tangent.transient, tangent.duration,
                   tangent.interval, swept.back().title),
-      identity);
+      identity, session.division(), studies::pieces(over.values, options));
+  options.journal = &file.journal();
   std::vector<studies::Family> families;
   families.reserve(swept.size());
   for (const SweptModel& model : swept) families.push_back(model.family);
-  const std::vector<studies::ExponentSweep> sweeps = studies::exponent_sweeps(
-      families, over.values, {.tangent = tangent, .follow = models.follow, .journal = &file.journal()},
-      session.run_options());
+  const std::vector<studies::ExponentSweep> sweeps =
+      studies::exponent_sweeps(families, over.values, options, session.run_options());
 
   Report report;
   report.data = {{"verb", "diagnose"}, {"file", request.output}, {"key", over.key}};
@@ -103,12 +104,13 @@ Report diagnose_over(const Session& session, const scene::Scene& scene, const Di
       results::store_exponent_sweep(writer, "exponents/" + role, title, family.axis(), units, sweeps[m].points);
     }
   });
+  if (session.shard) return part_made(session, file, request.output, "values");
   for (std::size_t m = 0; m < swept.size(); ++m) {
     Json summary;
     report.text += exponent_summary(swept[m].title, sweeps[m].points, summary);
     report.data["models"].push_back(std::move(summary));
   }
-  tell_resumed(file.resumed(), "values", report);
+  tell_resumed(session, file.resumed(), "values", report);
   report.text += fmt::format("Exponents: {}\n", request.output);
   return report;
 }

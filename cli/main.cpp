@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <iterator>
 #include <new>
@@ -14,7 +15,8 @@
 namespace slipmode::cli {
 namespace {
 
-void add_common_options(CLI::App& command, Session& session) {
+void add_common_options(const Verb& verb, Session& session) {
+  CLI::App& command = *verb.command;
   command.add_flag("--json", session.json,
                    "print one JSON object on standard output, everything else on standard error");
   command
@@ -25,6 +27,9 @@ void add_common_options(CLI::App& command, Session& session) {
       ->check(CLI::Range(0, 4096));
   command.add_option("--seed", session.seed, "seed of the random initial states (overrides ensemble.seed)");
   command.add_flag("--quiet", session.quiet, "no progress, no summary");
+  if (!verb.divides) return;
+  command.add_option("--shard", session.shard,
+                     "compute a share of the values, I/N with I = 1 ... N; -o names the part, and 'merge' joins all");
 }
 
 void print_line(std::FILE* stream, const std::string& text) {
@@ -72,6 +77,9 @@ int report(const Session& session, const Report& result) {
 
 int run_verb(const Session& session, const Verb& verb) {
   try {
+    if (session.shard && verb.command->get_option("--output")->count() == 0) {
+      throw InvalidInput(fmt::format("--shard {}: expected a name for the part; give one with -o", *session.shard));
+    }
     return report(session, verb.run(session));
   } catch (const InvalidInput& error) {
     return fail(session, kBadInput, error.what());
@@ -108,6 +116,30 @@ std::string unknown_verb(const CLI::App& app, int argc, char** argv) {
   return "";
 }
 
+/// The verb, its arguments, and the options given that say what is computed.
+std::vector<std::string> words_of(const CLI::App& command) {
+  constexpr std::array<std::string_view, 6> kLeftOut = {"--help",  "--json",  "--threads",
+                                                        "--quiet", "--shard", "--output"};
+  std::vector<std::string> words, options;
+  for (const CLI::App* app = &command; app->get_parent() != nullptr; app = app->get_parent())
+    words.insert(words.begin(), app->get_name());
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->count() == 0) continue;
+    const std::string name = "--" + (option->get_lnames().empty() ? "" : option->get_lnames().front());
+    if (option->get_positional()) {
+      std::ranges::copy(option->results(), std::back_inserter(words));
+    } else if (std::ranges::find(kLeftOut, name) != kLeftOut.end()) {
+      continue;
+    } else if (option->get_items_expected_max() == 0) {
+      options.push_back(name);
+    } else {
+      for (const std::string& value : option->results()) options.push_back(fmt::format("{}={}", name, value));
+    }
+  }
+  std::ranges::move(options, std::back_inserter(words));
+  return words;
+}
+
 int run_main(int argc, char** argv) {
   Session session;
   session.stop = &watch_for_interrupt();
@@ -124,14 +156,7 @@ int run_main(int argc, char** argv) {
       "Exit codes: 0 done, 2 bad input, 3 numerical failure, 130 interrupted (the same command goes on).\n"
       "Example:\n  slipmode run datasets/chain10/scene.toml -o out/chain10\n"
       "Help on a verb: slipmode VERB --help");
-  std::vector<Verb> verbs = {add_run(app),   add_modes(app),    add_simulate(app), add_pod(app), add_reduce(app),
-                             add_sweep(app), add_validate(app), add_plot(app),     add_info(app)};
-  verbs.push_back(add_diagnose(app));
-  verbs.push_back(add_trade(app));
-  verbs.push_back(add_advise(app));
-  verbs.push_back(add_selftest(app));
-  std::ranges::move(add_orbit(app), std::back_inserter(verbs));
-  for (const Verb& verb : verbs) add_common_options(*verb.command, session);
+  const std::vector<Verb> verbs = add_verbs(app, session);
 
   try {
     app.parse(argc, argv);
@@ -143,12 +168,28 @@ int run_main(int argc, char** argv) {
     return fail(session, kBadInput, fmt::format("{}\nRun 'slipmode --help' or 'slipmode VERB --help'.", error.what()));
   }
   for (const Verb& verb : verbs) {
-    if (verb.command->parsed()) return run_verb(session, verb);
+    if (!verb.command->parsed()) continue;
+    session.words = words_of(*verb.command);
+    return run_verb(session, verb);
   }
   return kBadInput;
 }
 
 }  // namespace
+
+std::vector<Verb> add_verbs(CLI::App& app, Session& session) {
+  std::vector<Verb> verbs = {add_run(app),   add_modes(app),    add_simulate(app), add_pod(app), add_reduce(app),
+                             add_sweep(app), add_validate(app), add_plot(app),     add_info(app)};
+  verbs.push_back(add_diagnose(app));
+  verbs.push_back(add_trade(app));
+  verbs.push_back(add_advise(app));
+  verbs.push_back(add_merge(app));
+  verbs.push_back(add_selftest(app));
+  std::ranges::move(add_orbit(app), std::back_inserter(verbs));
+  for (const Verb& verb : verbs) add_common_options(verb, session);
+  return verbs;
+}
+
 }  // namespace slipmode::cli
 
 int main(int argc, char** argv) {

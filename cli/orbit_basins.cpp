@@ -132,7 +132,8 @@ Report run(const Session& session, const OrbitBasinsArguments& arguments) {
       arguments.output, scene, results::FileKind::kBasins,
       fmt::format("slipmode orbit basins --over {}{} --max-order {} --periods {} --sample {}",
                   fmt::join(arguments.over, " --over "), keys.empty() ? "" : " --along " + arguments.along,
-                  options.max_order, options.periods, options.sample));
+                  options.max_order, options.periods, options.sample),
+      "", session.division(), studies::pieces(request));
   options.journal = &file.journal();
   const studies::BasinsStudy study = studies::basins(family, request, options, session.run_options());
   if (study.interrupted) {
@@ -141,9 +142,10 @@ Report run(const Session& session, const OrbitBasinsArguments& arguments) {
     return report;
   }
   file.finish([&](results::StoreWriter& writer) { studies::store(writer, family, request, study); });
+  if (session.shard) return part_made(session, file, arguments.output, "rows");
   Report report = summary(family, request, study);
   report.data["file"] = arguments.output;
-  tell_resumed(file.resumed(), "rows", report);
+  tell_resumed(session, file.resumed(), "rows", report);
   report.text += fmt::format("Basins: {}\n", arguments.output);
   return report;
 }
@@ -178,7 +180,9 @@ Verb add_orbit_basins(CLI::App& orbit) {
       "Example:\n  slipmode orbit basins datasets/play_oscillator/scene.toml --set drive.amplitude=0.3 "
       "--set drive.omega=0.5005 --set structure.link.0.damping=0.4 --over initial.displacement.0=-2:2:0.04 "
       "--over initial.velocity.0=-2:2:0.04 -o basins.h5");
-  return {command, [arguments](const Session& session) { return run(session, *arguments); }};
+  return {.command = command,
+          .run = [arguments](const Session& session) { return run(session, *arguments); },
+          .divides = true};
 }
 
 }  // namespace slipmode::cli

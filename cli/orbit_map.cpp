@@ -87,7 +87,8 @@ Report run(const Session& session, const OrbitMapArguments& arguments) {
       arguments.output, scene, keys.size() > 1 ? results::FileKind::kMap : results::FileKind::kStrobe,
       fmt::format("slipmode orbit map --over {} --start {} --max-order {} --periods {} --kept {} --tolerance {}{}",
                   fmt::join(arguments.over, " --over "), arguments.start, options.max_order, options.periods,
-                  options.kept, options.tolerance, options.follow ? " --follow" : ""));
+                  options.kept, options.tolerance, options.follow ? " --follow" : ""),
+      "", session.division(), studies::pieces(values, options));
   options.journal = &file.journal();
   const studies::OrbitMapStudy study = studies::orbit_map(family, values, options, session.run_options());
   if (study.interrupted) {
@@ -96,9 +97,10 @@ Report run(const Session& session, const OrbitMapArguments& arguments) {
     return report;
   }
   file.finish([&](results::StoreWriter& writer) { studies::store(writer, family, study); });
+  if (session.shard) return part_made(session, file, arguments.output, "rows");
   Report report = summary(family, study, over);
   report.data["file"] = arguments.output;
-  tell_resumed(file.resumed(), "rows", report);
+  tell_resumed(session, file.resumed(), "rows", report);
   report.text += fmt::format("Map: {}\n", arguments.output);
   return report;
 }
@@ -135,7 +137,9 @@ Verb add_orbit_map(CLI::App& orbit) {
       "--over drive.amplitude=0.1:3:0.02 --start both -o map.h5\n"
       "  slipmode orbit map datasets/clearance_3mass/scene.toml --over drive.omega=0.5:1.2:0.002 -o "
       "strobe.h5");
-  return {command, [arguments](const Session& session) { return run(session, *arguments); }};
+  return {.command = command,
+          .run = [arguments](const Session& session) { return run(session, *arguments); },
+          .divides = true};
 }
 
 }  // namespace slipmode::cli

@@ -41,13 +41,24 @@ class BatchLines {
 }  // namespace
 
 studies::RunOptions Session::run_options() const {
-  return {.threads = threads, .stop = stop, .progress = [mode = progress_mode()](const std::string& part) {
-            const auto lines = std::make_shared<BatchLines>(part, mode);
-            return [lines](std::size_t done, std::size_t total) { lines->update(done, total); };
-          }};
+  return {
+      .threads = threads, .stop = stop, .progress = [mode = progress_mode(), share = shard](const std::string& part) {
+        const auto lines = std::make_shared<BatchLines>(share ? part + ", shard " + *share : part, mode);
+        return [lines](std::size_t done, std::size_t total) { lines->update(done, total); };
+      }};
+}
+
+studies::Division Session::division() const {
+  studies::Division division{.shard = {}, .joined = joined, .words = words};
+  if (shard) division.shard = results::parse_shard(*shard);
+  return division;
 }
 
 scene::Scene Session::load(const fs::path& path) const {
+  if (!joined.empty()) {
+    const scene::SceneSource& source = joined.front().head.scene;
+    return scene::parse_scene(source.text, source.overrides, source.path);
+  }
   std::vector<std::string> all = overrides;
   if (seed) all.push_back(fmt::format("ensemble.seed={}", *seed));
   return scene::load_scene(path, all);
@@ -57,9 +68,22 @@ void Session::check_interrupt() const {
   if (stop != nullptr && stop->load()) throw Interrupted();
 }
 
-void tell_resumed(std::size_t resumed, const std::string& what, Report& out_report) {
+void tell_resumed(const Session& session, std::size_t resumed, const std::string& what, Report& out_report) {
   out_report.data["resumed"] = resumed;
-  if (resumed > 0) out_report.text += fmt::format("{} {} were taken over from an interrupted run\n", resumed, what);
+  if (resumed == 0) return;
+  out_report.text +=
+      fmt::format("{} {} were taken over from {}\n", resumed, what,
+                  session.joined.empty() ? "an interrupted run" : fmt::format("{} parts", session.joined.size()));
+}
+
+Report part_made(const Session& session, const studies::ResultFile& file, const std::string& output,
+                 const std::string& what) {
+  Report report;
+  report.text = fmt::format("Shard {}: {} {}\n", session.shard.value(), file.finished(), what);
+  report.data = {{"shard", session.shard.value()}, {"file", output}, {what, file.finished()}};
+  tell_resumed(session, file.resumed(), what, report);
+  report.text += fmt::format("Part: {}; 'slipmode merge PART... -o FILE' joins all of them\n", output);
+  return report;
 }
 
 void require_writable(const fs::path& file) {

@@ -4,6 +4,7 @@
 #include <slipmode/core/parallel.hpp>
 #include <slipmode/core/progress.hpp>
 #include <slipmode/scene/scene.hpp>
+#include <slipmode/studies/result_file.hpp>
 #include <slipmode/studies/run_options.hpp>
 
 #include <cstdint>
@@ -34,11 +35,17 @@ struct Session {
   std::optional<std::uint64_t> seed;
   std::vector<std::string> overrides;  ///< --set, in order
   const StopFlag* stop = nullptr;
+  std::optional<std::string> shard;   ///< --shard I/N
+  std::vector<results::Part> joined;  ///< what `slipmode merge` joins: they hold the scene, and values
+  std::vector<std::string> words;     ///< of the command line, as a part keeps them
 
   /// For studies, with progress on standard error.
   [[nodiscard]] studies::RunOptions run_options() const;
   [[nodiscard]] ProgressMode progress_mode() const { return quiet ? ProgressMode::kQuiet : ProgressMode::kAutomatic; }
-  /// Reads a scene with --set and --seed applied (--seed is an override of ensemble.seed, so provenance holds it).
+  /// How a study's values are divided among processes. @throws InvalidInput  for a --shard that is none
+  [[nodiscard]] studies::Division division() const;
+  /// Reads a scene, or the one of joined parts, with --set and --seed applied (--seed is an override of ensemble.seed,
+  /// so provenance holds it).
   [[nodiscard]] scene::Scene load(const std::filesystem::path& path) const;
   /// Throws Interrupted when Ctrl-C was pressed.
   void check_interrupt() const;
@@ -55,8 +62,12 @@ struct Report {
 /// @throws InvalidInput  when the folder is missing or not writable, or the path is a folder
 void require_writable(const std::filesystem::path& file);
 
-/// Says what an interrupted run had finished. @param what  is counted: "values", "rows"
-void tell_resumed(std::size_t resumed, const std::string& what, Report& out_report);
+/// Says what an interrupted run, or the parts, had finished. @param what  is counted: "values", "rows"
+void tell_resumed(const Session& session, std::size_t resumed, const std::string& what, Report& out_report);
+
+/// What to say when a shard is done. @param what  is counted: "values", "rows"
+[[nodiscard]] Report part_made(const Session& session, const studies::ResultFile& file, const std::string& output,
+                               const std::string& what);
 
 /// What went wrong, when and in which state, for people.
 [[nodiscard]] std::string describe(const NumericalFailure& failure);

@@ -58,8 +58,7 @@ void say_shaken(const SweepRequest& request, const studies::Sweep& sweep, Report
   out_report.text += fmt::format("up and down differ at {:.1f} % of the values\n", 100.0 * share);
 }
 
-Report summary(const SweepRequest& request, const studies::Family& family, const studies::Sweep& sweep,
-               std::size_t resumed) {
+Report summary(const SweepRequest& request, const studies::Family& family, const studies::Sweep& sweep) {
   const std::size_t values = sweep.values.size();
   const std::string& key = family.keys().front();
   Report report;
@@ -78,13 +77,12 @@ Report summary(const SweepRequest& request, const studies::Family& family, const
   report.data["failures"] = failures;
   report.text += fmt::format("Sweep: {}\n", request.output);
   report_failures(report, failures, values);
-  tell_resumed(resumed, "values", report);
   return report;
 }
 
 /// How far it got, of both passes where there are two.
-Report interrupted(const SweepRequest& request, std::size_t values, std::size_t finished) {
-  const std::size_t all = values * (request.options.both ? 2 : 1);
+Report interrupted(const SweepRequest& request, std::size_t values, const studies::ResultFile& file) {
+  const std::size_t all = values * (request.options.both ? 2 : 1), finished = file.finished();
   Report report = interrupted_at(request.output, fmt::format("with {} of {} values done", finished, all));
   report.data["verb"] = "sweep";
   report.data["finished"] = finished;
@@ -102,12 +100,16 @@ Report run(const Session& session, SweepRequest request) {
   const studies::Family family(scene, {over.key}, basis);
   check_values(scene, over);
   studies::ResultFile file(request.output, scene, results::FileKind::kSweep, command_of(request),
-                           basis ? studies::identity_of(basis->basis) : "full");
+                           basis ? studies::identity_of(basis->basis) : "full", session.division(),
+                           studies::pieces(over.values, request.options));
   request.options.journal = &file.journal();
   const studies::Sweep sweep = studies::sweep(family, over.values, request.options, run_options);
-  if (sweep.interrupted) return interrupted(request, over.values.size(), file.journal().records().size());
+  if (sweep.interrupted) return interrupted(request, over.values.size(), file);
   file.finish([&](results::StoreWriter& writer) { studies::store(writer, family, sweep); });
-  return summary(request, family, sweep, file.resumed());
+  if (session.shard) return part_made(session, file, request.output, "values");
+  Report report = summary(request, family, sweep);
+  tell_resumed(session, file.resumed(), "values", report);
+  return report;
 }
 
 }  // namespace
@@ -135,7 +137,9 @@ Verb add_sweep(CLI::App& app) {
       "Example:\n  slipmode sweep datasets/chain10/scene.toml --over drive.speed=0.5:0.001:0.001 --follow "
       "-o sweep.h5\n"
       "  slipmode sweep datasets/beam_sweep/scene.toml --over drive.frequency=5:60:0.5 --model pomf:3 -o sweep.h5");
-  return {command, [arguments](const Session& session) { return run(session, *arguments); }};
+  return {.command = command,
+          .run = [arguments](const Session& session) { return run(session, *arguments); },
+          .divides = true};
 }
 
 }  // namespace slipmode::cli

@@ -1,3 +1,4 @@
+#include <slipmode/core/files.hpp>
 #include <slipmode/figures/gnuplot.hpp>
 #include <slipmode/figures/trade_figures.hpp>
 #include <slipmode/results/provenance.hpp>
@@ -68,12 +69,14 @@ Report run(const Session& session, const TradeArguments& arguments) {
   session.check_interrupt();
   const double limit = wish.limit.value_or(kLimit);
 
+  const std::vector<trade::Variant> variants = variants_of(scene, axes, bases, arguments.product);
   std::string identity;
   for (const trade::Axis axis : axes) identity += trade::to_string(axis);
   std::optional<studies::ResultFile> file;
   if (!arguments.output.empty()) {
     file.emplace(arguments.output, scene, results::FileKind::kTrade,
-                 fmt::format("slipmode trade{}", arguments.product ? " --product" : ""), identity);
+                 fmt::format("slipmode trade{}", arguments.product ? " --product" : ""), identity, session.division(),
+                 studies::Pieces{variants.size(), "configurations known beforehand"});
   }
   trade::StudyOptions options{.schedule = schedule};
   options.parallel = session.run_options().parallel("trade");
@@ -81,9 +84,9 @@ Report run(const Session& session, const TradeArguments& arguments) {
   if (!arguments.product) {
     options.more = [&](const std::vector<trade::Row>& rows) { return trade::worth_combining(rows, limit); };
   }
-  const trade::Study done = trade::study(scene, trade::reference_of(scene),
-                                         variants_of(scene, axes, bases, arguments.product), bases, options);
+  const trade::Study done = trade::study(scene, trade::reference_of(scene), variants, bases, options);
   if (file) file->finish([&](results::StoreWriter& writer) { results::store_study(writer, done, scene); });
+  if (session.shard) return part_made(session, *file, arguments.output, "configurations");
 
   Report report;
   const std::vector<std::string> advice = recommendations(done, limit);
@@ -92,7 +95,7 @@ Report run(const Session& session, const TradeArguments& arguments) {
   for (const std::string& sentence : advice) report.text += sentence + '\n';
   if (!arguments.output.empty()) {
     report.data["file"] = arguments.output;
-    tell_resumed(file->resumed(), "configurations", report);
+    tell_resumed(session, file->resumed(), "configurations", report);
     report.text += fmt::format("Result: {}\n", arguments.output);
   }
   if (!arguments.figures.empty()) {
@@ -131,7 +134,9 @@ Verb add_trade(CLI::App& app) {
   command->footer(
       "Example:\n  slipmode trade datasets/chain10/scene.toml -o trade.h5 --figures out/trade\n"
       "  slipmode trade datasets/chain10/scene.toml --error 1% --write fast.toml");
-  return {command, [arguments](const Session& session) { return run(session, *arguments); }};
+  return {.command = command,
+          .run = [arguments](const Session& session) { return run(session, *arguments); },
+          .divides = true};
 }
 
 }  // namespace slipmode::cli

@@ -1,10 +1,7 @@
 #include "cli/trade_request.hpp"
 
-#include <unistd.h>
-
 #include <fmt/format.h>
 #include <charconv>
-#include <fstream>
 
 namespace slipmode::cli {
 namespace {
@@ -48,20 +45,6 @@ trade::Measure parse_measure(const std::string& word) {
     valid += (valid.empty() ? "" : ", ") + std::string(trade::to_string(measure));
   }
   throw InvalidInput(fmt::format("--measure {}: no such measure; valid: {}", word, valid));
-}
-
-void write_renamed(const std::filesystem::path& path, const std::string& text) {
-  std::filesystem::path temporary = path;
-  temporary += fmt::format(".{}.partial", getpid());
-  std::ofstream out(temporary, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) {
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
-    throw InvalidInput(fmt::format("cannot write '{}': is the disc full?", path.string()));
-  }
-  std::filesystem::rename(temporary, path);
 }
 
 }  // namespace slipmode::cli

@@ -4,7 +4,6 @@
 #include <slipmode/trade/measures.hpp>
 #include "cli/session.hpp"
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -16,9 +15,5 @@ namespace slipmode::cli {
 [[nodiscard]] double parse_duration(const std::string& option, const std::string& text);
 /// @throws InvalidInput  for an unknown word, naming the valid ones
 [[nodiscard]] trade::Measure parse_measure(const std::string& word);
-
-/// Writes a text under a temporary name and renames it.
-/// @throws InvalidInput  when it cannot be written
-void write_renamed(const std::filesystem::path& path, const std::string& text);
 
 }  // namespace slipmode::cli

@@ -12,6 +12,7 @@ namespace slipmode::cli {
 struct Verb {
   CLI::App* command = nullptr;
   std::function<Report(const Session&)> run;
+  bool divides = false;  ///< takes --shard: its values can be computed by several processes
 };
 
 // Each adds one sub-command with its arguments, help and example; one file per verb.
@@ -28,6 +29,10 @@ struct Verb {
 [[nodiscard]] Verb add_diagnose(CLI::App& app);
 [[nodiscard]] Verb add_trade(CLI::App& app);
 [[nodiscard]] Verb add_advise(CLI::App& app);
+[[nodiscard]] Verb add_merge(CLI::App& app);
+
+/// All verbs with the options common to them, which go to `session`.
+[[nodiscard]] std::vector<Verb> add_verbs(CLI::App& app, Session& session);
 
 /// `slipmode orbit` and its own verbs, each by its full name.
 [[nodiscard]] std::vector<Verb> add_orbit(CLI::App& app);

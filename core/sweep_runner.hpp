@@ -3,6 +3,7 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/core/parallel.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <mutex>
@@ -42,13 +43,23 @@ struct SinkOf {
   std::function<std::optional<SweptValue<Result>>(std::size_t index, int model)> recall = {};
   /// Keeps a point just finished. An exception thrown here ends the sweep. Empty function: nothing kept.
   std::function<void(const SweptValue<Result>&)> store = {};
+  /// True for a value that is left to another process. `piece` numbers what can be computed alone: a value, or a chain
+  /// of those that follow each other. Asked once per value not recalled, before anything runs. Empty: none is left.
+  std::function<bool(std::size_t piece, std::size_t index, int model, double parameter)> leave = {};
+  std::size_t first_piece = 0;  ///< of this sweep, among the pieces of the study that it is part of
 };
 /// A sweep, finished or not.
 template <class Result>
 struct SweepOf {
-  std::vector<SweptValue<Result>> points;  ///< in the order of the values; those finished, when interrupted
+  /// In the order of the values; those finished, when interrupted or when some were left to others.
+  std::vector<SweptValue<Result>> points;
   bool interrupted = false;
 };
+
+/// How many pieces of a sweep can be computed alone, see SinkOf::leave.
+[[nodiscard]] inline std::size_t sweep_pieces(std::size_t values, SweepMode mode, std::size_t segments) {
+  return mode == SweepMode::kIndependent ? values : segments;
+}
 
 namespace detail {
 
@@ -88,13 +99,16 @@ class SweepRunner {
     detail::check_sweep(values.size(), segments);
     starts_.assign(values.size(), start);
     points_.resize(work_.follow ? 2 * values.size() : values.size());
+    left_.assign(points_.size(), 0);
     recall();
+    leave();
   }
 
   /// False when interrupted.
   bool run() {
     try {
-      return run_tasks(first_tasks(), points_.size(), parallel_, [this](std::size_t id) { return task(id); });
+      const auto mine = static_cast<std::size_t>(std::ranges::count(left_, 0));
+      return run_tasks(first_tasks(), mine, parallel_, [this](std::size_t id) { return task(id); });
     } catch (const Interrupted&) {
       return false;
     }
@@ -110,12 +124,11 @@ class SweepRunner {
 
  private:
   [[nodiscard]] bool is_segment_begin(std::size_t i) const {
-    if (mode_ == SweepMode::kIndependent || i == 0) return true;
-    const std::size_t m = values_.size();
-    // Segment of i: the largest s with s·m/S ≤ i, in whole numbers.
-    const std::size_t segment = ((i + 1) * segments_ - 1) / m;
-    return segment * m / segments_ == i;
+    return mode_ == SweepMode::kIndependent || segment_of(i) * values_.size() / segments_ == i;
   }
+
+  /// The largest s with s·m/S ≤ i, in whole numbers.
+  [[nodiscard]] std::size_t segment_of(std::size_t i) const { return ((i + 1) * segments_ - 1) / values_.size(); }
 
   [[nodiscard]] std::vector<std::size_t> first_tasks() const {
     std::vector<std::size_t> ready;
@@ -126,8 +139,8 @@ class SweepRunner {
   }
 
   void make_ready(std::size_t i, std::vector<std::size_t>& ready) const {
-    ready.push_back(i);
-    if (work_.follow) ready.push_back(values_.size() + i);
+    for (std::size_t id = i; id < points_.size(); id += values_.size())
+      if (left_[id] == 0) ready.push_back(id);
   }
 
   void recall() {
@@ -140,6 +153,15 @@ class SweepRunner {
         detail::refuse_recalled(i, model(id), values_[i], point->parameter);
       }
       points_[id] = std::move(point);
+    }
+  }
+
+  void leave() {
+    if (!sink_.leave) return;
+    for (std::size_t id = 0; id < points_.size(); ++id) {
+      const std::size_t i = id % values_.size();
+      const std::size_t piece = mode_ == SweepMode::kIndependent ? i : segment_of(i);
+      left_[id] = !points_[id] && sink_.leave(sink_.first_piece + piece, i, model(id), values_[i]) ? 1 : 0;
     }
   }
 
@@ -191,6 +213,7 @@ class SweepRunner {
   SinkOf<Result> sink_;
   std::vector<Start> starts_;                 ///< of the leader, by value
   std::vector<std::optional<Point>> points_;  ///< by task
+  std::vector<char> left_;                    ///< by task: 1 where another process computes it
   std::mutex sink_mutex_;
 };
 

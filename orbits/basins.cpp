@@ -117,7 +117,7 @@ Basins basins(const BasinFinder& finder, const Starts& start, const MapGrid& gri
                       grid.y, {}, SweepMode::kIndependent, 1, parallel, sink)
                       .run_alone();
   result.interrupted = finished.interrupted;
-  if (result.interrupted) return result;
+  if (result.interrupted || finished.points.size() < grid.y.size()) return result;
   for (auto& row : finished.points) {
     std::vector<int> number;  // of what the row found, among all
     for (const BasinFinder::Found& found : row.settled.found) {

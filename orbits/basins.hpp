@@ -17,7 +17,7 @@ using BasinSink = SinkOf<BasinLine>;
 
 struct Basins {
   std::vector<BasinAttractor> attractors;    ///< the gap's first, then in the order in which they were found
-  std::vector<std::vector<BasinCell>> rows;  ///< by y
+  std::vector<std::vector<BasinCell>> rows;  ///< by y; none when interrupted or when some were left to others
   /// GapMotion::room_at_end of each start, the strip of S2 (15) where positive [y x x, m]; empty without a gap motion.
   Eigen::MatrixXd room;
   bool interrupted = false;

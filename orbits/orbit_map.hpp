@@ -66,7 +66,7 @@ using MapRow = SweptValue<std::vector<MapPoint>>;
 using MapSink = SinkOf<std::vector<MapPoint>>;
 
 struct OrbitMap {
-  std::vector<std::vector<MapPoint>> rows;  ///< by y; those not finished when interrupted are empty
+  std::vector<std::vector<MapPoint>> rows;  ///< by y; those not finished, or left to others, are empty
   bool interrupted = false;
 };
 

@@ -1,6 +1,7 @@
 #include <slipmode/results/journal.hpp>
 
 #include <slipmode/core/errors.hpp>
+#include <slipmode/core/files.hpp>
 #include <slipmode/core/numbers.hpp>
 
 #include <fcntl.h>
@@ -8,6 +9,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 #include <zlib.h>
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <charconv>
@@ -15,6 +17,7 @@
 #include <cstring>
 #include <optional>
 #include <string_view>
+#include <tuple>
 
 namespace slipmode::results {
 
@@ -127,6 +130,24 @@ class Descriptor {
   int id_;
 };
 
+std::string header_of(const std::string& fingerprint) { return std::string(kMagic) + fingerprint + "\n"; }
+
+/// @param begin  of the records
+JournalText records_in(const std::string& text, std::size_t begin) {
+  JournalText found{
+      .fingerprint = text.substr(kMagic.size(), begin - 1 - kMagic.size()), .records = {}, .whole = begin};
+  while (found.whole < text.size()) {
+    const std::size_t end = text.find('\n', found.whole);
+    if (end == std::string::npos) break;
+    auto record = from_line(std::string_view(text).substr(found.whole, end - found.whole));
+    if (!record) break;
+    found.records.push_back(std::move(*record));
+    found.whole = end + 1;
+  }
+  found.damaged = found.whole < text.size();
+  return found;
+}
+
 void write_whole(int descriptor, const std::string& line, const std::filesystem::path& path) {
   std::size_t done = 0;
   while (done < line.size()) {
@@ -143,7 +164,8 @@ void write_whole(int descriptor, const std::string& line, const std::filesystem:
 
 }  // namespace
 
-Journal::Journal(std::filesystem::path path, const std::string& fingerprint) : path_(std::move(path)) {
+Journal::Journal(std::filesystem::path path, const std::string& fingerprint)
+    : path_(std::move(path)), fingerprint_(fingerprint) {
   Descriptor file(::open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666));
   if (file.get() < 0) {
     throw InvalidInput(fmt::format("{}: cannot be written ({}); check that the folder exists and its permissions",
@@ -155,7 +177,7 @@ Journal::Journal(std::filesystem::path path, const std::string& fingerprint) : p
   }
 
   const std::string text = read_all(file.get());
-  const std::string header = std::string(kMagic) + fingerprint + "\n";
+  const std::string header = header_of(fingerprint);
   // A kill between creation and the end of the first write leaves a part of the header: nothing is lost by starting
   // anew.
   const bool fresh = text.size() < header.size() && header.starts_with(text);
@@ -164,23 +186,17 @@ Journal::Journal(std::filesystem::path path, const std::string& fingerprint) : p
   }
   if (!fresh && !text.starts_with(header)) {
     throw InvalidInput(fmt::format(
-        "{}: holds unfinished results of another task (other scene, overrides or range); remove it to start anew, or "
-        "choose another output",
+        "{}: holds unfinished results of another task (other scene, overrides, range or shard); remove it to start "
+        "anew, or choose another output",
         path_.string()));
   }
 
-  std::size_t whole = fresh ? 0 : header.size();
-  while (!fresh && whole < text.size()) {
-    const std::size_t end = text.find('\n', whole);
-    if (end == std::string::npos) break;
-    auto record = from_line(std::string_view(text).substr(whole, end - whole));
-    if (!record) break;
-    records_.push_back(std::move(*record));
-    whole = end + 1;
-  }
-  if (whole < text.size() && ::ftruncate(file.get(), static_cast<off_t>(whole)) != 0) {
+  JournalText found;
+  if (!fresh) found = records_in(text, header.size());
+  if (found.whole < text.size() && ::ftruncate(file.get(), static_cast<off_t>(found.whole)) != 0) {
     throw InvalidInput(fmt::format("{}: cannot be repaired ({}); remove it", path_.string(), std::strerror(errno)));
   }
+  records_ = std::move(found.records);
   if (fresh) write_whole(file.get(), header, path_);
   resumed_ = !records_.empty();
   last_sync_ = now();
@@ -192,6 +208,10 @@ Journal::~Journal() {
 }
 
 void Journal::append(JournalRecord record) {
+  if (path_.empty()) {
+    records_.push_back(std::move(record));
+    return;
+  }
   if (descriptor_ < 0) throw InvalidInput(fmt::format("{}: the journal was removed already", path_.string()));
   if (record.table.empty() || record.table.find_first_of(" \n") != std::string::npos) {
     throw InvalidInput(fmt::format("{}: table name '{}' must be one word", path_.string(), record.table));
@@ -208,6 +228,29 @@ void Journal::remove() {
   std::error_code ignored;
   std::filesystem::remove(path_, ignored);
   ::close(std::exchange(descriptor_, -1));
+}
+
+void Journal::publish(const std::filesystem::path& path) {
+  std::vector<const JournalRecord*> order;
+  for (const JournalRecord& record : records_) order.push_back(&record);
+  std::ranges::sort(order, {}, [](const JournalRecord* one) { return std::tie(one->table, one->index, one->note); });
+  std::string text = header_of(fingerprint_);
+  for (const JournalRecord* record : order) text += to_line(*record);
+  write_renamed(path, text);
+  remove();
+}
+
+JournalText Journal::read(const std::filesystem::path& path) {
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (file.get() < 0) {
+    throw InvalidInput(fmt::format("{}: cannot be read ({})", path.string(), std::strerror(errno)));
+  }
+  const std::string text = read_all(file.get());
+  const std::size_t end = text.find('\n');
+  if (!text.starts_with(kMagic) || end == std::string::npos) {
+    throw InvalidInput(fmt::format("{}: is neither a journal nor a part; choose another file", path.string()));
+  }
+  return records_in(text, end + 1);
 }
 
 std::filesystem::path Journal::path_for(const std::filesystem::path& result) { return result.string() + ".journal"; }

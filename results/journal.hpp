@@ -2,7 +2,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace slipmode::results {
@@ -13,6 +15,14 @@ struct JournalRecord {
   std::int64_t index = 0;      ///< its place there
   std::vector<double> values;  ///< any number of values; NaN and infinities survive
   std::string note;            ///< free text, for example why the value could not be computed
+};
+
+/// What a file of records holds.
+struct JournalText {
+  std::string fingerprint;
+  std::vector<JournalRecord> records;  ///< up to the first that is torn or altered
+  std::size_t whole = 0;               ///< bytes up to there
+  bool damaged = false;                ///< there is such a one
 };
 
 /// A side file beside an unfinished result that survives `kill -9`: an interrupted sweep loses at most the value being
@@ -37,6 +47,8 @@ class Journal {
   /// @throws InvalidInput  when the folder is not writable, the file is not a journal, it belongs to another task (the
   ///                       message says to remove it or choose another output), or another process has it open
   Journal(std::filesystem::path path, const std::string& fingerprint);
+  /// Records in memory alone, of a task whose parts were computed elsewhere.
+  explicit Journal(std::vector<JournalRecord> records) : records_(std::move(records)) {}
   ~Journal();
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
@@ -52,15 +64,34 @@ class Journal {
   /// Deletes the file: the result is safe elsewhere.
   void remove();
 
+  /// Moves the records to a file of their own under `path`, whole or not at all, in an order that does not depend on
+  /// which finished first.
+  /// @throws InvalidInput  when it cannot be written
+  void publish(const std::filesystem::path& path);
+
+  /// Decides which values this process leaves to others: asked with the number of the piece that can be computed alone
+  /// and a record of what names the value. Empty: none.
+  using Leave = std::function<bool(std::size_t piece, const JournalRecord& value)>;
+  void set_leave(Leave leave) { leave_ = std::move(leave); }
+  [[nodiscard]] bool leaves(std::size_t piece, const JournalRecord& value) const {
+    return leave_ && leave_(piece, value);
+  }
+
+  /// Records of any journal, for reading; one that is being written may end in a torn line.
+  /// @throws InvalidInput  when it cannot be opened or is not a journal
+  [[nodiscard]] static JournalText read(const std::filesystem::path& path);
+
   /// "out/sweep.h5" → "out/sweep.h5.journal".
   [[nodiscard]] static std::filesystem::path path_for(const std::filesystem::path& result);
 
  private:
-  std::filesystem::path path_;
+  std::filesystem::path path_;  ///< empty: in memory
+  std::string fingerprint_;
   int descriptor_ = -1;
   std::vector<JournalRecord> records_;
   bool resumed_ = false;
   double last_sync_ = 0.0;
+  Leave leave_;
 };
 
 /// A short name of a text (FNV-1a, 64 bit, hexadecimal).

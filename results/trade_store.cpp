@@ -71,8 +71,10 @@ Table candidate_table(const Study& study, const scene::Scene& scene) {
 
 constexpr const char* kTable = "errors";
 
-JournalRecord to_record(std::size_t index, const std::string& name, const trade::Finished& finished) {
-  JournalRecord record{.table = kTable, .index = static_cast<std::int64_t>(index), .values = {}, .note = name};
+/// The note is the name, and on a second line why it failed.
+JournalRecord to_record(const std::string& name, const trade::Finished& finished) {
+  JournalRecord record{.table = kTable, .values = {}, .note = name};
+  if (!finished.failure.empty()) record.note += '\n' + finished.failure;
   record.values.assign(finished.error.begin(), finished.error.end());
   record.values.insert(record.values.end(), finished.noise.begin(), finished.noise.end());
   return record;
@@ -80,8 +82,11 @@ JournalRecord to_record(std::size_t index, const std::string& name, const trade:
 
 std::optional<trade::Finished> recalled(const Journal& journal, const std::string& name) {
   for (const JournalRecord& record : journal.records()) {
-    if (record.note != name || record.values.size() != 2 * trade::kMeasures) continue;
+    const std::size_t end = std::min(record.note.find('\n'), record.note.size());
+    if (record.table != kTable || record.note.substr(0, end) != name) continue;
+    if (record.values.size() != 2 * trade::kMeasures) continue;
     trade::Finished finished;
+    if (end < record.note.size()) finished.failure = record.note.substr(end + 1);
     const auto middle = record.values.begin() + static_cast<std::ptrdiff_t>(trade::kMeasures);
     std::copy(record.values.begin(), middle, finished.error.begin());
     std::copy(middle, record.values.end(), finished.noise.begin());
@@ -95,7 +100,10 @@ std::optional<trade::Finished> recalled(const Journal& journal, const std::strin
 void keep_in(Journal& journal, trade::StudyOptions& out_options) {
   out_options.recall = [&journal](const std::string& name) { return recalled(journal, name); };
   out_options.store = [&journal](const std::string& name, const trade::Finished& finished) {
-    if (finished.failure.empty()) journal.append(to_record(journal.records().size(), name, finished));
+    journal.append(to_record(name, finished));
+  };
+  out_options.leave = [&journal](std::size_t number, const std::string& name) {
+    return journal.leaves(number, {.table = kTable, .values = {}, .note = name});
   };
 }
 

@@ -77,13 +77,17 @@ void check(const Family& family, const BasinsRequest& request) {
   }
 }
 
+Pieces pieces(const BasinsRequest& request) {
+  return {.count = request.over[1].values.size() * (1 + request.along.size()), .what = "rows"};
+}
+
 BasinsStudy basins(const Family& family, const BasinsRequest& request, const BasinsOptions& options,
                    const RunOptions& run) {
   check(family, request);
   BasinsStudy study{.grid = {.x = request.over[0].values, .y = request.over[1].values}};
   const StartCoordinate across = coordinate_of(family, request.over[0].key),
                         up = coordinate_of(family, request.over[1].key);
-  const auto basins_of = [&](const dynamics::HybridSystem& system, const std::string& part) {
+  const auto basins_of = [&](const dynamics::HybridSystem& system, const std::string& part, std::size_t planes_before) {
     const auto start = [&, begin = scene::initial_state(family.scene(), system)](double x, double y) {
       dynamics::State state = begin;
       across.set(state, x);
@@ -92,16 +96,18 @@ BasinsStudy basins(const Family& family, const BasinsRequest& request, const Bas
     };
     orbits::BasinSink sink;
     if (options.journal != nullptr) sink = results::basin_sink(*options.journal, part);
+    sink.first_piece = planes_before * study.grid.y.size();
     return orbits::basins(orbits::BasinFinder(system, options_of(family, options)), start, study.grid,
                           run.parallel(part), sink);
   };
-  study.basins = basins_of(family.own(), "basins");
-  study.measures = diagnostics::basin_measures(study.basins);
+  study.basins = basins_of(family.own(), "basins", 0);
+  if (!study.basins.rows.empty()) study.measures = diagnostics::basin_measures(study.basins);
   study.interrupted = study.basins.interrupted;
   for (std::size_t k = 0; k < request.along.size() && !study.interrupted; ++k) {
-    orbits::Basins here = basins_of(family.at({request.along[k]}), fmt::format("basins_along_{}", k));
+    orbits::Basins here = basins_of(family.at({request.along[k]}), fmt::format("basins_along_{}", k), k + 1);
     study.interrupted = here.interrupted;
     if (study.interrupted) break;
+    if (here.rows.empty()) continue;  // left to others
     study.along.push_back({.value = request.along[k], .attractors = {}, .shares = diagnostics::basin_shares(here)});
     study.along.back().attractors = std::move(here.attractors);
   }

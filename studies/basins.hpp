@@ -2,6 +2,7 @@
 
 #include <slipmode/results/basins_store.hpp>
 #include <slipmode/studies/family.hpp>
+#include <slipmode/studies/result_file.hpp>
 #include <slipmode/studies/run_options.hpp>
 
 #include <array>
@@ -41,6 +42,9 @@ struct BasinsStudy {
 /// @throws InvalidInput  for a key that is no coordinate of the start, two alike, no values or values that are not
 ///                       finite, a third key that is one of the start, a drive without period
 void check(const Family& family, const BasinsRequest& request);
+
+/// A row of each plane can be computed alone.
+[[nodiscard]] Pieces pieces(const BasinsRequest& request);
 
 /// @param family  over the third key, or none
 /// @throws InvalidInput  as check and orbits::basins

@@ -47,6 +47,12 @@ LeadingExponents exponents_at(const Family& family, const dynamics::State& start
 
 }  // namespace
 
+Pieces pieces(const std::vector<double>& values, const ExponentSweepOptions& options) {
+  if (!options.follow) return {.count = values.size(), .what = "values"};
+  return {.count = 1,
+          .what = "chains of values, each of which starts where the one before it ended (more without --follow)"};
+}
+
 std::vector<ExponentSweep> exponent_sweeps(const std::vector<Family>& families, const std::vector<double>& values,
                                            const ExponentSweepOptions& options, const RunOptions& run) {
   std::vector<ExponentSweep> out(families.size());
@@ -58,9 +64,10 @@ std::vector<ExponentSweep> exponent_sweeps(const std::vector<Family>& families, 
   if (options.journal != nullptr) sink = results::exponent_sink(*options.journal);
   for (std::size_t m = 0; m < families.size(); ++m) {
     const dynamics::State start = families[m].start();
+    std::vector<const diagnostics::SweepPoint*> settled(values.size(), nullptr);
+    for (const diagnostics::SweepPoint& point : out[m].diagram) settled[point.index] = &point;
     const auto settle = [&](std::size_t i, int, const std::monostate&) {
-      return exponents_at(families[m], start, out[m].diagram.empty() ? nullptr : &out[m].diagram[i], values[i],
-                          options.tangent);
+      return exponents_at(families[m], start, settled[i], values[i], options.tangent);
     };
     auto found =
         SweepRunner<LeadingExponents, std::monostate>(

@@ -3,6 +3,7 @@
 #include <slipmode/diagnostics/exponents/lyapunov_spectrum.hpp>
 #include <slipmode/results/exponents_store.hpp>
 #include <slipmode/studies/family.hpp>
+#include <slipmode/studies/result_file.hpp>
 #include <slipmode/studies/run_options.hpp>
 
 #include <string>
@@ -22,8 +23,12 @@ struct ExponentSweepOptions {
   results::Journal* journal = nullptr;       ///< keeps finished values and gives back earlier ones
 };
 
+/// A value, of all models, can be computed alone; where the diagram's values follow each other, none.
+[[nodiscard]] Pieces pieces(const std::vector<double>& values, const ExponentSweepOptions& options);
+
 /// One sweep per family, in their order: each over its one key, from its start. A value that fails is recorded in its
-/// point.
+/// point;
+/// one that the journal leaves to others is in none.
 /// @param families  models side by side, the full one first
 /// @throws Interrupted  when the stop flag was set
 [[nodiscard]] std::vector<ExponentSweep> exponent_sweeps(const std::vector<Family>& families,

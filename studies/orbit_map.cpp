@@ -19,7 +19,7 @@ StartOf start_of(const Family& family, const std::string& kind) {
 }
 
 orbits::OrbitMap map_from(const Family& family, const orbits::MapGrid& grid, const std::string& start,
-                          const OrbitMapOptions& options, const RunOptions& run) {
+                          const OrbitMapOptions& options, std::size_t first_piece, const RunOptions& run) {
   orbits::MapOptions map;
   map.max_order = options.max_order;
   map.max_periods = options.periods;
@@ -27,6 +27,7 @@ orbits::OrbitMap map_from(const Family& family, const orbits::MapGrid& grid, con
   if (!family.own().contacts().empty()) map.row = family.own().contacts().front().direction;
   orbits::MapSink sink;
   if (options.journal != nullptr) sink = results::map_sink(*options.journal, start);
+  sink.first_piece = first_piece;
   return orbits::orbit_map(
       [&family](double x, double y) {
         return family.at({x, y});
@@ -35,7 +36,7 @@ orbits::OrbitMap map_from(const Family& family, const orbits::MapGrid& grid, con
 }
 
 orbits::StrobeMap strobe_from(const Family& family, const std::vector<double>& values, const std::string& start,
-                              const OrbitMapOptions& options, const RunOptions& run) {
+                              const OrbitMapOptions& options, std::size_t first_piece, const RunOptions& run) {
   orbits::StrobeOptions strobe{.periods = options.periods,
                                .kept = options.kept,
                                .tolerance = options.tolerance,
@@ -49,6 +50,7 @@ orbits::StrobeMap strobe_from(const Family& family, const std::vector<double>& v
   }
   orbits::StrobeSink sink;
   if (options.journal != nullptr) sink = results::strobe_sink(*options.journal, start);
+  sink.first_piece = first_piece;
   return orbits::strobe_map(family.systems(), start_of(family, start), values, strobe,
                             run.parallel("map from " + start), sink);
 }
@@ -76,6 +78,15 @@ void check(const Family& family, const OrbitMapOptions& options) {
   }
 }
 
+Pieces pieces(const std::vector<std::vector<double>>& values, const OrbitMapOptions& options) {
+  const SweepMode mode = options.follow ? SweepMode::kFollow : SweepMode::kIndependent;
+  return {.count = options.starts.size() * sweep_pieces(values.back().size(), mode, 1),
+          .what = options.follow       ? "chains of values, each of which starts where the one before it ended (more "
+                                         "without --follow)"
+                  : values.size() == 2 ? "rows"
+                                       : "values"};
+}
+
 OrbitMapStudy orbit_map(const Family& family, const std::vector<std::vector<double>>& values,
                         const OrbitMapOptions& options, const RunOptions& run) {
   check(family, options);
@@ -85,12 +96,14 @@ OrbitMapStudy orbit_map(const Family& family, const std::vector<std::vector<doub
   }
   OrbitMapStudy study;
   if (values.size() == 2) study.grid = {.x = values[0], .y = values[1]};
-  for (const std::string& start : options.starts) {
+  const std::size_t of_start = pieces(values, options).count / options.starts.size();
+  for (std::size_t k = 0; k < options.starts.size(); ++k) {
+    const std::string& start = options.starts[k];
     if (values.size() == 2) {
-      study.maps.push_back({start, map_from(family, study.grid, start, options, run)});
+      study.maps.push_back({start, map_from(family, study.grid, start, options, k * of_start, run)});
       study.interrupted = study.maps.back().map.interrupted;
     } else {
-      orbits::StrobeMap map = strobe_from(family, values.front(), start, options, run);
+      orbits::StrobeMap map = strobe_from(family, values.front(), start, options, k * of_start, run);
       study.interrupted = map.interrupted;
       study.strobes.push_back({start, std::move(map.points)});
     }

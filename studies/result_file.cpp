@@ -1,26 +1,119 @@
 #include <slipmode/studies/result_file.hpp>
 
+#include <slipmode/core/errors.hpp>
+#include <slipmode/dynamics/kernels/kernels.hpp>
 #include <slipmode/results/provenance.hpp>
 
 #include <fmt/format.h>
 #include <fstream>
 #include <iterator>
+#include <ranges>
 #include <utility>
 
 namespace slipmode::studies {
 
+namespace {
+
+/// "0.21", or the name of what has no number.
+std::string name_of(const results::JournalRecord& value) {
+  if (!value.note.empty()) return value.note;
+  return fmt::format("{} {:.10g}", value.table.substr(0, value.table.rfind('-')), value.values.front());
+}
+
+/// Kernels with fused multiply-add give the same bytes among themselves, others other ones.
+std::string rounding() { return std::string(dynamics::kernels::kernels().name) == "generic" ? "generic" : "fused"; }
+
+/// Before anything is written.
+std::optional<results::Shard> checked(const std::optional<results::Shard>& shard, const Pieces& pieces,
+                                      const std::filesystem::path& path) {
+  if (shard && std::filesystem::exists(path)) (void)results::Journal::read(path);  // no other file is replaced
+  if (!shard || shard->count <= pieces.count) return shard;
+  throw InvalidInput(fmt::format("--shard {}: expected at most {} shards, the number of {}",
+                                 results::to_string(*shard), pieces.count, pieces.what));
+}
+
+std::vector<results::JournalRecord> all_records(const std::vector<results::Part>& parts) {
+  std::vector<results::JournalRecord> all;
+  for (const results::Part& part : parts) all.insert(all.end(), part.records.begin(), part.records.end());
+  return all;
+}
+
+}  // namespace
+
 ResultFile::ResultFile(std::filesystem::path path, scene::Scene scene, results::FileKind kind, std::string command,
-                       const std::string& identity)
+                       const std::string& identity, const Division& division, const Pieces& pieces)
     : path_(std::move(path)),
       scene_(std::move(scene)),
       kind_(kind),
       command_(std::move(command)),
-      journal_(results::Journal::path_for(path_),
-               results::fingerprint(fmt::format("{}\n{}\n{}\n{}", results::version(), command_, identity,
-                                                scene::scene_to_toml(scene_)))),
-      resumed_(journal_.records().size()) {}
+      fingerprint_(results::fingerprint(
+          fmt::format("{}\n{}\n{}\n{}", results::version(), command_, identity, scene::scene_to_toml(scene_)))),
+      shard_(checked(division.shard, pieces, path_)),
+      journal_(division.joined.empty()
+                   ? results::Journal(results::Journal::path_for(path_),
+                                      shard_ ? results::shard_fingerprint(fingerprint_, *shard_) : fingerprint_)
+                   : results::Journal(all_records(division.joined))) {
+  if (shard_) begin_part(division.words);
+  if (!division.joined.empty()) join(division.joined);
+  resumed_ = finished();
+}
+
+void ResultFile::begin_part(const std::vector<std::string>& words) {
+  journal_.set_leave([shard = *shard_](std::size_t piece, const auto&) { return !shard.has(piece); });
+  if (!journal_.records().empty()) return;
+  if (std::filesystem::exists(path_)) {  // the same part, computed before
+    const results::JournalText whole = results::Journal::read(path_);
+    if (!whole.damaged && whole.fingerprint == results::shard_fingerprint(fingerprint_, *shard_)) {
+      for (const results::JournalRecord& record : whole.records) journal_.append(record);
+    }
+  }
+  if (!journal_.records().empty()) return;
+  journal_.append(results::to_record({.shard = *shard_,
+                                      .version = results::version(),
+                                      .rounding = rounding(),
+                                      .command = command_,
+                                      .words = words,
+                                      .scene = scene_.source}));
+}
+
+void ResultFile::join(const std::vector<results::Part>& parts) {
+  lacks_.resize(parts.size());
+  for (const results::Part& part : parts) {
+    if (part.fingerprint != fingerprint_) {
+      throw InvalidInput(
+          fmt::format("{}: the files that '{}' reads are not those it was computed with; give them back, or compute "
+                      "the parts anew",
+                      part.path.string(), command_));
+    }
+    lacks_[part.head.shard.number - 1] = {part.path.string(), results::command_line(part), {}};
+  }
+  journal_.set_leave([this](std::size_t piece, const results::JournalRecord& value) {
+    lacks_[piece % lacks_.size()].values.push_back(value);
+    return true;
+  });
+}
+
+void ResultFile::require_all() const {
+  constexpr std::size_t kNamed = 8;
+  std::string text;
+  for (const Lack& part : lacks_) {
+    if (part.values.empty()) continue;
+    std::string names;
+    for (const auto& value : part.values | std::views::take(kNamed))
+      names += (names.empty() ? "" : ", ") + name_of(value);
+    if (part.values.size() > kNamed) names += ", ...";
+    text += fmt::format("{}: unfinished, {} values are missing ({}); finish it with\n  {}\n", part.path,
+                        part.values.size(), names, part.command);
+  }
+  if (!text.empty()) throw InvalidInput(text.substr(0, text.size() - 1));
+}
 
 void ResultFile::finish(const std::function<void(results::StoreWriter&)>& write) {
+  if (shard_) {
+    journal_.publish(path_);
+    return;
+  }
+  require_all();
   results::StoreWriter writer(path_, kind_, scene_.units);
   results::save(writer, results::provenance_of(scene_, command_));
   write(writer);

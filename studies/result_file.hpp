@@ -2,41 +2,73 @@
 
 #include <slipmode/pod/basis.hpp>
 #include <slipmode/results/journal.hpp>
+#include <slipmode/results/part.hpp>
 #include <slipmode/results/store.hpp>
 #include <slipmode/scene/scene.hpp>
 
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace slipmode::studies {
 
+/// What of a study can be computed alone: the most shards it can be divided among.
+struct Pieces {
+  std::size_t count = 0;
+  std::string what;  ///< "values", …; where there are few, also how there are more
+};
+
+/// How a study is divided among processes; by default not at all.
+struct Division {
+  std::optional<results::Shard> shard;  ///< this process computes only this share, and leaves a part
+  std::vector<results::Part> joined;    ///< this process computes nothing that the parts of others should hold
+  std::vector<std::string> words;       ///< of the command line, for the head of a part
+};
+
 /// A result file in the making. Values that a long study finishes are kept in a journal beside it until the file is
-/// whole; the same study, asked again after an interruption, goes on from there.
+/// whole; the same study, asked again after an interruption, goes on from there. A shard's file is a part: its journal,
+/// complete. Joined parts stand in for the journal of a study whose values are all there.
 class ResultFile {
  public:
   /// @param command   what was asked, for provenance: with the scene, the version and `identity` it decides whether a
   ///                  journal found beside the file belongs to the same study
   /// @param identity  of what else decides values: the models of files, see identity_of
-  /// @throws InvalidInput  as results::Journal
+  /// @throws InvalidInput  as results::Journal; for more shards than pieces; for parts of another study
   ResultFile(std::filesystem::path path, scene::Scene scene, results::FileKind kind, std::string command,
-             const std::string& identity = "");
+             const std::string& identity = "", const Division& division = {}, const Pieces& pieces = {});
 
   [[nodiscard]] results::Journal& journal() { return journal_; }
   /// Values that were found finished.
   [[nodiscard]] std::size_t resumed() const { return resumed_; }
+  /// Values that are finished by now.
+  [[nodiscard]] std::size_t finished() const { return journal_.records().size() - (shard_ ? 1 : 0); }
 
-  /// Writes provenance and what `write` adds under a temporary name, renames it and drops the journal.
+  /// Writes provenance and what `write` adds under a temporary name, renames it and drops the journal. A shard's
+  /// journal becomes the part instead.
+  /// @throws InvalidInput  when values are missing in the parts: says which, and what finishes them
   void finish(const std::function<void(results::StoreWriter&)>& write);
 
  private:
+  void begin_part(const std::vector<std::string>& words);
+  void join(const std::vector<results::Part>& parts);
+  void require_all() const;
+
   std::filesystem::path path_;
   scene::Scene scene_;
   results::FileKind kind_;
-  std::string command_;
+  std::string command_, fingerprint_;
+  std::optional<results::Shard> shard_;
   results::Journal journal_;
-  std::size_t resumed_;
+  std::size_t resumed_ = 0;
+  /// Of joined parts: what each lacks, and the command that finishes it.
+  struct Lack {
+    std::string path, command;
+    std::vector<results::JournalRecord> values;
+  };
+  std::vector<Lack> lacks_;  ///< by shard
 };
 
 /// Short names of a file's bytes, and of a basis to the last bit.

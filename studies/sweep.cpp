@@ -33,6 +33,7 @@ void sweep_shaken(const Family& family, const SweepOptions& options, const RunOp
   const auto pass = [&](const std::vector<double>& values, int tag) {
     if (out.interrupted) return std::vector<diagnostics::DrivenPoint>();
     driven.model = tag;
+    driven.sink.first_piece = tag == 1 && options.both ? sweep_pieces(values.size(), driven.mode, driven.segments) : 0;
     diagnostics::DrivenSweep one = diagnostics::driven_sweep(family.driven_model(), values, family.start(), driven);
     out.interrupted = one.interrupted;
     return std::move(one.points);
@@ -52,6 +53,14 @@ void check(const scene::Scene& scene, const SweepOptions& options) {
   if (options.both && !options.follow) {
     throw InvalidInput("--both: without --follow every value starts alike, and up and down are the same; add --follow");
   }
+}
+
+Pieces pieces(const std::vector<double>& values, const SweepOptions& options) {
+  const std::size_t of_pass = sweep_pieces(values.size(), mode_of(options), options.segments);
+  return {.count = options.both ? 2 * of_pass : of_pass,
+          .what = options.follow ? "chains of values, each of which starts where the one before it ended (more with "
+                                   "--segments, or without --follow)"
+                                 : "values"};
 }
 
 Sweep sweep(const Family& family, const std::vector<double>& values, const SweepOptions& options,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <slipmode/studies/family.hpp>
+#include <slipmode/studies/result_file.hpp>
 #include <slipmode/studies/run_options.hpp>
 
 #include <cstddef>
@@ -29,6 +30,9 @@ struct Sweep {
 
 /// @throws InvalidInput  for a scene with a force; for options that the scene's drive does not have
 void check(const scene::Scene& scene, const SweepOptions& options);
+
+/// A sweep that follows is divided at its chains; up and down are two.
+[[nodiscard]] Pieces pieces(const std::vector<double>& values, const SweepOptions& options);
 
 /// Sweeps a family over its one key from its scene's start, with the times of [validation].
 /// @throws InvalidInput  as check

@@ -47,7 +47,9 @@ class Work {
 
   Study run(const std::vector<Variant>& variants) {
     run_reference();
-    measure(variants);
+    const std::vector<char> left = left_of(variants);
+    measure(variants, left);
+    if (std::ranges::find(left, 1) != left.end()) return std::move(out_);
     if (options_.more) measure(options_.more(out_.rows));
     take_times();
     return std::move(out_);
@@ -71,12 +73,24 @@ class Work {
     out_.reference.noise = scatter_ = motion_scatter(motions_);
   }
 
-  void measure(const std::vector<Variant>& variants) {
+  /// By variant: 1 where another process measures it.
+  [[nodiscard]] std::vector<char> left_of(const std::vector<Variant>& variants) const {
+    std::vector<char> left(variants.size(), 0);
+    if (!options_.leave) return left;
+    for (std::size_t i = 0; i < variants.size(); ++i) {
+      const bool known = options_.recall && options_.recall(variants[i].name);
+      left[i] = !known && options_.leave(i, variants[i].name) ? 1 : 0;
+    }
+    return left;
+  }
+
+  void measure(const std::vector<Variant>& variants, const std::vector<char>& left = {}) {
     const std::size_t first = out_.rows.size();
     for (const Variant& variant : variants) {
       out_.rows.push_back({.variant = variant, .basis_seconds = basis_seconds(variant)});
     }
     rethrow_first(parallel_for(variants.size(), options_.parallel, [&](std::size_t i) {
+      if (!left.empty() && left[i] != 0) return;
       Row& row = out_.rows[first + i];
       const Finished found = finished(row.variant);
       row.error = found.error;

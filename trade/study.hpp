@@ -45,6 +45,9 @@ struct StudyOptions {
   /// Times are always taken anew: those of another process compare with nothing.
   std::function<std::optional<Finished>(const std::string& name)> recall = {};
   std::function<void(const std::string& name, const Finished&)> store = {};
+  /// True for one of the first configurations that is left to another process: then nothing more is measured than the
+  /// other ones' errors, and rows left have none. Empty function: none is left.
+  std::function<bool(std::size_t number, const std::string& name)> leave = {};
 };
 
 struct Study {

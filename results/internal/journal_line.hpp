@@ -93,6 +93,7 @@ class Line {
 
 /// A sink that keeps finished values in a journal, one table per model, and gives back those it already holds; other
 /// tables are left alone. The journal must outlive it.
+/// What the journal leaves to other processes, the sink leaves.
 /// @param table  "sweep", …: what the values are of
 /// @param list   void(Line&, SweptValue<Result>&): what a record holds after the parameter. The record's note is the
 ///               failure
@@ -121,6 +122,11 @@ SinkOf<Result> table_sink(Journal& journal, const std::string& table, const List
                 list(line, value);
                 journal.append({fmt::format("{}-{}", table, value.model), static_cast<std::int64_t>(value.index),
                                 line.written(), std::move(value.failure)});
+              },
+          .leave =
+              [&journal, table](std::size_t piece, std::size_t index, int model, double parameter) {
+                return journal.leaves(
+                    piece, {fmt::format("{}-{}", table, model), static_cast<std::int64_t>(index), {parameter}, ""});
               }};
 }
 

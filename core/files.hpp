@@ -1,0 +1,12 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace slipmode {
+
+/// Writes a text under a temporary name and renames it.
+/// @throws InvalidInput  when it cannot be written
+void write_renamed(const std::filesystem::path& path, const std::string& text);
+
+}  // namespace slipmode
