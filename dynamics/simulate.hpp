@@ -139,7 +139,7 @@ struct TangentResult {
 /// Not for several threads at once; copies of the system are.
 class TangentFlow {
  public:
-  /// @throws InvalidInput  as `simulate`, and for contacts with bristles
+  /// @throws InvalidInput  as `simulate`
   explicit TangentFlow(const HybridSystem& system, const FlowOptions& options = {.audit = false});
   TangentFlow(TangentFlow&&) noexcept;
   TangentFlow& operator=(TangentFlow&&) noexcept;

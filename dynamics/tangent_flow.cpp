@@ -16,60 +16,41 @@ struct TangentFlow::Implementation {
   std::unique_ptr<ClosedFormFlow> closed_form = {};  ///< from the first run on
   Eigen::MatrixXd enter = {}, leave = {};            ///< (q, q̇, internal) to its tangents' coordinates and back
 
-  TangentResult run(ClosedFormFlow& flow, const ModalModel& m, double end, const Eigen::MatrixXd& directions);
-  TangentResult run(CollocationFlow& flow, const ModalModel& m, double end, const Eigen::MatrixXd& directions) const;
+  void set_coordinates(const ModalModel& m);
   template <class AnyFlow>
-  void advance_to(AnyFlow& flow, const ModalModel& m, double end, TangentResult& out) const;
+  TangentResult run(AnyFlow& flow, const ModalModel& m, double end, const Eigen::MatrixXd& directions);
 };
 
+void TangentFlow::Implementation::set_coordinates(const ModalModel& m) {
+  // The closed-form flow's tangents are without padding.
+  const Eigen::Index n = m.n, np = m.np, pairs = method == FlowMethod::kClosedForm ? n : np;
+  const Eigen::Index own = system.internal_size();
+  enter = Eigen::MatrixXd::Zero(2 * pairs + own, 2 * n + own);
+  leave = Eigen::MatrixXd::Zero(2 * n + own, 2 * pairs + own);
+  enter.topLeftCorner(2 * pairs, 2 * n) << m.from_q.topRows(pairs), m.from_v.topRows(pairs),
+      m.from_q.middleRows(np, pairs), m.from_v.middleRows(np, pairs);
+  leave.topLeftCorner(2 * n, 2 * pairs) << m.to_q.leftCols(pairs), m.to_q.middleCols(np, pairs), m.to_v.leftCols(pairs),
+      m.to_v.middleCols(np, pairs);
+  enter.bottomRightCorner(own, own) = leave.bottomRightCorner(own, own) = Eigen::MatrixXd::Identity(own, own);
+}
+
 template <class AnyFlow>
-void TangentFlow::Implementation::advance_to(AnyFlow& flow, const ModalModel& m, double end, TangentResult& out) const {
+TangentResult TangentFlow::Implementation::run(AnyFlow& flow, const ModalModel& m, double end,
+                                               const Eigen::MatrixXd& directions) {
+  if (enter.size() == 0) set_coordinates(m);
+  flow.set_tangents(enter * directions);
+  TangentResult out;
   while (flow.point().time < end)
     if (advance_flow(flow, m, end)) out.events.insert(out.events.end(), flow.events().begin(), flow.events().end());
   out.end = end_state(system, m, flow.point());
-}
-
-TangentResult TangentFlow::Implementation::run(ClosedFormFlow& flow, const ModalModel& m, double end,
-                                               const Eigen::MatrixXd& directions) {
-  if (enter.size() == 0) {
-    const Eigen::Index n = m.n, np = m.np, own = system.internal_size();
-    enter = leave = Eigen::MatrixXd::Identity(2 * n + own, 2 * n + own);
-    enter.topLeftCorner(2 * n, 2 * n) << m.from_q.topRows(n), m.from_v.topRows(n), m.from_q.middleRows(np, n),
-        m.from_v.middleRows(np, n);
-    leave.topLeftCorner(2 * n, 2 * n) << m.to_q.leftCols(n), m.to_q.middleCols(np, n), m.to_v.leftCols(n),
-        m.to_v.middleCols(np, n);
-  }
-  flow.set_tangents(enter * directions);
-  TangentResult out;
-  advance_to(flow, m, end, out);
   out.monodromy = leave * flow.tangents();
   out.rate = leave * flow.point_rate();
   return out;
 }
 
-TangentResult TangentFlow::Implementation::run(CollocationFlow& flow, const ModalModel& m, double end,
-                                               const Eigen::MatrixXd& directions) const {
-  Eigen::MatrixXd basis(2 * m.np, 2 * m.n);
-  basis << m.from_q, m.from_v;
-  flow.set_tangents(basis * directions);
-  TangentResult out;
-  advance_to(flow, m, end, out);
-  out.monodromy.resize(2 * m.n, directions.cols());
-  out.monodromy << m.to_q * flow.tangents(), m.to_v * flow.tangents();
-  const Eigen::VectorXd rate = m.rate(flow.point().x, flow.point().force);
-  out.rate.resize(2 * m.n);
-  out.rate << m.to_q * rate, m.to_v * rate;
-  return out;
-}
-
 TangentFlow::TangentFlow(const HybridSystem& system, const FlowOptions& options)
     : implementation_(
-          std::make_unique<Implementation>(Implementation{system, options, choose_method(system, options.method)})) {
-  if (implementation_->method == FlowMethod::kCollocation && system.internal_size() > 0)
-    throw InvalidInput(
-        "the tangent flow carries displacements and velocities, but a contact's law (Dahl, LuGre) has a state of its "
-        "own; use a law without one, or differences of simulated motions");
-}
+          std::make_unique<Implementation>(Implementation{system, options, choose_method(system, options.method)})) {}
 TangentFlow::TangentFlow(TangentFlow&&) noexcept = default;
 TangentFlow& TangentFlow::operator=(TangentFlow&&) noexcept = default;
 TangentFlow::~TangentFlow() = default;

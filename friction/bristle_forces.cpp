@@ -11,11 +11,14 @@ BristleForces::Decay BristleForces::decay(double direction, double s) const {
   return {scale * s, scale * (1.0 - s * g_slope / g)};
 }
 
-double BristleForces::force_rate(double direction, double s, double z, double s_rate) const {
-  // d²z/dt² = (1 − κ′z) ṡ − κ ż
+BristleForces::Slopes BristleForces::slopes(double direction, double s, double z) const {
   const Decay at = decay(direction, s);
-  const double z_rate = s - at.value * z;
-  return (stiffness - damping * at.value) * z_rate + (damping * (1.0 - at.slope * z) + viscous) * s_rate;
+  return {stiffness - damping * at.value, damping * (1.0 - at.slope * z) + viscous};
+}
+
+double BristleForces::force_rate(double direction, double s, double z, double s_rate) const {
+  const Slopes by = slopes(direction, s, z);
+  return by.by_deflection * rate(direction, s, z) + by.by_speed * s_rate;
 }
 
 }  // namespace slipmode::friction

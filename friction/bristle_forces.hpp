@@ -27,6 +27,11 @@ struct BristleForces {
   [[nodiscard]] double force(double direction, double s, double z) const {
     return stiffness * z + damping * rate(direction, s, z) + viscous * s;
   }
+  /// ∂λ/∂z [N/m] and ∂λ/∂s [N s/m].
+  struct Slopes {
+    double by_deflection, by_speed;
+  };
+  [[nodiscard]] Slopes slopes(double direction, double s, double z) const;
   /// dλ/dt [N/s], for ds/dt [m/s²]
   [[nodiscard]] double force_rate(double direction, double s, double z, double s_rate) const;
 };

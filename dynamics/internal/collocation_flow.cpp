@@ -32,11 +32,16 @@ int halvings(double excess) {
   return std::clamp(1 + exponent / order, 1, 4);
 }
 
-/// Level of the largest step over which the polynomial of degree 7 through the nodes follows the drive's velocity to
-/// within `tolerance` of its amplitude: |V − p| ≤ (ωh/2)⁸ / (2⁷ 8!).
+/// The largest ωh for which the polynomial of degree 7 through a step's nodes follows e^{iωt} to within `tolerance`:
+/// |V − p| ≤ (ωh/2)⁸ / (2⁷ 8!).
+double largest_phase(double tolerance) {
+  return std::min(kLargestDrivePhase, 2.0 * std::pow(tolerance * 128.0 * 40320.0, 1.0 / kNodes));
+}
+
+/// Level of the largest step that follows the drive's velocity.
 int coarsest_level(const friction::Drive& drive, const StepTables& tables, double tolerance) {
   if (drive.shaker() == nullptr) return 0;
-  const double phase = std::min(kLargestDrivePhase, 2.0 * std::pow(tolerance * 128.0 * 40320.0, 1.0 / kNodes));
+  const double phase = largest_phase(tolerance);
   int level = 0;
   while (level + 1 < StepTables::kLevels && tables.step(level) * drive.shaker()->omega() > phase) ++level;
   return level;
@@ -139,6 +144,10 @@ bool CollocationFlow::step(double t_limit) {
     tolerance = options_.tolerance * (tau < h ? 1.0 : 1.0 / kEndNodeGain);
     if (!(error <= tolerance) && !smallest) {
       level += halvings(error / tolerance);
+      continue;
+    }
+    if (any_bristle_ && tangents_.size() > 0 && !smallest && h * tangent_rate() > largest_phase(options_.tolerance)) {
+      ++level;
       continue;
     }
     if (too_early(guard) && !smallest) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <slipmode/dynamics/bristle.hpp>
 #include <slipmode/dynamics/event_resolver.hpp>
 #include <slipmode/dynamics/step_tables.hpp>
 #include "dynamics/internal/bernstein.hpp"
@@ -36,11 +37,12 @@ class CollocationFlow {
   /// State and contact forces at a time within the last step.
   void evaluate(double t, Eigen::VectorXd& out_x, Eigen::VectorXd& out_force);
 
-  /// Carries these tangent vectors along, with saltation at events [2np x k].
+  /// Carries these tangent vectors along, with saltation at events: of the state, then of the bristles [2np + nb x k].
   /// A direction that would break a stick is projected along the contact's force: the friction impulse of re-sticking.
-  /// @throws InvalidInput  with a bristle law: its state is not part of the tangent space
   void set_tangents(Eigen::MatrixXd tangents);
   [[nodiscard]] const Eigen::MatrixXd& tangents() const { return tangents_; }
+  /// d(state, bristles)/dt at the point [2np + nb].
+  [[nodiscard]] Eigen::VectorXd point_rate() const;
 
  private:
   /// Newton's next change is about the square of this one (in units of the law's velocity scale), and is left out when
@@ -153,7 +155,13 @@ class CollocationFlow {
   };
   /// By the last three, so that one which happens to vanish does not say that all that follow do.
   [[nodiscard]] Ending ending(const double* values) const;
+  /// The fastest rate at which tangents may change in the solved step, a bristle's on the contact's own mass included:
+  /// where nothing moves, the motion's error says nothing of them [1/s].
+  [[nodiscard]] double tangent_rate() const;
   void push_tangents(int level, double tau);
+  /// @param speeds  tangents of the contacts' velocities at the nodes [8nc x k]
+  void push_bristle_tangents(const std::vector<BristleVariation>& bristles, const Eigen::MatrixXd& speeds,
+                             double share);
   void salt_tangents(const Eigen::VectorXd& force_before, int contact);
   [[nodiscard]] double force_slope(int c, ContactMode mode, double velocity, double drive_velocity) const;
 

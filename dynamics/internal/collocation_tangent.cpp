@@ -1,14 +1,20 @@
 #include "dynamics/internal/collocation_flow.hpp"
 
 #include <slipmode/core/decompositions.hpp>
+#include <slipmode/dynamics/bristle.hpp>
 
+#include <algorithm>
 #include <cmath>
+
+// Tangents of the state come first, those of the bristles after them: docs/theory/bristle-laws.md.
 
 namespace slipmode::dynamics {
 
 double CollocationFlow::force_slope(int c, ContactMode mode, double velocity, double drive_velocity) const {
-  const ContactForces& law = laws()[static_cast<std::size_t>(c)];
-  return mode == ContactMode::kStick ? 0.0 : -law.slope(sign_of(mode), drive_velocity - velocity);
+  const auto i = static_cast<std::size_t>(c);
+  const double s = drive_velocity - velocity;
+  if (bristled(c)) return -laws()[i].bristle.slopes(sign_of(mode), s, point_.internal(bristle_at_[i])).by_speed;
+  return mode == ContactMode::kStick ? 0.0 : -laws()[i].slope(sign_of(mode), s);
 }
 
 void CollocationFlow::set_tangents(Eigen::MatrixXd tangents) {
@@ -19,56 +25,125 @@ void CollocationFlow::set_tangents(Eigen::MatrixXd tangents) {
   if (stuck.empty()) return;
   const Eigen::MatrixXd rows = model_.velocity_row(Eigen::all, stuck).transpose();
   const Eigen::MatrixXd mobility = model_.mobility(stuck, stuck);
-  tangents_ -= Eigen::MatrixXd(model_.input(Eigen::all, stuck)) * mobility.ldlt().solve(rows * tangents_);
+  auto states = tangents_.topRows(2 * model_.np);
+  states -= Eigen::MatrixXd(model_.input(Eigen::all, stuck)) * mobility.ldlt().solve(rows * states);
+}
+
+Eigen::VectorXd CollocationFlow::point_rate() const {
+  Eigen::VectorXd rate(point_.x.size() + point_.internal.size());
+  rate.head(point_.x.size()) = model_.rate(point_.x, point_.force);
+  for (int c = 0; c < nc_; ++c) {
+    if (!bristled(c)) continue;
+    const auto i = static_cast<std::size_t>(c);
+    const double s = drive().velocity(point_.time) - resolver_.contact_velocity(c, point_.x.data());
+    rate(point_.x.size() + bristle_at_[i]) =
+        laws()[i].bristle.rate(sign_of(point_.modes[i]), s, point_.internal(bristle_at_[i]));
+  }
+  return rate;
+}
+
+double CollocationFlow::tangent_rate() const {
+  // With w̄ = wᵀM⁻¹w: δs′ = −w̄ (λ_s δs + λ_z δz), δz′ = (1 − κ′z) δs − κ δz at each node.
+  double fastest = 0.0;
+  for (int c = 0; c < nc_; ++c) {
+    if (!bristled(c)) continue;
+    const auto i = static_cast<std::size_t>(c);
+    const friction::BristleForces& law = laws()[i].bristle;
+    const double sign = sign_of(point_.modes[i]), mobility = model_.mobility(c, c);
+    for (Eigen::Index j = kNodes * c; j < kNodes * (c + 1); ++j) {
+      const double s = drive_nodes_(j) - velocity_(j), z = bristle_nodes_(j);
+      const friction::BristleForces::Decay decay = law.decay(sign, s);
+      const friction::BristleForces::Slopes by = law.slopes(sign, s, z);
+      const double sum = mobility * by.by_speed + decay.value,
+                   product = mobility * (by.by_speed * decay.value + by.by_deflection * (1.0 - decay.slope * z));
+      const double apart = 0.25 * sum * sum - product;
+      fastest = std::max(fastest, apart < 0.0 ? std::sqrt(product) : std::abs(0.5 * sum) + std::sqrt(apart));
+    }
+  }
+  return std::hypot(fastest, model_.fastest);
 }
 
 void CollocationFlow::push_tangents(int level, double tau) {
-  // Linearised force equations of the step: δλ_i = slope_i δw_i in slip, δw_i = 0 in stick, δw = free δx + kernel δλ.
+  // Linearised force equations of the step: δλ_i = slope_i δw_i in slip, δw_i = 0 in stick, a bristle's also by δz at
+  // the start; δw = free δx + kernel δλ.
   const Collocation& table = tables_.collocation(level);
   const Eigen::Index size = kNodes * nc_, np = model_.np;
-  Eigen::MatrixXd jacobian(size, size), free(size, 2 * np), right(size, tangents_.cols());
+  const double h = tables_.step(level);
+  Eigen::MatrixXd jacobian(size, size), free(size, 2 * np), speeds(size, tangents_.cols());
   for (int c = 0; c < nc_; ++c) free.middleRows(kNodes * c, kNodes) = table.free.middleCols(2 * np * c, 2 * np);
-  right.noalias() = free * tangents_;
-  for (int c = 0; c < nc_; ++c)
+  speeds.noalias() = free * tangents_.topRows(2 * np);
+  Eigen::MatrixXd right = speeds;
+  std::vector<BristleVariation> bristles(any_bristle_ ? static_cast<std::size_t>(nc_) : 0);
+  for (int c = 0; c < nc_; ++c) {
+    const auto i = static_cast<std::size_t>(c);
+    if (bristled(c)) {
+      const Eigen::Index first = kNodes * c;
+      bristles[i] = vary_bristle(laws()[i].bristle, sign_of(step_modes_[i]), h,
+                                 drive_nodes_.segment<kNodes>(first) - velocity_.segment<kNodes>(first),
+                                 bristle_nodes_.segment<kNodes>(first));
+      const BristleVariation& by = bristles[i];
+      jacobian.middleRows<kNodes>(first).noalias() = by.force_by_speed * table.kernel.middleRows<kNodes>(first);
+      jacobian.block<kNodes, kNodes>(first, first) += RadauTables::Matrix8::Identity();
+      right.middleRows<kNodes>(first) = by.force_by_start * tangents_.row(2 * np + bristle_at_[i]) -
+                                        by.force_by_speed * speeds.middleRows<kNodes>(first);
+      continue;
+    }
     for (int j = 0; j < kNodes; ++j) {
       const Eigen::Index row = kNodes * c + j;
-      if (step_modes_[static_cast<std::size_t>(c)] == ContactMode::kStick) {
+      if (step_modes_[i] == ContactMode::kStick) {
         jacobian.row(row) = -table.kernel.row(row);
         continue;
       }
-      const double slope = force_slope(c, step_modes_[static_cast<std::size_t>(c)], velocity_(row), drive_nodes_(row));
+      const double slope = force_slope(c, step_modes_[i], velocity_(row), drive_nodes_(row));
       jacobian.row(row) = -slope * table.kernel.row(row);
       jacobian(row, row) += 1.0;
       right.row(row) *= slope;
     }
+  }
   const Eigen::MatrixXd forces = jacobian.partialPivLu().solve(right);
+  if (any_bristle_) push_bristle_tangents(bristles, speeds + table.kernel * forces, tau / h);
   WithinStep within(tables_, false, WithinStep::Load::kLeftOut);
   const kernels::StepArrays whole = tables_.propagator(level).arrays(false);
   Eigen::VectorXd to(2 * np);
   for (Eigen::Index k = 0; k < tangents_.cols(); ++k) {
-    if (tau < tables_.step(level)) {
+    if (tau < h) {
       within.begin(tangents_.col(k).data(), forces.col(k).data(), level);
       within.state(tau, to.data());
     } else {
       kernels_.propagate(whole, tangents_.col(k).data(), forces.col(k).data(), to.data());
     }
-    tangents_.col(k) = to;
+    tangents_.col(k).head(2 * np) = to;
+  }
+}
+
+void CollocationFlow::push_bristle_tangents(const std::vector<BristleVariation>& bristles,
+                                            const Eigen::MatrixXd& speeds, double share) {
+  for (int c = 0; c < nc_; ++c) {
+    if (!bristled(c)) continue;
+    const auto i = static_cast<std::size_t>(c);
+    auto deflection = tangents_.row(2 * model_.np + bristle_at_[i]);
+    const Eigen::Matrix<double, kNodes, Eigen::Dynamic> nodes =
+        bristles[i].z_by_start * deflection - bristles[i].z_by_speed * speeds.middleRows<kNodes>(kNodes * c);
+    for (Eigen::Index k = 0; k < deflection.size(); ++k)
+      deflection(k) = share < 1.0 ? bristle_within(deflection(k), nodes.col(k), share) : nodes(kNodes - 1, k);
   }
 }
 
 void CollocationFlow::salt_tangents(const Eigen::VectorXd& force_before, int contact) {
-  // δx⁺ = δx + (f⁺ − f⁻) (∇g δx) / ġ⁻ for the guard g that was reached; f⁺ − f⁻ = Σ b_c Δλ_c.
-  if (contact < 0) return;
+  // δx⁺ = δx + (f⁺ − f⁻) (∇g δx) / ġ⁻ for the guard g that was reached; f⁺ − f⁻ = Σ b_c Δλ_c. Neither jumps where a
+  // bristle turns, nor ż at any event.
+  if (contact < 0 || bristled(contact)) return;
+  const Eigen::Index size = 2 * model_.np;
   const Eigen::VectorXd jump = model_.input * (point_.force - force_before);
   const double a = drive_acceleration(begin_, point_.time - begin_), V = drive().velocity(point_.time);
-  Eigen::RowVectorXd gradient;
+  Eigen::RowVectorXd gradient = Eigen::RowVectorXd::Zero(tangents_.rows());
   double rate;
   if (step_modes_[static_cast<std::size_t>(contact)] != ContactMode::kStick) {
-    gradient = -model_.velocity_row.col(contact).transpose();
+    gradient.head(size) = -model_.velocity_row.col(contact).transpose();
     rate = a - (model_.acceleration_row.col(contact).dot(point_.x) + model_.load_acceleration(contact) +
                 model_.mobility.row(contact).dot(force_before));
   } else {
-    // g = ±μ_s N − λ_stick(x): λ of the sticking contacts from a = Gᵀrow x + mobility λ, the sliding ones following
+    // g = ±μ_s N − λ_stick(x, z): λ of the sticking contacts from a = Gᵀrow x + mobility λ, the sliding ones following
     // their own laws.
     std::vector<Eigen::Index> stuck;
     Eigen::Index position = 0;
@@ -77,19 +152,24 @@ void CollocationFlow::salt_tangents(const Eigen::VectorXd& force_before, int con
         if (c == contact) position = static_cast<Eigen::Index>(stuck.size());
         stuck.push_back(c);
       }
-    Eigen::MatrixXd rows = model_.acceleration_row(Eigen::all, stuck).transpose();
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(stuck.size()), tangents_.rows());
+    rows.leftCols(size) = model_.acceleration_row(Eigen::all, stuck).transpose();
     for (int d = 0; d < nc_; ++d) {
-      const double slope =
-          force_slope(d, step_modes_[static_cast<std::size_t>(d)], model_.velocity_row.col(d).dot(point_.x), V);
-      if (slope != 0.0)
-        rows += Eigen::VectorXd(model_.mobility(stuck, d)) * slope * model_.velocity_row.col(d).transpose();
+      const auto i = static_cast<std::size_t>(d);
+      const double v = model_.velocity_row.col(d).dot(point_.x), slope = force_slope(d, step_modes_[i], v, V);
+      const Eigen::VectorXd reach = model_.mobility(stuck, d);
+      if (slope != 0.0) rows.leftCols(size) += reach * slope * model_.velocity_row.col(d).transpose();
+      if (bristled(d))
+        rows.col(size + bristle_at_[i]) +=
+            reach *
+            laws()[i].bristle.slopes(sign_of(step_modes_[i]), V - v, point_.internal(bristle_at_[i])).by_deflection;
     }
     const Eigen::MatrixXd mobility = model_.mobility(stuck, stuck);
-    gradient = mobility.ldlt().solve(rows).row(position);  // −dλ/dx
+    gradient = mobility.ldlt().solve(rows).row(position);  // −dλ/d(x, z)
     const double h = tables_.step(step_level_);
     rate = -forces_.segment<kNodes>(kNodes * contact).dot(nodes_.lagrange_slope((point_.time - begin_) / h)) / h;
   }
-  tangents_ += jump * (gradient * tangents_) / rate;
+  tangents_.topRows(size) += jump * (gradient * tangents_) / rate;
 }
 
 }  // namespace slipmode::dynamics
