@@ -47,7 +47,7 @@ std::string summary(const std::vector<trade::Effect>& effects, const std::vector
   return text;
 }
 
-Json json_of(const trade::Effect& effect, const trade::EffectAdvice& advice) {
+Json effect_json(const trade::Effect& effect, const trade::EffectAdvice& advice) {
   return {{"effect", effect.name},
           {"verdict", trade::to_string(advice.verdict)},
           {"measure", trade::to_string(advice.measure)},
@@ -82,7 +82,7 @@ Report run(const Session& session, const AdviseArguments& arguments) {
   report.text = study_text(done, scene);
   for (std::size_t i = 0; i < effects.size(); ++i) {
     advice.push_back(trade::advise(effects[i], done.rows.front(), done.rows[i + 1], limit, only));
-    list.push_back(json_of(effects[i], advice.back()));
+    list.push_back(effect_json(effects[i], advice.back()));
     report.text += advice.back().sentence + '\n';
   }
   report.text += summary(effects, advice);

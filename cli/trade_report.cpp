@@ -14,7 +14,7 @@ using trade::Row;
 using trade::Study;
 
 /// Values that are not finite have no number in JSON.
-Json json_of(const Study& study, const Row& row, double duration) {
+Json row_json(const Study& study, const Row& row, double duration) {
   Json errors = Json::object(), noise = Json::object();
   for (std::size_t m = 0; m < trade::kMeasures; ++m) {
     const std::string name(trade::to_string(static_cast<Measure>(m)));
@@ -57,7 +57,7 @@ std::vector<std::string> recommendations(const Study& study, double limit) {
 
 Json to_json(const Study& study, const scene::Scene& scene) {
   Json rows = Json::array();
-  for (const Row& row : study.rows) rows.push_back(json_of(study, row, scene.time.duration));
+  for (const Row& row : study.rows) rows.push_back(row_json(study, row, scene.time.duration));
   Json fronts = Json::object();
   for (std::size_t m = 0; m < trade::kMeasures; ++m) {
     const auto measure = static_cast<Measure>(m);
@@ -65,7 +65,7 @@ Json to_json(const Study& study, const scene::Scene& scene) {
     for (const std::size_t i : trade::pareto_front(study.offers(measure))) names.push_back(study.rows[i].variant.name);
     fronts[std::string(trade::to_string(measure))] = names;
   }
-  return merged({{"reference", json_of(study, study.reference, scene.time.duration)}}, fields_json(study.schedule),
+  return merged({{"reference", row_json(study, study.reference, scene.time.duration)}}, fields_json(study.schedule),
                 Json{{"candidates", rows}, {"fronts", fronts}});
 }
 

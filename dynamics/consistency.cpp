@@ -30,10 +30,10 @@ Eigen::VectorXd free_acceleration(const Instant& now) {
 
 /// What wᵀq̈ may be off by: states and loads round by all of the motion, not by what is left at a contact.
 Eigen::VectorXd acceleration_rounding(const Instant& now, const Eigen::VectorXd& force) {
-  constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
+  constexpr double kRoundsBy = 64.0 * std::numeric_limits<double>::epsilon();
   const Eigen::Map<const Eigen::VectorXd> x(now.x, 2 * now.model.np);
   const double motion = (now.model.acceleration_row.cwiseAbs().transpose() * x.cwiseAbs()).maxCoeff();
-  return kRounding * (motion + force.lpNorm<Eigen::Infinity>() * now.model.mobility.diagonal().array());
+  return kRoundsBy * (motion + force.lpNorm<Eigen::Infinity>() * now.model.mobility.diagonal().array());
 }
 
 struct Trial {

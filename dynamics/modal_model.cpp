@@ -156,11 +156,11 @@ void separate_rigid_modes(const Eigen::VectorXd& omega, Eigen::MatrixXd& shapes,
   damping(Eigen::all, rigid) = (damping(Eigen::all, rigid) * Q).eval();
   // A solver turns a rigid-body shape towards the others by rounding of the largest ω² over theirs, most to the
   // softest.
-  constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon(), kMostTurned = 1e-9;
+  constexpr double kTurns = 16.0 * std::numeric_limits<double>::epsilon(), kMostTurned = 1e-9;
   double softest = omega.maxCoeff();
   for (const double w : omega)
     if (w > 0.0) softest = std::min(softest, w);
-  const double turned = softest > 0.0 ? kRounding * std::pow(omega.maxCoeff() / softest, 2) : 0.0;
+  const double turned = softest > 0.0 ? kTurns * std::pow(omega.maxCoeff() / softest, 2) : 0.0;
   const double nothing = std::clamp(turned, kProportionalTolerance, kMostTurned) * damping_size;
   for (const Eigen::Index i : rigid)
     if (damping.row(i).norm() <= nothing && damping.col(i).norm() <= nothing) {

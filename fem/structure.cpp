@@ -117,12 +117,12 @@ void check_mass_and_stiffness(const Matrix& M, const Matrix& K) {
 
 // Whether C is symmetric; if it is not, its symmetric part must not feed energy in.
 bool check_damping(const Matrix& C, Eigen::Index n) {
-  constexpr double kRounding = 1e-12;  // what a projection may leave of an eigenvalue 0, of the largest entry
+  constexpr double kLeft = 1e-12;  // what a projection may leave of an eigenvalue 0, of the largest entry
   const double scale = check_entries(C, "C", n);
   if (std::visit([](const auto& m) { return asymmetry(m); }, C) <= kSymmetryTolerance * scale) return true;
   const SparseMatrix sparse = to_sparse(C);
   SparseMatrix lifted = 0.5 * (sparse + SparseMatrix(sparse.transpose()));
-  for (Eigen::Index i = 0; i < n; ++i) lifted.coeffRef(i, i) += kRounding * scale;
+  for (Eigen::Index i = 0; i < n; ++i) lifted.coeffRef(i, i) += kLeft * scale;
   if (!is_positive_definite(lifted)) {
     throw InvalidInput(
         "structure: C is not symmetric and its symmetric part is not positive semi-definite: some motion would gain "

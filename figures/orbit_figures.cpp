@@ -141,7 +141,7 @@ Figure response(const StoreReader& store) {
 
 /// |multipliers| over the key, the unit circle's modulus as a line.
 Figure branch_multipliers(const StoreReader& store) {
-  constexpr double kLeast = 1e-4;  // smaller ones are of no account for stability, and would stretch the axis
+  constexpr double kOfAccount = 1e-4;  // smaller ones are of no account for stability, and would stretch the axis
   constexpr std::size_t kMost = 6;
   const scene::Scene scene = results::load_scene_of(store);
   std::vector<Panel> panels;
@@ -153,7 +153,7 @@ Figure branch_multipliers(const StoreReader& store) {
     panel.series.push_back(straight(parameter.minCoeff(), 1.0, parameter.maxCoeff(), 1.0, Series::Look::kDashed));
     for (Eigen::Index m = 0; m < branch.modulus.cols(); ++m) {
       const Eigen::ArrayXd own = branch.modulus.col(m);
-      const Eigen::VectorXd shown = (own < kLeast).select(std::nan(""), own);
+      const Eigen::VectorXd shown = (own < kOfAccount).select(std::nan(""), own);
       panel.series.push_back({"", parameter, shown, Series::Look::kLine, kFullColour});
     }
     panels.push_back(std::move(panel));

@@ -73,7 +73,7 @@ class ContactView {
 };
 
 /// The attractor, then its orbits with the largest share in the order of their periods.
-Figure portraits(const StoreReader& store) {
+Figure orbit_portraits(const StoreReader& store) {
   constexpr std::size_t kShown = 11;
   const std::string model = models_of(store).front();
   const ContactView view(store);
@@ -158,7 +158,7 @@ Figure orbit_spectrum(const StoreReader& store) {
 }  // namespace
 
 std::vector<FileFigure> skeleton_figures_of(const StoreReader& store) {
-  std::vector<FileFigure> out{{"orbits", "the attractor and its orbits", portraits},
+  std::vector<FileFigure> out{{"orbits", "the attractor and its orbits", orbit_portraits},
                               {"spectrum", "growth rates and shares against period", orbit_spectrum}};
   if (store.has(group_of("comparison"))) {
     out.insert(out.begin(), {"comparison", "both attractors and orbits that both have", comparison});

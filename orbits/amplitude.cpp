@@ -11,8 +11,8 @@
 namespace slipmode::orbits {
 namespace {
 
-constexpr int kIntervals = 4;               // of a panel
-constexpr int kTerms = 2 * kIntervals + 2;  // values and slopes at its nodes
+constexpr int kIntervals = 4;                    // of a panel
+constexpr int kConditions = 2 * kIntervals + 2;  // values and slopes at its nodes
 constexpr int kGauss = 10;
 constexpr int kMaxPanels = 1 << 14;
 
@@ -24,21 +24,21 @@ constexpr std::array<double, 5> kGaussWeight{0.2955242247147529, 0.2692667193099
 
 /// Powers 1, s, s² … and their derivatives.
 Eigen::RowVectorXd powers(double s) {
-  Eigen::RowVectorXd row(kTerms);
+  Eigen::RowVectorXd row(kConditions);
   double power = 1.0;
-  for (int k = 0; k < kTerms; ++k, power *= s) row[k] = power;
+  for (int k = 0; k < kConditions; ++k, power *= s) row[k] = power;
   return row;
 }
 Eigen::RowVectorXd slopes(double s) {
-  Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(kTerms);
+  Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(kConditions);
   double power = 1.0;
-  for (int k = 1; k < kTerms; ++k, power *= s) row[k] = k * power;
+  for (int k = 1; k < kConditions; ++k, power *= s) row[k] = k * power;
   return row;
 }
 
 /// Values and slopes at the five nodes of [−1, 1] → coefficients of the polynomial through them.
 Eigen::MatrixXd hermite_basis() {
-  Eigen::MatrixXd conditions(kTerms, kTerms);
+  Eigen::MatrixXd conditions(kConditions, kConditions);
   for (int j = 0; j <= kIntervals; ++j) {
     const double s = -1.0 + 2.0 * j / kIntervals;
     conditions.row(j) = powers(s);
@@ -105,7 +105,7 @@ class Measure {
     const Eigen::VectorXd y = run.q.transpose() * row_, slope = run.v.transpose() * row_;
     const double half = 0.5 * length / panels;
     for (int p = 0; p < panels; ++p) {
-      Eigen::VectorXd given(kTerms);
+      Eigen::VectorXd given(kConditions);
       given << y.segment<kIntervals + 1>(kIntervals * p).array() - sums.shift,
           half * slope.segment<kIntervals + 1>(kIntervals * p);
       add_panel(from.time + half * (2 * p + 1), half, given, sums);
@@ -138,7 +138,7 @@ class Measure {
   const PeriodicOrbit& orbit_;
   const Eigen::VectorXd& row_;
   Eigen::MatrixXd basis_;
-  Eigen::Matrix<double, kGauss, kTerms> at_gauss_;
+  Eigen::Matrix<double, kGauss, kConditions> at_gauss_;
 };
 
 Amplitude from_sums(const Sums& sums) {

@@ -47,7 +47,7 @@ Eigen::MatrixXd adapted_metric(const Eigen::MatrixXd& monodromy, const Eigen::Ve
 
 Trap measure_trap(const dynamics::HybridSystem& system, const dynamics::State& centre, double duration,
                   const Eigen::VectorXd& scale, const dynamics::FlowOptions& flow) {
-  constexpr int kRadii = 5, kHalvings = 24;
+  constexpr int kRadii = 5, kShrinkings = 24;
   constexpr double kSlowest = 1.0 - 1e-6;
   Trap trap{.centre = stacked(centre), .modes = centre.modes};
   const Eigen::MatrixXd monodromy = dynamics::tangent_flow(system, centre, duration, flow).monodromy;
@@ -71,7 +71,7 @@ Trap measure_trap(const dynamics::HybridSystem& system, const dynamics::State& c
     return true;
   };
   int passed = 0;
-  for (int halving = 0; halving < kHalvings; ++halving) {
+  for (int halving = 0; halving < kShrinkings; ++halving) {
     passed = draws_in(std::ldexp(1.0, -halving)) ? passed + 1 : 0;
     if (passed < kRadii) continue;
     trap.radius = 0.5 * std::ldexp(1.0, kRadii - 1 - halving);

@@ -53,6 +53,9 @@ void check_series(const Series& series, Eigen::Index least, const std::string& p
 /// x̄ − σ/10, σ the standard deviation, so that noise on the level is not counted; T if there are fewer than two.
 [[nodiscard]] double mean_period(const Series& series);
 
+/// Whether that few samples per loop are those of a map, not of a curve that they could follow.
+[[nodiscard]] constexpr bool is_sampled_map(double mean_period) { return mean_period < 6.0; }
+
 /// Samples that separate two points in time so that they count as neighbours in space: the larger of the mean period
 /// and the decorrelation lag, at least 1 and at most T/20. The window of Theiler.
 /// Source: Theiler, Phys. Rev. A 34 (1986) 2427; the mean period as window: S4, section 3.2.3.

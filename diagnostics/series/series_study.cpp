@@ -43,7 +43,7 @@ class SeriesExamination {
     out.deviation = std::sqrt((x - out.mean).square().mean());
     out.root_mean_square = std::sqrt(x.square().mean());
     out.loop = mean_period(series);
-    out.sampled_map = out.loop < kMapLoop;
+    out.sampled_map = is_sampled_map(out.loop);
     out.decorrelation = decorrelation_lag(series);
     out.window = options.window > 0 ? options.window : theiler_window(series);
     out.smoothness = smoothness(series);
@@ -62,8 +62,6 @@ class SeriesExamination {
   }
 
  private:
-  static constexpr double kMapLoop = 6.0;
-
   void check_options() const {
     const StudyOptions& o = out.settings;
     const bool fits = o.delay >= 0 && o.dimension >= 0 && o.window >= 0 && o.max_dimension >= 1 && o.evolution >= 0 &&

@@ -13,7 +13,6 @@ namespace slipmode::diagnostics {
 
 namespace {
 
-constexpr double kMapLoop = 6.0;
 constexpr double kBadForecast = 0.6;  // in standard deviations
 
 double variance(const Series& series) { return (series.values.array() - series.values.mean()).square().mean(); }
@@ -65,7 +64,7 @@ class Examination {
   Examination(const Series& series, const VerdictOptions& options)
       : series_(series), options_(options), loop_(mean_period(series)), window_(theiler_window(series)) {}
 
-  bool sampled_map() const { return loop_ < kMapLoop; }
+  bool sampled_map() const { return is_sampled_map(loop_); }
   double loop() const { return loop_; }
 
   Embedding embedding() const {
@@ -202,7 +201,7 @@ const char* to_string(SeriesMotion motion) {
 Repeat find_repeat(const Series& series, double tolerance) {
   check_series(series, 100, "repeat");
   if (!(tolerance > 0.0)) throw InvalidInput(fmt::format("repeat: expected a tolerance > 0, found {}", tolerance));
-  const bool between = mean_period(series) >= kMapLoop;
+  const bool between = !is_sampled_map(mean_period(series));
   const Eigen::VectorXd S = structure_function(series, series.values.size() / 3);
   Repeat out;
   for (Eigen::Index m = 1; m + 2 < S.size(); ++m) {

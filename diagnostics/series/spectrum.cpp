@@ -21,13 +21,13 @@ Eigen::VectorXd hann(Eigen::Index n) {
 }  // namespace
 
 AmplitudeSpectrum amplitude_spectrum(const Eigen::VectorXd& series, double interval, Eigen::Index segment) {
-  constexpr Eigen::Index kShortest = 4, kSegments = 8;
+  constexpr Eigen::Index kFewest = 4, kSegments = 8;
   const Eigen::Index total = series.size();
   // Eight segments that overlap by half span nine halves.
   const Eigen::Index n = segment > 0 ? segment : 4 * (total / (2 * (kSegments + 1)));
-  if (!(interval > 0.0) || n < kShortest || n > total) {
+  if (!(interval > 0.0) || n < kFewest || n > total) {
     throw InvalidInput(
-        fmt::format("spectrum: expected an interval > 0 and segments of {} to {} samples, found {} and {}", kShortest,
+        fmt::format("spectrum: expected an interval > 0 and segments of {} to {} samples, found {} and {}", kFewest,
                     total, interval, n));
   }
   if (!series.allFinite()) throw InvalidInput("spectrum: expected finite samples, found one that is not");

@@ -22,7 +22,7 @@ constexpr double kLargestShare = 2.1;
 /// Newton's method leaves less of a force, as a share of the static limit.
 constexpr double kNewtonRest = 1e-7;
 /// e^x ≤ 1/(1 − x) up to here.
-constexpr double kLargestGrowth = 0.8;
+constexpr double kMostGrowth = 0.8;
 
 bool has_guard(const ContactForces& law) { return law.sticks() || law.kind == LawKind::kBristle; }
 
@@ -210,13 +210,13 @@ bool CollocationFlow::far_from_guards(const StepBounds& bounds, double h) const 
   const auto& [reach, reach1, reach2] = bounds.response;
   if (stuck) {
     const double hold = 1.0 / model_.mobility(0, 0), growth = hold * reach1 * h;
-    return growth < kLargestGrowth && size + hold * nodes_.remainder[1] * ninth / h / (1.0 - growth) < law.static_limit;
+    return growth < kMostGrowth && size + hold * nodes_.remainder[1] * ninth / h / (1.0 - growth) < law.static_limit;
   }
   const double between = nodes_.remainder[0] * ninth, room = 0.5 * (guard_least_(0) - between);
   if (!(room > 0.0)) return false;
   const double half = std::exp(-law.alpha * room), least = half * half,
                growth = law.alpha * law.drop * half * reach * h;
-  if (!(growth < kLargestGrowth)) return false;
+  if (!(growth < kMostGrowth)) return false;
   const double largest_defect = room * (1.0 - growth) / (reach * h) - nodes_.lebesgue * kNewtonRest * law.static_limit;
   // By the range of the law over the speeds there are; by what its interpolation can leave.
   const double fastest = std::max(guard_start_(0), guard_forms_.head<kNodes>().maxCoeff());

@@ -25,11 +25,11 @@ double stiffness_to_mass(const Structure& structure) {
 // What the share of an elastic mode in a rigid-body shape adds to φᵀKφ. Solvers err by a few ε λ_max in K, which turns
 // a rigid-body shape towards a mode of λ by that over λ: in φᵀKφ its square times λ, most for the softest mode.
 double quotient_of_impurity(const Eigen::VectorXd& values, double largest) {
-  constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+  constexpr double epsilon = std::numeric_limits<double>::epsilon();
   double softest = largest;
   for (const double value : values)
-    if (value > 1e3 * kEpsilon * largest) softest = std::min(softest, value);
-  return std::pow(4.0 * kEpsilon * largest, 2) / softest;
+    if (value > 1e3 * epsilon * largest) softest = std::min(softest, value);
+  return std::pow(4.0 * epsilon * largest, 2) / softest;
 }
 
 // λ of a shape whose computed λ is so small that the eigensolver's own rounding may hide it.

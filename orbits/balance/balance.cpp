@@ -93,7 +93,7 @@ Eigen::VectorXd linear_response(const HybridSystem& system, const ContactRespons
 /// From the linear response at no gap to the own gaps, by steps whose length follows Newton's method.
 BalanceEvaluation grow_gaps(const HybridSystem& system, BalanceProblem& problem, const Eigen::VectorXd& from,
                             double tolerance, int& budget, bool& out_open) {
-  constexpr double kEnough = 1e-4, kShortest = 1e-3;
+  constexpr double kEnough = 1e-4, kLeastStep = 1e-3;
   Eigen::VectorXd before, now = from;
   double share_before = 0.0, share = 0.0, step = 0.5;
   while (budget > 0) {
@@ -104,12 +104,12 @@ BalanceEvaluation grow_gaps(const HybridSystem& system, BalanceProblem& problem,
     BalanceEvaluation found =
         descend(problem, guess, next < 1.0 ? kEnough : tolerance, next < 1.0 ? 5 : 12, budget, out_open);
     const bool arrived = found.relative <= (next < 1.0 ? kEnough : tolerance);
-    if (next == 1.0 && (arrived || step < kShortest)) return found;
+    if (next == 1.0 && (arrived || step < kLeastStep)) return found;
     if (arrived) {
       before = std::exchange(now, found.x);
       share_before = std::exchange(share, next);
       step *= 2.0;
-    } else if ((step *= 0.4) < kShortest) {
+    } else if ((step *= 0.4) < kLeastStep) {
       break;
     }
   }

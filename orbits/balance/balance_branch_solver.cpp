@@ -10,8 +10,8 @@
 namespace slipmode::orbits {
 namespace {
 
-constexpr int kMaxCorrections = 20;
-constexpr double kDifferenceStep = 1e-5;  ///< in the parameter, of its range: the equations are smooth in it
+constexpr int kMaxNewton = 20;
+constexpr double kParameterStep = 1e-5;  ///< in the parameter, of its range: the equations are smooth in it
 /// Residuals that stall below this are rounding.
 constexpr double kRounding = 1e-10;
 
@@ -91,7 +91,7 @@ BalanceBranchEvaluation BalanceBranchSolver::evaluate(const BalanceUnknowns& at)
   out.J.resize(N, N + 1);
   for (Eigen::Index j = 0; j < N; ++j)
     out.J.col(j) = size_ * scaled(out.balance.jacobian.col(solved_[static_cast<std::size_t>(j)]));
-  const double h = kDifferenceStep * range_, above = std::min(at.parameter + h, high),
+  const double h = kParameterStep * range_, above = std::min(at.parameter + h, high),
                below = std::max(at.parameter - h, low);
   out.J.col(N) = (scaled(equations_at(above)->problem.evaluate(at.x).residual) -
                   scaled(equations_at(below)->problem.evaluate(at.x).residual)) *
@@ -133,7 +133,7 @@ std::optional<BalanceBranchSolver::Corrected> BalanceBranchSolver::correct(const
       return at.r.cwiseAbs().maxCoeff() / std::max(1.0, at.at.x.cwiseAbs().maxCoeff() / size_);
     };
     while (defect(out.at) > tolerance) {
-      if (out.iterations++ == kMaxCorrections) return std::nullopt;
+      if (out.iterations++ == kMaxNewton) return std::nullopt;
       const Eigen::VectorXd step = newton_step(out.at, guess, row);
       double share = 1.0;
       BalanceBranchEvaluation next = evaluate(moved(out.at, step, share));

@@ -14,7 +14,7 @@ namespace slipmode::orbits {
 namespace {
 
 /// Farther from the series than this share of a half range, an orbit is another one.
-constexpr double kNear = 0.25;
+constexpr double kBehind = 0.25;
 
 std::vector<double> half_ranges(const OrbitSeries& orbit) {
   constexpr int kLooks = 512;
@@ -48,7 +48,7 @@ struct OrbitBehind {
 void judge(const Balance& balance, const OrbitBehind& behind, Certificate& out) {
   out.error = true_errors(balance, behind.series);
   out.relative = largest_share(out.error, behind.half);
-  out.behind = out.relative <= kNear;
+  out.behind = out.relative <= kBehind;
   const PeriodicOrbit& orbit = out.found.orbit;
   if (!out.behind) {
     out.verdict = fmt::format(

@@ -7,7 +7,7 @@
 namespace slipmode::orbits {
 namespace {
 
-constexpr double kShortest = 1e-9;
+constexpr double kNarrowest = 1e-9;
 
 class ZeroSearch {
  public:
@@ -20,7 +20,7 @@ class ZeroSearch {
     const double middle = 0.5 * (low + high), half = 0.5 * (high - low);
     const auto [y, slope] = polynomial_.at(middle);
     if (std::abs(y) > std::abs(slope) * half + 0.5 * curvature_ * half * half) return;
-    if (std::abs(slope) > curvature_ * half || half < 0.5 * kShortest) {
+    if (std::abs(slope) > curvature_ * half || half < 0.5 * kNarrowest) {
       if ((at_low < 0.0) != (at_high < 0.0)) found.push_back(refine(low, at_low < 0.0, high));
       return;
     }

@@ -55,19 +55,19 @@ class AllPairs {
   static constexpr Index kStretch = 512;  // their coordinates stay in the first cache while references go by
 
   AllPairs(const Eigen::MatrixXd& points, const Shells& shells) : shells_(shells) {
-    coordinates_.setZero(points.cols() + kGroup, points.rows());
+    coordinates_.setZero(points.cols() + kLanes, points.rows());
     coordinates_.topRows(points.cols()) = points.transpose();
   }
 
   /// Adds pairs of point i with points begin … end − 1, at most kStretch of them. @param out_counts  4 per shell
   void add(Index i, Index begin, Index end, Counts& out_counts) const {
     if (begin >= end) return;
-    alignas(64) double distances[kStretch + kGroup];
+    alignas(64) double distances[kStretch + kLanes];
     std::uint32_t scratch[kStretch];
-    for (Index j = begin; j < end; j += kGroup) {
+    for (Index j = begin; j < end; j += kLanes) {
       Group distance = Group::Zero();
       for (Index k = 0; k < coordinates_.cols(); ++k) {
-        distance = distance.max((coordinates_.col(k).segment<kGroup>(j).array() - coordinates_(i, k)).abs());
+        distance = distance.max((coordinates_.col(k).segment<kLanes>(j).array() - coordinates_(i, k)).abs());
       }
       Eigen::Map<Group>(distances + (j - begin)) = distance;
     }
@@ -84,8 +84,8 @@ class AllPairs {
   }
 
  private:
-  static constexpr Index kGroup = 16;
-  using Group = Eigen::Array<double, kGroup, 1>;
+  static constexpr Index kLanes = 16;
+  using Group = Eigen::Array<double, kLanes, 1>;
 
   Eigen::MatrixXd coordinates_;  // [n + a group to read beyond the end x d]
   const Shells& shells_;
