@@ -75,6 +75,13 @@ struct Checker {
            "mu_s >= mu(0) (static friction holds at least as much as sliding friction)");
   }
 
+  void law(const Measured& law) const {
+    fields(law);
+    for (const double speed : law.speeds) within("speeds", speed, kNonNegative);
+    for (const double mu : law.coefficients) within("coefficients", mu, kNonNegative);
+    if (const auto fault = fault_of(law)) fail(fmt::format("{}: {}", fault->field, fault->found), fault->expected);
+  }
+
   void law(const auto& law) const {
     fields(law);
     if constexpr (requires { law.mu_s < law.mu_k; }) {

@@ -8,6 +8,7 @@
 #include <slipmode/friction/coulomb.hpp>
 #include <slipmode/friction/dahl.hpp>
 #include <slipmode/friction/lugre.hpp>
+#include <slipmode/friction/measured.hpp>
 #include <slipmode/friction/stribeck.hpp>
 #include <slipmode/friction/tanh.hpp>
 
@@ -31,7 +32,8 @@ namespace slipmode::friction {
 ///     forces(normal_load)         its numbers times the normal load, for the flows
 ///
 /// Laws without a word, which files cannot hold, come last.
-using Law = std::variant<Coulomb, Stribeck, TanhRegularised, CompliantCoulomb, Dahl, LuGre, Clearance, Characteristic>;
+using Law = std::variant<Coulomb, Stribeck, TanhRegularised, CompliantCoulomb, Dahl, LuGre, Clearance, Measured,
+                         Characteristic>;
 
 /// The words of the laws that have one, in the order of Law's alternatives.
 [[nodiscard]] std::vector<std::string> law_words();
@@ -106,7 +108,7 @@ struct Contact {
 ///                       stiffnesses > 0, all finite, w not zero; tilt or a varying load with a law that is not
 ///                       Coulomb, rigid or compliant; a tilt at which an effective coefficient is negative or without
 ///                       bound; a clearance without stops, with a tilt, or whose stops overlap; a characteristic
-///                       without its functions or with μ(0) > μ_s
+///                       without its functions or with μ(0) > μ_s; points that are no table (fault_of)
 void validate(const Contact& contact);
 
 /// The coefficient that acts along ±w on a slider of this tilt. @param direction  +1 or −1

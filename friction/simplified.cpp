@@ -75,9 +75,10 @@ std::optional<Law> without_static_peak(const Law& law) {
 }
 
 std::optional<Law> without_stribeck_slope(const Law& law) {
-  const auto* stribeck = std::get_if<Stribeck>(&law);
-  if (stribeck == nullptr || stribeck->kind() != LawKind::kSpeedDependent) return std::nullopt;
-  return Coulomb{stribeck->mu_s, stribeck->mu_k};
+  const bool has_numbers = std::holds_alternative<Stribeck>(law) || std::holds_alternative<Measured>(law);
+  const double mu_s = static_coefficient(law), mu_k = has_numbers ? limit_coefficient(law) : 0.0;
+  if (!has_numbers || kind(law) != LawKind::kSpeedDependent || mu_k > mu_s) return std::nullopt;
+  return Coulomb{mu_s, mu_k};
 }
 
 std::optional<Law> without_stop_damping(const Law& law) {

@@ -19,8 +19,9 @@ struct Stranger {
   const char* why;
   const char* valid;
 };
-constexpr std::array<Stranger, 10> kStrangers = {
+constexpr std::array<Stranger, 11> kStrangers = {
     {{"coulomb", "alpha", "law \"coulomb\" does not depend on the sliding speed", "no alpha"},
+     {"table", "mu_k", "law \"table\" slides by its points", "coefficients"},
      {"coulomb", "stiffness", "law \"coulomb\" is rigid", "no stiffness, or law = \"compliant\""},
      {"dahl", "mu_s", "law \"dahl\" does not tell static from sliding friction", "mu"},
      {"dahl", "mu_k", "law \"dahl\" does not tell static from sliding friction", "mu"},
@@ -49,6 +50,11 @@ void read(TomlReader& in, friction::LuGre& law) {
   }
   read_fields(in, law);
   check_coefficients(in, law);
+}
+
+void read(TomlReader& in, friction::Measured& law) {
+  read_fields(in, law);
+  if (const auto fault = friction::fault_of(law)) in.fail(fault->field, fault->found, fault->expected);
 }
 
 /// A side takes what it does not say from `stop`, when there is one.

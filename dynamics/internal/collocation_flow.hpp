@@ -141,11 +141,13 @@ class CollocationFlow {
   void record_bristle(int c, EventKind kind, ContactMode before);
   void settle_bristle(int c, bool touching);
   struct Between;
+  /// The start and halfway between nodes.
+  static const Between& halfway();
+  /// What the force's polynomial leaves of a characteristic there, by the static limit.
+  [[nodiscard]] double characteristic_error(int c) const;
   /// What the polynomials leave of a bristle's equations between the nodes: the error of its force, by the static
   /// limit.
   [[nodiscard]] double bristle_error(int c, const Between& at) const;
-  /// The same at the start and halfway between nodes.
-  [[nodiscard]] double bristle_error(int c) const;
   /// The same at a reversal and shortly before.
   [[nodiscard]] double reversal_error(const Guarded& guard) const;
   /// How the Legendre coefficients of a polynomial through the nodes end.

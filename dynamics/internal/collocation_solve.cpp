@@ -270,7 +270,9 @@ double CollocationFlow::force_error() const {
     // The first coefficient left out, if the sequence keeps falling as it does.
     const auto [last, ratio] = ending(forces_.data() + kNodes * c);
     worst = std::max(worst, last * ratio * over_limit_[i]);
-    if (bristled(c)) worst = std::max(worst, bristle_error(c) / (tables_.step(step_level_) * over_top_));
+    if (bristled(c)) worst = std::max(worst, bristle_error(c, halfway()) / (tables_.step(step_level_) * over_top_));
+    if (laws()[i].characteristic != nullptr && point_.modes[i] != ContactMode::kStick)
+      worst = std::max(worst, characteristic_error(c));
   }
   return worst;
 }

@@ -83,6 +83,40 @@ friction::Law law_of(const StoreReader& store, const std::string& name, const st
   return any;
 }
 
+/// The points of the laws that are made of points, which other laws pay nothing for.
+void save_points(StoreWriter& store, const std::string& name, const std::vector<friction::Contact>& contacts) {
+  std::vector<double> owner, speed, coefficient;
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const auto* law = std::get_if<friction::Measured>(&contacts[c].law);
+    if (law == nullptr) continue;
+    owner.insert(owner.end(), law->speeds.size(), static_cast<double>(c));
+    speed.insert(speed.end(), law->speeds.begin(), law->speeds.end());
+    coefficient.insert(coefficient.end(), law->coefficients.begin(), law->coefficients.end());
+  }
+  if (owner.empty()) return;
+  save(store, name,
+       Table{.description = "points of friction characteristics",
+             .columns = {{"contact", {"", "index of the contact"}, owner},
+                         {"speed", {"m/s", "sliding speed"}, speed},
+                         {"coefficient", {"1", "friction coefficient there"}, coefficient}}});
+}
+
+void load_points(const StoreReader& store, const std::string& name, std::vector<friction::Contact>& contacts) {
+  const auto is_measured = [](const auto& contact) { return std::holds_alternative<friction::Measured>(contact.law); };
+  if (std::ranges::none_of(contacts, is_measured)) return;
+  const Table table = load_table(store, name);
+  for (std::size_t k = 0; k < table.rows(); ++k) {
+    const double owner = table.numbers("contact")[k];
+    if (!(owner >= 0.0 && owner < static_cast<double>(contacts.size()))) {
+      store.fail(name, fmt::format("contact {} of {}", owner, contacts.size()));
+    }
+    auto* law = std::get_if<friction::Measured>(&contacts[static_cast<std::size_t>(owner)].law);
+    if (law == nullptr) store.fail(name, fmt::format("contact {} has no law made of points", owner));
+    law->speeds.push_back(table.numbers("speed")[k]);
+    law->coefficients.push_back(table.numbers("coefficient")[k]);
+  }
+}
+
 }  // namespace
 
 void save_contacts(StoreWriter& store, const std::string& group, const std::vector<friction::Contact>& contacts,
@@ -123,6 +157,7 @@ void save_contacts(StoreWriter& store, const std::string& group, const std::vect
        "stops of a clearance, contact x (left stiffness [N/m], damping [N s/m] and gap [m], the same of "
        "the right one); NaN: none"});
   store.write(group + "/loss", losses, {"", fmt::format("when a stop lets go: {}", fmt::join(kLosses, ", "))});
+  save_points(store, group + "/points", contacts);
   save_rows(store, group, contacts);
   store.write_columns(group + "/direction", direction, {"1", "contact directions w, contact x dof"});
 }
@@ -161,6 +196,7 @@ std::vector<friction::Contact> load_contacts(const StoreReader& store, const std
       if (losses[at] == kLosses.back()) clearance->loss = friction::ContactLoss::kGap;
     }
   }
+  load_points(store, group + "/points", contacts);
   return contacts;
 }
 

@@ -85,6 +85,7 @@ TEST(Laws, AreWhatTheyAreToAFlow) {
   EXPECT_EQ(kind(Dahl{}), LawKind::kBristle);
   EXPECT_EQ(kind(LuGre{}), LawKind::kBristle);
   EXPECT_EQ(kind(Clearance{}), LawKind::kClearance);
+  EXPECT_EQ(kind(Measured{}), LawKind::kSpeedDependent);
   EXPECT_EQ(kind(Characteristic{}), LawKind::kSpeedDependent);
 }
 
@@ -115,7 +116,7 @@ TEST(Laws, AFlatStribeckLawIsCoulombOnATiltToo) {
 
 TEST(Laws, OnesWithoutNumbersHaveNoWord) {
   EXPECT_THAT(law_words(),
-              testing::ElementsAre("coulomb", "stribeck", "tanh", "compliant", "dahl", "lugre", "clearance"));
+              testing::ElementsAre("coulomb", "stribeck", "tanh", "compliant", "dahl", "lugre", "clearance", "table"));
   EXPECT_EQ(law_word(LuGre{}), "lugre");
   EXPECT_THAT([] { (void)law_word(Characteristic{}); }, ThrowsMessage<InvalidInput>(HasSubstr("a file cannot hold")));
 }

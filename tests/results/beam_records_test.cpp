@@ -44,6 +44,11 @@ std::vector<std::uint64_t> bits_of(const friction::Contact& contact) {
   if (const auto* law = std::get_if<friction::LuGre>(&contact.law)) {
     add({law->mu_s, law->mu_k, law->stribeck_speed, law->stiffness, law->damping, law->viscous});
   }
+  if (const auto* law = std::get_if<friction::Measured>(&contact.law)) {
+    add({law->mu_s});
+    v.insert(v.end(), law->speeds.begin(), law->speeds.end());
+    v.insert(v.end(), law->coefficients.begin(), law->coefficients.end());
+  }
   std::vector<std::uint64_t> bits;
   for (const double value : v) bits.push_back(std::bit_cast<std::uint64_t>(value));
   return bits;
@@ -96,6 +101,10 @@ TEST(BeamRecords, SystemReadsBackWithEveryLawAndLoad) {
       {.direction = at(0.1), .law = friction::Coulomb{0.5, 0.4}, .normal_load = {0.3, -1.54}, .name = "rigid"},
       {.direction = at(0.2), .law = friction::Dahl{1.0 / 3.0, 1e4}, .normal_load = 0.7, .name = "dahl"},
       {.direction = at(0.3), .law = friction::LuGre{0.5, 0.4, 0.1, 1e4, 0.2, 0.3}, .offset = 1e-3, .name = "lugre"},
+      {.direction = at(0.33),
+       .law = friction::Measured{0.5, {0.0, 0.1 / 3.0, 0.7}, {0.5, 0.3, 0.1 / 3.0}},
+       .name = "points"},
+      {.direction = at(0.36), .law = friction::Measured{0.4, {0.0, 1.0}, {0.3, 0.6}}, .name = "rising"},
       {.direction = at(0.4),
        .law = friction::CompliantCoulomb{0.748, 0.55, 20e3},
        .normal_load = {0.345, oscillator},

@@ -108,6 +108,10 @@ INSTANTIATE_TEST_SUITE_P(
                 "law = \"lugre\"\nmu_s = 0.5\nmu_k = 0.4\nstribeck_speed = 0.1\nstiffness = 1e4\ndamping = 0.2\n"
                 "viscous = 0.3\nnormal_load = 0.3\n",
                 "stribeck_speed = 0.1\nstiffness = 10000.0\ndamping = 0.2\nviscous = 0.3\n"},
+        Variant{
+            tests::kBeamLaw,
+            "law = \"table\"\nmu_s = 0.5\nspeeds = [0, 0.05, 1]\ncoefficients = [0.4, 0.2, 0.25]\nnormal_load = 0.3\n",
+            "mu_s = 0.5\nspeeds = [0.0, 0.05, 1.0]\ncoefficients = [0.4, 0.2, 0.25]\n"},
         Variant{"slope = -1.54 }",
                 "oscillator = { mass = 0.02, support_stiffness = 90.0, spring_stiffness = 282.8, slope = -5e-3 } }",
                 "oscillator = { mass = 0.02, support_stiffness = 90.0, support_damping = 0.0, spring_stiffness"},

@@ -1,0 +1,81 @@
+// A law by points: the curve beside Boost's, and what it refuses.
+#include <slipmode/friction/contact.hpp>
+
+#include <slipmode/core/errors.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <math.h>  // Boost 1.74 asks for isnan by that name
+#include <boost/math/interpolators/pchip.hpp>
+
+#include <cmath>
+#include <vector>
+
+namespace slipmode::friction {
+namespace {
+
+/// Falls, has a dip, rises above its start; unequal intervals.
+Measured dipped() {
+  return {.mu_s = 0.5,
+          .speeds = {0.0, 0.02, 0.1, 0.35, 0.4, 1.0, 2.5},
+          .coefficients = {0.4, 0.31, 0.22, 0.2, 0.24, 0.3, 0.45}};
+}
+
+ContactForces forces_of(const Law& law) {
+  return contact_forces({.direction = Eigen::VectorXd::Ones(1), .law = law, .normal_load = 2.0});
+}
+
+// The same formula from its paper by other hands; a product of a few roundings apart.
+TEST(Measured, IsTheMonotoneCubicThatBoostHas) {
+  const Measured law = dipped();
+  const boost::math::interpolators::pchip<std::vector<double>> other(std::vector(law.speeds),
+                                                                     std::vector(law.coefficients), std::nan(""), 0.0);
+  const ContactForces forces = forces_of(law);
+  for (int k = 0; k <= 2500; ++k) {
+    const double v = 1e-3 * k;
+    EXPECT_NEAR(law.kinetic_coefficient(v), other(v), 1e-15) << v;
+    EXPECT_NEAR(forces.sliding(-1.0, -v), -2.0 * other(v), 2e-15) << v;
+    if (k == 2500) continue;
+    EXPECT_NEAR(forces.slope(1.0, v), 2.0 * other.prime(v), 1e-13) << v;
+  }
+}
+
+TEST(Measured, KeepsTheLastValueAndItsSlopesAreItsOwn) {
+  const Measured law = dipped();
+  EXPECT_EQ(law.kinetic_coefficient(2.5), 0.45);
+  EXPECT_EQ(law.kinetic_coefficient(1e6), 0.45);
+  const ContactForces forces = forces_of(law);
+  EXPECT_EQ(forces.slope(1.0, 3.0), 0.0);
+  const double h = 1e-6;  // central differences: h²/6 of a third derivative of at most 7.4e4, 1.2e-8
+  for (const double v : {0.005, 0.05, 0.2, 0.37, 0.7, 1.8}) {
+    const double difference = (forces.sliding(1.0, v + h) - forces.sliding(1.0, v - h)) / (2.0 * h);
+    EXPECT_NEAR(forces.slope(1.0, v), difference, 1.3e-8) << v;
+    EXPECT_NEAR(forces.slope(-1.0, -v), difference, 1.3e-8) << v;
+  }
+  EXPECT_NEAR(forces.slope(1.0, -0.01), 2.0 * (0.31 - 0.4) / 0.02, 1e-14);  // past v = 0, as it begins
+}
+
+TEST(Measured, TwoPointsAreEnough) {
+  const Measured law{.mu_s = 0.4, .speeds = {0.0, 1.0}, .coefficients = {0.4, 0.2}};
+  EXPECT_NEAR(law.kinetic_coefficient(0.5), 0.3 - 0.2 / 8.0, 1e-15);  // Hermite with slopes −0.2 and 0
+  EXPECT_EQ(law.kind(), LawKind::kSpeedDependent);
+  EXPECT_EQ(static_coefficient(law), 0.4);
+  EXPECT_EQ(limit_coefficient(law), 0.2);
+}
+
+TEST(Measured, NamesWhatIsNoTable) {
+  const auto fails = [](const Measured& law, const char* message) {
+    EXPECT_THAT([&] { validate({.direction = Eigen::VectorXd::Ones(1), .law = law}); },
+                testing::ThrowsMessage<InvalidInput>(testing::HasSubstr(message)));
+  };
+  fails({.mu_s = 0.4}, "speeds: none; expected two or more, the first 0");
+  fails({.mu_s = 0.4, .speeds = {0.1, 0.2}, .coefficients = {0.3, 0.3}}, "speeds: 2 from 0.1 m/s");
+  fails({.mu_s = 0.4, .speeds = {0.0, 0.2, 0.2}, .coefficients = {0.3, 0.3, 0.3}}, "0.2 m/s before 0.2");
+  fails({.mu_s = 0.4, .speeds = {0.0, 0.2}, .coefficients = {0.3}}, "coefficients: 1 for 2 speeds");
+  fails({.mu_s = 0.2, .speeds = {0.0, 0.2}, .coefficients = {0.3, 0.1}}, "mu_s: 0.2, less than the first coefficient");
+  fails({.mu_s = 0.4, .speeds = {0.0, 0.2}, .coefficients = {0.3, -0.1}}, "coefficients = -0.1; expected a finite");
+  fails({.mu_s = 0.4, .speeds = {0.0, std::nan("")}, .coefficients = {0.3, 0.1}}, "speeds = nan");
+}
+
+}  // namespace
+}  // namespace slipmode::friction
