@@ -81,7 +81,6 @@ BasinFinder::BasinFinder(dynamics::HybridSystem system, BasinOptions options)
         "basins: expected a drive with a period, a force or a shaker; found a belt, whose motions have no common "
         "phase. Its attractors over a key: 'sweep'");
   }
-  const dynamics::TangentFlow has_tangents(system_);
   period_ = system_.drive().period().value();
   gap_ = GapMotion::of(system_);
 }

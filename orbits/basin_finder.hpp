@@ -69,7 +69,7 @@ struct BasinOptions {
 /// Follows starts of one system to attractors that are known. Safe to use from several threads.
 class BasinFinder {
  public:
-  /// @throws InvalidInput  for options out of range, a drive without period, bristle laws
+  /// @throws InvalidInput  for options out of range, a drive without period
   BasinFinder(dynamics::HybridSystem system, BasinOptions options);
 
   /// An attractor that was met for the first time, in what it is described from.

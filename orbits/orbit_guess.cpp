@@ -42,15 +42,20 @@ State settle_guess(const dynamics::HybridSystem& system, const State& start, dou
 }
 
 RecurrenceGuess recurrence_guess(const dynamics::HybridSystem& system, const State& start, double transient,
-                                 double duration, int max_returns, int contact, dynamics::EventKind section) {
+                                 double duration, int max_returns, int contact,
+                                 std::optional<dynamics::EventKind> section) {
   if (!(transient >= 0 && duration > 0 && max_returns >= 1))
     throw InvalidInput(
         fmt::format("a recurrence needs a transient ≥ 0, a duration > 0 and max_returns ≥ 1; found {}, "
                     "{} and {}",
                     transient, duration, max_returns));
+  const auto c = static_cast<std::size_t>(contact);
+  const bool slides = c < system.contacts().size() && !friction::sticks(friction::kind(system.contacts()[c].law));
+  const dynamics::EventKind kind =
+      section.value_or(slides ? dynamics::EventKind::kReversal : dynamics::EventKind::kRelease);
   std::vector<State> passes;
   const auto note = [&](const dynamics::Event& event, const State& state) {
-    if (event.contact == contact && event.kind == section) passes.push_back(state);
+    if (event.contact == contact && event.kind == kind) passes.push_back(state);
     return true;
   };
   static_cast<void>(simulate(

@@ -56,7 +56,7 @@ struct ShootingResult {
 /// least squares of minimum norm. Floating orbits: the solution nearest to the guess, with its family.
 /// @param guess  near the orbit; a start on a guard is moved off it along the trajectory
 /// @throws InvalidInput  for a period that is missing or not positive, order or segments < 1, half_period on a system
-///                       that is not symmetric, a drive that is neither periodic nor constant, bristle laws
+///                       that is not symmetric, a drive that is neither periodic nor constant
 /// Residuals are relative: displacements to the orbit's largest displacement (or its top speed × T/2π), velocities
 /// likewise. Source: S0 section 3.2 and appendix A; docs/theory/orbits.md.
 [[nodiscard]] ShootingResult shoot(const dynamics::HybridSystem& system, const dynamics::State& guess,
@@ -84,12 +84,13 @@ struct RecurrenceGuess {
   double mismatch = 0.0;  ///< of the states one period apart, relative to the orbit's size
 };
 
-/// Settles for `transient`, then watches events of one kind at one contact (a section) for `duration` and hands out the
-/// return to it, of at most `max_returns`, whose states match best; a shorter one is preferred where it matches within
-/// three times the best or 1e-4 of the size of the states.
+/// Settles for `transient`, then watches events of one kind at one contact (a section: releases if none is given, or
+/// reversals where the contact's law does not stick) for `duration` and hands out the return to it, of at most
+/// `max_returns`, whose states match best; a shorter one is preferred where it matches within three times the best or
+/// 1e-4 of the size of the states.
 /// @throws NumericalFailure  when the section is met fewer than twice
 [[nodiscard]] RecurrenceGuess recurrence_guess(const dynamics::HybridSystem& system, const dynamics::State& start,
                                                double transient, double duration, int max_returns = 16, int contact = 0,
-                                               dynamics::EventKind section = dynamics::EventKind::kRelease);
+                                               std::optional<dynamics::EventKind> section = {});
 
 }  // namespace slipmode::orbits

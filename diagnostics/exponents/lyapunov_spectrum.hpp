@@ -72,8 +72,7 @@ struct TangentOptions {
 ///
 /// Cost per unit of time: the motion's and N k more per step; independent of the interval but for k² N per interval.
 /// @param start  a phase of the drive goes with start.time; a belt's clock starts at 0
-/// @throws InvalidInput      for options out of range, contacts with bristles (their deflection is not carried: take
-///                           `largest_exponent`), a belt whose speed still changes after the transient
+/// @throws InvalidInput      for options out of range, a belt whose speed still changes after the transient
 /// @throws NumericalFailure  as simulate, before 16 intervals have been measured; later ones end in `failure`
 /// @throws Interrupted       if the stop flag was set
 /// Source: Benettin, Galgani, Giorgilli, Strelcyn, Meccanica 15 (1980); Müller, Chaos, Solitons & Fractals 5 (1995)

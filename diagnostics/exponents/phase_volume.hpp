@@ -28,7 +28,8 @@ class PhaseVolume {
  public:
   explicit PhaseVolume(const dynamics::HybridSystem& system);
 
-  /// False for contacts whose volumes are not worked out here: behind a spring, or rigid ones under a varying load.
+  /// False for contacts whose volumes are not worked out here: behind a spring, with a bristle, or rigid ones under a
+  /// varying load.
   [[nodiscard]] static bool applies(const dynamics::HybridSystem& system);
 
   /// Over a stretch without events [—]. Friction by Simpson's rule, panels halved until two results agree to 1e-7.

@@ -1,7 +1,6 @@
 #include "diagnostics/exponents/internal/energy_metric.hpp"
 
 #include <slipmode/core/decompositions.hpp>
-#include <slipmode/core/errors.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -39,11 +38,8 @@ Eigen::VectorXd own_weights(const dynamics::HybridSystem& system) {
   Eigen::Index at = 0;
   for (const friction::Contact& contact : system.contacts()) {
     const friction::LawKind kind = friction::kind(contact.law);
-    if (kind == friction::LawKind::kBristle)
-      throw InvalidInput(
-          "exponents from the tangent flow: expected contacts without bristles, found a Dahl or LuGre law, whose "
-          "deflection the tangent flow does not carry; take the largest exponent by two trajectories instead");
-    if (kind == friction::LawKind::kCompliant) weights[at++] = std::sqrt(friction::spring_stiffness(contact.law));
+    if (kind == friction::LawKind::kCompliant || kind == friction::LawKind::kBristle)
+      weights[at++] = std::sqrt(friction::spring_stiffness(contact.law));
     if (!contact.normal_load.oscillator) continue;
     const friction::NormalOscillator& load = *contact.normal_load.oscillator;
     const double stiffness = load.support_stiffness + load.spring_stiffness;

@@ -15,7 +15,7 @@ namespace slipmode::diagnostics {
 /// are added to it, and if that is not enough ω²M with the lowest frequency there is.
 class EnergyMetric {
  public:
-  /// Cost O(n³). @throws InvalidInput  for contacts with bristles
+  /// Cost O(n³).
   explicit EnergyMetric(const dynamics::HybridSystem& system);
 
   /// Columns (q, q̇, internal) [N x k] to coordinates in which the length is Euclid's, and back.
