@@ -206,6 +206,17 @@ std::vector<double> driven_velocity_range(const Case& c) {
   }));
 }
 
+/// This number of every event at which the first contact turns or comes to rest.
+std::vector<double> at_turns(const Case& c, double dynamics::Event::*number) {
+  const dynamics::SimulateOptions run{.duration = c.scene.time.duration, .flow = c.scene.flow};
+  std::vector<double> found;
+  for (const dynamics::Event& event : dynamics::simulate(c.system, c.start, run).events)
+    if (event.contact == 0 &&
+        (event.kind == dynamics::EventKind::kReversal || event.kind == dynamics::EventKind::kStick))
+      found.push_back(event.*number);
+  return found;
+}
+
 const std::map<std::string, std::function<std::vector<double>(const Case&)>>& measures() {
   static const std::map<std::string, std::function<std::vector<double>(const Case&)>> table = {
       {"energy_share_cumulative", energy_share_cumulative},
@@ -215,7 +226,9 @@ const std::map<std::string, std::function<std::vector<double>(const Case&)>>& me
       {"slip_rate", slip_rate},
       {"stick_force_range", stick_force_range},
       {"driven_velocity_range", driven_velocity_range},
-      {"mean_displacement_per_mass", mean_displacement_per_mass}};
+      {"mean_displacement_per_mass", mean_displacement_per_mass},
+      {"turning_points", [](const Case& c) { return at_turns(c, &dynamics::Event::displacement); }},
+      {"turning_times", [](const Case& c) { return at_turns(c, &dynamics::Event::time); }}};
   return table;
 }
 
