@@ -17,12 +17,12 @@ using dynamics::State;
 using friction::Dahl;
 using friction::LuGre;
 
-HybridSystem rubbed(const friction::Law& law, const friction::Drive& drive) {
+HybridSystem mass_on(const friction::Law& law, const friction::Drive& drive) {
   return fixtures::oscillator(1.0, 1.0, 0.02, law, 1.0, drive);
 }
 
 const LuGre kLaw{0.4, 0.2, 0.3, 60.0, 1.0, 0.02};
-HybridSystem on_belt(double speed) { return rubbed(kLaw, friction::Belt::constant(speed)); }
+HybridSystem on_belt(double speed) { return mass_on(kLaw, friction::Belt::constant(speed)); }
 
 PeriodicOrbit belt_orbit(double speed) {
   const HybridSystem system = on_belt(speed);
@@ -93,7 +93,7 @@ TEST(BristleOrbits, SmallPerturbationsGrowByTheMultiplier) {
 TEST(BristleOrbits, DrivenOrbitsAndTheirHalfPeriods) {
   for (const friction::Law& law : {friction::Law(kLaw), friction::Law(Dahl{0.3, 20.0})}) {
     for (const double frequency : {0.1, 0.2}) {
-      const HybridSystem system = rubbed(law, friction::Shaker{.amplitude = 1.0, .frequency_hz = frequency});
+      const HybridSystem system = mass_on(law, friction::Shaker{.amplitude = 1.0, .frequency_hz = frequency});
       const State guess = settle_guess(system, system.rest(), 20.0);
       const PeriodicOrbit orbit = find_orbit(system, guess), half = find_orbit(system, guess, {.half_period = true});
       EXPECT_TRUE(orbit.symmetric);

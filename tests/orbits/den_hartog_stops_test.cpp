@@ -61,10 +61,10 @@ struct StoppingOscillator {
     return half_cycle(lowest);
   }
   [[nodiscard]] dynamics::HybridSystem system() const {
-    dynamics::HybridSystem rubbed = fixtures::oscillator(mass, stiffness, 0.0, friction::Coulomb{0.5, 0.5},
-                                                         limit() / 0.5, friction::Belt::constant(0.0));
+    dynamics::HybridSystem plain = fixtures::oscillator(mass, stiffness, 0.0, friction::Coulomb{0.5, 0.5},
+                                                        limit() / 0.5, friction::Belt::constant(0.0));
     const friction::Force force{omega(), {{.amplitude = push, .phase = 0.5 * std::numbers::pi}}};
-    return {rubbed.structure(), rubbed.contacts(), force, {}, Eigen::MatrixXd::Ones(1, 1)};
+    return {plain.structure(), plain.contacts(), force, {}, Eigen::MatrixXd::Ones(1, 1)};
   }
 };
 
