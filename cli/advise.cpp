@@ -71,7 +71,7 @@ Report run(const Session& session, const AdviseArguments& arguments) {
   }
   trade::StudyOptions options{.schedule = schedule};
   options.parallel = session.run_options().parallel("advise");
-  if (file) results::keep_in(file->journal(), options);
+  if (file) results::keep_in(*file->journal(), options);
   const trade::Study done = trade::study(scene, trade::as_it_stands(scene), variants, {}, options);
   if (file) file->finish([&](results::StoreWriter& writer) { results::store_study(writer, done, scene); });
   if (session.shard) return part_made(session, *file, arguments.output, "configurations");

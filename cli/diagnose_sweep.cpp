@@ -70,7 +70,7 @@ Report diagnose_over(const Session& session, const scene::Scene& scene, const Di
                      const ModelRequest& models) {
   if (request.output.empty()) throw InvalidInput("--over: expected a result file for the sweep; give one with -o");
   const Over over = parse_over(models.over);
-  check_values(scene, over);
+  studies::check_values(scene, over.key, over.values);
   const std::vector<SweptModel> swept = swept_models(scene, over.key, models);
   diagnostics::TangentOptions tangent =
       studies::tangent_options(scene, swept.front().family.own(), models.exponents, session.run_options());
@@ -86,7 +86,7 @@ Report diagnose_over(const Session& session, const scene::Scene& scene, const Di
                   models.over, models.follow ? " --follow" : "", tangent.exponents, tangent.transient, tangent.duration,
                   tangent.interval, swept.back().title),
       identity, session.division(), studies::pieces(over.values, options));
-  options.journal = &file.journal();
+  options.journal = file.journal();
   std::vector<studies::Family> families;
   families.reserve(swept.size());
   for (const SweptModel& model : swept) families.push_back(model.family);

@@ -2,8 +2,7 @@
 
 #include <slipmode/core/errors.hpp>
 #include <slipmode/fem/beam_modes.hpp>
-#include <slipmode/results/provenance.hpp>
-#include <slipmode/results/units.hpp>
+#include <slipmode/studies/natural_modes.hpp>
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
 
@@ -19,44 +18,6 @@ struct ModesArguments {
   std::string scene, output;
   Eigen::Index count = 0;
 };
-
-struct ModeSets {
-  fem::Modes slipping;
-  fem::Modes sticking;                    ///< every contact held; empty when nothing is left to move
-  fem::Modes compliant;                   ///< every contact held by its spring or stop; empty unless each has one
-  std::vector<fem::TheoryEffect> theory;  ///< of a beam
-};
-
-/// Directions of all contacts, one per column.
-Eigen::MatrixXd contact_directions(const dynamics::HybridSystem& system) {
-  Eigen::MatrixXd w(system.size(), static_cast<Eigen::Index>(system.contacts().size()));
-  for (Eigen::Index c = 0; c < w.cols(); ++c) w.col(c) = system.contacts()[c].direction;
-  return w;
-}
-
-/// Stiffness that holds a stuck contact, or one at its stop; 0 for a law without a spring.
-double contact_stiffness(const friction::Law& law) {
-  const friction::Clearance* clearance = friction::clearance(law);
-  return clearance != nullptr ? clearance->stops().back().stiffness : friction::spring_stiffness(law);
-}
-
-ModeSets compute(const scene::Scene& scene, const dynamics::HybridSystem& system, Eigen::Index count) {
-  const Eigen::MatrixXd w = contact_directions(system);
-  const Eigen::Index free = system.size() - w.cols();
-  ModeSets sets{
-      .slipping = fem::natural_modes(system.structure(), count), .sticking = {}, .compliant = {}, .theory = {}};
-  if (can_stick(system) && free > 0 && w.cols() > 0) {
-    sets.sticking = fem::constrained_modes(system.structure(), w, std::min(count, free));
-  }
-  Eigen::VectorXd stiffness(w.cols());
-  std::ranges::transform(system.contacts(), stiffness.begin(),
-                         [](const friction::Contact& contact) { return contact_stiffness(contact.law); });
-  if (w.cols() > 0 && (stiffness.array() > 0.0).all()) {
-    sets.compliant = fem::compliant_modes(system.structure(), w, stiffness, count);
-  }
-  if (scene.beam() != nullptr) sets.theory = fem::theory_effects(*scene.beam(), count);
-  return sets;
-}
 
 /// Damping ratios of the slipping structure's modes; NaN for rigid-body modes and where damping couples modes.
 Eigen::VectorXd damping_ratios(const fem::Structure& structure, const fem::Modes& modes) {
@@ -80,24 +41,7 @@ Eigen::VectorXd damping_ratios(const fem::Structure& structure, const fem::Modes
 
 double hertz(double omega) { return omega / (2.0 * std::numbers::pi); }
 
-void store(const std::filesystem::path& path, const scene::Scene& scene, const ModeSets& sets) {
-  const results::Units units = results::Units::of(scene.units);
-  results::StoreWriter writer(path, results::FileKind::kModes, scene.units);
-  results::save(writer, results::provenance_of(scene, "slipmode modes"));
-  const auto write = [&](const std::string& group, const fem::Modes& modes, const std::string& what) {
-    writer.describe_group(group, what);
-    writer.write(group + "/omega", modes.omega, {units.angular, "circular frequencies, ascending"});
-    writer.write(group + "/shapes", modes.shapes, {"1", "mass-normalised shapes, dof x mode"});
-  };
-  write("modes/slipping", sets.slipping, "natural modes with every contact slipping");
-  if (sets.sticking.omega.size() > 0) write("modes/sticking", sets.sticking, "natural modes with every contact stuck");
-  if (sets.compliant.omega.size() > 0) {
-    write("modes/compliant", sets.compliant, "natural modes with every contact held by its spring or stop");
-  }
-  writer.commit();
-}
-
-std::string mode_table(const scene::Scene& scene, const ModeSets& sets, const Eigen::VectorXd& ratios) {
+std::string mode_table(const scene::Scene& scene, const studies::ModeSets& sets, const Eigen::VectorXd& ratios) {
   const std::string unit = scene.units == "SI" ? " [rad/s]" : "";
   const std::string hz = scene.units == "SI" ? "f [Hz]" : "f = ω/2π";
   const bool springs = sets.compliant.omega.size() > 0;
@@ -161,12 +105,8 @@ Report run(const Session& session, const ModesArguments& arguments) {
   if (!arguments.output.empty()) require_writable(arguments.output);
   const scene::Scene scene = session.load(arguments.scene);
   const dynamics::HybridSystem system = scene::build_system(scene);
-  if (arguments.count < 0 || arguments.count > system.size()) {
-    throw InvalidInput(fmt::format("--count {}: expected 1..{} (the degrees of freedom), or 0 for the lowest 20",
-                                   arguments.count, system.size()));
-  }
-  const Eigen::Index count = arguments.count == 0 ? std::min<Eigen::Index>(system.size(), 20) : arguments.count;
-  const ModeSets sets = compute(scene, system, count);
+  const auto found = std::make_shared<const studies::ModeSets>(studies::natural_modes(scene, system, arguments.count));
+  const studies::ModeSets& sets = *found;
   const Eigen::VectorXd ratios = damping_ratios(system.structure(), sets.slipping);
 
   Report report;
@@ -182,7 +122,7 @@ Report run(const Session& session, const ModesArguments& arguments) {
     report.data["theory_effects"] = theory_json(sets.theory);
   }
   if (!arguments.output.empty()) {
-    store(arguments.output, scene, sets);
+    studies::content_of(scene, found).save(arguments.output);
     report.data["file"] = arguments.output;
     report.text += fmt::format("Frequencies and shapes: {}\n", arguments.output);
   }

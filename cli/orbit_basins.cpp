@@ -126,7 +126,7 @@ Report run(const Session& session, const OrbitBasinsArguments& arguments) {
   }
   const studies::Family family(scene, keys);
   studies::check(family, request);
-  if (!keys.empty()) check_values(scene, {keys.front(), request.along});
+  if (!keys.empty()) studies::check_values(scene, keys.front(), request.along);
   studies::BasinsOptions options = arguments.options;
   studies::ResultFile file(
       arguments.output, scene, results::FileKind::kBasins,
@@ -134,7 +134,7 @@ Report run(const Session& session, const OrbitBasinsArguments& arguments) {
                   fmt::join(arguments.over, " --over "), keys.empty() ? "" : " --along " + arguments.along,
                   options.max_order, options.periods, options.sample),
       "", session.division(), studies::pieces(request));
-  options.journal = &file.journal();
+  options.journal = file.journal();
   const studies::BasinsStudy study = studies::basins(family, request, options, session.run_options());
   if (study.interrupted) {
     Report report = interrupted_at(arguments.output);

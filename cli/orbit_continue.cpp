@@ -111,12 +111,10 @@ struct Followed {
 Report store_and_tell(const OrbitContinueArguments& arguments, const Followed& followed, double start,
                       const std::vector<results::NamedBranch>& branches) {
   const studies::Family model(followed.scene, {followed.key}, followed.basis);
-  results::StoreWriter writer(arguments.output, results::FileKind::kBranches, followed.scene.units);
-  const std::string command =
-      fmt::format("slipmode orbit continue --over {} --model {}", arguments.over, arguments.search.model);
-  results::save(writer, results::provenance_of(scene::set_key(followed.scene, followed.key, start), command));
-  results::store_branches(writer, followed.key, branches, model.systems());
-  writer.commit();
+  studies::content_of(
+      model, start, std::make_shared<const std::vector<results::NamedBranch>>(branches),
+      fmt::format("slipmode orbit continue --over {} --model {}", arguments.over, arguments.search.model))
+      .save(arguments.output);
 
   Report report;
   Json list = Json::array();

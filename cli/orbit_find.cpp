@@ -1,7 +1,4 @@
 #include <slipmode/results/balance_store.hpp>
-#include <slipmode/results/orbit_records.hpp>
-#include <slipmode/results/provenance.hpp>
-#include <slipmode/results/records.hpp>
 #include <slipmode/studies/bases.hpp>
 #include "cli/balance_report.hpp"
 #include "cli/orbit_report.hpp"
@@ -19,22 +16,6 @@ struct OrbitFindArguments {
   std::string output;
 };
 
-/// The orbit, if there is one, and one period of it, sampled; and where it came from.
-void save(results::StoreWriter& writer, const scene::Scene& scene, const dynamics::HybridSystem& system,
-          const orbits::PeriodicOrbit* orbit) {
-  results::Provenance provenance = results::provenance_of(scene, "slipmode orbit find");
-  if (orbit != nullptr) {
-    constexpr double kSamples = 1000.0;
-    const dynamics::Trajectory period = dynamics::simulate(
-        system, orbit->start,
-        {.duration = orbit->period, .sample = orbit->period / kSamples, .flow = {.tolerance = 1e-12}});
-    provenance.audit = period.audit;
-    results::save(writer, results::kOrbitGroup, *orbit);
-    results::save(writer, results::kTrajectoryGroup, period);
-  }
-  results::save(writer, provenance);
-}
-
 Report run_balance(const OrbitFindArguments& arguments, const studies::Family& model) {
   const studies::BalanceSearch search =
       balance_search_of(arguments.balance, arguments.search.start, arguments.search.search);
@@ -45,7 +26,7 @@ Report run_balance(const OrbitFindArguments& arguments, const studies::Family& m
   const scene::Scene& scene = model.scene();
   const orbits::Certificate* certificate = found.certificate ? &*found.certificate : nullptr;
   results::StoreWriter writer(arguments.output, results::FileKind::kBalance, scene.units);
-  save(writer, scene, model.own(), certificate != nullptr && certificate->behind ? &certificate->found.orbit : nullptr);
+  studies::store(writer, model, certificate != nullptr && certificate->behind ? &certificate->found.orbit : nullptr);
   results::store_balance(writer, found.balance, certificate, found.trials, results::Units::of(scene.units));
   writer.commit();
   report.data["file"] = arguments.output;
@@ -71,9 +52,7 @@ Report run(const Session& session, const OrbitFindArguments& arguments) {
   report.data.update(orbit_json(system, result.orbit, amplitudes));
   report.text = fmt::format("{}, {}: {}", scene.title, model.title(), orbit_text(system, result.orbit, amplitudes));
   if (!arguments.output.empty()) {
-    results::StoreWriter writer(arguments.output, results::FileKind::kOrbit, scene.units);
-    save(writer, scene, system, &result.orbit);
-    writer.commit();
+    studies::content_of(model, std::make_shared<const orbits::PeriodicOrbit>(result.orbit)).save(arguments.output);
     report.data["file"] = arguments.output;
     report.text += fmt::format("Orbit: {}\n", arguments.output);
   }

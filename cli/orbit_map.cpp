@@ -82,14 +82,14 @@ Report run(const Session& session, const OrbitMapArguments& arguments) {
   options.starts = {arguments.start};
   if (arguments.start == "both") options.starts = {"scene", "centre"};
   studies::check(family, options);
-  for (const Over& one : over) check_values(scene, one);
+  for (const Over& one : over) studies::check_values(scene, one.key, one.values);
   studies::ResultFile file(
       arguments.output, scene, keys.size() > 1 ? results::FileKind::kMap : results::FileKind::kStrobe,
       fmt::format("slipmode orbit map --over {} --start {} --max-order {} --periods {} --kept {} --tolerance {}{}",
                   fmt::join(arguments.over, " --over "), arguments.start, options.max_order, options.periods,
                   options.kept, options.tolerance, options.follow ? " --follow" : ""),
       "", session.division(), studies::pieces(values, options));
-  options.journal = &file.journal();
+  options.journal = file.journal();
   const studies::OrbitMapStudy study = studies::orbit_map(family, values, options, session.run_options());
   if (study.interrupted) {
     Report report = interrupted_at(arguments.output);

@@ -1,13 +1,11 @@
-#include <slipmode/rom/reduce.hpp>
-
 #include <slipmode/fem/modes.hpp>
-#include <slipmode/results/provenance.hpp>
-#include <slipmode/results/records.hpp>
 #include <slipmode/studies/bases.hpp>
+#include <slipmode/studies/reduction.hpp>
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
 
 #include <fmt/format.h>
+#include <cmath>
 
 namespace slipmode::cli {
 namespace {
@@ -17,33 +15,18 @@ struct ReduceArguments {
   Eigen::Index modes = 0;
 };
 
-/// LNMs have no energies of their own: without a count there is nothing to choose by.
-Eigen::Index mode_count(const ReduceArguments& arguments, const scene::Scene& scene, const pod::NamedBasis& source) {
-  pod::ModeChoice choice = scene.reduction.choice;
-  if (arguments.modes > 0) choice.modes = arguments.modes;
-  if (choice.modes == 0 && source.captured.size() == 0) {
-    throw InvalidInput(
-        fmt::format("basis '{}' has no energy shares to choose by; give --modes or reduction.modes", arguments.basis));
-  }
-  return pod::chosen_modes(choice, source.captured, source.basis.modes(), fmt::format("basis '{}'", arguments.basis));
-}
-
 Report run(const Session& session, const ReduceArguments& arguments) {
   require_writable(arguments.output);
   const scene::Scene scene = session.load(arguments.scene);
   const dynamics::HybridSystem full = scene::build_system(scene);
   const pod::NamedBasis source = studies::load_basis(scene, full, arguments.basis);
-  const Eigen::Index modes = mode_count(arguments, scene, source);
-  const pod::Basis basis = source.basis.truncated(modes);
-  const dynamics::HybridSystem reduced = rom::reduce(full, basis);
-
-  results::StoreWriter writer(arguments.output, results::FileKind::kReduced, scene.units);
-  results::save(writer, results::provenance_of(scene, fmt::format("slipmode reduce --modes {}", modes)));
-  results::save(writer, results::kReducedGroup, results::ReducedModel{.system = reduced, .basis = basis});
-  writer.commit();
+  const auto reduction = std::make_shared<const studies::Reduction>(
+      studies::reduce(scene, full, source, arguments.basis, arguments.modes));
+  studies::content_of(scene, reduction).save(arguments.output);
+  const Eigen::Index modes = reduction->model.basis.modes();
 
   const Eigen::VectorXd omega_full = fem::natural_modes(full.structure(), modes).omega;
-  const Eigen::VectorXd omega_reduced = fem::natural_modes(reduced.structure()).omega;
+  const Eigen::VectorXd omega_reduced = fem::natural_modes(reduction->model.system.structure()).omega;
   TextTable table({"mode", "ω full", "ω reduced"});
   for (Eigen::Index k = 0; k < modes; ++k) {
     table.add(
@@ -57,10 +40,9 @@ Report run(const Session& session, const ReduceArguments& arguments) {
                  {"omega_full", std::vector<double>(omega_full.begin(), omega_full.end())},
                  {"omega_reduced", std::vector<double>(omega_reduced.begin(), omega_reduced.end())}};
   std::string energy;
-  if (source.captured.size() >= modes) {
-    const double kept = source.captured[modes - 1];
-    report.data["energy"] = kept;
-    energy = fmt::format(", {:.3f} % of the energy", 100.0 * kept);
+  if (std::isfinite(reduction->captured)) {
+    report.data["energy"] = reduction->captured;
+    energy = fmt::format(", {:.3f} % of the energy", 100.0 * reduction->captured);
   }
   report.text = fmt::format("{} degrees of freedom reduced to {} modes{}\n{}Reduced model: {}\n", full.size(), modes,
                             energy, table.str(), arguments.output);

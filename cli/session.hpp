@@ -1,5 +1,6 @@
 #pragma once
 
+#include <slipmode/core/describe.hpp>
 #include <slipmode/core/errors.hpp>
 #include <slipmode/core/parallel.hpp>
 #include <slipmode/core/progress.hpp>
@@ -69,8 +70,6 @@ void tell_resumed(const Session& session, std::size_t resumed, const std::string
 [[nodiscard]] Report part_made(const Session& session, const studies::ResultFile& file, const std::string& output,
                                const std::string& what);
 
-/// What went wrong, when and in which state, for people.
-[[nodiscard]] std::string describe(const NumericalFailure& failure);
 /// In how many of a run's steps it is proved that no event was passed.
 [[nodiscard]] std::string certificate(const dynamics::FlowStatistics& statistics);
 

@@ -1,6 +1,3 @@
-#include <slipmode/results/ensemble_store.hpp>
-#include <slipmode/results/provenance.hpp>
-#include <slipmode/results/records.hpp>
 #include <slipmode/studies/ensemble.hpp>
 #include <slipmode/studies/simulation.hpp>
 #include "cli/text_table.hpp"
@@ -17,19 +14,9 @@ struct SimulateArguments {
 };
 
 Report run_trajectory(const Session& session, const SimulateArguments& arguments, const scene::Scene& scene) {
-  const studies::Simulation run = studies::simulate(scene, session.run_options());
-  const dynamics::Trajectory& trajectory = run.trajectory;
-
-  results::StoreWriter writer(arguments.output, results::FileKind::kTrajectory, scene.units);
-  results::Provenance provenance = results::provenance_of(scene, "slipmode simulate");
-  provenance.audit = trajectory.audit;
-  results::save(writer, provenance);
-  results::save(writer, results::kTrajectoryGroup, trajectory);
-  if (scene.sensors) results::store_sensors(writer, scene, trajectory.q);
-  if (run.failure) {
-    writer.write("trajectory/incomplete", describe(*run.failure), {"", "the run stopped early: why and where"});
-  }
-  writer.commit();
+  const auto run = std::make_shared<const studies::Simulation>(studies::simulate(scene, session.run_options()));
+  studies::content_of(scene, run).save(arguments.output);
+  const dynamics::Trajectory& trajectory = run->trajectory;
 
   const auto& statistics = trajectory.statistics;
   std::vector<double> stick_fraction;
@@ -44,11 +31,11 @@ Report run_trajectory(const Session& session, const SimulateArguments& arguments
                  {"certified", statistics.certified},
                  {"stick_fraction", stick_fraction},
                  {"audit_residual", trajectory.audit.residual()}};
-  if (run.failure) {
+  if (run->failure) {
     report.exit_code = kNumericalFailure;
-    report.text = fmt::format("{}\nThe part before it is kept in {}.", describe(*run.failure), arguments.output);
-    report.data["message"] = describe(*run.failure);
-    report.data["time"] = run.failure->time;
+    report.text = fmt::format("{}\nThe part before it is kept in {}.", describe(*run->failure), arguments.output);
+    report.data["message"] = describe(*run->failure);
+    report.data["time"] = run->failure->time;
     report.data["incomplete"] = true;
     return report;
   }
@@ -59,8 +46,9 @@ Report run_trajectory(const Session& session, const SimulateArguments& arguments
 }
 
 Report run_ensemble(const Session& session, const SimulateArguments& arguments, const scene::Scene& scene) {
-  const diagnostics::EnsembleRun run = studies::ensemble(scene, session.run_options());
-  results::store_ensemble(arguments.output, scene, run);
+  const auto done = std::make_shared<const diagnostics::EnsembleRun>(studies::ensemble(scene, session.run_options()));
+  studies::content_of(scene, done).save(arguments.output);
+  const diagnostics::EnsembleRun& run = *done;
 
   Report report;
   const dynamics::FlowStatistics total = run.total();

@@ -98,11 +98,11 @@ Report run(const Session& session, SweepRequest request) {
   const studies::RunOptions run_options = session.run_options();
   const auto basis = studies::model_basis(scene, request.model, run_options);
   const studies::Family family(scene, {over.key}, basis);
-  check_values(scene, over);
+  studies::check_values(scene, over.key, over.values);
   studies::ResultFile file(request.output, scene, results::FileKind::kSweep, command_of(request),
                            basis ? studies::identity_of(basis->basis) : "full", session.division(),
                            studies::pieces(over.values, request.options));
-  request.options.journal = &file.journal();
+  request.options.journal = file.journal();
   const studies::Sweep sweep = studies::sweep(family, over.values, request.options, run_options);
   if (sweep.interrupted) return interrupted(request, over.values.size(), file);
   file.finish([&](results::StoreWriter& writer) { studies::store(writer, family, sweep); });

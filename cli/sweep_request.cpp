@@ -29,17 +29,6 @@ Over parse_over(const std::string& text) {
   return {text.substr(0, equals), diagnostics::sweep_values(numbers[0], numbers[1], numbers[2])};
 }
 
-void check_values(const scene::Scene& scene, const Over& over) {
-  for (const double value : over.values) {
-    const scene::Scene changed = scene::set_key(scene, over.key, value);
-    if (changed.size() == scene.size()) continue;
-    throw InvalidInput(
-        fmt::format("--over {}: the number of degrees of freedom must stay at {} along a sweep, value {} "
-                    "changes it; run one sweep per size with --set",
-                    over.key, scene.size(), value));
-  }
-}
-
 Report interrupted_at(const std::string& output, const std::string& how_far) {
   Report report;
   report.exit_code = kInterrupted;

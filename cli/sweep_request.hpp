@@ -1,6 +1,5 @@
 #pragma once
 
-#include <slipmode/scene/scene.hpp>
 #include "cli/session.hpp"
 
 #include <string>
@@ -16,10 +15,6 @@ struct Over {
 
 /// @throws InvalidInput  saying what is wrong with the text
 [[nodiscard]] Over parse_over(const std::string& text);
-
-/// Every value is tried before the first is computed: a typing error must not show after an hour.
-/// @throws InvalidInput  for a value the scene refuses or that changes the number of degrees of freedom
-void check_values(const scene::Scene& scene, const Over& over);
 
 /// What to say when Ctrl-C came: that finished values are kept and the same command goes on.
 /// @param how_far  "with 12 of 500 values done"; may be empty

@@ -80,7 +80,7 @@ Report run(const Session& session, const TradeArguments& arguments) {
   }
   trade::StudyOptions options{.schedule = schedule};
   options.parallel = session.run_options().parallel("trade");
-  if (file) results::keep_in(file->journal(), options);
+  if (file) results::keep_in(*file->journal(), options);
   if (!arguments.product) {
     options.more = [&](const std::vector<trade::Row>& rows) { return trade::worth_combining(rows, limit); };
   }

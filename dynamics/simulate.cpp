@@ -120,6 +120,7 @@ void run(AnyFlow& flow, const HybridSystem& system, const ModalModel& m, const S
     // By the balance: it only scales the residual, and a state need not be turned back at every event for that.
     if (options.flow.audit) largest_energy = std::max(largest_energy, std::abs(balance(flow.work())));
     for (const Event& e : flow.events()) {
+      if (options.on_event && !options.on_event(e, end_state(system, m, flow.point()))) going = false;
       if (e.time < keep_from) continue;
       if (options.keep_events) out.events.push_back(e);
       if (options.event_states) {
@@ -127,7 +128,6 @@ void run(AnyFlow& flow, const HybridSystem& system, const ModalModel& m, const S
         event_q.push_back(s.q);
         event_v.push_back(s.v);
       }
-      if (options.on_event && !options.on_event(e, end_state(system, m, flow.point()))) going = false;
     }
   }
   while (recorder.next_time() <= end && going) {  // the last sample may lie a rounding error past the last step

@@ -14,9 +14,8 @@
 
 namespace slipmode::results {
 
-void store_ensemble(const std::filesystem::path& path, const scene::Scene& scene, const diagnostics::EnsembleRun& run) {
+void store_ensemble(StoreWriter& writer, const scene::Scene& scene, const diagnostics::EnsembleRun& run) {
   const Units units = Units::of(scene.units);
-  StoreWriter writer(path, FileKind::kEnsemble, scene.units);
   Provenance provenance = provenance_of(scene, "slipmode simulate");
   Table members{.description = "runs of the ensemble", .columns = {}};
   std::vector<double> parameter, start, columns, events, residual;
@@ -45,7 +44,6 @@ void store_ensemble(const std::filesystem::path& path, const scene::Scene& scene
   save(writer, kEnsembleGroup, run.ensemble);
   save(writer, "members", members);
   if (scene.sensors) store_sensors(writer, scene, run.ensemble.snapshots);
-  writer.commit();
 }
 
 void store_sensors(StoreWriter& writer, const scene::Scene& scene, const Eigen::MatrixXd& q) {

@@ -4,12 +4,10 @@
 #include <slipmode/results/store.hpp>
 #include <slipmode/scene/scene.hpp>
 
-#include <filesystem>
-
 namespace slipmode::results {
 
 /// Writes groups `ensemble`, `members`, `provenance` and, where the scene has sensors, `sensors`.
-void store_ensemble(const std::filesystem::path& path, const scene::Scene& scene, const diagnostics::EnsembleRun& run);
+void store_ensemble(StoreWriter& writer, const scene::Scene& scene, const diagnostics::EnsembleRun& run);
 
 /// Writes the group `sensors`: their places and readings of these displacements.
 void store_sensors(StoreWriter& writer, const scene::Scene& scene, const Eigen::MatrixXd& q);

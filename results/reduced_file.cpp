@@ -13,8 +13,7 @@ std::optional<std::string> reduced_file(const std::string& model) {
   return model.substr(kPrefix.size());
 }
 
-pod::Basis reduced_basis(const std::string& file, Eigen::Index size) {
-  const StoreReader store(file);
+pod::Basis reduced_basis(const StoreReader& store, Eigen::Index size) {
   require_kind(store, std::array{FileKind::kReduced});
   return load_basis(store, std::string(kReducedGroup) + "/basis", size);
 }

@@ -13,6 +13,6 @@ namespace slipmode::results {
 
 /// Basis of a file that 'slipmode reduce' made. @param size  of the full model
 /// @throws InvalidInput  for a file without a reduced model, or one of another size
-[[nodiscard]] pod::Basis reduced_basis(const std::string& file, Eigen::Index size);
+[[nodiscard]] pod::Basis reduced_basis(const StoreReader& store, Eigen::Index size);
 
 }  // namespace slipmode::results

@@ -13,6 +13,11 @@
 
 namespace slipmode::results {
 
+class MemoryStore;
+struct Dataset;
+class StoreTarget;
+class StoreSource;
+
 /// What a stored number means: written as the attributes `units` and `description` of its dataset.
 /// Units are "1" for a pure number, "" for text and counts without a unit.
 struct Meaning {
@@ -22,8 +27,9 @@ struct Meaning {
   enum class Of : std::uint8_t { kModel, kClock } of = Of::kModel;
 };
 
-/// Writes one HDF5 result file. The content goes to a temporary in the same folder; `commit` renames it into place, so
-/// that a reader sees the whole file or none. A writer destroyed without `commit` leaves nothing behind.
+/// Writes one HDF5 result file, or what it would hold into memory. The content goes to a temporary in the same folder;
+/// `commit` renames it into place, so that a reader sees the whole file or none. A writer destroyed without `commit`
+/// leaves nothing behind.
 ///
 ///     StoreWriter store("out/run.h5", FileKind::kTrajectory);
 ///     store.write("trajectory/time", times, {"s", "sampling instants"});
@@ -40,6 +46,8 @@ class StoreWriter {
   /// @param kind         what the file holds, kept as its attributes `kind` and `description`
   /// @param unit_system  a scene's `units`, "SI" or "dimensionless": what the model's numbers are in
   StoreWriter(std::filesystem::path path, FileKind kind, const std::string& unit_system = "SI");
+  /// Into a store that is still empty and outlives the writer.
+  explicit StoreWriter(MemoryStore& store, const std::string& unit_system = "SI");
   ~StoreWriter();
   StoreWriter(StoreWriter&&) noexcept;
   StoreWriter& operator=(StoreWriter&&) noexcept;
@@ -54,6 +62,8 @@ class StoreWriter {
   void write(const std::string& name, const Eigen::MatrixXd& values, const Meaning& meaning);
   /// Dataset of shape values.cols() x values.rows(): one row per column of `values`. No copy is made.
   void write_columns(const std::string& name, const Eigen::MatrixXd& values, const Meaning& meaning);
+  /// A dataset of another store as it is, a group with its description.
+  void write(const Dataset& dataset);
   /// Makes a group, if not there yet, and gives it a `description`.
   void describe_group(const std::string& name, const std::string& description);
 
@@ -64,8 +74,10 @@ class StoreWriter {
   [[nodiscard]] const std::filesystem::path& path() const;
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  [[nodiscard]] Meaning stored(const Meaning& meaning) const;
+
+  std::unique_ptr<StoreTarget> target_;
+  bool dimensionless_;
 };
 
 /// One thing inside a file, as `slipmode info` shows it.
@@ -76,12 +88,14 @@ struct StoreEntry {
   Meaning meaning;
 };
 
-/// Reads one HDF5 file, ours or anybody's. HDF5's own error printing is silenced; every failure is an InvalidInput that
-/// names file, dataset and remedy: missing file, not HDF5, truncated, missing dataset, wrong type, wrong shape.
-/// Use from one thread at a time.
+/// Reads one HDF5 file, ours or anybody's, or a MemoryStore. HDF5's own error printing is silenced; every failure is an
+/// InvalidInput that names file, dataset and remedy: missing file, not HDF5, truncated, missing dataset, wrong type,
+/// wrong shape. Use from one thread at a time.
 class StoreReader {
  public:
   explicit StoreReader(std::filesystem::path path);
+  /// Of a store in memory, under its own name.
+  explicit StoreReader(std::shared_ptr<const MemoryStore> store);
   ~StoreReader();
   StoreReader(StoreReader&&) noexcept;
   StoreReader& operator=(StoreReader&&) noexcept;
@@ -102,6 +116,9 @@ class StoreReader {
   [[nodiscard]] Eigen::MatrixXd columns(const std::string& name, Eigen::Index rows = kAny,
                                         Eigen::Index cols = kAny) const;
 
+  /// Any dataset as it is: floating-point numbers and integers of every width as double and int64.
+  [[nodiscard]] Dataset dataset(const std::string& name) const;
+
   /// A text attribute of the file itself; empty when it has none of that name.
   [[nodiscard]] std::string attribute(const std::string& key) const;
   /// True when a group or dataset of that name exists.
@@ -119,8 +136,7 @@ class StoreReader {
   [[noreturn]] void fail(const std::string& name, const std::string& what) const;
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  std::unique_ptr<StoreSource> source_;
 };
 
 }  // namespace slipmode::results

@@ -2,6 +2,7 @@
 #include <slipmode/results/store.hpp>
 #include "results/internal/hdf5_handle.hpp"
 #include "results/internal/seal.hpp"
+#include "results/internal/store_ends.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -89,42 +90,34 @@ StoreEntry::Kind entry_kind(H5T_class_t type_class) {
   }
 }
 
-}  // namespace
-
-struct StoreReader::Impl {
-  fs::path path;
-  Hdf5Handle file;
-
-  explicit Impl(fs::path source) : path(std::move(source)) {
+class Hdf5Source final : public StoreSource {
+ public:
+  explicit Hdf5Source(fs::path source) : StoreSource(std::move(source)) {
     const QuietHdf5 quiet;
-    if (const std::string damage = damage_of(path); !damage.empty())
-      throw InvalidInput(fmt::format("{}: {}; copy or make it again", path.string(), damage));
-    file = Hdf5Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-    if (!file.valid()) throw InvalidInput(fmt::format("{}: {}", path.string(), why_not_opened(path)));
+    if (const std::string damage = damage_of(path()); !damage.empty())
+      throw InvalidInput(fmt::format("{}: {}; copy or make it again", path().string(), damage));
+    file_ = Hdf5Handle(H5Fopen(path().c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    if (!file_.valid()) throw InvalidInput(fmt::format("{}: {}", path().string(), why_not_opened(path())));
   }
 
-  ~Impl() {
+  ~Hdf5Source() override {
     const QuietHdf5 quiet;
-    file.reset();
-  }
-
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
-
-  [[noreturn]] void fail(const std::string& name, const std::string& what) const {
-    throw InvalidInput(fmt::format("{}: {}: {}", path.string(), name, what));
+    set_.reset();
+    file_.reset();
   }
 
   /// H5Lexists wants every part of the path to be there, so they are asked for one by one.
-  [[nodiscard]] bool has(const std::string& name) const {
+  [[nodiscard]] bool has(const std::string& name) const override {
+    const QuietHdf5 quiet;
     for (std::size_t end = name.find('/');; end = name.find('/', end + 1)) {
-      if (H5Lexists(file.id(), name.substr(0, end).c_str(), H5P_DEFAULT) <= 0) return false;
+      if (H5Lexists(file_.id(), name.substr(0, end).c_str(), H5P_DEFAULT) <= 0) return false;
       if (end == std::string::npos) return true;
     }
   }
 
-  [[nodiscard]] std::vector<std::string> names(const std::string& group) const {
-    const Hdf5Handle object(H5Gopen2(file.id(), group.empty() ? "/" : group.c_str(), H5P_DEFAULT), H5Gclose);
+  [[nodiscard]] std::vector<std::string> names(const std::string& group) const override {
+    const QuietHdf5 quiet;
+    const Hdf5Handle object(H5Gopen2(file_.id(), group.empty() ? "/" : group.c_str(), H5P_DEFAULT), H5Gclose);
     if (!object.valid()) fail(group, "no such group; see `slipmode info` for what the file holds");
     std::vector<std::string> found;
     const auto collect = [](hid_t, const char* name, const H5L_info_t*, void* data) -> herr_t {
@@ -137,122 +130,143 @@ struct StoreReader::Impl {
     return found;
   }
 
-  [[nodiscard]] Hdf5Handle open(const std::string& name) const {
-    if (!has(name)) {
-      const std::size_t slash = name.rfind('/');
-      const std::string group = slash == std::string::npos ? "" : name.substr(0, slash);
-      const std::string near = group.empty() || has(group) ? fmt::format("{}", fmt::join(names(group), ", ")) : "";
-      fail(name, fmt::format("missing from the file{}; was it written by another verb?",
-                             near.empty() ? "" : fmt::format(" ({} holds: {})", group.empty() ? "it" : group, near)));
-    }
-    Hdf5Handle set(H5Dopen2(file.id(), name.c_str(), H5P_DEFAULT), H5Dclose);
-    if (!set.valid()) fail(name, "is a group or damaged; expected a dataset");
-    return set;
+  [[nodiscard]] std::string attribute(const std::string& key) const override {
+    const QuietHdf5 quiet;
+    const Hdf5Handle root(H5Gopen2(file_.id(), "/", H5P_DEFAULT), H5Gclose);
+    return attribute_text(root.id(), key.c_str());
   }
 
-  [[nodiscard]] static std::vector<std::int64_t> shape_of(hid_t set) {
+  [[nodiscard]] StoreEntry entry(const std::string& name) const override {
+    const QuietHdf5 quiet;
+    StoreEntry found;
+    found.name = name;
+    found.kind = StoreEntry::Kind::kOther;
+    const Hdf5Handle object(H5Oopen(file_.id(), name.c_str(), H5P_DEFAULT), H5Oclose);
+    if (!object.valid()) return found;  // a dangling link in somebody else's file
+    found.meaning = {attribute_text(object.id(), "units"), attribute_text(object.id(), "description")};
+    const H5I_type_t object_type = H5Iget_type(object.id());
+    if (object_type == H5I_GROUP) found.kind = StoreEntry::Kind::kGroup;
+    if (object_type != H5I_DATASET) return found;
+    const Opened opened = opened_of(object.id());
+    found.kind = opened.kind;
+    found.shape = opened.shape;
+    return found;
+  }
+
+  Opened open(const std::string& name) override {
+    const QuietHdf5 quiet;
+    name_ = name;
+    set_ = Hdf5Handle(H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), H5Dclose);
+    if (!set_.valid()) fail(name, "is a group or damaged; expected a dataset");
+    return opened_of(set_.id());
+  }
+
+  void read(double* out_values) const override { read(H5T_NATIVE_DOUBLE, out_values); }
+  void read(std::int64_t* out_values) const override { read(H5T_NATIVE_INT64, out_values); }
+
+  [[nodiscard]] std::vector<std::string> texts() const override {
+    const QuietHdf5 quiet;
+    const Hdf5Handle type(H5Dget_type(set_.id()), H5Tclose);
+    const Hdf5Handle space(H5Dget_space(set_.id()), H5Sclose);
+    bool ok = false;
+    auto values = read_texts(
+        type.id(), space.id(),
+        [&](void* out) { return H5Dread(set_.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, out); }, ok);
+    if (!ok) fail(name_, "cannot be read; the file is truncated or damaged, make it again");
+    return values;
+  }
+
+ private:
+  [[nodiscard]] static Opened opened_of(hid_t set) {
+    const Hdf5Handle type(H5Dget_type(set), H5Tclose);
     const Hdf5Handle space(H5Dget_space(set), H5Sclose);
     std::vector<hsize_t> extents(static_cast<std::size_t>(std::max(0, H5Sget_simple_extent_ndims(space.id()))));
     H5Sget_simple_extent_dims(space.id(), extents.data(), nullptr);
-    return {extents.begin(), extents.end()};
+    return {entry_kind(H5Tget_class(type.id())), {extents.begin(), extents.end()}};
   }
 
-  void check_class(const std::string& name, hid_t set, H5T_class_t wanted, const char* what) const {
-    const Hdf5Handle type(H5Dget_type(set), H5Tclose);
-    const H5T_class_t found = H5Tget_class(type.id());
-    if (found == wanted || (wanted == H5T_FLOAT && found == H5T_INTEGER)) return;
-    fail(name, fmt::format("expected {}, found another type", what));
+  void read(hid_t memory_type, void* out) const {
+    const QuietHdf5 quiet;
+    if (H5Dread(set_.id(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, out) < 0)
+      fail(name_, "cannot be read; the file is truncated or damaged, make it again");
   }
 
-  void check_shape(const std::string& name, hid_t set, std::initializer_list<Eigen::Index> wanted) const {
-    const std::vector<std::int64_t> found = shape_of(set);
-    const bool fits = std::ranges::equal(
-        found, wanted, [](std::int64_t have, Eigen::Index want) { return want == StoreReader::kAny || have == want; });
-    if (fits) return;
-    std::vector<std::string> expected;
-    for (const Eigen::Index extent : wanted) expected.push_back(extent_text(extent));
-    const std::string text = expected.empty() ? "a scalar" : fmt::format("{}", fmt::join(expected, " x "));
-    fail(name, fmt::format("wrong shape: expected {}, found {}; does the file belong to another scene?", text,
-                           shape_text(found)));
-  }
-
-  void read(const std::string& name, hid_t set, hid_t memory_type, void* out) const {
-    if (H5Dread(set, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, out) < 0) {
-      fail(name, "cannot be read; the file is truncated or damaged, make it again");
-    }
-  }
-
-  [[nodiscard]] std::vector<std::string> texts(const std::string& name, hid_t set) const {
-    const Hdf5Handle type(H5Dget_type(set), H5Tclose);
-    const Hdf5Handle space(H5Dget_space(set), H5Sclose);
-    bool ok = false;
-    auto values = read_texts(
-        type.id(), space.id(), [&](void* out) { return H5Dread(set, type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, out); },
-        ok);
-    if (!ok) fail(name, "cannot be read; the file is truncated or damaged, make it again");
-    return values;
-  }
+  Hdf5Handle file_, set_;
+  std::string name_;
 };
 
-StoreReader::StoreReader(fs::path path) : impl_(std::make_unique<Impl>(std::move(path))) {}
+}  // namespace
+
+void StoreSource::fail(const std::string& name, const std::string& what) const {
+  throw InvalidInput(fmt::format("{}: {}: {}", path_.string(), name, what));
+}
+
+StoreSource::Opened StoreSource::open_present(const std::string& name) {
+  if (has(name)) return open(name);
+  const std::size_t slash = name.rfind('/');
+  const std::string group = slash == std::string::npos ? "" : name.substr(0, slash);
+  const std::string near = group.empty() || has(group) ? fmt::format("{}", fmt::join(names(group), ", ")) : "";
+  fail(name, fmt::format("missing from the file{}; was it written by another verb?",
+                         near.empty() ? "" : fmt::format(" ({} holds: {})", group.empty() ? "it" : group, near)));
+}
+
+std::vector<std::int64_t> StoreSource::open_as(const std::string& name, StoreEntry::Kind wanted, const char* what,
+                                               std::initializer_list<Eigen::Index> shape) {
+  const Opened found = open_present(name);
+  const bool counts = wanted == StoreEntry::Kind::kDouble && found.kind == StoreEntry::Kind::kInteger;
+  if (found.kind != wanted && !counts) fail(name, fmt::format("expected {}, found another type", what));
+  const bool fits = std::ranges::equal(found.shape, shape, [](std::int64_t have, Eigen::Index want) {
+    return want == StoreReader::kAny || have == want;
+  });
+  if (fits) return found.shape;
+  std::vector<std::string> expected;
+  for (const Eigen::Index extent : shape) expected.push_back(extent_text(extent));
+  const std::string text = expected.empty() ? "a scalar" : fmt::format("{}", fmt::join(expected, " x "));
+  fail(name, fmt::format("wrong shape: expected {}, found {}; does the file belong to another scene?", text,
+                         shape_text(found.shape)));
+}
+
+StoreReader::StoreReader(fs::path path) : source_(std::make_unique<Hdf5Source>(std::move(path))) {}
+StoreReader::StoreReader(std::shared_ptr<const MemoryStore> store) : source_(memory_source(std::move(store))) {}
 StoreReader::~StoreReader() = default;
 StoreReader::StoreReader(StoreReader&&) noexcept = default;
 StoreReader& StoreReader::operator=(StoreReader&&) noexcept = default;
 
 double StoreReader::number(const std::string& name) const {
-  const QuietHdf5 quiet;
-  const Hdf5Handle set = impl_->open(name);
-  impl_->check_class(name, set.id(), H5T_FLOAT, "a number");
-  impl_->check_shape(name, set.id(), {});
+  source_->open_as(name, StoreEntry::Kind::kDouble, "a number", {});
   double value = 0.0;
-  impl_->read(name, set.id(), H5T_NATIVE_DOUBLE, &value);
+  source_->read(&value);
   return value;
 }
 
 std::int64_t StoreReader::integer(const std::string& name) const {
-  const QuietHdf5 quiet;
-  const Hdf5Handle set = impl_->open(name);
-  impl_->check_class(name, set.id(), H5T_INTEGER, "an integer");
-  impl_->check_shape(name, set.id(), {});
+  source_->open_as(name, StoreEntry::Kind::kInteger, "an integer", {});
   std::int64_t value = 0;
-  impl_->read(name, set.id(), H5T_NATIVE_INT64, &value);
+  source_->read(&value);
   return value;
 }
 
 std::string StoreReader::text(const std::string& name) const {
-  const QuietHdf5 quiet;
-  const Hdf5Handle set = impl_->open(name);
-  impl_->check_class(name, set.id(), H5T_STRING, "a text");
-  impl_->check_shape(name, set.id(), {});
-  return impl_->texts(name, set.id()).at(0);
+  source_->open_as(name, StoreEntry::Kind::kText, "a text", {});
+  return source_->texts().at(0);
 }
 
 Eigen::VectorXd StoreReader::vector(const std::string& name, Eigen::Index size) const {
-  const QuietHdf5 quiet;
-  const Hdf5Handle set = impl_->open(name);
-  impl_->check_class(name, set.id(), H5T_FLOAT, "numbers");
-  impl_->check_shape(name, set.id(), {size});
-  Eigen::VectorXd values(Impl::shape_of(set.id())[0]);
-  impl_->read(name, set.id(), H5T_NATIVE_DOUBLE, values.data());
+  Eigen::VectorXd values(source_->open_as(name, StoreEntry::Kind::kDouble, "numbers", {size})[0]);
+  source_->read(values.data());
   return values;
 }
 
 std::vector<std::int64_t> StoreReader::integers(const std::string& name, Eigen::Index size) const {
-  const QuietHdf5 quiet;
-  const Hdf5Handle set = impl_->open(name);
-  impl_->check_class(name, set.id(), H5T_INTEGER, "integers");
-  impl_->check_shape(name, set.id(), {size});
-  std::vector<std::int64_t> values(static_cast<std::size_t>(Impl::shape_of(set.id())[0]));
-  impl_->read(name, set.id(), H5T_NATIVE_INT64, values.data());
+  const auto shape = source_->open_as(name, StoreEntry::Kind::kInteger, "integers", {size});
+  std::vector<std::int64_t> values(static_cast<std::size_t>(shape[0]));
+  source_->read(values.data());
   return values;
 }
 
 std::vector<std::string> StoreReader::texts(const std::string& name, Eigen::Index size) const {
-  const QuietHdf5 quiet;
-  const Hdf5Handle set = impl_->open(name);
-  impl_->check_class(name, set.id(), H5T_STRING, "texts");
-  impl_->check_shape(name, set.id(), {size});
-  return impl_->texts(name, set.id());
+  source_->open_as(name, StoreEntry::Kind::kText, "texts", {size});
+  return source_->texts();
 }
 
 Eigen::MatrixXd StoreReader::matrix(const std::string& name, Eigen::Index rows, Eigen::Index cols) const {
@@ -260,48 +274,39 @@ Eigen::MatrixXd StoreReader::matrix(const std::string& name, Eigen::Index rows, 
 }
 
 Eigen::MatrixXd StoreReader::columns(const std::string& name, Eigen::Index rows, Eigen::Index cols) const {
-  const QuietHdf5 quiet;
-  const Hdf5Handle set = impl_->open(name);
-  impl_->check_class(name, set.id(), H5T_FLOAT, "a matrix of numbers");
-  impl_->check_shape(name, set.id(), {cols, rows});
-  const std::vector<std::int64_t> shape = Impl::shape_of(set.id());
+  const auto shape = source_->open_as(name, StoreEntry::Kind::kDouble, "a matrix of numbers", {cols, rows});
   Eigen::MatrixXd values(shape[1], shape[0]);
-  impl_->read(name, set.id(), H5T_NATIVE_DOUBLE, values.data());
+  source_->read(values.data());
   return values;
 }
 
-std::string StoreReader::attribute(const std::string& key) const {
-  const QuietHdf5 quiet;
-  const Hdf5Handle root(H5Gopen2(impl_->file.id(), "/", H5P_DEFAULT), H5Gclose);
-  return attribute_text(root.id(), key.c_str());
+Dataset StoreReader::dataset(const std::string& name) const {
+  Dataset found{entry(name)};
+  if (found.kind == StoreEntry::Kind::kGroup) return found;
+  source_->open(name);
+  if (found.kind == StoreEntry::Kind::kDouble) {
+    const std::shared_ptr<double[]> numbers(new double[found.count()]);
+    source_->read(numbers.get());
+    found.numbers = std::shared_ptr<const double>(numbers, numbers.get());
+  } else if (found.kind == StoreEntry::Kind::kInteger) {
+    const std::shared_ptr<std::int64_t[]> integers(new std::int64_t[found.count()]);
+    source_->read(integers.get());
+    found.integers = std::shared_ptr<const std::int64_t>(integers, integers.get());
+  } else if (found.kind == StoreEntry::Kind::kText) {
+    found.texts = source_->texts();
+  }
+  return found;
 }
 
-bool StoreReader::has(const std::string& name) const {
-  const QuietHdf5 quiet;
-  return impl_->has(name);
-}
+std::string StoreReader::attribute(const std::string& key) const { return source_->attribute(key); }
 
-std::vector<std::string> StoreReader::names(const std::string& group) const {
-  const QuietHdf5 quiet;
-  return impl_->names(group);
-}
+bool StoreReader::has(const std::string& name) const { return source_->has(name); }
+
+std::vector<std::string> StoreReader::names(const std::string& group) const { return source_->names(group); }
 
 StoreEntry StoreReader::entry(const std::string& name) const {
-  const QuietHdf5 quiet;
-  StoreEntry found;
-  found.name = name;
-  found.kind = StoreEntry::Kind::kOther;
-  if (!impl_->has(name)) impl_->fail(name, "missing from the file");
-  const Hdf5Handle object(H5Oopen(impl_->file.id(), name.c_str(), H5P_DEFAULT), H5Oclose);
-  if (!object.valid()) return found;  // a dangling link in somebody else's file
-  found.meaning = {attribute_text(object.id(), "units"), attribute_text(object.id(), "description")};
-  const H5I_type_t object_type = H5Iget_type(object.id());
-  if (object_type == H5I_GROUP) found.kind = StoreEntry::Kind::kGroup;
-  if (object_type != H5I_DATASET) return found;
-  const Hdf5Handle type(H5Dget_type(object.id()), H5Tclose);
-  found.kind = entry_kind(H5Tget_class(type.id()));
-  found.shape = Impl::shape_of(object.id());
-  return found;
+  if (!has(name)) source_->fail(name, "missing from the file");
+  return source_->entry(name);
 }
 
 std::vector<StoreEntry> StoreReader::entries() const {
@@ -317,8 +322,8 @@ std::vector<StoreEntry> StoreReader::entries() const {
   return found;
 }
 
-const fs::path& StoreReader::path() const { return impl_->path; }
+const fs::path& StoreReader::path() const { return source_->path(); }
 
-void StoreReader::fail(const std::string& name, const std::string& what) const { impl_->fail(name, what); }
+void StoreReader::fail(const std::string& name, const std::string& what) const { source_->fail(name, what); }
 
 }  // namespace slipmode::results

@@ -2,6 +2,7 @@
 #include <slipmode/results/store.hpp>
 #include "results/internal/hdf5_handle.hpp"
 #include "results/internal/seal.hpp"
+#include "results/internal/store_ends.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -69,49 +70,90 @@ bool has_dimension(const std::string& units) {
   return false;
 }
 
-}  // namespace
-
-struct StoreWriter::Impl {
-  fs::path path;
-  fs::path temporary;
-  Hdf5Handle file;
-  bool dimensionless = false;
-  bool failed = false;
-
-  Impl(fs::path target, bool without_dimensions) : path(std::move(target)), dimensionless(without_dimensions) {
-    check_target(path);
-    temporary = temporary_beside(path);
+/// A file under a temporary name.
+class Hdf5Target final : public StoreTarget {
+ public:
+  explicit Hdf5Target(fs::path target) : StoreTarget(std::move(target)) {
+    check_target(path());
+    temporary_ = temporary_beside(path());
     const QuietHdf5 quiet;
     const Hdf5Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
     H5Pset_userblock(creation.id(), kSealBytes);
-    file = Hdf5Handle(H5Fcreate(temporary.c_str(), H5F_ACC_EXCL, creation.id(), H5P_DEFAULT), H5Fclose);
-    if (!file.valid()) {
+    file_ = Hdf5Handle(H5Fcreate(temporary_.c_str(), H5F_ACC_EXCL, creation.id(), H5P_DEFAULT), H5Fclose);
+    if (!file_.valid()) {
       const int cause = errno;
       std::error_code ignored;
-      fs::remove(temporary, ignored);  // made, but not even its first bytes written
+      fs::remove(temporary_, ignored);  // made, but not even its first bytes written
       throw InvalidInput(
           fmt::format("{}: cannot be written ({}); check the folder's permissions or choose another output",
-                      path.string(), std::strerror(cause)));
+                      path().string(), std::strerror(cause)));
     }
   }
 
-  ~Impl() {
+  ~Hdf5Target() override {
     const QuietHdf5 quiet;
-    file.reset();
+    file_.reset();
     std::error_code ignored;
-    if (!temporary.empty()) fs::remove(temporary, ignored);
+    if (!temporary_.empty()) fs::remove(temporary_, ignored);
   }
 
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
-
-  [[noreturn]] void fail(const std::string& name, const std::string& what) const {
-    throw InvalidInput(fmt::format("{}: {}: {}", path.string(), name, what));
+  void say(const FileKindWords& words) const {
+    const QuietHdf5 quiet;
+    const Hdf5Handle root(H5Gopen2(file_.id(), "/", H5P_DEFAULT), H5Gclose);
+    attribute(root.id(), "kind", words.word);
+    attribute(root.id(), "description", words.meaning);
   }
 
+  void write(const std::string& name, const Shape& shape, const double* values, const Meaning& meaning) override {
+    dataset(name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, shape, values, meaning);
+  }
+
+  void write(const std::string& name, const Shape& shape, const std::int64_t* values, const Meaning& meaning) override {
+    dataset(name, H5T_STD_I64LE, H5T_NATIVE_INT64, shape, values, meaning);
+  }
+
+  void write(const std::string& name, const Shape& shape, std::span<const std::string> values,
+             const Meaning& meaning) override {
+    std::size_t width = 1;
+    for (const std::string& value : values) width = std::max(width, value.size());
+    std::string padded(width * values.size(), '\0');
+    for (std::size_t i = 0; i < values.size(); ++i)
+      std::ranges::copy(values[i], padded.begin() + std::ptrdiff_t(i * width));
+    const Hdf5Handle type = text_type(width);
+    dataset(name, type.id(), type.id(), shape, padded.data(), meaning);
+  }
+
+  void describe_group(const std::string& name, const std::string& description) override {
+    const QuietHdf5 quiet;
+    check_open(name);
+    Hdf5Handle group(H5Gopen2(file_.id(), name.c_str(), H5P_DEFAULT), H5Gclose);
+    if (!group.valid()) {
+      const Hdf5Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+      H5Pset_create_intermediate_group(links.id(), 1);
+      group = Hdf5Handle(H5Gcreate2(file_.id(), name.c_str(), links.id(), H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
+    }
+    if (!group.valid()) fail(name, "group could not be made; is there a dataset of this name already?");
+    attribute(group.id(), "description", description);
+  }
+
+  void commit() override {
+    const QuietHdf5 quiet;
+    check_open("commit");
+    if (!file_.reset() || !seal(temporary_)) fail("commit", "could not be finished; is the disc full?");
+    const int descriptor = ::open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
+    const bool synced = descriptor >= 0 && ::fsync(descriptor) == 0;
+    if (descriptor >= 0) ::close(descriptor);
+    if (!synced) fail("commit", fmt::format("could not be synced: {}", std::strerror(errno)));
+    std::error_code error;
+    fs::rename(temporary_, path(), error);
+    if (error) fail("commit", fmt::format("could not be renamed into place: {}", error.message()));
+    temporary_.clear();
+  }
+
+ private:
   void check_open(const std::string& name) const {
-    if (failed) fail(name, "an earlier write to this file failed");
-    if (!file.valid()) fail(name, "the file is already committed; write everything before commit");
+    if (failed_) fail(name, "an earlier write to this file failed");
+    if (!file_.valid()) fail(name, "the file is already committed; write everything before commit");
   }
 
   void attribute(hid_t object, const char* key, const std::string& value) const {
@@ -124,10 +166,11 @@ struct StoreWriter::Impl {
   }
 
   /// The one place where a dataset is made. An empty shape is a scalar.
-  void dataset(const std::string& name, hid_t file_type, hid_t memory_type, const std::vector<hsize_t>& shape,
-               const void* data, const Meaning& meaning) {
+  void dataset(const std::string& name, hid_t file_type, hid_t memory_type, const Shape& extents, const void* data,
+               const Meaning& meaning) {
     const QuietHdf5 quiet;
     check_open(name);
+    const std::vector<hsize_t> shape(extents.begin(), extents.end());
     const Hdf5Handle space(
         shape.empty() ? H5Screate(H5S_SCALAR) : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
         H5Sclose);
@@ -148,63 +191,70 @@ struct StoreWriter::Impl {
     }
 
     const Hdf5Handle set(
-        H5Dcreate2(file.id(), name.c_str(), file_type, space.id(), links.id(), layout.id(), H5P_DEFAULT), H5Dclose);
+        H5Dcreate2(file_.id(), name.c_str(), file_type, space.id(), links.id(), layout.id(), H5P_DEFAULT), H5Dclose);
     if (!set.valid()) fail(name, "dataset could not be made; is there one of this name already, or is the disc full?");
     if (count > 0 && H5Dwrite(set.id(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) {
-      failed = true;
+      failed_ = true;
       fail(name, "could not be written; is the disc full?");
     }
-    const bool is_number = dimensionless && meaning.of == Meaning::Of::kModel && has_dimension(meaning.units);
-    attribute(set.id(), "units", is_number ? "1" : meaning.units);
+    attribute(set.id(), "units", meaning.units);
     attribute(set.id(), "description", meaning.description);
   }
+
+  fs::path temporary_;
+  Hdf5Handle file_;
+  bool failed_ = false;
 };
 
-StoreWriter::StoreWriter(fs::path path, FileKind kind, const std::string& unit_system)
-    : impl_(std::make_unique<Impl>(std::move(path), unit_system != "SI")) {
-  const QuietHdf5 quiet;
-  const Hdf5Handle root(H5Gopen2(impl_->file.id(), "/", H5P_DEFAULT), H5Gclose);
-  impl_->attribute(root.id(), "kind", words_of(kind).word);
-  impl_->attribute(root.id(), "description", words_of(kind).meaning);
+}  // namespace
+
+void StoreTarget::fail(const std::string& name, const std::string& what) const {
+  throw InvalidInput(fmt::format("{}: {}: {}", path_.string(), name, what));
 }
+
+StoreWriter::StoreWriter(fs::path path, FileKind kind, const std::string& unit_system)
+    : dimensionless_(unit_system != "SI") {
+  auto target = std::make_unique<Hdf5Target>(std::move(path));
+  target->say(words_of(kind));
+  target_ = std::move(target);
+}
+StoreWriter::StoreWriter(MemoryStore& store, const std::string& unit_system)
+    : target_(memory_target(store)), dimensionless_(unit_system != "SI") {}
 StoreWriter::~StoreWriter() = default;
 StoreWriter::StoreWriter(StoreWriter&&) noexcept = default;
 StoreWriter& StoreWriter::operator=(StoreWriter&&) noexcept = default;
 
+Meaning StoreWriter::stored(const Meaning& meaning) const {
+  const bool is_number = dimensionless_ && meaning.of == Meaning::Of::kModel && has_dimension(meaning.units);
+  return is_number ? Meaning{"1", meaning.description} : meaning;
+}
+
 void StoreWriter::write(const std::string& name, double value, const Meaning& meaning) {
-  impl_->dataset(name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {}, &value, meaning);
+  target_->write(name, {}, &value, stored(meaning));
 }
 
 void StoreWriter::write(const std::string& name, std::int64_t value, const Meaning& meaning) {
-  impl_->dataset(name, H5T_STD_I64LE, H5T_NATIVE_INT64, {}, &value, meaning);
+  target_->write(name, {}, &value, stored(meaning));
 }
 
 void StoreWriter::write(const std::string& name, const std::string& value, const Meaning& meaning) {
-  const Hdf5Handle type = text_type(value.size());
-  impl_->dataset(name, type.id(), type.id(), {}, value.empty() ? "" : value.data(), meaning);
+  target_->write(name, {}, {&value, 1}, stored(meaning));
 }
 
 void StoreWriter::write(const std::string& name, const Eigen::VectorXd& values, const Meaning& meaning) {
-  const std::vector<hsize_t> shape{static_cast<hsize_t>(values.size())};
-  impl_->dataset(name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, shape, values.data(), meaning);
+  target_->write(name, {values.size()}, values.data(), stored(meaning));
 }
 
 void StoreWriter::write(const std::string& name, const std::vector<double>& values, const Meaning& meaning) {
-  impl_->dataset(name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {values.size()}, values.data(), meaning);
+  target_->write(name, {std::ssize(values)}, values.data(), stored(meaning));
 }
 
 void StoreWriter::write(const std::string& name, const std::vector<std::int64_t>& values, const Meaning& meaning) {
-  impl_->dataset(name, H5T_STD_I64LE, H5T_NATIVE_INT64, {values.size()}, values.data(), meaning);
+  target_->write(name, {std::ssize(values)}, values.data(), stored(meaning));
 }
 
 void StoreWriter::write(const std::string& name, const std::vector<std::string>& values, const Meaning& meaning) {
-  std::size_t width = 1;
-  for (const std::string& value : values) width = std::max(width, value.size());
-  std::string padded(width * values.size(), '\0');
-  for (std::size_t i = 0; i < values.size(); ++i)
-    std::ranges::copy(values[i], padded.begin() + std::ptrdiff_t(i * width));
-  const Hdf5Handle type = text_type(width);
-  impl_->dataset(name, type.id(), type.id(), {values.size()}, padded.data(), meaning);
+  target_->write(name, {std::ssize(values)}, values, stored(meaning));
 }
 
 void StoreWriter::write(const std::string& name, const Eigen::MatrixXd& values, const Meaning& meaning) {
@@ -213,38 +263,27 @@ void StoreWriter::write(const std::string& name, const Eigen::MatrixXd& values, 
 }
 
 void StoreWriter::write_columns(const std::string& name, const Eigen::MatrixXd& values, const Meaning& meaning) {
-  const std::vector<hsize_t> shape{static_cast<hsize_t>(values.cols()), static_cast<hsize_t>(values.rows())};
-  impl_->dataset(name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, shape, values.data(), meaning);
+  target_->write(name, {values.cols(), values.rows()}, values.data(), stored(meaning));
+}
+
+void StoreWriter::write(const Dataset& dataset) {
+  if (dataset.kind == StoreEntry::Kind::kGroup) {
+    describe_group(dataset.name, dataset.meaning.description);
+  } else if (dataset.numbers != nullptr) {
+    target_->write(dataset.name, dataset.shape, dataset.numbers.get(), stored(dataset.meaning));
+  } else if (dataset.integers != nullptr) {
+    target_->write(dataset.name, dataset.shape, dataset.integers.get(), stored(dataset.meaning));
+  } else {
+    target_->write(dataset.name, dataset.shape, dataset.texts, stored(dataset.meaning));
+  }
 }
 
 void StoreWriter::describe_group(const std::string& name, const std::string& description) {
-  const QuietHdf5 quiet;
-  impl_->check_open(name);
-  Hdf5Handle group(H5Gopen2(impl_->file.id(), name.c_str(), H5P_DEFAULT), H5Gclose);
-  if (!group.valid()) {
-    const Hdf5Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
-    H5Pset_create_intermediate_group(links.id(), 1);
-    group = Hdf5Handle(H5Gcreate2(impl_->file.id(), name.c_str(), links.id(), H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
-  }
-  if (!group.valid()) impl_->fail(name, "group could not be made; is there a dataset of this name already?");
-  impl_->attribute(group.id(), "description", description);
+  target_->describe_group(name, description);
 }
 
-void StoreWriter::commit() {
-  const QuietHdf5 quiet;
-  impl_->check_open("commit");
-  if (!impl_->file.reset() || !seal(impl_->temporary))
-    impl_->fail("commit", "could not be finished; is the disc full?");
-  const int descriptor = ::open(impl_->temporary.c_str(), O_RDONLY | O_CLOEXEC);
-  const bool synced = descriptor >= 0 && ::fsync(descriptor) == 0;
-  if (descriptor >= 0) ::close(descriptor);
-  if (!synced) impl_->fail("commit", fmt::format("could not be synced: {}", std::strerror(errno)));
-  std::error_code error;
-  fs::rename(impl_->temporary, impl_->path, error);
-  if (error) impl_->fail("commit", fmt::format("could not be renamed into place: {}", error.message()));
-  impl_->temporary.clear();
-}
+void StoreWriter::commit() { target_->commit(); }
 
-const fs::path& StoreWriter::path() const { return impl_->path; }
+const fs::path& StoreWriter::path() const { return target_->path(); }
 
 }  // namespace slipmode::results

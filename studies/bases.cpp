@@ -282,7 +282,12 @@ pod::NamedBasis load_basis(const scene::Scene& scene, const dynamics::HybridSyst
     }
   }
   if (source == "lnm") return {.name = "LNM", .basis = rom::lnm_basis(full.structure(), n)};
-  const results::StoreReader store(source);
+  return load_basis(scene, full, results::StoreReader(source));
+}
+
+pod::NamedBasis load_basis(const scene::Scene& scene, const dynamics::HybridSystem& full,
+                           const results::StoreReader& store) {
+  const Eigen::Index n = full.size();
   const FileKind kind = results::require_kind(store, std::array{FileKind::kPod, FileKind::kReduced, FileKind::kBasis});
   if (kind == FileKind::kPod) {
     if (is_shaken(scene)) {  // such a POD holds several bases: the one that reduction.basis names is taken
@@ -302,7 +307,7 @@ pod::NamedBasis load_basis(const scene::Scene& scene, const dynamics::HybridSyst
 std::optional<pod::NamedBasis> model_basis(const scene::Scene& scene, const std::string& model, const RunOptions& run) {
   if (model == "full") return std::nullopt;
   if (const auto file = results::reduced_file(model)) {
-    return pod::NamedBasis{.name = "", .basis = results::reduced_basis(*file, scene.size())};
+    return pod::NamedBasis{.name = "", .basis = results::reduced_basis(results::StoreReader(*file), scene.size())};
   }
   if (!is_shaken(scene)) {
     throw InvalidInput(fmt::format("--model {}: expected full, or rom:FILE with a result of 'slipmode reduce'", model));

@@ -52,6 +52,8 @@ namespace slipmode::studies {
 /// @throws InvalidInput  when the file holds no basis, or one for another number of degrees of freedom
 [[nodiscard]] pod::NamedBasis load_basis(const scene::Scene& scene, const dynamics::HybridSystem& full,
                                          const std::string& source);
+[[nodiscard]] pod::NamedBasis load_basis(const scene::Scene& scene, const dynamics::HybridSystem& full,
+                                         const results::StoreReader& store);
 
 /// The basis of a model named "full" (none), "rom:FILE", or under a shaker "BASIS:L", made as the scene's ensemble
 /// says.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <slipmode/core/fields.hpp>
 #include <slipmode/results/basins_store.hpp>
 #include <slipmode/studies/family.hpp>
 #include <slipmode/studies/result_file.hpp>
@@ -7,6 +8,7 @@
 
 #include <array>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace slipmode::studies {
@@ -24,10 +26,19 @@ struct BasinsRequest {
 };
 
 struct BasinsOptions {
-  int max_order = 8;                    ///< longest period looked for, in periods of the drive
-  int periods = 1000;                   ///< of the drive, simulated at most where a start arrives at nothing known
-  int sample = 16;                      ///< starts each way that are followed first, to find attractors
+  int max_order = 8;
+  int periods = 1000;
+  int sample = 16;
   results::Journal* journal = nullptr;  ///< keeps finished rows and gives back earlier ones
+
+  static constexpr auto fields() {
+    using Own = BasinsOptions;
+    return std::tuple{
+        optional("max_order", &Own::max_order, "", "longest period looked for, in periods of the drive", kCount),
+        optional("periods", &Own::periods, "",
+                 "periods of the drive simulated at most where a start arrives at no attractor known before", kCount),
+        optional("sample", &Own::sample, "", "starts each way that are followed first, to find attractors", kCount)};
+  }
 };
 
 /// Basins of a driven scene over two coordinates of the start, and along a key of the scene.

@@ -1,5 +1,6 @@
 #include <slipmode/studies/ensemble.hpp>
 
+#include <slipmode/results/ensemble_store.hpp>
 #include <slipmode/studies/family.hpp>
 
 #include <utility>
@@ -45,6 +46,16 @@ diagnostics::EnsembleRun ensemble(const scene::Scene& scene, const RunOptions& r
   diagnostics::EnsembleRun all;  // a time in cycles is another one at each frequency
   for (const double frequency : parameters) append(all, run_at({frequency}, scene::time_at(scene, frequency)));
   return all;
+}
+
+results::Content content_of(const scene::Scene& scene,
+                            const std::shared_ptr<const diagnostics::EnsembleRun>& ensemble) {
+  const Eigen::MatrixXd& snapshots = ensemble->ensemble.snapshots;
+  return {
+      .kind = results::FileKind::kEnsemble,
+      .unit_system = scene.units,
+      .write = [scene, ensemble](results::StoreWriter& writer) { results::store_ensemble(writer, scene, *ensemble); },
+      .shared = {{ensemble, {snapshots.data(), static_cast<std::size_t>(snapshots.size())}}}};
 }
 
 }  // namespace slipmode::studies

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <slipmode/diagnostics/attractors/ensemble_run.hpp>
+#include <slipmode/results/memory_store.hpp>
 #include <slipmode/scene/scene.hpp>
 #include <slipmode/studies/run_options.hpp>
+
+#include <memory>
 
 namespace slipmode::studies {
 
@@ -10,5 +13,9 @@ namespace slipmode::studies {
 /// frequencies; a belt that is not constant, or a force, keeps its own.
 /// @throws as diagnostics::run_ensemble
 [[nodiscard]] diagnostics::EnsembleRun ensemble(const scene::Scene& scene, const RunOptions& run = {});
+
+/// What is kept of it. Shares its snapshots.
+[[nodiscard]] results::Content content_of(const scene::Scene& scene,
+                                          const std::shared_ptr<const diagnostics::EnsembleRun>& ensemble);
 
 }  // namespace slipmode::studies

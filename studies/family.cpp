@@ -172,4 +172,15 @@ dynamics::SystemFamily Family::systems() const {
   return [family = *this](double value) { return family.at({value}); };
 }
 
+void check_values(const scene::Scene& scene, const std::string& key, const std::vector<double>& values) {
+  for (const double value : values) {
+    const Eigen::Index size = scene::set_key(scene, key, value).size();
+    if (size == scene.size()) continue;
+    throw InvalidInput(
+        fmt::format("--over {}: the number of degrees of freedom must stay at {} along a sweep, value {} changes it; "
+                    "run one sweep per size with --set",
+                    key, scene.size(), value));
+  }
+}
+
 }  // namespace slipmode::studies

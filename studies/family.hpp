@@ -58,4 +58,8 @@ class Family {
   std::shared_ptr<const Shared> shared_;
 };
 
+/// Every value is tried before the first is computed: a typing error must not show after an hour.
+/// @throws InvalidInput  for a value the scene refuses or that changes the number of degrees of freedom
+void check_values(const scene::Scene& scene, const std::string& key, const std::vector<double>& values);
+
 }  // namespace slipmode::studies

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <slipmode/core/fields.hpp>
 #include <slipmode/results/map_store.hpp>
 #include <slipmode/studies/family.hpp>
 #include <slipmode/studies/result_file.hpp>
 #include <slipmode/studies/run_options.hpp>
 
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace slipmode::studies {
@@ -13,12 +15,23 @@ namespace slipmode::studies {
 struct OrbitMapOptions {
   /// Where motions begin: "scene" (its [initial]) and "centre" (the steady linear motion in the gap).
   std::vector<std::string> starts = {"scene"};
-  int max_order = 8;                    ///< longest period looked for, in periods of the drive
-  int periods = 1000;                   ///< of the drive, simulated at most
-  int kept = 100;                       ///< one key: of them kept, the last ones
-  double tolerance = 1e-5;              ///< one key: sections nearer than this, relative, are the same
-  bool follow = false;                  ///< one key: start each value where the one before it ended
+  int max_order = 8;
+  int periods = 1000;
+  int kept = 100;
+  double tolerance = 1e-5;
+  bool follow = false;
   results::Journal* journal = nullptr;  ///< keeps finished values and gives back earlier ones
+
+  static constexpr auto fields() {
+    using Own = OrbitMapOptions;
+    return std::tuple{
+        optional("max_order", &Own::max_order, "", "longest period looked for, in periods of the drive", kCount),
+        optional("periods", &Own::periods, "", "periods of the drive simulated at most", kCount),
+        optional("kept", &Own::kept, "", "one key: periods of them kept, the last ones", kCount),
+        optional("tolerance", &Own::tolerance, "1", "one key: sections nearer than this, relative, are the same",
+                 kPositive),
+        optional("follow", &Own::follow, "", "one key: start each value where the one before it ended")};
+  }
 };
 
 /// Settled motion of a driven scene over one key (`strobes`) or two (`maps`), one entry per start.

@@ -2,6 +2,9 @@
 
 #include <slipmode/core/errors.hpp>
 #include <slipmode/orbits/continuation.hpp>
+#include <slipmode/results/orbit_records.hpp>
+#include <slipmode/results/provenance.hpp>
+#include <slipmode/results/records.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -154,6 +157,41 @@ Continuation continue_orbit(const scene::Scene& scene, const std::string& key,
   over.options.shooting = start.options;
   out.branches = follow(over.systems, out.found.orbit, out.start, over.options, request.switches);
   return out;
+}
+
+void store(results::StoreWriter& writer, const Family& model, const orbits::PeriodicOrbit* orbit) {
+  results::Provenance provenance = results::provenance_of(model.scene(), "slipmode orbit find");
+  if (orbit != nullptr) {
+    constexpr double kSamples = 1000.0;
+    const dynamics::Trajectory period = dynamics::simulate(
+        model.own(), orbit->start,
+        {.duration = orbit->period, .sample = orbit->period / kSamples, .flow = {.tolerance = 1e-12}});
+    provenance.audit = period.audit;
+    results::save(writer, results::kOrbitGroup, *orbit);
+    results::save(writer, results::kTrajectoryGroup, period);
+  }
+  results::save(writer, provenance);
+}
+
+results::Content content_of(const Family& model, std::shared_ptr<const orbits::PeriodicOrbit> orbit) {
+  return {
+      .kind = results::FileKind::kOrbit,
+      .unit_system = model.scene().units,
+      .write = [model, orbit = std::move(orbit)](results::StoreWriter& writer) { store(writer, model, orbit.get()); }};
+}
+
+results::Content content_of(const Family& model, double start,
+                            std::shared_ptr<const std::vector<results::NamedBranch>> branches,
+                            const std::string& command) {
+  const std::string key = model.keys().front();
+  return {.kind = results::FileKind::kBranches,
+          .unit_system = model.scene().units,
+          .write = [model, key, branches = std::move(branches),
+                    provenance = results::provenance_of(scene::set_key(model.scene(), key, start), command)](
+                       results::StoreWriter& writer) {
+            results::save(writer, provenance);
+            results::store_branches(writer, key, *branches, model.systems());
+          }};
 }
 
 }  // namespace slipmode::studies

@@ -115,9 +115,10 @@ class Pipeline {
   }
 
   void ensemble() {
-    result_.ensemble = studies::ensemble(scene_, run_);
-    results::store_ensemble(file("ensemble.h5"), scene_, *result_.ensemble);
-    result_.snapshots = result_.ensemble->ensemble.snapshots.cols();
+    const auto run = std::make_shared<diagnostics::EnsembleRun>(studies::ensemble(scene_, run_));
+    content_of(scene_, run).save(file("ensemble.h5"));
+    result_.snapshots = run->ensemble.snapshots.cols();
+    result_.ensemble = std::move(*run);
   }
 
   void pod() {
@@ -160,12 +161,9 @@ class Pipeline {
   }
 
   void validate() {
-    if (shaken_) {
-      result_.driven_validation = validate_shaken(scene_, bases_, file("validation.h5"), run_);
-    } else {
-      result_.validation =
-          studies::validate(scene_, bases_, validation_options(scene_, bases_), file("validation.h5"), run_);
-    }
+    const Validation done = studies::validate(scene_, bases_, ValidationRequest{}, file("validation.h5"), run_);
+    if (done.shaken) result_.driven_validation = *done.shaken;
+    if (done.belt) result_.validation = *done.belt;
   }
 
   /// Files that show the same as another one are skipped.

@@ -28,8 +28,8 @@ std::optional<results::Shard> checked(const std::optional<results::Shard>& shard
                                       const std::filesystem::path& path) {
   if (shard && std::filesystem::exists(path)) (void)results::Journal::read(path);  // no other file is replaced
   if (!shard || shard->count <= pieces.count) return shard;
-  throw InvalidInput(fmt::format("--shard {}: expected at most {} shards, the number of {}",
-                                 results::to_string(*shard), pieces.count, pieces.what));
+  throw InvalidInput(fmt::format("--shard {}: expected at most {} shards, the number of {}", results::to_string(*shard),
+                                 pieces.count, pieces.what));
 }
 
 std::vector<results::JournalRecord> all_records(const std::vector<results::Part>& parts) {
@@ -48,32 +48,35 @@ ResultFile::ResultFile(std::filesystem::path path, scene::Scene scene, results::
       command_(std::move(command)),
       fingerprint_(results::fingerprint(
           fmt::format("{}\n{}\n{}\n{}", results::version(), command_, identity, scene::scene_to_toml(scene_)))),
-      shard_(checked(division.shard, pieces, path_)),
-      journal_(division.joined.empty()
-                   ? results::Journal(results::Journal::path_for(path_),
-                                      shard_ ? results::shard_fingerprint(fingerprint_, *shard_) : fingerprint_)
-                   : results::Journal(all_records(division.joined))) {
+      shard_(checked(division.shard, pieces, path_)) {
+  if (path_.empty()) return;
+  if (division.joined.empty()) {
+    journal_.emplace(results::Journal::path_for(path_),
+                     shard_ ? results::shard_fingerprint(fingerprint_, *shard_) : fingerprint_);
+  } else {
+    journal_.emplace(all_records(division.joined));
+  }
   if (shard_) begin_part(division.words);
   if (!division.joined.empty()) join(division.joined);
   resumed_ = finished();
 }
 
 void ResultFile::begin_part(const std::vector<std::string>& words) {
-  journal_.set_leave([shard = *shard_](std::size_t piece, const auto&) { return !shard.has(piece); });
-  if (!journal_.records().empty()) return;
+  journal_->set_leave([shard = *shard_](std::size_t piece, const auto&) { return !shard.has(piece); });
+  if (!journal_->records().empty()) return;
   if (std::filesystem::exists(path_)) {  // the same part, computed before
     const results::JournalText whole = results::Journal::read(path_);
     if (!whole.damaged && whole.fingerprint == results::shard_fingerprint(fingerprint_, *shard_)) {
-      for (const results::JournalRecord& record : whole.records) journal_.append(record);
+      for (const results::JournalRecord& record : whole.records) journal_->append(record);
     }
   }
-  if (!journal_.records().empty()) return;
-  journal_.append(results::to_record({.shard = *shard_,
-                                      .version = results::version(),
-                                      .rounding = rounding(),
-                                      .command = command_,
-                                      .words = words,
-                                      .scene = scene_.source}));
+  if (!journal_->records().empty()) return;
+  journal_->append(results::to_record({.shard = *shard_,
+                                       .version = results::version(),
+                                       .rounding = rounding(),
+                                       .command = command_,
+                                       .words = words,
+                                       .scene = scene_.source}));
 }
 
 void ResultFile::join(const std::vector<results::Part>& parts) {
@@ -87,7 +90,7 @@ void ResultFile::join(const std::vector<results::Part>& parts) {
     }
     lacks_[part.head.shard.number - 1] = {part.path.string(), results::command_line(part), {}};
   }
-  journal_.set_leave([this](std::size_t piece, const results::JournalRecord& value) {
+  journal_->set_leave([this](std::size_t piece, const results::JournalRecord& value) {
     lacks_[piece % lacks_.size()].values.push_back(value);
     return true;
   });
@@ -108,17 +111,23 @@ void ResultFile::require_all() const {
   if (!text.empty()) throw InvalidInput(text.substr(0, text.size() - 1));
 }
 
-void ResultFile::finish(const std::function<void(results::StoreWriter&)>& write) {
+results::Content ResultFile::finish(std::function<void(results::StoreWriter&)> write) {
+  results::Content content{.kind = kind_,
+                           .unit_system = scene_.units,
+                           .write = [provenance = results::provenance_of(scene_, command_),
+                                     write = std::move(write)](results::StoreWriter& writer) {
+                             results::save(writer, provenance);
+                             write(writer);
+                           }};
+  if (!journal_) return content;
   if (shard_) {
-    journal_.publish(path_);
-    return;
+    journal_->publish(path_);
+    return content;
   }
   require_all();
-  results::StoreWriter writer(path_, kind_, scene_.units);
-  results::save(writer, results::provenance_of(scene_, command_));
-  write(writer);
-  writer.commit();
-  journal_.remove();
+  content.save(path_);
+  journal_->remove();
+  return content;
 }
 
 std::string identity_of(const std::filesystem::path& file) {

@@ -2,6 +2,7 @@
 
 #include <slipmode/pod/basis.hpp>
 #include <slipmode/results/journal.hpp>
+#include <slipmode/results/memory_store.hpp>
 #include <slipmode/results/part.hpp>
 #include <slipmode/results/store.hpp>
 #include <slipmode/scene/scene.hpp>
@@ -28,11 +29,12 @@ struct Division {
   std::vector<std::string> words;       ///< of the command line, for the head of a part
 };
 
-/// A result file in the making. Values that a long study finishes are kept in a journal beside it until the file is
-/// whole; the same study, asked again after an interruption, goes on from there. A shard's file is a part: its journal,
-/// complete. Joined parts stand in for the journal of a study whose values are all there.
+/// A result in the making, for a file or for memory. Values that a long study finishes are kept in a journal beside its
+/// file until that is whole; the same study, asked again after an interruption, goes on from there. A shard's file is a
+/// part: its journal, complete. Joined parts stand in for the journal of a study whose values are all there.
 class ResultFile {
  public:
+  /// @param path      empty: in memory only, without a journal
   /// @param command   what was asked, for provenance: with the scene, the version and `identity` it decides whether a
   ///                  journal found beside the file belongs to the same study
   /// @param identity  of what else decides values: the models of files, see identity_of
@@ -40,16 +42,17 @@ class ResultFile {
   ResultFile(std::filesystem::path path, scene::Scene scene, results::FileKind kind, std::string command,
              const std::string& identity = "", const Division& division = {}, const Pieces& pieces = {});
 
-  [[nodiscard]] results::Journal& journal() { return journal_; }
+  /// Null without a file.
+  [[nodiscard]] results::Journal* journal() { return journal_ ? &*journal_ : nullptr; }
   /// Values that were found finished.
   [[nodiscard]] std::size_t resumed() const { return resumed_; }
   /// Values that are finished by now.
-  [[nodiscard]] std::size_t finished() const { return journal_.records().size() - (shard_ ? 1 : 0); }
+  [[nodiscard]] std::size_t finished() const { return journal_ ? journal_->records().size() - (shard_ ? 1 : 0) : 0; }
 
-  /// Writes provenance and what `write` adds under a temporary name, renames it and drops the journal. A shard's
-  /// journal becomes the part instead.
+  /// Provenance and what `write` adds: written under a temporary name, which is renamed, when there is a file, whose
+  /// journal is then dropped. A shard's journal becomes the part instead.
   /// @throws InvalidInput  when values are missing in the parts: says which, and what finishes them
-  void finish(const std::function<void(results::StoreWriter&)>& write);
+  results::Content finish(std::function<void(results::StoreWriter&)> write);
 
  private:
   void begin_part(const std::vector<std::string>& words);
@@ -61,7 +64,7 @@ class ResultFile {
   results::FileKind kind_;
   std::string command_, fingerprint_;
   std::optional<results::Shard> shard_;
-  results::Journal journal_;
+  std::optional<results::Journal> journal_;
   std::size_t resumed_ = 0;
   /// Of joined parts: what each lacks, and the command that finishes it.
   struct Lack {

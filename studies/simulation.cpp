@@ -1,5 +1,12 @@
 #include <slipmode/studies/simulation.hpp>
 
+#include <slipmode/core/describe.hpp>
+#include <slipmode/results/ensemble_store.hpp>
+#include <slipmode/results/provenance.hpp>
+#include <slipmode/results/records.hpp>
+
+#include <utility>
+
 namespace slipmode::studies {
 namespace {
 
@@ -36,6 +43,27 @@ Simulation simulate(const scene::Scene& scene, const RunOptions& run) {
     options.duration = reached;
     return {watched(system, start, options, run), failure};
   }
+}
+
+results::Content content_of(const scene::Scene& scene, std::shared_ptr<const Simulation> simulation) {
+  const dynamics::Trajectory& run = simulation->trajectory;
+  results::Content content{.kind = results::FileKind::kTrajectory, .unit_system = scene.units, .write = {}};
+  for (const Eigen::MatrixXd* samples : {&run.q, &run.v, &run.contact_q, &run.contact_v, &run.lambda})
+    content.shared.push_back({simulation, {samples->data(), static_cast<std::size_t>(samples->size())}});
+  content.shared.push_back({simulation, {run.times.data(), static_cast<std::size_t>(run.times.size())}});
+  content.write = [scene, simulation = std::move(simulation)](results::StoreWriter& writer) {
+    const dynamics::Trajectory& trajectory = simulation->trajectory;
+    results::Provenance provenance = results::provenance_of(scene, "slipmode simulate");
+    provenance.audit = trajectory.audit;
+    results::save(writer, provenance);
+    results::save(writer, results::kTrajectoryGroup, trajectory);
+    if (scene.sensors) results::store_sensors(writer, scene, trajectory.q);
+    if (simulation->failure) {
+      writer.write("trajectory/incomplete", describe(*simulation->failure),
+                   {"", "the run stopped early: why and where"});
+    }
+  };
+  return content;
 }
 
 }  // namespace slipmode::studies

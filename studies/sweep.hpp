@@ -1,23 +1,35 @@
 #pragma once
 
+#include <slipmode/core/fields.hpp>
 #include <slipmode/studies/family.hpp>
 #include <slipmode/studies/result_file.hpp>
 #include <slipmode/studies/run_options.hpp>
 
 #include <cstddef>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace slipmode::studies {
 
 struct SweepOptions {
-  bool follow = false;       ///< each value starts where the one before it ended
-  std::size_t segments = 1;  ///< of a sweep that follows: chains side by side
-  bool reverse = false;      ///< under a shaker: from the last value to the first
-  bool both = false;         ///< under a shaker, following: up and down, to show hysteresis
-  /// Under a shaker: the largest Lyapunov exponent over so many cycles more; 0: none.
+  bool follow = false;
+  std::size_t segments = 1;
+  bool reverse = false;
+  bool both = false;
   double exponent_cycles = 0.0;
   results::Journal* journal = nullptr;  ///< keeps finished values and gives back earlier ones; nullptr: in memory only
+
+  static constexpr auto fields() {
+    using Own = SweepOptions;
+    return std::tuple{
+        optional("follow", &Own::follow, "", "each value starts where the one before it ended"),
+        optional("segments", &Own::segments, "", "of a sweep that follows: chains side by side", kCount),
+        optional("reverse", &Own::reverse, "", "under a shaker: from the last value to the first"),
+        optional("both", &Own::both, "", "under a shaker, following: up and down, to show hysteresis"),
+        optional("lyapunov", &Own::exponent_cycles, "",
+                 "under a shaker: the largest Lyapunov exponent over so many cycles more; 0: none", kNonNegative)};
+  }
 };
 
 /// Settled motion over values of one key: under a belt `belt`, under a shaker `up` and `down`.

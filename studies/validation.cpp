@@ -1,11 +1,14 @@
 #include <slipmode/studies/validation.hpp>
 
+#include <slipmode/core/errors.hpp>
 #include <slipmode/results/driven_store.hpp>
 #include <slipmode/results/driven_validation_store.hpp>
 #include <slipmode/results/sweep_store.hpp>
 #include <slipmode/results/validation_store.hpp>
+#include <slipmode/scene/own_times.hpp>
 #include <slipmode/scene/shaken.hpp>
 #include <slipmode/scene/solver_options.hpp>
+#include <slipmode/studies/bases.hpp>
 #include <slipmode/studies/portraits.hpp>
 #include <slipmode/studies/result_file.hpp>
 
@@ -77,38 +80,67 @@ diagnostics::ValidationOptions validation_options(const scene::Scene& scene,
   return options;
 }
 
-diagnostics::ValidationReport validate(const scene::Scene& scene, const std::vector<pod::NamedBasis>& bases,
-                                       diagnostics::ValidationOptions options, const std::filesystem::path& file,
-                                       const RunOptions& run) {
+namespace {
+
+Validation validate_belt(const scene::Scene& scene, const std::vector<pod::NamedBasis>& bases,
+                         const ValidationRequest& request, ResultFile file, const RunOptions& run) {
   const dynamics::HybridSystem full = scene::build_system(scene);
-  ResultFile result = file_of(file, scene, bases);
+  diagnostics::ValidationOptions options = validation_options(scene, bases);
+  if (!request.sweep) options.sweep_values.clear();
+  if (request.verdict) options.verdict = scene::verdict_options(scene);
   options.parallel = run.parallel("validate");
-  options.sink = results::journal_sink(result.journal());
-  diagnostics::ValidationReport report = diagnostics::validate(full, bases, scene::initial_state(scene, full), options);
-  if (report.interrupted) throw Interrupted();
-  result.finish([&](results::StoreWriter& writer) {
+  if (file.journal() != nullptr) options.sink = results::journal_sink(*file.journal());
+  const auto report = std::make_shared<const diagnostics::ValidationReport>(
+      diagnostics::validate(full, bases, scene::initial_state(scene, full), options));
+  if (report->interrupted) throw Interrupted();
+  const auto levels = level_portraits(full, bases.front(), *report);
+  const auto orbits = orbit_portraits(full, bases.front(), *report);
+  const auto write = [report, scene, levels, orbits](results::StoreWriter& writer) {
     const results::Units units = results::Units::of(scene.units);
-    results::store_validation(writer, report, scene);
-    results::store_portraits(writer, "portraits/levels", level_portraits(full, bases.front(), report), units);
-    results::store_portraits(writer, "portraits/orbits", orbit_portraits(full, bases.front(), report), units);
-  });
-  return report;
+    results::store_validation(writer, *report, scene);
+    results::store_portraits(writer, "portraits/levels", levels, units);
+    results::store_portraits(writer, "portraits/orbits", orbits, units);
+  };
+  return {.scene = scene, .belt = report, .shaken = {}, .content = file.finish(write)};
 }
 
-diagnostics::DrivenValidationReport validate_shaken(const scene::Scene& scene,
-                                                    const std::vector<pod::NamedBasis>& bases,
-                                                    const std::filesystem::path& file, const RunOptions& run) {
+Validation validate_shaken(const scene::Scene& scene, const std::vector<pod::NamedBasis>& bases, ResultFile file,
+                           const RunOptions& run) {
   const diagnostics::DrivenCase full = scene::shaken_case(scene);
-  ResultFile result = file_of(file, scene, bases);
   auto options = options_of(scene);
   options.parallel = run.parallel("validate");
-  options.sink = results::driven_journal_sink(result.journal());
-  diagnostics::DrivenValidationReport report = diagnostics::validate_driven(
+  if (file.journal() != nullptr) options.sink = results::driven_journal_sink(*file.journal());
+  const auto report = std::make_shared<const diagnostics::DrivenValidationReport>(diagnostics::validate_driven(
       full, scene::drive_over_frequency(scene), bases, scene::initial_state(scene, full.system),
-      scene::second_start(scene, full.system), options);
-  if (report.interrupted) throw Interrupted();
-  result.finish([&](results::StoreWriter& writer) { results::store_driven_validation(writer, report, scene); });
-  return report;
+      scene::second_start(scene, full.system), options));
+  if (report->interrupted) throw Interrupted();
+  const auto write = [report, scene](results::StoreWriter& writer) {
+    results::store_driven_validation(writer, *report, scene);
+  };
+  return {.scene = scene, .belt = {}, .shaken = report, .content = file.finish(write)};
+}
+
+}  // namespace
+
+Validation validate(const scene::Scene& scene, const results::StoreReader& bases, const ValidationRequest& request,
+                    const std::filesystem::path& file, const RunOptions& run) {
+  scene::Scene own = scene::with_own_times(scene);
+  scene::refuse_force(own, "validate");
+  const std::vector<pod::NamedBasis> found = load_bases(own, scene::build_system(own), bases);
+  const bool is_reduced = results::kind_of(bases) == results::FileKind::kReduced;  // its own size is the one to judge
+  if (is_shaken(own) && is_reduced) own.shaken.modes = {static_cast<int>(found.front().basis.modes())};
+  return validate(own, found, request, file, run);
+}
+
+Validation validate(const scene::Scene& scene, const std::vector<pod::NamedBasis>& bases,
+                    const ValidationRequest& request, const std::filesystem::path& file, const RunOptions& run) {
+  if (!is_shaken(scene)) return validate_belt(scene, bases, request, file_of(file, scene, bases), run);
+  if (request.verdict)
+    throw InvalidInput(
+        "--verdict: expected a belt, found a shaker; there 'slipmode diagnose SCENE FILE --verdict' does it");
+  scene::Scene own = scene;
+  if (!request.sweep) own.shaken.frequencies.reset();
+  return validate_shaken(own, bases, file_of(file, own, bases), run);
 }
 
 }  // namespace slipmode::studies

@@ -1,11 +1,17 @@
 #pragma once
 
+#include <slipmode/core/fields.hpp>
 #include <slipmode/diagnostics/validation/driven_validation.hpp>
 #include <slipmode/diagnostics/validation/validate.hpp>
+#include <slipmode/pod/basis.hpp>
+#include <slipmode/results/memory_store.hpp>
+#include <slipmode/results/store.hpp>
 #include <slipmode/scene/scene.hpp>
 #include <slipmode/studies/run_options.hpp>
 
 #include <filesystem>
+#include <memory>
+#include <tuple>
 #include <vector>
 
 namespace slipmode::studies {
@@ -15,16 +21,36 @@ namespace slipmode::studies {
 [[nodiscard]] diagnostics::ValidationOptions validation_options(const scene::Scene& scene,
                                                                 const std::vector<pod::NamedBasis>& bases);
 
-/// Reduced models of a belt's scene against the full one, into a file with tables, sweeps and portraits. Resumable.
-/// @param options  progress, stop flag and sink are set here
-/// @throws Interrupted  when the stop flag was set; what was finished is kept beside the file
-diagnostics::ValidationReport validate(const scene::Scene& scene, const std::vector<pod::NamedBasis>& bases,
-                                       diagnostics::ValidationOptions options, const std::filesystem::path& file,
-                                       const RunOptions& run);
+struct ValidationRequest {
+  bool sweep = true;
+  bool verdict = false;
 
-/// The same under a shaker: over [validation] frequencies, or at the drive's own where there are none.
-diagnostics::DrivenValidationReport validate_shaken(const scene::Scene& scene,
-                                                    const std::vector<pod::NamedBasis>& bases,
-                                                    const std::filesystem::path& file, const RunOptions& run);
+  static constexpr auto fields() {
+    using Own = ValidationRequest;
+    return std::tuple{
+        optional("sweep", &Own::sweep, "", "compare over the speeds or frequencies of [validation] too"),
+        optional("verdict", &Own::verdict, "", "belt: exponents, dimensions and statistics side by side too")};
+  }
+};
+
+/// A comparison, of a belt's scene or a shaken one, and what is kept of it: tables, sweeps and portraits.
+struct Validation {
+  scene::Scene scene;  ///< with its times, as compared
+  std::shared_ptr<const diagnostics::ValidationReport> belt;
+  std::shared_ptr<const diagnostics::DrivenValidationReport> shaken;
+  results::Content content;
+};
+
+/// Reduced models against the full one, under a belt or, over [validation] frequencies or at the drive's own where
+/// there are none, a shaker.
+/// @param bases  a result that load_bases takes
+/// @param file   written, and resumable; empty: none
+/// @throws InvalidInput  for a force, a basis of another size, a verdict under a shaker
+/// @throws Interrupted   when the stop flag was set; what was finished is kept beside the file
+Validation validate(const scene::Scene& scene, const results::StoreReader& bases, const ValidationRequest& request,
+                    const std::filesystem::path& file, const RunOptions& run);
+/// The same of bases at hand, the one that the number of modes is chosen by first; the scene has its own times.
+Validation validate(const scene::Scene& scene, const std::vector<pod::NamedBasis>& bases,
+                    const ValidationRequest& request, const std::filesystem::path& file, const RunOptions& run);
 
 }  // namespace slipmode::studies

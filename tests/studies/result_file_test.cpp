@@ -37,7 +37,7 @@ TEST(ResultFile, GoesOnFromItsOwnJournalAndRefusesAnother) {
   {
     ResultFile interrupted(folder.path() / "sweep.h5", scene, results::FileKind::kSweep, "slipmode sweep", identity);
     EXPECT_EQ(interrupted.resumed(), 0U);
-    interrupted.journal().append({"full", 0, {0.25}, ""});
+    interrupted.journal()->append({"full", 0, {0.25}, ""});
   }
   EXPECT_THROW(ResultFile(folder.path() / "sweep.h5", scene, results::FileKind::kSweep, "slipmode sweep", "another"),
                InvalidInput);

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <slipmode/dynamics/system.hpp>
+#include <slipmode/fem/beam_modes.hpp>
+#include <slipmode/fem/modes.hpp>
+#include <slipmode/results/memory_store.hpp>
+#include <slipmode/scene/scene.hpp>
+
+#include <memory>
+#include <vector>
+
+namespace slipmode::studies {
+
+/// Natural modes of a scene's full model, mass-normalised, by what its contacts do.
+struct ModeSets {
+  fem::Modes slipping;
+  fem::Modes sticking;                    ///< every contact held; empty when nothing is left to move
+  fem::Modes compliant;                   ///< every contact held by its spring or stop; empty unless each has one
+  std::vector<fem::TheoryEffect> theory;  ///< of a beam
+};
+
+/// @param count  modes of each set at most; 0: the lowest 20
+/// @throws InvalidInput  for more than there are degrees of freedom
+[[nodiscard]] ModeSets natural_modes(const scene::Scene& scene, const dynamics::HybridSystem& system,
+                                     Eigen::Index count = 0);
+
+/// What is kept of it: circular frequencies and shapes.
+[[nodiscard]] results::Content content_of(const scene::Scene& scene, std::shared_ptr<const ModeSets> sets);
+
+}  // namespace slipmode::studies

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <slipmode/dynamics/system.hpp>
+#include <slipmode/pod/basis.hpp>
+#include <slipmode/pod/pod.hpp>
+#include <slipmode/results/memory_store.hpp>
+#include <slipmode/results/provenance.hpp>
+#include <slipmode/results/records.hpp>
+#include <slipmode/results/shaken_modes.hpp>
+#include <slipmode/scene/scene.hpp>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace slipmode::studies {
+
+/// Proper orthogonal modes of a motion: under a belt or a force `pod`, under a shaker `shaken`.
+struct MotionModes {
+  scene::Scene scene;              ///< of the motion
+  results::Provenance provenance;  ///< of the motion
+  Eigen::Index dofs = 0, snapshots = 0;
+  std::optional<pod::PodResult> pod;
+  std::optional<results::ShakenModes> shaken;
+};
+
+/// @param motion  an ensemble, or the samples of a trajectory or an orbit
+/// @param modes   kept; 0: all there are
+/// @throws InvalidInput  for another kind of result, more modes than there are, a number of modes under a shaker
+[[nodiscard]] MotionModes motion_modes(const results::StoreReader& motion, Eigen::Index modes = 0);
+[[nodiscard]] results::Content content_of(const std::shared_ptr<const MotionModes>& modes);
+
+/// A scene's model projected on a basis.
+struct Reduction {
+  dynamics::HybridSystem full;
+  results::ReducedModel model;
+  double captured = 0.0;  ///< share of the energy in its modes; NaN: not known
+};
+
+/// @param source  with all its vectors
+/// @param name    of the basis, for messages
+/// @param modes   0: as [reduction] says
+/// @throws InvalidInput  for more modes than there are, or where nothing says how many
+[[nodiscard]] Reduction reduce(const scene::Scene& scene, const dynamics::HybridSystem& full,
+                               const pod::NamedBasis& source, const std::string& name, Eigen::Index modes = 0);
+[[nodiscard]] results::Content content_of(const scene::Scene& scene, const std::shared_ptr<const Reduction>& reduction);
+
+}  // namespace slipmode::studies
