@@ -2,8 +2,6 @@
 #include "cli/exponents_report.hpp"
 
 #include <slipmode/figures/file_figures.hpp>
-#include <slipmode/results/exponents_store.hpp>
-#include <slipmode/results/provenance.hpp>
 #include <slipmode/scene/own_times.hpp>
 #include "cli/diagnose_sweep.hpp"
 
@@ -48,18 +46,11 @@ Report diagnose_scene(const Session& session, const DiagnoseRequest& request, co
     return report;
   }
   if (session.shard) throw InvalidInput("--shard: values of a key are divided; give one with --over");
-  const studies::Subjects subjects = studies::subjects_of(scene, models.files, models.modes);
-  const diagnostics::TangentOptions options =
-      studies::tangent_options(scene, subjects.full, models.exponents, session.run_options());
-  if (options.exponents > 2 * subjects.full.size() + subjects.full.internal_size())
-    throw InvalidInput(fmt::format("--exponents {}: the model has {} directions", options.exponents,
-                                   2 * subjects.full.size() + subjects.full.internal_size()));
-  std::optional<diagnostics::VerdictTable> verdict;
-  if (models.verdict) verdict = studies::model_verdict(scene, subjects, options, session.run_options());
-  const std::vector<results::ModelExponents> spectra =
-      verdict ? results::exponents_of(*verdict) : studies::model_exponents(subjects, options, session.run_options());
-  if (verdict && !verdict->models.front().failure.empty())
-    throw NumericalFailure("the full model failed " + verdict->models.front().failure, options.transient, {}, 0.0);
+  const studies::Subjects subjects = studies::subjects_of(scene, models.stores(), models.modes);
+  const auto found = std::make_shared<const studies::ModelDiagnosis>(
+      studies::diagnose_models(scene, subjects, models.exponents, models.verdict, session.run_options()));
+  const std::vector<results::ModelExponents>& spectra = found->exponents;
+  const std::optional<diagnostics::VerdictTable>& verdict = found->verdict;
 
   Report report;
   report.data = {{"verb", "diagnose"}, {"scene", request.input}, {"exponents", exponents_json(spectra)}};
@@ -70,13 +61,7 @@ Report diagnose_scene(const Session& session, const DiagnoseRequest& request, co
   }
   const std::string file = model_file(request);
   if (file.empty()) return report;
-  const results::Units units = results::Units::of(scene.units);
-  results::StoreWriter writer(file, verdict ? results::FileKind::kVerdict : results::FileKind::kExponents, scene.units);
-  results::save(writer,
-                results::provenance_of(scene, models.verdict ? "slipmode diagnose --verdict" : "slipmode diagnose"));
-  results::store_exponents(writer, spectra, units);
-  if (verdict) results::store_verdict(writer, *verdict, units);
-  writer.commit();
+  studies::content_of(scene, found).save(file);
   report.data["file"] = file;
   report.text += fmt::format("Numbers and histories: {}\n", file);
   draw_diagnosis(request, file, report);

@@ -31,7 +31,7 @@ std::vector<SweptModel> swept_models(const scene::Scene& scene, const std::strin
   const studies::Family full(scene, {key});
   std::vector<SweptModel> models = {{.title = full.title(), .role = "full", .family = full}};
   // Of a POD, which gives POMs and LNMs, the kind that [reduction] names: it comes first.
-  const studies::Subjects subjects = studies::subjects_of(scene, request.files, request.modes);
+  const studies::Subjects subjects = studies::subjects_of(scene, request.stores(), request.modes);
   if (subjects.bases.empty()) return models;
   const pod::NamedBasis& basis = subjects.bases.front();
   models.push_back({.title = fmt::format("reduced model, {}", basis.name),

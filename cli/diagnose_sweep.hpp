@@ -17,6 +17,8 @@ struct ModelRequest {
   studies::ExponentRequest exponents;
   std::string over;  ///< KEY=FROM:TO:STEP; empty: none
   bool follow = false;
+
+  [[nodiscard]] std::vector<results::StoreReader> stores() const { return {files.begin(), files.end()}; }
 };
 
 /// Leading exponents against one key of the scene: the full model, and a reduced one of MODELS' first kind of basis,

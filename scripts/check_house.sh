@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # The walls of the house, from the #include lines of all sources: scripts/check_house.sh [ROOT]
-# A room uses those before it in SLIPMODE_MODULES of CMakeLists.txt, then selftest, cli; tests, bench, fuzz and examples use
-# all. Headers in internal/ serve their own room (and tests, bench, fuzz) and no installed header. No circles among headers.
+# A room uses those before it in SLIPMODE_MODULES of CMakeLists.txt, then python, selftest, cli; tests, bench, fuzz and
+# examples use all. Headers in internal/ serve their own room (and tests, bench, fuzz) and no installed header. No circles
+# among headers.
 # Prints each breach as FILE: what; exit code 1 if there is one.
 set -euo pipefail
 cd "${1:-$(dirname "${BASH_SOURCE[0]}")/..}"
@@ -9,7 +10,7 @@ cd "${1:-$(dirname "${BASH_SOURCE[0]}")/..}"
 modules=$(sed -nE 's/^set\(SLIPMODE_MODULES (.*)\)$/\1/p' CMakeLists.txt)
 [[ -n $modules ]] || { echo "check_house.sh: no set(SLIPMODE_MODULES ...) in CMakeLists.txt" >&2; exit 2; }
 folders=()
-for folder in $modules selftest cli tests bench fuzz examples; do
+for folder in $modules python selftest cli tests bench fuzz examples; do
   [[ ! -d $folder ]] || folders+=("$folder")
 done
 mapfile -t files < <(find "${folders[@]}" -name '*.hpp' -o -name '*.cpp' | LC_ALL=C sort)
@@ -32,7 +33,7 @@ awk -v list="${files[*]}" '
     else if ("tests/" header in known) print FILENAME, "tests/" header
   }' "${files[@]}" >"$edges"
 
-awk -v order="$modules selftest cli" -v installed="$modules" -v list="${files[*]}" '
+awk -v order="$modules python selftest cli" -v installed="$modules" -v list="${files[*]}" '
   function breach(what) { print $1 ": " what; bad = 1 }
   BEGIN {
     n = split(list, names, " "); for (i = 1; i <= n; ++i) known[names[i]] = 1

@@ -21,7 +21,11 @@ configure() {
 check_format() { git ls-files -z '*.hpp' '*.cpp' | xargs -0 clang-format --dry-run -Werror; }
 
 # The build's own compile commands without their outputs, one a line, SOURCE last.
-commands() { ninja -C "$build" -t commands slipmode_cli | sed -nE 's/ -MD -MT .* -c / -fsyntax-only /p'; }
+commands() {
+  local targets=(slipmode_cli)
+  ! ninja -C "$build" -t query slipmode_python >/dev/null 2>&1 || targets+=(slipmode_python)
+  ninja -C "$build" -t commands "${targets[@]}" | sed -nE 's/ -MD -MT .* -c / -fsyntax-only /p'
+}
 
 # What changed since the previous commit; nothing where that is not there.
 changed() {

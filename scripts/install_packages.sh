@@ -12,6 +12,8 @@ packages=(
   libgtest-dev libgmock-dev libarpack2-dev libbenchmark-dev libsundials-dev libboost-dev
   # figures
   gnuplot-nox
+  # the Python package, its tests and examples
+  pybind11-dev python3-dev python3-numpy python3-scipy python3-h5py python3-matplotlib
   "$@"
 )
 

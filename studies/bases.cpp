@@ -259,8 +259,8 @@ std::vector<pod::NamedBasis> load_bases(const scene::Scene& scene, const dynamic
 }
 
 std::vector<pod::NamedBasis> load_chosen_bases(const scene::Scene& scene, const dynamics::HybridSystem& full,
-                                               const std::string& file, Eigen::Index modes) {
-  const results::StoreReader store(file);
+                                               const results::StoreReader& store, Eigen::Index modes) {
+  const std::string file = store.path().string();
   const bool is_reduced = results::kind_of(store) == FileKind::kReduced;
   std::vector<pod::NamedBasis> chosen;
   for (const pod::NamedBasis& basis : load_bases(scene, full, store)) {

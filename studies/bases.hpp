@@ -40,12 +40,12 @@ namespace slipmode::studies {
 [[nodiscard]] std::vector<pod::NamedBasis> load_bases(const scene::Scene& scene, const dynamics::HybridSystem& full,
                                                       const results::StoreReader& store);
 
-/// The same of a file, each cut to so many modes and named so ("6 POMs").
+/// The same, each cut to so many modes and named so ("6 POMs").
 /// @param modes  0: all of a reduced model's, else as [reduction] chooses
 /// @throws InvalidInput  also for more modes than there are, or where nothing says how many
 [[nodiscard]] std::vector<pod::NamedBasis> load_chosen_bases(const scene::Scene& scene,
                                                              const dynamics::HybridSystem& full,
-                                                             const std::string& file, Eigen::Index modes);
+                                                             const results::StoreReader& store, Eigen::Index modes);
 
 /// The one basis that a scene's model is to be projected on. `captured` is empty where no energies are known.
 /// @param source  "lnm", under a shaker also "lnm+static", or a result file with a POD, a basis or a reduced model

@@ -1,6 +1,8 @@
 #include <slipmode/studies/exponents.hpp>
 
 #include <slipmode/core/errors.hpp>
+#include <slipmode/results/provenance.hpp>
+#include <slipmode/results/units.hpp>
 #include <slipmode/rom/reduce.hpp>
 #include <slipmode/scene/solver_options.hpp>
 #include <slipmode/studies/bases.hpp>
@@ -44,11 +46,11 @@ class SharedProgress {
 
 }  // namespace
 
-Subjects subjects_of(const scene::Scene& scene, const std::vector<std::string>& files, Eigen::Index modes) {
+Subjects subjects_of(const scene::Scene& scene, const std::vector<results::StoreReader>& bases, Eigen::Index modes) {
   Subjects subjects{.full = scene::build_system(scene), .start = {}, .bases = {}};
   subjects.start = scene::initial_state(scene, subjects.full);
-  for (const std::string& file : files) {
-    for (pod::NamedBasis& basis : load_chosen_bases(scene, subjects.full, file, modes))
+  for (const results::StoreReader& store : bases) {
+    for (pod::NamedBasis& basis : load_chosen_bases(scene, subjects.full, store, modes))
       subjects.bases.push_back(std::move(basis));
   }
   return subjects;
@@ -112,6 +114,34 @@ diagnostics::VerdictTable model_verdict(const scene::Scene& scene, const Subject
   if (period) judging.sample = *period / kSamplesPerPeriod;
   judging.parallel = run.parallel("verdict");
   return diagnostics::model_verdict(subjects.full, subjects.start, subjects.bases, judging);
+}
+
+ModelDiagnosis diagnose_models(const scene::Scene& scene, const Subjects& subjects, const ExponentRequest& request,
+                               bool with_verdict, const RunOptions& run) {
+  const diagnostics::TangentOptions options = tangent_options(scene, subjects.full, request, run);
+  const Eigen::Index directions = 2 * subjects.full.size() + subjects.full.internal_size();
+  if (options.exponents > directions)
+    throw InvalidInput(fmt::format("--exponents {}: the model has {} directions", options.exponents, directions));
+  if (!with_verdict) return {.exponents = model_exponents(subjects, options, run), .verdict = {}};
+  diagnostics::VerdictTable verdict = model_verdict(scene, subjects, options, run);
+  if (const std::string& failure = verdict.models.front().failure; !failure.empty())
+    throw NumericalFailure("the full model failed " + failure, options.transient, {}, 0.0);
+  std::vector<results::ModelExponents> exponents = results::exponents_of(verdict);
+  return {.exponents = std::move(exponents), .verdict = std::move(verdict)};
+}
+
+results::Content content_of(const scene::Scene& scene, std::shared_ptr<const ModelDiagnosis> diagnosis) {
+  const bool judged = diagnosis->verdict.has_value();
+  return {.kind = judged ? results::FileKind::kVerdict : results::FileKind::kExponents,
+          .unit_system = scene.units,
+          .write = [scene, diagnosis = std::move(diagnosis)](results::StoreWriter& writer) {
+            const results::Units units = results::Units::of(scene.units);
+            const bool verdict = diagnosis->verdict.has_value();
+            results::save(writer,
+                          results::provenance_of(scene, verdict ? "slipmode diagnose --verdict" : "slipmode diagnose"));
+            results::store_exponents(writer, diagnosis->exponents, units);
+            if (verdict) results::store_verdict(writer, *diagnosis->verdict, units);
+          }};
 }
 
 }  // namespace slipmode::studies

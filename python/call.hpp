@@ -1,0 +1,134 @@
+#pragma once
+
+#include <slipmode/core/errors.hpp>
+#include <slipmode/core/fields.hpp>
+#include <slipmode/core/parallel.hpp>
+#include <slipmode/studies/run_options.hpp>
+
+#include <fmt/format.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <exception>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+// How Python's keywords become the options of a study, and how a study runs beside Python.
+
+namespace slipmode::python {
+
+namespace py = pybind11;
+
+/// What a call was given beyond its own arguments: options by the names of their field lists. Each is taken once; what
+/// nobody took is refused.
+class Keywords {
+ public:
+  Keywords(std::string call, const py::kwargs& given) : call_(std::move(call)), given_(py::dict(given)) {}
+
+  /// All fields of an options struct that were given. @throws InvalidInput  for a value that is not one of the field's
+  template <class S>
+  void read(S& own) {
+    for_each_field<S>([&](const auto& field) {
+      known_.emplace_back(field.name);
+      const py::object value = take(field.name);
+      if (value) own.*field.member = checked(field, value);
+    });
+  }
+
+  /// Null when it was not given, or is None.
+  [[nodiscard]] py::object take(const char* name);
+  /// Text, or what stands where it was not given.
+  [[nodiscard]] std::string text(const char* name, std::string otherwise = {});
+  /// @throws InvalidInput  for what nobody took
+  void finish() const;
+  [[noreturn]] void refuse(const std::string& name, const py::handle& value, const std::string& expected) const;
+
+ private:
+  template <class S, class T>
+  [[nodiscard]] T checked(const Field<S, T>& field, const py::object& value) const {
+    if constexpr (std::is_same_v<T, bool>) {
+      if (!py::isinstance<py::bool_>(value)) refuse(field.name, value, "True or False");
+      return value.cast<bool>();
+    } else if constexpr (std::is_integral_v<T>) {
+      std::int64_t number = 0;
+      const bool whole = PyIndex_Check(value.ptr()) != 0 && !py::isinstance<py::bool_>(value) &&
+                         py::detail::make_caster<std::int64_t>().load(value, true);
+      if (whole) number = value.cast<std::int64_t>();
+      const double high = std::min(field.limits.high, static_cast<double>(std::numeric_limits<T>::max()));
+      if (!whole || static_cast<double>(number) < field.limits.low || static_cast<double>(number) > high)
+        refuse(field.name, value, fmt::format("a whole number from {:.0f}", std::max(field.limits.low, 0.0)));
+      return static_cast<T>(number);
+    } else {
+      static_assert(std::is_same_v<T, double> || std::is_same_v<T, std::optional<double>>);
+      py::detail::make_caster<double> number;
+      if (!number.load(value, true) || !field.limits.hold(static_cast<double>(number)))
+        refuse(field.name, value, field.limits.text);
+      return static_cast<double>(number);
+    }
+  }
+
+  std::string call_;
+  py::dict given_;
+  std::vector<std::string> known_;
+};
+
+/// The fields of an options struct as lines of a docstring: "name: meaning [unit], default".
+template <class S>
+[[nodiscard]] std::string options_text() {
+  const S own;
+  std::string text;
+  for_each_field<S>([&](const auto& field) {
+    const std::string unit = *field.unit == '\0' ? "" : fmt::format(" [{}]", field.unit);
+    text += fmt::format("    {}: {}{} (default {})\n", field.name, field.meaning, unit,
+                        std::string(py::str(py::cast(own.*field.member))));
+  });
+  return text;
+}
+
+/// A study run without Python's lock: Ctrl-C ends it with KeyboardInterrupt, its progress goes to a Python function.
+class Call {
+ public:
+  /// Takes `threads` and `progress` (a function of part, done, total; called at most ten times a second, from 0.3 s
+  /// on).
+  explicit Call(Keywords& keywords);
+  ~Call();
+  Call(const Call&) = delete;
+  Call& operator=(const Call&) = delete;
+
+  [[nodiscard]] const studies::RunOptions& options() const { return options_; }
+
+  /// work(), without Python's lock. @throws py::error_already_set  for KeyboardInterrupt, and what progress raised
+  template <class Work>
+  auto operator()(const Work& work) {
+    try {
+      auto result = [&] {
+        const py::gil_scoped_release unlocked;
+        return work();
+      }();
+      raise_progress_error();
+      return result;
+    } catch (const Interrupted&) {
+      raise_interrupt();
+    }
+  }
+
+ private:
+  struct Progress;
+  [[noreturn]] void raise_interrupt() const;
+  void raise_progress_error() const;
+
+  studies::RunOptions options_;
+  int slot_;
+  std::shared_ptr<Progress> progress_;
+};
+
+/// Says where Python's documentation of a call has its options: what they share.
+[[nodiscard]] std::string call_text();
+
+}  // namespace slipmode::python

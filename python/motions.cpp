@@ -1,0 +1,97 @@
+#include <slipmode/scene/scene.hpp>
+#include <slipmode/studies/bases.hpp>
+#include <slipmode/studies/ensemble.hpp>
+#include <slipmode/studies/natural_modes.hpp>
+#include <slipmode/studies/reduction.hpp>
+#include <slipmode/studies/simulation.hpp>
+#include <slipmode/studies/validation.hpp>
+#include "python/call.hpp"
+#include "python/errors.hpp"
+#include "python/module.hpp"
+#include "python/result.hpp"
+
+#include <optional>
+#include <variant>
+
+namespace slipmode::python {
+namespace {
+
+using scene::Scene;
+
+Result simulate(const Scene& scene, const py::kwargs& given) {
+  Keywords keywords("simulate", given);
+  Call call(keywords);
+  const auto run =
+      call([&] { return std::make_shared<const studies::Simulation>(studies::simulate(scene, call.options())); });
+  Result result(studies::content_of(scene, run));
+  if (run->failure) raise(*run->failure, py::cast(std::move(result)));
+  return result;
+}
+
+Result ensemble(const Scene& scene, const py::kwargs& given) {
+  Keywords keywords("ensemble", given);
+  Call call(keywords);
+  const auto run =
+      call([&] { return std::make_shared<const diagnostics::EnsembleRun>(studies::ensemble(scene, call.options())); });
+  return Result(studies::content_of(scene, run));
+}
+
+Result modes(const Scene& scene, Eigen::Index count) {
+  const auto sets =
+      std::make_shared<const studies::ModeSets>(studies::natural_modes(scene, scene::build_system(scene), count));
+  return Result(studies::content_of(scene, sets));
+}
+
+Result pod(Result& motion, Eigen::Index modes) {
+  const results::StoreReader reader = motion.reader();
+  const py::gil_scoped_release unlocked;
+  return Result(
+      studies::content_of(std::make_shared<const studies::MotionModes>(studies::motion_modes(reader, modes))));
+}
+
+Result reduce(const Scene& scene, const std::variant<std::string, Result*>& basis, Eigen::Index modes) {
+  std::optional<results::StoreReader> reader;
+  if (const auto* result = std::get_if<Result*>(&basis)) reader.emplace((*result)->store());
+  const py::gil_scoped_release unlocked;
+  const dynamics::HybridSystem full = scene::build_system(scene);
+  const std::string name = reader ? reader->path().string() : std::get<std::string>(basis);
+  const pod::NamedBasis source =
+      reader ? studies::load_basis(scene, full, *reader) : studies::load_basis(scene, full, name);
+  return Result(studies::content_of(
+      scene, std::make_shared<const studies::Reduction>(studies::reduce(scene, full, source, name, modes))));
+}
+
+Result validate(const Scene& scene, Result& basis, const py::kwargs& given) {
+  Keywords keywords("validate", given);
+  studies::ValidationRequest request;
+  keywords.read(request);
+  const std::string output = keywords.text("output");
+  Call call(keywords);
+  const results::StoreReader reader = basis.reader();
+  return Result(call([&] { return studies::validate(scene, reader, request, output, call.options()).content; }));
+}
+
+}  // namespace
+
+void add_motions(py::module_& module) {
+  module.def("simulate", &simulate, py::arg("scene"),
+             ("One run of the full model, from [initial] as [time] says.\n\n" + call_text()).c_str());
+  module.def("ensemble", &ensemble, py::arg("scene"), ("The runs that [ensemble] asks for.\n\n" + call_text()).c_str());
+  module.def("modes", &modes, py::arg("scene"), py::arg("count") = 0,
+             "Natural modes, contacts slipping, sticking and held by their springs.\n\n"
+             "    count: modes of each set at most; 0: the lowest 20\n");
+  module.def("pod", &pod, py::arg("motion"), py::arg("modes") = 0,
+             "Proper orthogonal modes of a run or an ensemble.\n\n    modes: kept; 0: all there are\n");
+  module.def("reduce", &reduce, py::arg("scene"), py::arg("basis"), py::arg("modes") = 0,
+             "A scene's model projected on a basis.\n\n"
+             "    basis: of `pod` or of a reduced model, or the word \"lnm\", on a beam also \"lnm+static\"\n"
+             "    modes: how many; 0: as [reduction] says\n");
+  module.def("validate", &validate, py::arg("scene"), py::arg("basis"),
+             ("Reduced models on a basis compared with the full one, as [validation] says.\n\n"
+              "    basis: of `pod`, of a reduced model, or a motion\n"
+              "    output: result file; an interrupted call goes on from there\n" +
+              options_text<studies::ValidationRequest>() + call_text())
+                 .c_str());
+}
+
+}  // namespace slipmode::python

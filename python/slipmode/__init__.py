@@ -1,0 +1,413 @@
+"""Reduced-order modelling of friction-excited structures.
+
+    import slipmode as sm
+    scene = sm.Scene.load("scene.toml", set={"drive.speed": 0.25})
+    run = sm.simulate(scene)              # run.t, run.q, run.events, run.audit; run.plot()
+    rom = sm.reduce(scene, sm.pod(run), modes=6)
+
+A scene may be given as a Scene, as a file's path, or as a dict of the tables of a scene file. Every study gives a Result,
+which has what its file would have, under the same names; `result.save(path)` writes that file, `sm.read(path)` reads it.
+Errors are InvalidInput (a ValueError) and NumericalFailure (a RuntimeError); Ctrl-C ends a study.
+"""
+
+import functools
+import html
+import os
+import sys
+
+import numpy as np
+
+from . import _slipmode
+from ._slipmode import InvalidInput, NumericalFailure, Scene, __version__
+
+# ---------------------------------------------------------------- scenes
+
+
+def _toml(value):
+    """A value as TOML; NumPy's arrays and SciPy's sparse matrices as arrays."""
+    if hasattr(value, "toarray"):
+        value = value.toarray()
+    if isinstance(value, (np.ndarray, np.generic)):
+        value = value.tolist()
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, (int, float)):
+        return repr(value)
+    if isinstance(value, str):
+        escaped = {'"': '\\"', "\\": "\\\\"}
+        return '"' + "".join(escaped.get(c, c if c.isprintable() else f"\\U{ord(c):08x}") for c in value) + '"'
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(map(_toml, value)) + "]"
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{_toml(str(key))} = {_toml(item)}" for key, item in value.items()) + " }"
+    raise InvalidInput(f"scene: {value!r}: expected a number, text, list, array or dict")
+
+
+def _document(tables):
+    """A dict as a scene file: a line per key, each table under its heading."""
+    plain = {key: value for key, value in tables.items() if not isinstance(value, dict)}
+    lines = [f"{_toml(str(key))} = {_toml(value)}" for key, value in plain.items()]
+    for name, table in tables.items():
+        if isinstance(table, dict):
+            lines += ["", f"[{_toml(str(name))}]"]
+            lines += [f"{_toml(str(key))} = {_toml(value)}" for key, value in table.items()]
+    return "\n".join(lines) + "\n"
+
+
+def _load(source, set=None):
+    """A scene from a file's path, a dict of its tables (arrays of tables as lists of dicts), or another scene.
+
+    set: keys to change, for example {"drive.speed": 0.25, "contact.0.mu_s": 0.5}
+    """
+    changes = [f"{key}={_toml(value)}" for key, value in (set or {}).items()]
+    if isinstance(source, Scene):
+        if not changes:
+            return source
+        return _slipmode.parse_scene(source.toml(), changes, source.path)
+    if isinstance(source, dict):
+        return _slipmode.parse_scene(_document(source), changes, "<dict>")
+    if isinstance(source, (str, os.PathLike)):
+        return _slipmode.load_scene(os.fspath(source), changes)
+    raise InvalidInput(f"scene: {type(source).__name__}: expected a Scene, the path of a scene file, or a dict")
+
+
+Scene.load = staticmethod(_load)
+Scene.set = lambda self, **changes: _load(self, {key.replace("__", "."): value for key, value in changes.items()})
+Scene.set.__doc__ = "The same scene with keys changed: scene.set(drive__speed=0.25)."
+
+
+class Tables(dict):
+    """Tables of a scene; `+` joins them: structure(M, C, K) + contact(...) + {"drive": {...}, "time": {...}}."""
+
+    def __add__(self, other):
+        joined = Tables(self)
+        for name, table in other.items():
+            joined[name] = joined[name] + table if name == "contact" and name in joined else table
+        return joined
+
+    def __radd__(self, other):
+        return Tables(other) + self
+
+
+def structure(M, C, K):
+    """A structure of matrices, n x n, NumPy's or SciPy's sparse ones."""
+    return Tables(structure={"kind": "matrices", "mass": M, "damping": C, "stiffness": K})
+
+
+def contact(at, law, **numbers):
+    """A contact: `at` the number of a degree of freedom from 1 (or a pair of them), its law's word and its numbers, as in
+    [[contact]] of a scene file."""
+    return Tables(contact=[{"at": at, "law": law, **numbers}])
+
+
+# ---------------------------------------------------------------- results
+
+
+def _is_complex(value, description):
+    return isinstance(value, np.ndarray) and value.shape[-1:] == (2,) and description.endswith("(real, imaginary)")
+
+
+class _Branch:
+    """A group of a result: its datasets and groups are attributes."""
+
+    def __init__(self, store, prefix):
+        self._store = store
+        self._prefix = prefix
+
+    def _value(self, name):
+        value = self._store.value(name)
+        if _is_complex(value, self._store.meaning(name)[1]):
+            return value.view(complex)[..., 0]
+        return value
+
+    @functools.cached_property
+    def _names(self):
+        start = len(self._prefix)
+        return [name[start:] for name in self._store.names() if name.startswith(self._prefix)]
+
+    @functools.cached_property
+    def _children(self):
+        return list(dict.fromkeys(name.split("/", 1)[0] for name in self._names))
+
+    def _child(self, name):
+        if name in self._names:
+            return self._value(self._prefix + name)
+        if name == "events":
+            return _Branch(self._store, f"{self._prefix}{name}/").array()
+        return _Branch(self._store, f"{self._prefix}{name}/")
+
+    def __getattr__(self, name):
+        if not name.startswith("_") and name in self._children:
+            return self._child(name)
+        raise AttributeError(f"no {name!r} here; there are: {', '.join(self._children)}")
+
+    def __getitem__(self, name):
+        """By its name in the file, for example result["trajectory/q"]."""
+        names = self._store.names()
+        if self._prefix + name in names:
+            return self._value(self._prefix + name)
+        if any(other.startswith(f"{self._prefix}{name}/") for other in names):
+            return _Branch(self._store, f"{self._prefix}{name}/")
+        raise KeyError(name)
+
+    def __contains__(self, name):
+        return name in self._names or name in self._children
+
+    def __dir__(self):
+        return [*super().__dir__(), *self._children]
+
+    def array(self):
+        """Columns of equal length as one structured array."""
+        if not self._is_table():
+            raise InvalidInput(f"{self._prefix.rstrip('/')}: not columns of equal length")
+        columns = {name: np.asarray(self._value(self._prefix + name)) for name in self._names}
+        table = np.empty(len(next(iter(columns.values()))), [(name, column.dtype) for name, column in columns.items()])
+        for name, column in columns.items():
+            table[name] = column
+        return table
+
+    def _is_table(self):
+        shapes = {np.shape(self._value(self._prefix + name)) for name in self._names}
+        return len(self._names) > 1 and len(shapes) == 1 and len(shapes.pop()) == 1
+
+    def unit(self, name):
+        """Unit of a dataset: "1" of a pure number, "" of what has none."""
+        return self._store.meaning(self._prefix + name)[0]
+
+    def meaning(self, name):
+        """What a dataset or group is."""
+        return self._store.meaning(self._prefix + name)[1]
+
+    def _rows(self):
+        """name, value or shape, unit, meaning of each dataset."""
+        for name in self._names:
+            value = self._value(self._prefix + name)
+            if isinstance(value, np.ndarray):
+                said = " x ".join(map(str, value.shape))
+            elif isinstance(value, list):
+                said = ", ".join(value) if len(value) < 4 else f"{len(value)} texts"
+            else:
+                said = f"{value:.6g}" if isinstance(value, float) else str(value)
+            said = said.splitlines()[0] + " ..." if "\n" in said else said
+            unit, meaning = self._store.meaning(self._prefix + name)
+            yield name, said if len(said) <= 40 else said[:37] + "...", unit, meaning
+
+    def __repr__(self):
+        rows = list(self._rows())
+        width = [max((len(row[k]) for row in rows), default=0) for k in range(3)]
+        return "\n".join("  ".join([*(row[k].ljust(width[k]) for k in range(3)), row[3]]).rstrip() for row in rows)
+
+    def _repr_html_(self):
+        rows = "".join("<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>" for row in self._rows())
+        return f"<table><tr><th>name</th><th>value</th><th>unit</th><th>meaning</th></tr>{rows}</table>"
+
+
+class Result(_Branch):
+    """What a study gives, or a result file holds: datasets under the names of the file.
+
+    result["trajectory/q"] is one of them by its name; as an attribute, result.q, it is looked for in the first group that
+    has it. Arrays are views, not copies, and not to be written to. print(result) says what there is.
+    """
+
+    def __init__(self, store):
+        super().__init__(store, "")
+
+    @property
+    def kind(self):
+        """What it is: "trajectory", "pod", "branches", ..."""
+        return self._store.kind
+
+    @property
+    def scene(self):
+        """The scene it was made from."""
+        return self._store.scene()
+
+    def save(self, path):
+        """Writes the file the executable would have written. Appears whole or not at all."""
+        self._store.save(os.fspath(path))
+
+    @functools.cached_property
+    def _places(self):
+        """Where an attribute is: in the file itself, or in the first group that has it; provenance comes last."""
+        groups = sorted(self._children, key=lambda name: name == "provenance")
+        places = {}
+        for group in groups:
+            for child in _Branch(self._store, f"{group}/")._children:
+                places.setdefault(child, f"{group}/")
+        return {**places, **dict.fromkeys(self._children, "")}
+
+    def __getattr__(self, name):
+        if not name.startswith("_") and name in self._places:
+            return _Branch(self._store, self._places[name])._child(name)
+        raise AttributeError(f"a {self.kind} has no {name!r}; there are: {', '.join(self._places)}")
+
+    def __dir__(self):
+        return [*super().__dir__(), *self._places]
+
+    def _rows(self):
+        return (row for row in super()._rows() if not row[0].startswith("provenance/"))
+
+    def __repr__(self):
+        return f"<slipmode {self.kind}>\n{super().__repr__()}"
+
+    def to_xarray(self):
+        """All arrays as an xarray.Dataset (needs xarray) with their units and meanings. Dimensions are named as meanings
+        name them ("time x dof"), columns of a table by their group, others by number."""
+        import xarray
+
+        variables = {}
+        for name in self._names:
+            value = self._value(name)
+            if not isinstance(value, (np.ndarray, list)) or name.startswith("provenance/"):
+                continue
+            value = np.asarray(value)
+            unit, meaning = self._store.meaning(name)
+            group, _, last = name.rpartition("/")
+            rows, _, columns = meaning.rpartition(",")[2].partition(" x ")
+            if value.ndim == 2 and columns and 0 not in value.shape:
+                dims = [f"{group}/{rows.split()[-1]}", f"{group}/{columns.split()[0]}"]
+            elif value.ndim == 1 and group and _Branch(self._store, f"{group}/")._is_table():
+                dims = [group]
+            else:
+                dims = [f"{name}_{k}" for k in range(value.ndim)]
+            variables[name] = (dims, value, {"units": unit, "description": meaning})
+        for name in {dim for dims, *_ in variables.values() for dim in dims} & variables.keys():
+            variables[name] = ([name], *variables[name][1:])  # instants of what goes over them
+        return xarray.Dataset(variables, attrs={"kind": self.kind})
+
+    def plot(self, x=None, y=None, axes=None, **style):
+        """One dataset over another (needs matplotlib); gives the axes back. By default what the result is about."""
+        import matplotlib.pyplot as plt
+
+        x, y = _PLOTTED.get(self.kind, (x, y)) if x is None and y is None else (x, y)
+        if x is None or y is None:
+            raise InvalidInput(f"plot: of a {self.kind} say what: plot(x, y), two of its names")
+        axes = axes or plt.gca()
+        axes.plot(getattr(self, x) if "/" not in x else self[x], getattr(self, y) if "/" not in y else self[y], **style)
+        for say, name in ((axes.set_xlabel, x), (axes.set_ylabel, y)):
+            path = name if "/" in name else self._places[name] + name
+            unit = self.unit(path)
+            say(f"{name.rpartition('/')[2]} [{unit}]" if unit not in ("", "1") else name.rpartition("/")[2])
+        return axes
+
+
+_PLOTTED = {"trajectory": ("time", "q"), "orbit": ("q", "v"), "pod": ("singular_values", "shares")}
+
+
+class Run(Result):
+    """A run: samples as time x quantity in t, q, v, contact_q, contact_v, lambda_, events as a structured array, audit,
+    statistics, final_state."""
+
+    @property
+    def t(self):
+        """Sampling instants [s]."""
+        return self.time
+
+    @property
+    def lambda_(self):
+        """Contact forces, time x contact [N]."""
+        return self["trajectory/lambda"]
+
+    def __dir__(self):
+        return [*super().__dir__(), "t", "lambda_"]
+
+
+def read(path):
+    """A result file, all of it in memory. Kinds, names and units are those the file gives itself."""
+    store = _slipmode.read(os.fspath(path))
+    return (Run if store.kind in ("trajectory", "orbit") else Result)(store)
+
+
+# ---------------------------------------------------------------- studies
+
+
+@functools.cache
+def _tqdm():
+    """tqdm where it is installed and somebody looks, else None."""
+    try:
+        from tqdm.auto import tqdm
+    except ImportError:
+        return None
+    return tqdm if sys.stderr.isatty() or "ipykernel" in sys.modules else None
+
+
+def _bars(tqdm):
+    """Progress as a bar per part."""
+    bars = {}
+
+    def update(part, done, total):
+        bar = bars.get(part)
+        if bar is None or bar.total != total:
+            bar = bars[part] = tqdm(total=total, desc=part)
+        bar.update(done - bar.n)
+        if done == total:
+            bar.close()
+
+    return update
+
+
+def _native(value):
+    """What a study takes: stores for results, files read."""
+    if isinstance(value, Result):
+        return value._store
+    if isinstance(value, (str, os.PathLike)) and os.fspath(value).endswith(".h5"):
+        return _slipmode.read(os.fspath(value))
+    return value
+
+
+def _named(function, name):
+    function.__name__ = function.__qualname__ = name
+    function.__doc__ = getattr(_slipmode, name).__doc__.split("\n", 1)[1].strip()  # without pybind11's signature
+    return function
+
+
+def _study(name, kind=Result):
+    """A study of a scene as a function of Python."""
+    study = getattr(_slipmode, name)
+
+    def call(scene, *arguments, **options):
+        progress = options.pop("progress", None)
+        if progress is None and _tqdm() is not None:
+            progress = _bars(_tqdm())
+        if progress:
+            options["progress"] = progress
+        for key in options.keys() & {"model", "basis"}:
+            options[key] = _native(options[key])
+        if options.get("output") is not None:
+            options["output"] = os.fspath(options["output"])
+        try:
+            return kind(study(_load(scene), *map(_native, arguments), **options))
+        except NumericalFailure as failure:
+            if failure.result is not None:
+                failure.result = kind(failure.result)
+            raise
+
+    return _named(call, name)
+
+
+simulate = _study("simulate", Run)
+ensemble = _study("ensemble")
+validate = _study("validate")
+find_orbit = _study("find_orbit", Run)
+continue_orbit = _study("continue_orbit")
+sweep = _study("sweep")
+orbit_map = _study("orbit_map")
+basins = _study("basins")
+exponents = _study("exponents")
+run = _study("run", list)
+
+
+def modes(scene, count=0):
+    return Result(_slipmode.modes(_load(scene), count))
+
+
+def pod(motion, modes=0):
+    return Result(_slipmode.pod(_native(motion), modes))
+
+
+def reduce(scene, basis, modes=0):
+    return Result(_slipmode.reduce(_load(scene), _native(basis), modes))
+
+
+for _function in (modes, pod, reduce):
+    _named(_function, _function.__name__)

@@ -1,0 +1,237 @@
+"""Studies from Python beside the executable's files and known values."""
+
+import importlib.util
+import os
+import pathlib
+import signal
+import subprocess
+import tempfile
+import threading
+import unittest
+
+import h5py
+import numpy as np
+
+import slipmode as sm
+
+EXECUTABLE = os.environ["SLIPMODE_EXECUTABLE"]
+DATASETS = pathlib.Path(os.environ["SLIPMODE_SOURCE_DIR"]) / "datasets"
+
+CHAIN = DATASETS / "chain10/scene.toml"
+# A shorter chain10: the numbers need not mean anything, they have to be the executable's.
+SHORT = {"structure.masses": 4, "contact.0.at": 4, "time.duration": 400.0, "time.transient": 100.0,
+         "ensemble.members": 2}
+QUICK = {**SHORT, "validation.transient": 100.0, "validation.block": 200.0, "validation.limit": 800.0,
+         "validation.sweep_limit": 400.0, "validation.horizon": 20.0, "validation.lyapunov_duration": 500.0,
+         "validation.cost_duration": 50.0, "validation.orbits": [], "validation.modes": [2],
+         "validation.speeds.from": 0.5, "validation.speeds.to": 0.3, "validation.speeds.step": 0.1}
+BACKLASH = DATASETS / "backlash_sdof/scene.toml"
+PLAY = DATASETS / "play_oscillator/scene.toml"
+
+
+class BesideTheExecutable(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def executable(self, *arguments, set={}):
+        changes = [word for key, value in set.items() for word in ("--set", f"{key}={value!r}")]
+        done = subprocess.run([EXECUTABLE, *map(str, arguments), *changes], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def datasets(self, path):
+        found = {}
+        with h5py.File(path) as file:
+            file.visititems(lambda name, node: found.update({name: (node[()], dict(node.attrs))})
+                            if isinstance(node, h5py.Dataset) else None)
+        return found
+
+    def assert_same(self, result, path, clocks=()):
+        """Every dataset and attribute, but for the command and what a clock measured."""
+        result.save(self.folder / "ours.h5")
+        ours, theirs = self.datasets(self.folder / "ours.h5"), self.datasets(path)
+        self.assertEqual(ours.keys(), theirs.keys())
+        for name, (value, attributes) in theirs.items():
+            with self.subTest(name):
+                self.assertEqual(ours[name][1], attributes)
+                if name != "provenance/command" and attributes["units"] != b"s of clock" and "cost" not in name:
+                    np.testing.assert_array_equal(ours[name][0], value)
+
+    def test_modes(self):
+        self.executable("modes", CHAIN, "-o", self.folder / "modes.h5")
+        self.assert_same(sm.modes(CHAIN), self.folder / "modes.h5")
+
+    def test_ensemble_pod_and_reduction(self):
+        scene = sm.Scene.load(CHAIN, set=SHORT)
+        self.executable("simulate", CHAIN, "-o", self.folder / "ensemble.h5", set=SHORT)
+        self.executable("pod", self.folder / "ensemble.h5", "-o", self.folder / "pod.h5")
+        self.executable("reduce", CHAIN, self.folder / "pod.h5", "--modes", 2, "-o", self.folder / "rom.h5", set=SHORT)
+        motion = sm.ensemble(scene)
+        basis = sm.pod(motion)
+        self.assert_same(motion, self.folder / "ensemble.h5")
+        self.assert_same(basis, self.folder / "pod.h5")
+        self.assert_same(sm.reduce(scene, basis, modes=2), self.folder / "rom.h5")
+        self.assert_same(sm.reduce(scene, self.folder / "pod.h5", modes=2), self.folder / "rom.h5")
+        self.assertAlmostEqual(basis.shares.sum(), 1.0, delta=1e-14)
+
+    def test_validation(self):
+        scene = sm.Scene.load(CHAIN, set=QUICK)
+        basis = sm.pod(sm.ensemble(scene))
+        basis.save(self.folder / "pod.h5")
+        self.executable("validate", CHAIN, self.folder / "pod.h5", "-o", self.folder / "validation.h5", set=QUICK)
+        self.assert_same(sm.validate(scene, basis), self.folder / "validation.h5")
+
+    def test_orbit_and_branch(self):
+        self.executable("orbit", "find", BACKLASH, "-o", self.folder / "orbit.h5")
+        self.assert_same(sm.find_orbit(BACKLASH), self.folder / "orbit.h5")
+        self.executable("orbit", "continue", BACKLASH, "--over", "drive.omega=1.4:1.2", "--start", "2.5,0",
+                        "-o", self.folder / "branch.h5")
+        branch = sm.continue_orbit(BACKLASH, over="drive.omega", to=1.2, start=[2.5, 0.0])
+        self.assert_same(branch, self.folder / "branch.h5")
+
+    def test_sweep_of_full_and_reduced(self):
+        scene = sm.Scene.load(CHAIN, set=QUICK)
+        rom = sm.reduce(scene, sm.pod(sm.ensemble(scene)), modes=3)
+        rom.save(self.folder / "rom.h5")
+        speeds = [0.5, 0.4, 0.3]
+        for model, word in (("full", "full"), (rom, f"rom:{self.folder / 'rom.h5'}")):
+            with self.subTest(word):
+                self.executable("sweep", CHAIN, "--over", "drive.speed=0.5:0.3:0.1", "--model", word, "--follow",
+                                "-o", self.folder / "sweep.h5", set=QUICK)
+                ours = sm.sweep(scene, "drive.speed", speeds, model=model, follow=True)
+                self.assert_same(ours, self.folder / "sweep.h5")
+
+    def test_map_and_basins(self):
+        self.executable("orbit", "map", BACKLASH, "--over", "drive.omega=1:1.4:0.2", "-o", self.folder / "map.h5")
+        self.assert_same(sm.orbit_map(BACKLASH, [("drive.omega", [1.0, 1.2, 1.4])]), self.folder / "map.h5")
+        self.executable("orbit", "basins", BACKLASH, "--over", "initial.displacement.0=-2:2:1",
+                        "--over", "initial.velocity.0=-1:1:1", "-o", self.folder / "basins.h5")
+        ours = sm.basins(BACKLASH, ("initial.displacement.0", np.linspace(-2, 2, 5)),
+                         ("initial.velocity.0", np.linspace(-1, 1, 3)))
+        self.assert_same(ours, self.folder / "basins.h5")
+
+    def test_exponents_and_verdict(self):
+        scene = sm.Scene.load(CHAIN, set=QUICK)
+        rom = sm.reduce(scene, sm.pod(sm.ensemble(scene)), modes=2)
+        rom.save(self.folder / "rom.h5")
+        for flags, options in ((["--exponents", 2], {"exponents": 2}), (["--verdict"], {"verdict": True})):
+            with self.subTest(flags):
+                self.executable("diagnose", CHAIN, self.folder / "rom.h5", *flags, "-o", self.folder / "their.h5",
+                                set=QUICK)
+                self.assert_same(sm.exponents(scene, rom, **options), self.folder / "their.h5")
+
+    def test_the_pipeline_leaves_its_files(self):
+        scene = sm.Scene.load(CHAIN, set=QUICK)
+        names = sm.run(scene, self.folder / "out")
+        self.assertLessEqual({"trajectory.h5", "ensemble.h5", "pod.h5", "validation.h5"}, set(names))
+        for name in names:
+            self.assertTrue((self.folder / "out" / name).exists() or (self.folder / "out" / f"{name}.svg").exists(), name)
+
+    def test_a_file_of_another_program_reads(self):
+        with h5py.File(self.folder / "own.h5", "w") as file:
+            file["a/b"] = np.arange(6.0).reshape(2, 3)
+            file["a/b"].attrs["units"] = "m"
+        own = sm.read(self.folder / "own.h5")
+        self.assertEqual(own.kind, "")
+        np.testing.assert_array_equal(own["a/b"], [[0.0, 1.0, 2.0], [3.0, 4.0, 5.0]])
+        self.assertEqual(own.unit("a/b"), "m")
+        with self.assertRaisesRegex(sm.InvalidInput, "copy the file"):
+            own.save(self.folder / "again.h5")
+        (self.folder / "own.h5").write_bytes(b"no")
+        with self.assertRaisesRegex(sm.InvalidInput, "not an HDF5 file"):
+            sm.read(self.folder / "own.h5")
+
+
+class KnownValues(unittest.TestCase):
+    def test_multipliers_of_a_linear_oscillator(self):
+        # In the gap the mass is free but for c = 0.05: multipliers 1 and exp(-c T), T = 2 pi / 1.4.
+        orbit = sm.find_orbit(BACKLASH)
+        self.assertEqual(orbit.multipliers.dtype, complex)
+        np.testing.assert_allclose(orbit.multipliers, [1.0, np.exp(-0.05 * 2.0 * np.pi / 1.4)], rtol=1e-10)
+
+    def test_an_orbit_that_is_not_found_says_how_far_it_came(self):
+        with self.assertRaises(sm.NumericalFailure) as caught:
+            sm.find_orbit(BACKLASH, start=[2.5, 0.0], order=7, iterations=1)
+        self.assertEqual(caught.exception.state.shape, (2,))
+        self.assertGreater(caught.exception.residual, 0.0)
+
+    def test_all_modes_of_a_basis_move_as_the_full_model(self):
+        scene = sm.Scene.load(CHAIN, set=SHORT)
+        rom = sm.reduce(scene, "lnm", modes=4)
+        full = sm.find_orbit(sm.Scene.load(scene, set={"drive.speed": 0.5}))
+        same = sm.find_orbit(sm.Scene.load(scene, set={"drive.speed": 0.5}), model=rom)
+        self.assertAlmostEqual(full.period, same.period, delta=1e-9 * full.period)
+
+
+class Elsewhere(unittest.TestCase):
+    @unittest.skipUnless(importlib.util.find_spec("xarray"), "xarray is not installed")
+    def test_results_become_xarrays_with_units_and_shared_dimensions(self):
+        scene = sm.Scene.load(CHAIN, set=SHORT)
+        run = sm.simulate(scene)
+        data = run.to_xarray()
+        self.assertEqual(data["trajectory/q"].dims, ("trajectory/time", "trajectory/dof"))
+        np.testing.assert_array_equal(data["trajectory/q"], run.q)
+        self.assertIn("trajectory/time", data.coords)
+        self.assertEqual(data["trajectory/events/kind"].dims, data["trajectory/events/force"].dims)
+        self.assertEqual(data.attrs["kind"], "trajectory")
+        for result in (sm.pod(run), sm.modes(scene), sm.find_orbit(BACKLASH), sm.sweep(scene, "drive.speed", [0.5, 0.4])):
+            arrays = [name for name in result._store.names()
+                      if not name.startswith("provenance/") and np.ndim(result[name]) > 0]
+            self.assertEqual(sorted(result.to_xarray().variables), sorted(arrays))
+
+    def test_figures_name_what_they_show(self):
+        import matplotlib
+
+        matplotlib.use("Agg")
+        run = sm.simulate(sm.Scene.load(CHAIN, set=SHORT))
+        axes = run.plot()
+        self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("time", "q"))
+        np.testing.assert_array_equal(axes.lines[3].get_ydata(), run.q[:, 3])
+        with self.assertRaisesRegex(sm.InvalidInput, "two of its names"):
+            sm.modes(CHAIN).plot()
+
+
+class Refused(unittest.TestCase):
+    def test_what_a_study_cannot_take(self):
+        scene = sm.Scene.load(CHAIN, set=SHORT)
+        for call, words in (
+                (lambda: sm.reduce(scene, "lnm"), "energy shares"),
+                (lambda: sm.reduce(scene, sm.modes(scene), modes=2), "natural modes"),
+                (lambda: sm.pod(sm.modes(scene)), "ensemble"),
+                (lambda: sm.validate(scene, sm.simulate(BACKLASH)), "degrees of freedom"),
+                (lambda: sm.find_orbit(scene, start="there"), "settle"),
+                (lambda: sm.find_orbit(scene, start=[0.0]), "4 displacements"),
+                (lambda: sm.find_orbit(scene, tolerance=0.0), "> 0"),
+                (lambda: sm.find_orbit(scene, model=3), "reduce"),
+                (lambda: sm.continue_orbit(BACKLASH, over="drive.omega", to=1.4), "no length"),
+                (lambda: sm.sweep(scene, "drive.sped", [0.1]), "drive"),
+                (lambda: sm.sweep(scene, "structure.masses", [4, 5]), "degrees of freedom"),
+                (lambda: sm.sweep(scene, "drive.speed", [0.1], folow=True), "valid: .*follow"),
+                (lambda: sm.basins(PLAY, ("drive.omega", [1.0]), ("initial.velocity.0", [0.0])), "initial")):
+            with self.subTest(words), self.assertRaisesRegex(sm.InvalidInput, words):
+                call()
+
+
+class GoesOn(unittest.TestCase):
+    def test_an_interrupted_sweep_is_taken_up_from_its_file(self):
+        scene = sm.Scene.load(CHAIN, set={**SHORT, "validation.transient": 2000.0, "validation.sweep_limit": 20000.0,
+                                          "validation.block": 1000.0})
+        speeds = np.linspace(0.1, 0.5, 200)
+        with tempfile.TemporaryDirectory() as folder:
+            output = pathlib.Path(folder) / "sweep.h5"
+            threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
+            with self.assertRaises(KeyboardInterrupt):
+                sm.sweep(scene, "drive.speed", speeds, output=output)
+            self.assertEqual([path.name for path in output.parent.iterdir()], ["sweep.h5.journal"])
+            few = sm.sweep(scene, "drive.speed", speeds, output=output)
+            self.assertEqual([path.name for path in output.parent.iterdir()], ["sweep.h5"])
+            again = sm.read(output)
+            self.assertEqual(sorted(again._store.names()), sorted(few._store.names()))
+        fresh = sm.sweep(scene, "drive.speed", speeds)
+        for name in fresh._store.names():
+            np.testing.assert_array_equal(few[name], fresh[name], err_msg=name)
+
+
+if __name__ == "__main__":
+    unittest.main()
