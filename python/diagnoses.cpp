@@ -41,8 +41,10 @@ Result exponents(const Scene& scene, const py::args& bases, const py::kwargs& gi
 
 std::vector<std::string> run(const Scene& scene, const std::filesystem::path& folder, const py::kwargs& given) {
   Keywords keywords("run", given);
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) keywords.refuse("folder", py::cast(folder), "a folder that can be made: " + error.message());
   Call call(keywords);
-  std::filesystem::create_directories(folder);
   return call([&] {
     const studies::PipelineResult done = studies::pipeline(scene, folder, call.options());
     std::vector<std::string> names = done.files;

@@ -29,7 +29,7 @@ void read_start(Keywords& keywords, Eigen::Index n, studies::OrbitSearch& out_se
   py::detail::make_caster<Eigen::VectorXd> numbers;
   if (!numbers.load(start, true)) keywords.refuse("start", start, expected);
   const Eigen::VectorXd& x = numbers;
-  if (x.size() != 2 * n) keywords.refuse("start", start, expected);
+  if (x.size() != 2 * n || !x.allFinite()) keywords.refuse("start", start, expected);
   out_search.guess = dynamics::State{.q = x.head(n), .v = x.tail(n)};
 }
 

@@ -3,16 +3,61 @@
 #include <slipmode/scene/shaken.hpp>
 #include "python/module.hpp"
 
+#include <fmt/format.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
+
+#include <string>
+#include <utility>
+#include <variant>
 
 namespace slipmode::python {
 
 namespace py = pybind11;
 
+namespace {
+
+/// The fields of a table: "  name: meaning [unit]".
+template <class S>
+std::string table_text(const std::string& heading) {
+  std::string text = fmt::format("\n{}\n", heading);
+  for_each_field<S>([&](const auto& field) {
+    const std::string unit = *field.unit == '\0' ? "" : fmt::format(" [{}]", field.unit);
+    text += fmt::format("    {}: {}{}{}\n", field.name, field.meaning, unit, field.is_required ? ", required" : "");
+  });
+  return text;
+}
+
+template <std::size_t... law>
+std::string law_texts(std::index_sequence<law...>) {
+  const std::vector<std::string> words = friction::law_words();
+  return (
+      table_text<std::variant_alternative_t<law, friction::Law>>(fmt::format("[[contact]] law = \"{}\"", words[law])) +
+      ...);
+}
+
+/// The keys of a scene, from the field lists that read them.
+std::string scene_text() {
+  constexpr std::size_t kWithWords = std::variant_size_v<friction::Law> - 1;  // the last is a function of C++
+  return "A scene: a structure, its contacts and drive, and what is wanted of them. Its tables and their keys; those "
+         "with\n"
+         "more than one form are in datasets/README.md.\n" +
+         table_text<fem::ChainOptions>("[structure] kind = \"chain\"") +
+         table_text<fem::BeamSpan>("[structure] kind = \"beam\", or [[structure.span]]") +
+         table_text<fem::MassesOptions>("[structure] kind = \"masses\"") +
+         law_texts(std::make_index_sequence<kWithWords>()) + table_text<scene::TimeSpec>("[time]") +
+         table_text<scene::TimeSpec::Cycles>("[time] in cycles of a shaker or a force") +
+         table_text<scene::InitialSpec>("[initial]") + table_text<scene::EnsembleSpec>("[ensemble]") +
+         table_text<scene::SensorSpec>("[sensors]") + table_text<scene::ReductionSpec>("[reduction]") +
+         table_text<scene::ValidationSpec>("[validation] under a belt") +
+         table_text<scene::ShakenValidationSpec>("[validation] under a shaker");
+}
+
+}  // namespace
+
 void add_scene(py::module_& module) {
   using scene::Scene;
-  py::class_<Scene>(module, "Scene", "A scene: a structure, its contacts and drive, and what is wanted of them.")
+  py::class_<Scene>(module, "Scene", scene_text().c_str())
       .def_readonly("title", &Scene::title)
       .def_readonly("units", &Scene::units, "\"SI\" or \"dimensionless\"")
       .def_property_readonly("size", &Scene::size, "degrees of freedom of the full model")

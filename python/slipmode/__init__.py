@@ -108,7 +108,7 @@ def _is_complex(value, description):
 
 
 class _Branch:
-    """A group of a result: its datasets and groups are attributes."""
+    """A group of a result: its datasets and groups are attributes; tables, and events, are structured arrays."""
 
     def __init__(self, store, prefix):
         self._store = store
@@ -132,9 +132,8 @@ class _Branch:
     def _child(self, name):
         if name in self._names:
             return self._value(self._prefix + name)
-        if name == "events":
-            return _Branch(self._store, f"{self._prefix}{name}/").array()
-        return _Branch(self._store, f"{self._prefix}{name}/")
+        group = _Branch(self._store, f"{self._prefix}{name}/")
+        return group if group._columns is None else group._table()
 
     def __getattr__(self, name):
         if not name.startswith("_") and name in self._children:
@@ -143,11 +142,8 @@ class _Branch:
 
     def __getitem__(self, name):
         """By its name in the file, for example result["trajectory/q"]."""
-        names = self._store.names()
-        if self._prefix + name in names:
-            return self._value(self._prefix + name)
-        if any(other.startswith(f"{self._prefix}{name}/") for other in names):
-            return _Branch(self._store, f"{self._prefix}{name}/")
+        if name in self._names or any(other.startswith(f"{name}/") for other in self._names):
+            return self._child(name)
         raise KeyError(name)
 
     def __contains__(self, name):
@@ -156,19 +152,19 @@ class _Branch:
     def __dir__(self):
         return [*super().__dir__(), *self._children]
 
-    def array(self):
-        """Columns of equal length as one structured array."""
-        if not self._is_table():
-            raise InvalidInput(f"{self._prefix.rstrip('/')}: not columns of equal length")
-        columns = {name: np.asarray(self._value(self._prefix + name)) for name in self._names}
+    @property
+    def _columns(self):
+        """Names of a table's columns, in order; None of what is no table."""
+        if "columns" in self._names:
+            return self._value(f"{self._prefix}columns")
+        return self._names if self._prefix.endswith("events/") else None
+
+    def _table(self):
+        columns = {name: np.asarray(self._value(self._prefix + name)) for name in self._columns}
         table = np.empty(len(next(iter(columns.values()))), [(name, column.dtype) for name, column in columns.items()])
         for name, column in columns.items():
             table[name] = column
         return table
-
-    def _is_table(self):
-        shapes = {np.shape(self._value(self._prefix + name)) for name in self._names}
-        return len(self._names) > 1 and len(shapes) == 1 and len(shapes.pop()) == 1
 
     def unit(self, name):
         """Unit of a dataset: "1" of a pure number, "" of what has none."""
@@ -266,7 +262,7 @@ class Result(_Branch):
             rows, _, columns = meaning.rpartition(",")[2].partition(" x ")
             if value.ndim == 2 and columns and 0 not in value.shape:
                 dims = [f"{group}/{rows.split()[-1]}", f"{group}/{columns.split()[0]}"]
-            elif value.ndim == 1 and group and _Branch(self._store, f"{group}/")._is_table():
+            elif _Branch(self._store, f"{group}/")._columns is not None and last != "columns":
                 dims = [group]
             else:
                 dims = [f"{name}_{k}" for k in range(value.ndim)]

@@ -274,6 +274,7 @@ class Shown(unittest.TestCase):
     def test_options_are_documented_where_they_are_declared(self):
         self.assertIn("bound on the orbit's relative mismatch after a period", sm.find_orbit.__doc__)
         self.assertIn("threads", sm.simulate.__doc__)
+        self.assertRegex(sm.Scene.__doc__, r'law = "coulomb"\n +mu_s: static coefficient \[1\], required')
 
 
 if __name__ == "__main__":

@@ -89,6 +89,7 @@ class BesideTheExecutable(unittest.TestCase):
                         "-o", self.folder / "branch.h5")
         branch = sm.continue_orbit(BACKLASH, over="drive.omega", to=1.2, start=[2.5, 0.0])
         self.assert_same(branch, self.folder / "branch.h5")
+        np.testing.assert_array_equal(branch["branches/0/points"]["period"], branch["branches/0/points/period"])
 
     def test_sweep_of_full_and_reduced(self):
         scene = sm.Scene.load(CHAIN, set=QUICK)
@@ -101,6 +102,9 @@ class BesideTheExecutable(unittest.TestCase):
                                 "-o", self.folder / "sweep.h5", set=QUICK)
                 ours = sm.sweep(scene, "drive.speed", speeds, model=model, follow=True)
                 self.assert_same(ours, self.folder / "sweep.h5")
+                table = (ours.full if model == "full" else ours.reduced).values
+                np.testing.assert_array_equal(table["parameter"], speeds)
+                self.assertEqual(table.dtype.names[:3], ("parameter", "motion", "period"))
 
     def test_map_and_basins(self):
         self.executable("orbit", "map", BACKLASH, "--over", "drive.omega=1:1.4:0.2", "-o", self.folder / "map.h5")
@@ -202,7 +206,11 @@ class Refused(unittest.TestCase):
                 (lambda: sm.validate(scene, sm.simulate(BACKLASH)), "degrees of freedom"),
                 (lambda: sm.find_orbit(scene, start="there"), "settle"),
                 (lambda: sm.find_orbit(scene, start=[0.0]), "4 displacements"),
+                (lambda: sm.find_orbit(BACKLASH, start=[np.nan, 0.0]), "1 displacements"),
                 (lambda: sm.find_orbit(scene, tolerance=0.0), "> 0"),
+                (lambda: sm.run(scene, "/proc/none"), "a folder that can be made"),
+                (lambda: sm.sweep(scene, "drive.speed", []), "at least one"),
+                (lambda: sm.exponents(scene, scene), "results of pod"),
                 (lambda: sm.find_orbit(scene, model=3), "reduce"),
                 (lambda: sm.continue_orbit(BACKLASH, over="drive.omega", to=1.4), "no length"),
                 (lambda: sm.sweep(scene, "drive.sped", [0.1]), "drive"),
