@@ -1,6 +1,7 @@
 #pragma once
 
 #include <slipmode/pod/basis.hpp>
+#include <slipmode/results/store.hpp>
 
 #include <Eigen/Core>
 #include <optional>
