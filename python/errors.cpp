@@ -5,6 +5,8 @@
 
 #include <pybind11/eigen.h>
 
+#include <utility>
+
 namespace slipmode::python {
 
 namespace py = pybind11;
@@ -41,7 +43,7 @@ void add_errors(py::module_& module) {
   module.add_object("NumericalFailure", py::reinterpret_borrow<py::object>(numerical_failure));
   py::register_exception_translator([](std::exception_ptr error) {
     try {
-      std::rethrow_exception(error);
+      std::rethrow_exception(std::move(error));
     } catch (const NumericalFailure& failure) {
       set(failure, py::none());
     } catch (const Interrupted&) {

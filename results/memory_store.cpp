@@ -64,7 +64,7 @@ class MemorySource final : public StoreSource {
       found.push_back(dataset.name.substr(before.size(), dataset.name.find('/', before.size()) - before.size()));
     }
     std::ranges::sort(found);
-    found.erase(std::ranges::unique(found).begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
     return found;
   }
 
@@ -73,8 +73,8 @@ class MemorySource final : public StoreSource {
   }
 
   [[nodiscard]] StoreEntry entry(const std::string& name) const override {
-    if (const Dataset* dataset = store_->find(name)) return *dataset;
-    return {Kind::kGroup, name, {}, {}};
+    const StoreEntry* const found = store_->find(name);
+    return found != nullptr ? *found : StoreEntry{Kind::kGroup, name, {}, {}};
   }
 
   Opened open(const std::string& name) override {
