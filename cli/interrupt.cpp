@@ -18,7 +18,8 @@ const StopFlag& watch_for_interrupt() {
   action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-  std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes is then an error of the write, told like a full disc
+  sigaction(SIGUSR1, &action, nullptr);  // what batch services send before the time is up
+  std::signal(SIGXFSZ, SIG_IGN);         // a limit on file sizes is then an error of the write, told like a full disc
   return stop_requested;
 }
 

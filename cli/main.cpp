@@ -2,35 +2,17 @@
 #include <slipmode/dynamics/kernels/kernels.hpp>
 #include <slipmode/results/provenance.hpp>
 #include "cli/interrupt.hpp"
+#include "cli/slurm.hpp"
 #include "cli/verbs.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <array>
 #include <cstdio>
-#include <iterator>
 #include <new>
 #include <string_view>
 
 namespace slipmode::cli {
 namespace {
-
-void add_common_options(const Verb& verb, Session& session) {
-  CLI::App& command = *verb.command;
-  command.add_flag("--json", session.json,
-                   "print one JSON object on standard output, everything else on standard error");
-  command
-      .add_option("--set", session.overrides, "override a scene's key: KEY=VALUE, e.g. drive.speed=0.25 (repeatable)")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
-  command.add_option("--threads", session.threads, "threads to use; 0: as many as the machine runs at once")
-      ->check(CLI::Range(0, 4096));
-  command.add_option("--seed", session.seed, "seed of the random initial states (overrides ensemble.seed)");
-  command.add_flag("--quiet", session.quiet, "no progress, no summary");
-  if (!verb.divides) return;
-  command.add_option("--shard", session.shard,
-                     "compute a share of the values, I/N with I = 1 ... N; -o names the part, and 'merge' joins all");
-}
 
 void print_line(std::FILE* stream, const std::string& text) {
   if (text.empty()) return;
@@ -75,12 +57,22 @@ int report(const Session& session, const Report& result) {
   return result.exit_code;
 }
 
-int run_verb(const Session& session, const Verb& verb) {
+/// Of a verb whose result has to have a name.
+std::string output_of(const Verb& verb, const std::string& option) {
+  const CLI::Option* output = verb.command->get_option("--output");
+  if (output->count() == 0)
+    throw InvalidInput(fmt::format("{}: expected a name for the result; give one with -o", option));
+  return output->as<std::string>();
+}
+
+int run_verb(Session& session, const Verb& verb) {
   try {
-    if (session.shard && verb.command->get_option("--output")->count() == 0) {
-      throw InvalidInput(fmt::format("--shard {}: expected a name for the part; give one with -o", *session.shard));
+    if (!session.shard_text.empty()) {
+      session.shard = results::parse_shard(session.shard_text);
+      (void)output_of(verb, "--shard");
     }
-    return report(session, verb.run(session));
+    if (session.slurm.empty()) return report(session, verb.run(session));
+    return report(session, write_slurm(session, output_of(verb, "--slurm")));
   } catch (const InvalidInput& error) {
     return fail(session, kBadInput, error.what());
   } catch (const NumericalFailure& error) {
@@ -114,30 +106,6 @@ std::string unknown_verb(const CLI::App& app, int argc, char** argv) {
     parent = *found;
   }
   return "";
-}
-
-/// The verb, its arguments, and the options given that say what is computed.
-std::vector<std::string> words_of(const CLI::App& command) {
-  constexpr std::array<std::string_view, 6> kLeftOut = {"--help",  "--json",  "--threads",
-                                                        "--quiet", "--shard", "--output"};
-  std::vector<std::string> words, options;
-  for (const CLI::App* app = &command; app->get_parent() != nullptr; app = app->get_parent())
-    words.insert(words.begin(), app->get_name());
-  for (const CLI::Option* option : command.get_options()) {
-    if (option->count() == 0) continue;
-    const std::string name = "--" + (option->get_lnames().empty() ? "" : option->get_lnames().front());
-    if (option->get_positional()) {
-      std::ranges::copy(option->results(), std::back_inserter(words));
-    } else if (std::ranges::find(kLeftOut, name) != kLeftOut.end()) {
-      continue;
-    } else if (option->get_items_expected_max() == 0) {
-      options.push_back(name);
-    } else {
-      for (const std::string& value : option->results()) options.push_back(fmt::format("{}={}", name, value));
-    }
-  }
-  std::ranges::move(options, std::back_inserter(words));
-  return words;
 }
 
 int run_main(int argc, char** argv) {
@@ -176,19 +144,6 @@ int run_main(int argc, char** argv) {
 }
 
 }  // namespace
-
-std::vector<Verb> add_verbs(CLI::App& app, Session& session) {
-  std::vector<Verb> verbs = {add_run(app),   add_modes(app),    add_simulate(app), add_pod(app), add_reduce(app),
-                             add_sweep(app), add_validate(app), add_plot(app),     add_info(app)};
-  verbs.push_back(add_diagnose(app));
-  verbs.push_back(add_trade(app));
-  verbs.push_back(add_advise(app));
-  verbs.push_back(add_merge(app));
-  verbs.push_back(add_selftest(app));
-  std::ranges::move(add_orbit(app), std::back_inserter(verbs));
-  for (const Verb& verb : verbs) add_common_options(verb, session);
-  return verbs;
-}
 
 }  // namespace slipmode::cli
 

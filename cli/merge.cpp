@@ -1,9 +1,6 @@
 #include <slipmode/results/part.hpp>
 #include "cli/verbs.hpp"
 
-#include <fmt/format.h>
-#include <algorithm>
-
 namespace slipmode::cli {
 namespace {
 
@@ -11,28 +8,6 @@ struct MergeArguments {
   std::vector<std::string> parts;
   std::string output;
 };
-
-/// The parts' own verb, from their values alone: the same code writes the result as in one process.
-Report replay(const Session& session, std::vector<results::Part> parts, const std::string& output) {
-  std::vector<std::string> words = parts.front().head.words;
-  words.insert(words.end(), {"--output", output});
-  std::ranges::reverse(words);  // as CLI::App takes them
-  Session own;
-  CLI::App app;
-  const std::vector<Verb> verbs = add_verbs(app, own);
-  try {
-    app.parse(words);
-  } catch (const CLI::ParseError& error) {
-    throw InvalidInput(
-        fmt::format("{}: its command cannot be read ({}); compute it anew", parts.front().path.string(), error.what()));
-  }
-  own.threads = session.threads;
-  own.quiet = session.quiet;
-  own.stop = session.stop;
-  own.joined = std::move(parts);
-  const auto verb = std::ranges::find_if(verbs, [](const Verb& one) { return one.command->parsed(); });
-  return verb->run(own);
-}
 
 Report run(const Session& session, const MergeArguments& arguments) {
   require_writable(arguments.output);
@@ -42,7 +17,10 @@ Report run(const Session& session, const MergeArguments& arguments) {
   std::vector<results::Part> parts;
   for (const std::string& path : arguments.parts) parts.push_back(results::read_part(path));
   results::check_parts(parts);
-  Report report = replay(session, std::move(parts), arguments.output);
+  // The parts' own verb, with their values: the same code writes the result as in one process.
+  const std::vector<std::string> words = parts.front().head.words;
+  Report report = replay(words, arguments.output,
+                         {.quiet = session.quiet, .threads = session.threads, .stop = session.stop, .joined = parts});
   if (report.exit_code == kInterrupted) {
     report.text = "interrupted; the parts are as they were, and the same command begins again";
     report.data["message"] = report.text;

@@ -43,16 +43,13 @@ class BatchLines {
 studies::RunOptions Session::run_options() const {
   return {
       .threads = threads, .stop = stop, .progress = [mode = progress_mode(), share = shard](const std::string& part) {
-        const auto lines = std::make_shared<BatchLines>(share ? part + ", shard " + *share : part, mode);
+        const auto lines = std::make_shared<BatchLines>(
+            share ? fmt::format("{}, shard {}", part, results::to_string(*share)) : part, mode);
         return [lines](std::size_t done, std::size_t total) { lines->update(done, total); };
       }};
 }
 
-studies::Division Session::division() const {
-  studies::Division division{.shard = {}, .joined = joined, .words = words};
-  if (shard) division.shard = results::parse_shard(*shard);
-  return division;
-}
+studies::Division Session::division() const { return {.shard = shard, .joined = joined, .words = words}; }
 
 scene::Scene Session::load(const fs::path& path) const {
   if (!joined.empty()) {
@@ -79,8 +76,8 @@ void tell_resumed(const Session& session, std::size_t resumed, const std::string
 Report part_made(const Session& session, const studies::ResultFile& file, const std::string& output,
                  const std::string& what) {
   Report report;
-  report.text = fmt::format("Shard {}: {} {}\n", session.shard.value(), file.finished(), what);
-  report.data = {{"shard", session.shard.value()}, {"file", output}, {what, file.finished()}};
+  report.text = fmt::format("Shard {}: {} {}\n", results::to_string(session.shard.value()), file.finished(), what);
+  report.data = {{"shard", results::to_string(session.shard.value())}, {"file", output}, {what, file.finished()}};
   tell_resumed(session, file.resumed(), what, report);
   report.text += fmt::format("Part: {}; 'slipmode merge PART... -o FILE' joins all of them\n", output);
   return report;

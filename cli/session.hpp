@@ -33,17 +33,20 @@ struct Session {
   bool json = false;   ///< one JSON object on standard output, everything else on standard error
   bool quiet = false;  ///< no progress, no summary
   int threads = 0;     ///< 0: as many as the machine runs at once
-  std::optional<std::uint64_t> seed;
-  std::vector<std::string> overrides;  ///< --set, in order
+  std::optional<std::uint64_t> seed = {};
+  std::vector<std::string> overrides = {};  ///< --set, in order
   const StopFlag* stop = nullptr;
-  std::optional<std::string> shard;   ///< --shard I/N
-  std::vector<results::Part> joined;  ///< what `slipmode merge` joins: they hold the scene, and values
-  std::vector<std::string> words;     ///< of the command line, as a part keeps them
+  std::string shard_text = {};  ///< --shard I/N as given
+  std::optional<results::Shard> shard = {};
+  std::string slurm = {};                  ///< --slurm: folder for scripts instead of computing; empty: none
+  std::optional<std::size_t> shards = {};  ///< --shards, with --slurm
+  std::vector<results::Part> joined = {};  ///< what `slipmode merge` joins: they hold the scene, and values
+  std::vector<std::string> words = {};     ///< of the command line, as a part keeps them
 
   /// For studies, with progress on standard error.
   [[nodiscard]] studies::RunOptions run_options() const;
   [[nodiscard]] ProgressMode progress_mode() const { return quiet ? ProgressMode::kQuiet : ProgressMode::kAutomatic; }
-  /// How a study's values are divided among processes. @throws InvalidInput  for a --shard that is none
+  /// How a study's values are divided among processes.
   [[nodiscard]] studies::Division division() const;
   /// Reads a scene, or the one of joined parts, with --set and --seed applied (--seed is an override of ensemble.seed,
   /// so provenance holds it).

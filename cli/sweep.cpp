@@ -81,12 +81,14 @@ Report summary(const SweepRequest& request, const studies::Family& family, const
 }
 
 /// How far it got, of both passes where there are two.
-Report interrupted(const SweepRequest& request, std::size_t values, const studies::ResultFile& file) {
+Report interrupted(const Session& session, const SweepRequest& request, std::size_t values,
+                   const studies::ResultFile& file) {
   const std::size_t all = values * (request.options.both ? 2 : 1), finished = file.finished();
-  Report report = interrupted_at(request.output, fmt::format("with {} of {} values done", finished, all));
+  const std::string of = session.shard ? "" : fmt::format(" of {}", all);
+  Report report = interrupted_at(request.output, fmt::format("with {}{} values done", finished, of));
   report.data["verb"] = "sweep";
   report.data["finished"] = finished;
-  report.data["values"] = all;
+  if (!session.shard) report.data["values"] = all;
   return report;
 }
 
@@ -104,7 +106,7 @@ Report run(const Session& session, SweepRequest request) {
                            studies::pieces(over.values, request.options));
   request.options.journal = file.journal();
   const studies::Sweep sweep = studies::sweep(family, over.values, request.options, run_options);
-  if (sweep.interrupted) return interrupted(request, over.values.size(), file);
+  if (sweep.interrupted) return interrupted(session, request, over.values.size(), file);
   file.finish([&](results::StoreWriter& writer) { studies::store(writer, family, sweep); });
   if (session.shard) return part_made(session, file, request.output, "values");
   Report report = summary(request, family, sweep);

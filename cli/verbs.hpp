@@ -34,6 +34,11 @@ struct Verb {
 /// All verbs with the options common to them, which go to `session`.
 [[nodiscard]] std::vector<Verb> add_verbs(CLI::App& app, Session& session);
 
+/// A parsed verb and those of its arguments and options that say what is computed, and runs it again with another
+/// output. @param session  with what no word says
+[[nodiscard]] std::vector<std::string> words_of(const CLI::App& command);
+[[nodiscard]] Report replay(std::vector<std::string> words, const std::string& output, Session session);
+
 /// `slipmode orbit` and its own verbs, each by its full name.
 [[nodiscard]] std::vector<Verb> add_orbit(CLI::App& app);
 [[nodiscard]] Verb add_orbit_find(CLI::App& orbit);

@@ -30,18 +30,10 @@ PartHead head_in(const JournalRecord& record, const fs::path& path) {
   }
 }
 
-std::string quoted(const std::string& word) {
-  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=:,./%@";
-  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
-  std::string out = "'";
-  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
-}
-
 std::string command_line(const PartHead& head, const Shard& shard, const std::string& output) {
   std::string line = "slipmode";
-  for (const std::string& word : head.words) line += " " + quoted(word);
-  return fmt::format("{} --shard {} -o {}", line, to_string(shard), quoted(output));
+  for (const std::string& word : head.words) line += " " + shell_word(word);
+  return fmt::format("{} --shard {} -o {}", line, to_string(shard), shell_word(output));
 }
 
 /// Where two resolved scenes begin to differ.
@@ -117,6 +109,14 @@ Part read_part(const fs::path& path) {
   part.fingerprint = text.fingerprint.substr(0, text.fingerprint.find('-'));
   part.records.assign(std::make_move_iterator(text.records.begin() + 1), std::make_move_iterator(text.records.end()));
   return part;
+}
+
+std::string shell_word(const std::string& word) {
+  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=:,./%@";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  std::string out = "'";
+  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
 }
 
 void check_parts(const std::vector<Part>& parts) {

@@ -11,7 +11,7 @@
 namespace slipmode::results {
 
 /// One of several processes that share a study: the pieces number − 1, number − 1 + count, …: neighbours, which cost
-/// alike, are spread over all of them.
+/// alike, are spread over all of them. Number 0 has none.
 struct Shard {
   std::size_t number = 1, count = 1;
 
@@ -50,6 +50,9 @@ struct Part {
 
 /// @throws InvalidInput  when parts are missing, given twice, of another study or version; says which, and what to do
 void check_parts(const std::vector<Part>& parts);
+
+/// A word as a POSIX shell takes it for one.
+[[nodiscard]] std::string shell_word(const std::string& word);
 
 /// The command line that makes a part, or goes on with it.
 [[nodiscard]] std::string command_line(const Part& part);

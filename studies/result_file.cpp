@@ -27,6 +27,7 @@ std::string rounding() { return std::string(dynamics::kernels::kernels().name) =
 std::optional<results::Shard> checked(const std::optional<results::Shard>& shard, const Pieces& pieces,
                                       const std::filesystem::path& path) {
   if (shard && std::filesystem::exists(path)) (void)results::Journal::read(path);  // no other file is replaced
+  if (shard && shard->count == 0) return results::Shard{.number = shard->number, .count = pieces.count};
   if (!shard || shard->count <= pieces.count) return shard;
   throw InvalidInput(fmt::format("--shard {}: expected at most {} shards, the number of {}", results::to_string(*shard),
                                  pieces.count, pieces.what));

@@ -24,9 +24,10 @@ struct Pieces {
 
 /// How a study is divided among processes; by default not at all.
 struct Division {
-  std::optional<results::Shard> shard;  ///< this process computes only this share, and leaves a part
-  std::vector<results::Part> joined;    ///< this process computes nothing that the parts of others should hold
-  std::vector<std::string> words;       ///< of the command line, for the head of a part
+  /// This process computes only this share, and leaves a part. Count 0: as many as there are pieces.
+  std::optional<results::Shard> shard;
+  std::vector<results::Part> joined;  ///< this process computes nothing that the parts of others should hold
+  std::vector<std::string> words;     ///< of the command line, for the head of a part
 };
 
 /// A result in the making, for a file or for memory. Values that a long study finishes are kept in a journal beside its
