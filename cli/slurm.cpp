@@ -16,6 +16,7 @@ namespace slipmode::cli {
 namespace {
 
 namespace fs = std::filesystem;
+using results::shell_word;
 
 /// What one process needs, measured with one thread.
 struct Cost {
@@ -68,14 +69,13 @@ std::size_t shards_of(const Session& session, const Cost& cost) {
   return session.shards.value_or(std::clamp(static_cast<std::size_t>(std::ceil(all)), std::size_t{1}, cost.pieces));
 }
 
-std::string quoted(const std::string& path) { return results::shell_word(path); }
-
 /// #SBATCH lines common to both jobs. @param minutes  of the limit  @param megabytes  of memory
 std::string directives(const std::string& name, double minutes, double megabytes, const fs::path& log) {
   return fmt::format(
       "#!/bin/bash\n#SBATCH --job-name={}\n#SBATCH --chdir={}\n#SBATCH --output={}\n#SBATCH --open-mode=append\n"
       "#SBATCH --ntasks=1\n#SBATCH --cpus-per-task=1\n#SBATCH --time={}\n#SBATCH --mem={}M\n",
-      name, quoted(fs::current_path().string()), quoted(log.string()), std::ceil(minutes), std::ceil(megabytes));
+      name, shell_word(fs::current_path().string()), shell_word(log.string()), std::ceil(minutes),
+      std::ceil(megabytes));
 }
 
 }  // namespace
@@ -93,15 +93,15 @@ Report write_slurm(const Session& session, const std::string& output) {
   const double seconds = cost.set_up + share * cost.piece;
   const double minutes = 5.0 + 2.0 * seconds / 60.0, memory = 100.0 + 1.5 * cost.memory;
   const double warned = std::clamp(2.0 * cost.piece, 60.0, 60.0 * minutes / 2.0);
-  const std::string program = quoted(fs::read_symlink("/proc/self/exe").string());
+  const std::string program = shell_word(fs::read_symlink("/proc/self/exe").string());
   const std::string measured = fmt::format(
       "# Measured: {:.3g} s of set-up, {:.3g} s for the first of {} pieces, {:.0f} MB; a shard of {:.0f} takes about "
       "{:.3g} s.\n# Others may take longer: the limit is twice that and five minutes, and what is stopped goes on.\n",
       cost.set_up, cost.piece, cost.pieces, cost.memory, share, seconds);
 
   std::string words;
-  for (const std::string& word : session.words) words += " " + results::shell_word(word);
-  const std::string part = quoted(folder.string() + "/") + "\"$SLURM_ARRAY_TASK_ID\".part";
+  for (const std::string& word : session.words) words += " " + shell_word(word);
+  const std::string part = shell_word(folder.string() + "/") + "\"$SLURM_ARRAY_TASK_ID\".part";
   const std::string name = session.words.front();
   write_renamed(folder / "array.sh",
                 directives("slipmode-" + name, minutes, memory, folder / "%a.log") +
@@ -129,11 +129,11 @@ exit "$code"
                 directives("slipmode-merge", minutes + 2.0 * cost.set_up / 60.0,
                            memory + 4e-6 * static_cast<double>(cost.bytes * cost.pieces), folder / "merge.log") +
                     measured +
-                    fmt::format("exec {} merge {}{{1..{}}}.part -o {}\n", program, quoted(folder.string() + "/"),
-                                shards, quoted(output)));
+                    fmt::format("exec {} merge {}{{1..{}}}.part -o {}\n", program, shell_word(folder.string() + "/"),
+                                shards, shell_word(output)));
   write_renamed(folder / "submit.sh", fmt::format("#!/bin/bash\nset -e\narray=$(sbatch --parsable {0}/array.sh)\n"
                                                   "sbatch --dependency=\"afterok:${{array%%;*}}\" {0}/merge.sh\n",
-                                                  quoted(folder.string())));
+                                                  shell_word(folder.string())));
   Report report;
   report.data = {{"verb", name},
                  {"folder", folder.string()},
@@ -148,7 +148,7 @@ exit "$code"
       "{} shards of about {:.3g} s, stopped after {:.0f} minutes and put in the queue again\n"
       "Submit with: bash {}\n",
       cost.set_up, cost.piece, cost.pieces, cost.memory, shards, seconds, std::ceil(minutes),
-      quoted((folder / "submit.sh").string()));
+      shell_word((folder / "submit.sh").string()));
   return report;
 }
 

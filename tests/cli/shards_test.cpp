@@ -188,6 +188,7 @@ TEST_F(BadParts, MissingAndDoubledOnesAreNamed) {
   write_file(folder.path() / "copy.part", bytes("2of3.part"));
   refuses_to_merge({"1of3.part", "2of3.part", "3of3.part", "copy.part"},
                    HasSubstr("copy.part: is shard 2/3, as 2of3.part is; give each once"));
+  refused({"merge", "1of3.part", "2of3.part", "3of3.part", "-o", "./2of3.part"}, HasSubstr("is one of the parts"));
   refuses_to_merge({"1of3.part", "none.part"}, HasSubstr("none.part: there is no such part"));
   refuses_to_merge({"1of3.part", "two.toml"}, HasSubstr("two.toml: is neither a journal nor a part"));
 }
