@@ -80,7 +80,9 @@ Report replay(std::vector<std::string> words, const std::string& output, Session
   } catch (const CLI::ParseError& error) {
     throw InvalidInput(fmt::format("the command of a part cannot be read: {}", error.what()));
   }
-  return std::ranges::find_if(verbs, [](const Verb& one) { return one.command->parsed(); })->run(session);
+  const auto verb = std::ranges::find_if(verbs, [](const Verb& one) { return one.divides && one.command->parsed(); });
+  if (verb == verbs.end()) throw InvalidInput("the command of a part cannot be read: it is none that is divided");
+  return verb->run(session);
 }
 
 }  // namespace slipmode::cli

@@ -17,14 +17,19 @@ namespace fs = std::filesystem;
 constexpr const char* kHeadTable = "#part";  // before all others in a part, which is sorted
 
 PartHead head_in(const JournalRecord& record, const fs::path& path) {
+  constexpr std::size_t kMost = 10'000'000;  // as many as a sweep has values
   try {
     const auto json = nlohmann::json::parse(record.note);
-    return {.shard = {.number = json.at("shard"), .count = json.at("of")},
-            .version = json.at("version"),
-            .rounding = json.at("rounding"),
-            .command = json.at("command"),
-            .words = json.at("words"),
-            .scene = {.path = json.at("scene_path"), .text = json.at("scene_text"), .overrides = json.at("overrides")}};
+    PartHead head{
+        .shard = {.number = json.at("shard"), .count = json.at("of")},
+        .version = json.at("version"),
+        .rounding = json.at("rounding"),
+        .command = json.at("command"),
+        .words = json.at("words"),
+        .scene = {.path = json.at("scene_path"), .text = json.at("scene_text"), .overrides = json.at("overrides")}};
+    const auto& [number, count] = head.shard;
+    if (number >= 1 && number <= count && count <= kMost) return head;
+    throw InvalidInput(fmt::format("{}: its head says shard {}; make it anew", path.string(), to_string(head.shard)));
   } catch (const nlohmann::json::exception& error) {
     throw InvalidInput(fmt::format("{}: its head cannot be read ({}); make it anew", path.string(), error.what()));
   }
@@ -96,12 +101,14 @@ Part read_part(const fs::path& path) {
   JournalText text = Journal::read(file);
   const bool written = file.extension() == ".journal";  // may be torn at its end
   Part part{.path = written ? fs::path(file).replace_extension() : path, .fingerprint = "", .head = {}, .records = {}};
-  if (!text.records.empty() && text.records.front().table == kHeadTable) {
-    part.head = head_in(text.records.front(), file);
-  } else if (!text.damaged) {
-    throw InvalidInput(fmt::format("{}: is no part of a study; parts are what --shard I/N leaves", file.string()));
+  const bool has_head = !text.records.empty() && text.records.front().table == kHeadTable;
+  if (!has_head && !text.damaged) {
+    throw InvalidInput(fmt::format("{}: {}", file.string(),
+                                   written ? "holds no part's head; run its shard again"
+                                           : "is no part of a study; parts are what --shard I/N leaves"));
   }
-  if (text.damaged && !written) {
+  if (has_head) part.head = head_in(text.records.front(), file);
+  if (text.damaged && !(written && has_head)) {
     throw InvalidInput(
         fmt::format("{}: damaged at byte {} (a record is torn or altered); remove it and compute it anew{}",
                     file.string(), text.whole, part.head.words.empty() ? "" : ":\n  " + command_line(part)));

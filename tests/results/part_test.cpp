@@ -70,6 +70,31 @@ TEST(Part, SaysWhatItsJournalWasToldAndHowItIsMade) {
             "slipmode sweep 'it'\\''s a scene.toml' --over=drive.speed=1:2:1 --shard 2/3 -o " + path.string());
 }
 
+// Heads that no shard writes, and what a kill leaves before there is one.
+TEST(Part, WithoutAHeadThatCanBeIsRefused) {
+  const tests::TemporaryFolder folder;
+  const auto path = folder.path() / "1.part";
+  const auto refused = [&](const std::vector<JournalRecord>& records) {
+    {
+      Journal journal(Journal::path_for(path), "abc-1/3");
+      for (const JournalRecord& record : records) journal.append(record);
+      journal.publish(path);
+    }
+    return tests::message_of([&] { (void)read_part(path); });
+  };
+  EXPECT_THAT(refused({}), HasSubstr("is no part of a study"));
+  EXPECT_THAT(refused({{"sweep-0", 0, {1.0}, ""}}), HasSubstr("is no part of a study"));
+  EXPECT_THAT(refused({to_record(head(0, 3))}), HasSubstr("its head says shard 0/3"));
+  EXPECT_THAT(refused({to_record(head(4, 3))}), HasSubstr("its head says shard 4/3"));
+  EXPECT_THAT(refused({to_record(head(1, 1'000'000'000'000))}), HasSubstr("its head says shard 1/1000000000000"));
+  JournalRecord broken = to_record(head(1, 3));
+  broken.note.pop_back();
+  EXPECT_THAT(refused({broken}), HasSubstr("its head cannot be read"));
+  std::filesystem::remove(path);
+  { const Journal killed(Journal::path_for(path), "abc-1/3"); }
+  EXPECT_THAT(tests::message_of([&] { (void)read_part(path); }), HasSubstr("run its shard again"));
+}
+
 TEST(Parts, OfAnotherVersionOrRoundingAreNamed) {
   check_parts({part(head(2, 2)), part(head(1, 2))});
   PartHead older = head(2, 2);
