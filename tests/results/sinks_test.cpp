@@ -4,9 +4,12 @@
 #include <slipmode/results/exponents_store.hpp>
 #include <slipmode/results/map_store.hpp>
 #include <slipmode/results/sweep_store.hpp>
+#include <slipmode/results/trade_store.hpp>
 #include "scene/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
+#include <cmath>
+#include <limits>
 
 namespace slipmode {
 namespace {
@@ -77,6 +80,31 @@ TEST(Sinks, OfAMapGiveEveryPointItsOwnFailure) {
   EXPECT_EQ(found->settled[0].order, 2);
   EXPECT_EQ(found->settled[1].failure, "at time 2: no");
   EXPECT_EQ(found->settled[2].failure, "");
+}
+
+// A configuration that cannot be measured is finished too: it is not measured anew, nor missing in a part.
+TEST(Sinks, OfATradeKeepFailuresByName) {
+  const tests::TemporaryFolder folder;
+  const auto path = folder.path() / "trade.h5.journal";
+  trade::Finished failed;
+  failed.error.fill(std::numeric_limits<double>::quiet_NaN());
+  failed.noise.fill(0.25);
+  failed.failure = "at time 2: no\nthe step is too small";
+  {
+    results::Journal journal(path, "task");
+    trade::StudyOptions options;
+    results::keep_in(journal, options);
+    options.store("tanh", failed);
+  }
+  results::Journal journal(path, "task");
+  trade::StudyOptions options;
+  results::keep_in(journal, options);
+  EXPECT_FALSE(options.recall("tan"));
+  const auto found = options.recall("tanh");
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->failure, failed.failure);
+  EXPECT_TRUE(std::isnan(found->error.front()));
+  EXPECT_EQ(found->noise, failed.noise);
 }
 
 }  // namespace
