@@ -26,7 +26,7 @@ std::string status_of(int exit_code) {
 }
 
 /// Ends the program with a message: on standard error for people, as the one JSON object for programs.
-int fail(const Session& session, ExitCode code, const std::string& message, Json details = Json::object()) {
+int fail(const Session& session, ExitCode code, const std::string& message, const Json& details = Json::object()) {
   print_line(stderr, "slipmode: " + message);
   if (session.json) {
     Json object = {{"status", status_of(code)}, {"exit_code", static_cast<int>(code)}, {"message", message}};

@@ -5,9 +5,9 @@
 #include <slipmode/results/provenance.hpp>
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <fstream>
 #include <iterator>
-#include <ranges>
 #include <utility>
 
 namespace slipmode::studies {
@@ -103,8 +103,8 @@ void ResultFile::require_all() const {
   for (const Lack& part : lacks_) {
     if (part.values.empty()) continue;
     std::string names;
-    for (const auto& value : part.values | std::views::take(kNamed))
-      names += (names.empty() ? "" : ", ") + name_of(value);
+    for (std::size_t k = 0; k < std::min(kNamed, part.values.size()); ++k)
+      names += (names.empty() ? "" : ", ") + name_of(part.values[k]);
     if (part.values.size() > kNamed) names += ", ...";
     text += fmt::format("{}: unfinished, {} values are missing ({}); finish it with\n  {}\n", part.path,
                         part.values.size(), names, part.command);
