@@ -16,9 +16,10 @@ namespace slipmode::friction {
 ///                    .mu = [](double v) { return 0.2 + 0.2 * std::exp(-8.0 * v); },
 ///                    .slope = [](double v) { return -1.6 * std::exp(-8.0 * v); }}
 ///
-/// μ is continuous for v ≥ 0; where its slope or curvature jumps, steps are short. A trial step may pass v = 0 before the event there is found, so they are asked
-/// a little below 0 too, where they should go on as their formulas do: that costs steps if they do not, and changes no
-/// result. They are called several times per step, by several threads at once in sweeps, and must not throw.
+/// μ is continuous for v ≥ 0; where its slope or curvature jumps, steps are short. A trial step may pass v = 0 before
+/// the event there is found, so they are asked a little below 0 too, where they should go on as their formulas do: that
+/// costs steps if they do not, and changes no result. They are called several times per step, by several threads at
+/// once in sweeps, and must not throw.
 ///
 /// A law made of functions has no numbers that a file could hold: it has no word, and whoever writes it to a scene or
 /// a result is told so (law_word).
