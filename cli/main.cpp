@@ -71,6 +71,9 @@ int run_verb(Session& session, const Verb& verb) {
       session.shard = results::parse_shard(session.shard_text);
       (void)output_of(verb, "--shard");
     }
+    if (session.shards && session.slurm.empty())
+      throw InvalidInput(
+          fmt::format("--shards {}: goes with --slurm; one of them is --shard I/{}", *session.shards, *session.shards));
     if (session.slurm.empty()) return report(session, verb.run(session));
     return report(session, write_slurm(session, output_of(verb, "--slurm")));
   } catch (const InvalidInput& error) {

@@ -38,18 +38,32 @@ double time_of(const Session& session, std::size_t number, const fs::path& part)
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
+void check_pieces(const Session& session, std::size_t pieces) {
+  if (pieces < 2) throw InvalidInput("--slurm: the study is one piece, which no shards can divide; run it as it is");
+  if (session.shards && *session.shards > pieces) {
+    throw InvalidInput(fmt::format("--shards {}: expected at most {}, the pieces that the study can be divided into",
+                                   *session.shards, pieces));
+  }
+}
+
 Cost measure(const Session& session) {
   const fs::path none = fs::path(session.slurm) / "none.part", first = fs::path(session.slurm) / "first.part";
-  for (const fs::path& part : {none, first}) {
-    fs::remove(part);
-    fs::remove(results::Journal::path_for(part));
-  }
+  const auto tidy = [&] {
+    for (const fs::path& part : {none, first}) {
+      fs::remove(part);
+      fs::remove(results::Journal::path_for(part));
+    }
+  };
+  tidy();
   Cost cost;
   cost.set_up = time_of(session, 0, none);
+  cost.pieces = results::read_part(none).head.shard.count;
+  cost.bytes = fs::file_size(none);
+  fs::remove(none);
+  check_pieces(session, cost.pieces);
   cost.piece = std::max(time_of(session, 1, first) - cost.set_up, 1e-4);
-  cost.pieces = results::read_part(first).head.shard.count;
-  cost.bytes = fs::file_size(first) - fs::file_size(none);
-  for (const fs::path& part : {none, first}) fs::remove(part);
+  cost.bytes = fs::file_size(first) - cost.bytes;
+  tidy();
   rusage used{};
   getrusage(RUSAGE_SELF, &used);
   cost.memory = static_cast<double>(used.ru_maxrss) / 1024.0;
@@ -59,12 +73,6 @@ Cost measure(const Session& session) {
 /// As many that each takes ten minutes or more, most of it for values.
 std::size_t shards_of(const Session& session, const Cost& cost) {
   constexpr double kWorthwhile = 600.0, kSetUps = 20.0;
-  if (cost.pieces < 2)
-    throw InvalidInput("--slurm: the study is one piece, which no shards can divide; run it as it is");
-  if (session.shards && *session.shards > cost.pieces) {
-    throw InvalidInput(fmt::format("--shards {}: expected at most {}, the pieces that the study can be divided into",
-                                   *session.shards, cost.pieces));
-  }
   const double all = static_cast<double>(cost.pieces) * cost.piece / std::max(kWorthwhile, kSetUps * cost.set_up);
   return session.shards.value_or(std::clamp(static_cast<std::size_t>(std::ceil(all)), std::size_t{1}, cost.pieces));
 }
@@ -110,15 +118,14 @@ Report write_slurm(const Session& session, const std::string& output) {
                     fmt::format(R"sh(part={}
 size() {{ stat -c %s "$part.journal" 2>/dev/null || echo 0; }}
 before=$(size)
-trap 'kill -USR1 "$shard"' USR1 TERM
+trap 'kill -USR1 "$shard"' USR1
+trap 'kill -TERM "$shard"' TERM
 {}{} --shard "$SLURM_ARRAY_TASK_ID/{}" -o "$part" --threads "${{SLURM_CPUS_PER_TASK:-1}}" --quiet &
 shard=$!
 wait "$shard"
+while kill -0 "$shard" 2>/dev/null; do wait "$shard"; done  # a signal ended the waiting, not the shard
+wait "$shard"  # its own code, which bash remembers
 code=$?
-while kill -0 "$shard" 2>/dev/null; do  # a signal ended the waiting, not the shard
-  wait "$shard"
-  code=$?
-done
 if [ "$code" -eq 130 ] && [ "$(size)" -gt "$before" ]; then  # out of time, and further than before
   scontrol requeue "${{SLURM_ARRAY_JOB_ID}}_$SLURM_ARRAY_TASK_ID"
 fi

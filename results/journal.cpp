@@ -185,10 +185,11 @@ Journal::Journal(std::filesystem::path path, const std::string& fingerprint)
     throw InvalidInput(fmt::format("{}: is not a journal; remove it or choose another output", path_.string()));
   }
   if (!fresh && !text.starts_with(header)) {
-    throw InvalidInput(fmt::format(
-        "{}: holds unfinished results of another task (other scene, overrides, range or shard); remove it to start "
-        "anew, or choose another output",
-        path_.string()));
+    throw InvalidInput(
+        fmt::format("{}: holds unfinished results of another task (other scene, overrides, range, shard or kernels); "
+                    "remove it to start "
+                    "anew, or choose another output",
+                    path_.string()));
   }
 
   JournalText found;

@@ -2,6 +2,7 @@
 
 #include <slipmode/core/errors.hpp>
 #include <slipmode/core/numbers.hpp>
+#include <slipmode/dynamics/kernels/kernels.hpp>
 #include <slipmode/results/provenance.hpp>
 
 #include <fmt/format.h>
@@ -28,7 +29,7 @@ PartHead head_in(const JournalRecord& record, const fs::path& path) {
         .words = json.at("words"),
         .scene = {.path = json.at("scene_path"), .text = json.at("scene_text"), .overrides = json.at("overrides")}};
     const auto& [number, count] = head.shard;
-    if (number >= 1 && number <= count && count <= kMost) return head;
+    if (count >= 1 && number <= count && count <= kMost) return head;
     throw InvalidInput(fmt::format("{}: its head says shard {}; make it anew", path.string(), to_string(head.shard)));
   } catch (const nlohmann::json::exception& error) {
     throw InvalidInput(fmt::format("{}: its head cannot be read ({}); make it anew", path.string(), error.what()));
@@ -67,6 +68,8 @@ std::string difference(const Part& first, const Part& part) {
 
 }  // namespace
 
+std::string rounding() { return std::string(dynamics::kernels::kernels().name) == "generic" ? "generic" : "fused"; }
+
 Shard parse_shard(const std::string& text) {
   const std::size_t slash = std::min(text.find('/'), text.size());
   const auto number = number_in<std::size_t>(text.substr(0, slash));
@@ -88,7 +91,14 @@ JournalRecord to_record(const PartHead& head) {
                                        {"command", head.command},       {"words", head.words},
                                        {"scene_path", head.scene.path}, {"overrides", head.scene.overrides},
                                        {"scene_text", head.scene.text}};
-  return {.table = kHeadTable, .index = 0, .values = {}, .note = json.dump()};
+  try {
+    return {.table = kHeadTable, .index = 0, .values = {}, .note = json.dump()};
+  } catch (const nlohmann::json::type_error&) {
+    throw InvalidInput(
+        fmt::format("--shard {}: a part keeps the command and the scene, which are not UTF-8 here; rename "
+                    "what is not",
+                    to_string(head.shard)));
+  }
 }
 
 Part read_part(const fs::path& path) {
@@ -132,16 +142,17 @@ void check_parts(const std::vector<Part>& parts) {
   std::vector<const Part*> found(first.head.shard.count, nullptr);
   for (const Part& part : parts) {
     const auto& [number, count] = part.head.shard;
+    if (number == 0)
+      throw InvalidInput(fmt::format("{}: has no share of the values; leave it out", part.path.string()));
+    if (part.head.rounding != rounding()) {  // first: a model made here by other kernels is another one
+      throw InvalidInput(fmt::format(
+          "{}: computed with {} kernels, which round differently from the {} ones here; set "
+          "SLIPMODE_KERNELS={}, or compute it anew here",
+          part.path.string(), part.head.rounding, rounding(), part.head.rounding == "fused" ? "avx2" : "generic"));
+    }
     if (part.fingerprint != first.fingerprint) {
       throw InvalidInput(fmt::format("{}: is of another study than {}: {}; merge parts of one study",
                                      part.path.string(), first.path.string(), difference(first, part)));
-    }
-    if (part.head.rounding != first.head.rounding) {
-      throw InvalidInput(
-          fmt::format("{}: computed with {} kernels, {} with {} ones, which round differently; compute it anew, with "
-                      "SLIPMODE_KERNELS={} where needed",
-                      part.path.string(), part.head.rounding, first.path.string(), first.head.rounding,
-                      first.head.rounding == "fused" ? "avx2" : "generic"));
     }
     if (count != found.size()) {
       throw InvalidInput(fmt::format("{}: is shard {}, {} is shard {}: of another number; merge parts of one division",

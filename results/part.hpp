@@ -26,7 +26,7 @@ struct Shard {
 struct PartHead {
   Shard shard;
   std::string version;             ///< of slipmode
-  std::string rounding;            ///< "fused" or "generic": kernels of one kind give the same bytes
+  std::string rounding;            ///< kernels of one kind give the same bytes
   std::string command;             ///< what decides values, as provenance has it
   std::vector<std::string> words;  ///< of the command line but output, shard and what changes no value
   scene::SceneSource scene;
@@ -40,6 +40,9 @@ struct Part {
   std::vector<JournalRecord> records;  ///< without the head
 };
 
+/// What this process's kernels are: "fused" or "generic".
+[[nodiscard]] std::string rounding();
+
 /// The journal's fingerprint of a shard, and the head as its first record.
 [[nodiscard]] std::string shard_fingerprint(const std::string& fingerprint, const Shard& shard);
 [[nodiscard]] JournalRecord to_record(const PartHead& head);
@@ -48,7 +51,8 @@ struct Part {
 /// @throws InvalidInput  when there is neither, it is damaged, or it is no part
 [[nodiscard]] Part read_part(const std::filesystem::path& path);
 
-/// @throws InvalidInput  when parts are missing, given twice, of another study or version; says which, and what to do
+/// @throws InvalidInput  when parts are missing, given twice, of another study, version or rounding than this process;
+///                       says which, and what to do
 void check_parts(const std::vector<Part>& parts);
 
 /// A word as a POSIX shell takes it for one.

@@ -1,7 +1,6 @@
 #include <slipmode/studies/result_file.hpp>
 
 #include <slipmode/core/errors.hpp>
-#include <slipmode/dynamics/kernels/kernels.hpp>
 #include <slipmode/results/provenance.hpp>
 
 #include <fmt/format.h>
@@ -20,17 +19,22 @@ std::string name_of(const results::JournalRecord& value) {
   return fmt::format("{} {:.10g}", value.table.substr(0, value.table.rfind('-')), value.values.front());
 }
 
-/// Kernels with fused multiply-add give the same bytes among themselves, others other ones.
-std::string rounding() { return std::string(dynamics::kernels::kernels().name) == "generic" ? "generic" : "fused"; }
-
 /// Before anything is written.
-std::optional<results::Shard> checked(const std::optional<results::Shard>& shard, const Pieces& pieces,
-                                      const std::filesystem::path& path) {
-  if (shard && std::filesystem::exists(path)) (void)results::Journal::read(path);  // no other file is replaced
-  if (shard && shard->count == 0) return results::Shard{.number = shard->number, .count = pieces.count};
-  if (!shard || shard->count <= pieces.count) return shard;
-  throw InvalidInput(fmt::format("--shard {}: expected at most {} shards, the number of {}", results::to_string(*shard),
-                                 pieces.count, pieces.what));
+std::optional<results::Shard> checked(std::optional<results::Shard> shard, const Pieces& pieces,
+                                      const std::filesystem::path& path, const std::string& fingerprint) {
+  if (!shard) return shard;
+  if (shard->count == 0) shard->count = pieces.count;
+  if (shard->count > pieces.count) {
+    throw InvalidInput(fmt::format("--shard {}: expected at most {} shards, the number of {}",
+                                   results::to_string(*shard), pieces.count, pieces.what));
+  }
+  if (!std::filesystem::exists(path)) return shard;
+  const results::JournalText there = results::Journal::read(path);
+  if (!there.damaged && there.fingerprint != results::shard_fingerprint(fingerprint, *shard)) {
+    throw InvalidInput(fmt::format(
+        "-o {}: is a finished part of another shard or study; remove it, or choose another name", path.string()));
+  }
+  return shard;
 }
 
 std::vector<results::JournalRecord> all_records(const std::vector<results::Part>& parts) {
@@ -47,9 +51,9 @@ ResultFile::ResultFile(std::filesystem::path path, scene::Scene scene, results::
       scene_(std::move(scene)),
       kind_(kind),
       command_(std::move(command)),
-      fingerprint_(results::fingerprint(
-          fmt::format("{}\n{}\n{}\n{}", results::version(), command_, identity, scene::scene_to_toml(scene_)))),
-      shard_(checked(division.shard, pieces, path_)) {
+      fingerprint_(results::fingerprint(fmt::format("{}\n{}\n{}\n{}\n{}", results::version(), results::rounding(),
+                                                    command_, identity, scene::scene_to_toml(scene_)))),
+      shard_(checked(division.shard, pieces, path_, fingerprint_)) {
   if (path_.empty()) return;
   if (division.joined.empty()) {
     journal_.emplace(results::Journal::path_for(path_),
@@ -67,14 +71,14 @@ void ResultFile::begin_part(const std::vector<std::string>& words) {
   if (!journal_->records().empty()) return;
   if (std::filesystem::exists(path_)) {  // the same part, computed before
     const results::JournalText whole = results::Journal::read(path_);
-    if (!whole.damaged && whole.fingerprint == results::shard_fingerprint(fingerprint_, *shard_)) {
+    if (!whole.damaged) {
       for (const results::JournalRecord& record : whole.records) journal_->append(record);
     }
   }
   if (!journal_->records().empty()) return;
   journal_->append(results::to_record({.shard = *shard_,
                                        .version = results::version(),
-                                       .rounding = rounding(),
+                                       .rounding = results::rounding(),
                                        .command = command_,
                                        .words = words,
                                        .scene = scene_.source}));

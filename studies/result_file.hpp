@@ -36,10 +36,12 @@ struct Division {
 class ResultFile {
  public:
   /// @param path      empty: in memory only, without a journal
-  /// @param command   what was asked, for provenance: with the scene, the version and `identity` it decides whether a
+  /// @param command   what was asked, for provenance: with the scene, the version, kernels and `identity` it decides
+  /// whether a
   ///                  journal found beside the file belongs to the same study
   /// @param identity  of what else decides values: the models of files, see identity_of
-  /// @throws InvalidInput  as results::Journal; for more shards than pieces; for parts of another study
+  /// @throws InvalidInput  as results::Journal; for more shards than pieces; for parts of another study, also where a
+  ///                       part would be replaced
   ResultFile(std::filesystem::path path, scene::Scene scene, results::FileKind kind, std::string command,
              const std::string& identity = "", const Division& division = {}, const Pieces& pieces = {});
 

@@ -68,8 +68,8 @@ double CollocationFlow::characteristic_error(int c) const {
   const auto i = static_cast<std::size_t>(c);
   const double sign = sign_of(point_.modes[i]);
   const auto slip = drive_nodes_.segment<kNodes>(kNodes * c) - velocity_.segment<kNodes>(kNodes * c);
-  const Eigen::VectorXd speed = halfway().seventh * slip,
-                        force = halfway().seventh * forces_.segment<kNodes>(kNodes * c);
+  const auto between = halfway().seventh.topRows<kNodes>();
+  const RadauTables::Vector8 speed = between * slip, force = between * forces_.segment<kNodes>(kNodes * c);
   double worst = 0.0;
   for (Eigen::Index k = 0; k < speed.size(); ++k) {
     if (sign * speed(k) <= 0.0) continue;  // beyond the event that ends the step

@@ -180,6 +180,10 @@ TEST_F(BadParts, ShardsThatCannotBeAreRefusedBeforeAnythingIsWritten) {
   refused({"diagnose", "two.toml", "--shard", "1/3", "-o", "b.part"}, HasSubstr("give one with --over"));
   refused({"validate", "two.toml", "pod.h5", "--shard", "1/3", "-o", "b.part"}, HasSubstr("--shard"));
   refused(sweep + Words{"--shard", "1/3", "-o", "two.toml"}, HasSubstr("two.toml: is neither a journal nor a part"));
+  const std::string first = bytes("1of3.part");
+  refused(sweep + Words{"--shard", "2/3", "-o", "1of3.part"},
+          HasSubstr("1of3.part: is a finished part of another shard"));
+  EXPECT_EQ(bytes("1of3.part"), first);
 }
 
 TEST_F(BadParts, MissingAndDoubledOnesAreNamed) {
@@ -258,10 +262,11 @@ TEST_F(BadParts, AnUnfinishedOneIsToldWithItsValuesAndTheCommandThatFinishesIt) 
 }
 
 TEST_F(BadParts, AShardThatRunsIsNotStartedTwice) {
-  const Words shard = {"sweep", "two.toml", "--over", "drive.speed=0.3:0.1:0.0005", "--shard", "1/2", "-o", "run.part"};
+  const Words shard = {"sweep", "two.toml", "--over", "drive.speed=0.3:0.1:0.0001", "--shard", "1/2", "-o", "run.part"};
   SlipmodeProcess first(shard, folder.path());
   const fs::path journal = folder.path() / "run.part.journal";
   ASSERT_TRUE(first.signal_when([&] { return fs::exists(journal) && fs::file_size(journal) > 3000; }, SIGSTOP));
+  ASSERT_TRUE(fs::exists(journal)) << "over before it was stopped";
   const Outcome second = slipmode_in(folder, shard);
   EXPECT_EQ(second.exit_code, 2);
   EXPECT_THAT(second.err, HasSubstr("another process is writing it"));

@@ -30,7 +30,9 @@ for task in $(seq "${tasks:-1}"); do
     rm -f requeue
     SLURM_ARRAY_JOB_ID=7 SLURM_ARRAY_TASK_ID=$task SLURM_CPUS_PER_TASK=1 bash "$script" > said 2>&1 &
     if [ "$task$run" = 21 ]; then
-      until [ "$(grep -c sweep-0 "jo bs/2.part.journal" 2> /dev/null)" -ge 1 ] 2> /dev/null; do sleep 0.001; done
+      until [ "$(grep -c sweep-0 "jo bs/2.part.journal" 2> /dev/null)" -ge 1 ] 2> /dev/null || ! kill -0 $!; do
+        sleep 0.001
+      done
       kill -USR1 $!
     fi
     wait $!
@@ -95,6 +97,8 @@ TEST_F(Slurm, WhatCannotBeDividedIsRefused) {
   refused({"-o", "all.h5", "--slurm", "jobs", "--shard", "1/2"}, "expected one of them");
   refused({"-o", "all.h5", "--slurm", "jobs", "--shards", "500"}, "--shards 500: expected at most 401");
   refused({"-o", "all.h5", "--slurm", "jobs", "--follow"}, "one piece");
+  EXPECT_TRUE(fs::is_empty(folder.path() / "jobs"));
+  refused({"-o", "all.h5", "--shards", "4"}, "--shards 4: goes with --slurm");
   refused({"-o", "all.h5", "--slurm", "scene.toml/jobs"}, "scene.toml/jobs");
 }
 

@@ -17,7 +17,7 @@ using testing::HasSubstr;
 PartHead head(std::size_t number, std::size_t count) {
   return {.shard = {.number = number, .count = count},
           .version = version(),
-          .rounding = "fused",
+          .rounding = rounding(),
           .command = "slipmode sweep",
           .words = {"sweep", "it's a scene.toml", "--over=drive.speed=1:2:1"},
           .scene = {.path = "it's a scene.toml", .text = "title = \"é\"\n", .overrides = {"drive.speed=0.25"}}};
@@ -84,7 +84,7 @@ TEST(Part, WithoutAHeadThatCanBeIsRefused) {
   };
   EXPECT_THAT(refused({}), HasSubstr("is no part of a study"));
   EXPECT_THAT(refused({{"sweep-0", 0, {1.0}, ""}}), HasSubstr("is no part of a study"));
-  EXPECT_THAT(refused({to_record(head(0, 3))}), HasSubstr("its head says shard 0/3"));
+  EXPECT_THAT(refused({to_record(head(0, 0))}), HasSubstr("its head says shard 0/0"));
   EXPECT_THAT(refused({to_record(head(4, 3))}), HasSubstr("its head says shard 4/3"));
   EXPECT_THAT(refused({to_record(head(1, 1'000'000'000'000))}), HasSubstr("its head says shard 1/1000000000000"));
   JournalRecord broken = to_record(head(1, 3));
@@ -104,10 +104,14 @@ TEST(Parts, OfAnotherVersionOrRoundingAreNamed) {
   foreign.fingerprint = "def";
   EXPECT_THAT(refusal({part(head(1, 2)), foreign}),
               HasSubstr("p2: is of another study than p1: made by slipmode 0.0.9, the other by " + version()));
-  PartHead generic = head(2, 2);
-  generic.rounding = "generic";
-  EXPECT_THAT(refusal({part(head(1, 2)), part(generic)}),
-              HasSubstr("p2: computed with generic kernels, p1 with fused ones"));
+  // First of all: where bases are made anew, other kernels make another study of it.
+  PartHead strange = head(2, 2);
+  strange.rounding = rounding() == "fused" ? "generic" : "fused";
+  Part other = part(strange);
+  other.fingerprint = "def";
+  EXPECT_THAT(refusal({part(head(1, 2)), other}), HasSubstr("p2: computed with " + strange.rounding + " kernels"));
+  EXPECT_THAT(refusal({other}), HasSubstr("from the " + rounding() + " ones here"));
+  EXPECT_THAT(refusal({part(head(1, 2)), part(head(0, 2))}), HasSubstr("p0: has no share of the values"));
 }
 
 }  // namespace
