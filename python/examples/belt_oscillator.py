@@ -1,12 +1,13 @@
 """A mass on a belt, m q'' + k q = friction, three ways: SciPy with a smoothed law, SciPy with events, slipmode.
 
 Prints a table: lines of code, time of a run (the least of five), error against the closed form. docs/tutorial/python.md
-explains it.
+explains it. A duration other than 200 may be given.
 
     PYTHONPATH=build/release/python python3 python/examples/belt_oscillator.py
 """
 
 import inspect
+import sys
 import time
 
 import numpy as np
@@ -14,8 +15,9 @@ from scipy.integrate import solve_ivp
 
 import slipmode as sm
 
-MU_S, MU_K, SPEED, END = 0.4, 0.2, 0.1, 200.0  # m = k = normal load = 1
-TIMES = np.linspace(0.0, END, 20001)
+MU_S, MU_K, SPEED = 0.4, 0.2, 0.1  # m = k = normal load = 1
+END = float(sys.argv[1]) if len(sys.argv) > 1 else 200.0
+TIMES = np.linspace(0.0, END, round(100.0 * END) + 1)
 
 
 def closed_form(t):
