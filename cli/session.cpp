@@ -1,11 +1,7 @@
 #include "cli/session.hpp"
 
-#include <unistd.h>
-
 #include <fmt/format.h>
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <memory>
 #include <utility>
 
@@ -81,21 +77,6 @@ Report part_made(const Session& session, const studies::ResultFile& file, const 
   tell_resumed(session, file.resumed(), what, report);
   report.text += fmt::format("Part: {}; 'slipmode merge PART... -o FILE' joins all of them\n", output);
   return report;
-}
-
-void require_writable(const fs::path& file) {
-  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  if (fs::is_directory(file)) {
-    throw InvalidInput(fmt::format("output '{}' is a folder; give the name of a file", file.string()));
-  }
-  if (!fs::is_directory(folder)) {
-    throw InvalidInput(fmt::format("cannot write '{}': there is no folder '{}'; create it or choose another with -o",
-                                   file.string(), folder.string()));
-  }
-  if (access(folder.c_str(), W_OK | X_OK) != 0) {
-    throw InvalidInput(fmt::format("cannot write '{}': folder '{}': {}; choose another with -o", file.string(),
-                                   folder.string(), std::strerror(errno)));
-  }
 }
 
 std::string certificate(const dynamics::FlowStatistics& statistics) {

@@ -4,6 +4,7 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/core/parallel.hpp>
 #include <slipmode/core/progress.hpp>
+#include <slipmode/results/store.hpp>
 #include <slipmode/scene/scene.hpp>
 #include <slipmode/studies/result_file.hpp>
 #include <slipmode/studies/run_options.hpp>
@@ -62,9 +63,7 @@ struct Report {
   int exit_code = kDone;
 };
 
-/// Throws unless a file can be made there: to be called before any work that would be lost.
-/// @throws InvalidInput  when the folder is missing or not writable, or the path is a folder
-void require_writable(const std::filesystem::path& file);
+using results::require_writable;
 
 /// Says what an interrupted run, or the parts, had finished. @param what  is counted: "values", "rows"
 void tell_resumed(const Session& session, std::size_t resumed, const std::string& what, Report& out_report);

@@ -27,6 +27,10 @@ struct Meaning {
   enum class Of : std::uint8_t { kModel, kClock } of = Of::kModel;
 };
 
+/// Throws unless a file can be made there: to be called before any work that would be lost.
+/// @throws InvalidInput  when the folder is missing or not writable, or the path is a folder
+void require_writable(const std::filesystem::path& file);
+
 /// Writes one HDF5 result file, or what it would hold into memory. The content goes to a temporary in the same folder;
 /// `commit` renames it into place, so that a reader sees the whole file or none. A writer destroyed without `commit`
 /// leaves nothing behind.

@@ -28,17 +28,6 @@ fs::path temporary_beside(const fs::path& path) {
   return path.parent_path() / fmt::format(".{}.{}-{:x}.tmp", path.filename().string(), ::getpid(), ticks);
 }
 
-void check_target(const fs::path& path) {
-  if (path.filename().empty() || fs::is_directory(path)) {
-    throw InvalidInput(fmt::format("{}: is a folder; expected the name of a result file", path.string()));
-  }
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  if (!fs::is_directory(folder)) {
-    throw InvalidInput(fmt::format("{}: the folder {} does not exist; create it (mkdir -p) or choose another output",
-                                   path.string(), folder.string()));
-  }
-}
-
 /// Largest chunk of at most kChunkBytes made of whole rows, or of parts of one row.
 std::vector<hsize_t> chunk_shape(const std::vector<hsize_t>& shape, std::size_t element) {
   std::vector<hsize_t> chunk = shape;
@@ -74,7 +63,7 @@ bool has_dimension(const std::string& units) {
 class Hdf5Target final : public StoreTarget {
  public:
   explicit Hdf5Target(fs::path target) : StoreTarget(std::move(target)) {
-    check_target(path());
+    require_writable(path());
     temporary_ = temporary_beside(path());
     const QuietHdf5 quiet;
     const Hdf5Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
@@ -207,6 +196,21 @@ class Hdf5Target final : public StoreTarget {
 };
 
 }  // namespace
+
+void require_writable(const fs::path& file) {
+  if (file.filename().empty() || fs::is_directory(file)) {
+    throw InvalidInput(fmt::format("{}: is a folder; expected the name of a file", file.string()));
+  }
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  if (!fs::is_directory(folder)) {
+    throw InvalidInput(fmt::format("{}: the folder {} does not exist; create it (mkdir -p) or choose another output",
+                                   file.string(), folder.string()));
+  }
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) {
+    throw InvalidInput(fmt::format("{}: cannot be written (folder {}: {}); choose another output", file.string(),
+                                   folder.string(), std::strerror(errno)));
+  }
+}
 
 void StoreTarget::fail(const std::string& name, const std::string& what) const {
   throw InvalidInput(fmt::format("{}: {}: {}", path_.string(), name, what));
