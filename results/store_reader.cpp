@@ -180,6 +180,7 @@ class Hdf5Source final : public StoreSource {
   [[nodiscard]] static Opened opened_of(hid_t set) {
     const Hdf5Handle type(H5Dget_type(set), H5Tclose);
     const Hdf5Handle space(H5Dget_space(set), H5Sclose);
+    if (H5Sget_simple_extent_type(space.id()) == H5S_NULL) return {StoreEntry::Kind::kOther, {}};  // h5py's Empty
     std::vector<hsize_t> extents(static_cast<std::size_t>(std::max(0, H5Sget_simple_extent_ndims(space.id()))));
     H5Sget_simple_extent_dims(space.id(), extents.data(), nullptr);
     return {entry_kind(H5Tget_class(type.id())), {extents.begin(), extents.end()}};
