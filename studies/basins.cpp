@@ -30,8 +30,8 @@ StartCoordinate coordinate_of(const Family& family, const std::string& key) {
   }
   const Eigen::Index last = family.own().size() - 1;
   throw InvalidInput(
-      fmt::format("--over {}: no coordinate of the start; valid: initial.displacement.K, initial.velocity.K, K = 0{}",
-                  key, last > 0 ? fmt::format(" to {}", last) : ""));
+      fmt::format("{}: no coordinate of the start; valid: initial.displacement.K, initial.velocity.K, K = 0{}", key,
+                  last > 0 ? fmt::format(" to {}", last) : ""));
 }
 
 orbits::BasinOptions options_of(const Family& family, const BasinsOptions& options) {
@@ -58,11 +58,10 @@ void check(const Family& family, const BasinsRequest& request) {
     if (!axis.values.empty() && std::ranges::all_of(axis.values, [](double value) { return std::isfinite(value); })) {
       continue;
     }
-    throw InvalidInput(fmt::format("--over {}: expected at least one value, all finite", axis.key));
+    throw InvalidInput(fmt::format("{}: expected at least one value, all finite", axis.key));
   }
   if (request.over[0].key == request.over[1].key) {
-    throw InvalidInput(
-        fmt::format("--over {}: given twice; a plane needs two coordinates of the start", request.over[0].key));
+    throw InvalidInput(fmt::format("{}: given twice; a plane needs two coordinates of the start", request.over[0].key));
   }
   if (!family.keys().empty() && family.keys().front().starts_with("initial.")) {
     throw InvalidInput(

@@ -177,8 +177,8 @@ void check_values(const scene::Scene& scene, const std::string& key, const std::
     const Eigen::Index size = scene::set_key(scene, key, value).size();
     if (size == scene.size()) continue;
     throw InvalidInput(
-        fmt::format("--over {}: the number of degrees of freedom must stay at {} along a sweep, value {} changes it; "
-                    "run one sweep per size with --set",
+        fmt::format("over {}: the number of degrees of freedom must stay at {} along a sweep, value {} changes it; "
+                    "run one sweep per size",
                     key, scene.size(), value));
   }
 }

@@ -31,7 +31,7 @@ double contact_stiffness(const friction::Law& law) {
 
 ModeSets natural_modes(const scene::Scene& scene, const dynamics::HybridSystem& system, Eigen::Index count) {
   if (count < 0 || count > system.size()) {
-    throw InvalidInput(fmt::format("--count {}: expected 1..{} (the degrees of freedom), or 0 for the lowest {}", count,
+    throw InvalidInput(fmt::format("count = {}: expected 1..{} (the degrees of freedom), or 0 for the lowest {}", count,
                                    system.size(), kLowest));
   }
   if (count == 0) count = std::min(system.size(), kLowest);

@@ -61,7 +61,7 @@ void check(const Family& family, const OrbitMapOptions& options) {
   const std::size_t keys = family.keys().size();
   if (keys < 1 || keys > 2) {
     throw InvalidInput(
-        fmt::format("--over: given {} times; once for a stroboscopic map, twice for a map over a plane", keys));
+        fmt::format("over: found {} keys; expected one for a stroboscopic map, two for a map over a plane", keys));
   }
   if (!family.own().drive().period()) {
     throw InvalidInput(
@@ -71,10 +71,11 @@ void check(const Family& family, const OrbitMapOptions& options) {
   if (keys == 2 && options.follow) {
     throw InvalidInput("--follow: points of a map over two keys each have their own start; valid with one --over");
   }
+  if (options.starts.empty()) throw InvalidInput("starts: found none; expected scene, centre or both");
   for (const std::string& start : options.starts) {
     if (start == "scene" || start == "centre") continue;
     throw InvalidInput(fmt::format(
-        "--start {}: valid: scene (its [initial]), centre (the steady linear motion in the gap), both", start));
+        "start {}: valid: scene (its [initial]), centre (the steady linear motion in the gap), both", start));
   }
 }
 

@@ -42,7 +42,8 @@ struct OrbitMapStudy {
   bool interrupted = false;
 };
 
-/// @throws InvalidInput  for more than two keys, a drive without period, another start, following over two keys
+/// @throws InvalidInput  for more than two keys, a drive without period, no start or another one, following over two
+/// keys
 void check(const Family& family, const OrbitMapOptions& options);
 
 /// A row of a map can be computed alone, over one key a value, or where values follow each other all from one start.

@@ -21,9 +21,14 @@ pod::PodResult decompose(const pod::Ensemble& ensemble, Eigen::Index modes, cons
   }
 }
 
+void check_modes(Eigen::Index modes, const char* otherwise) {
+  if (modes < 0) throw InvalidInput(fmt::format("modes = {}: expected 1 or more, or 0 for {}", modes, otherwise));
+}
+
 }  // namespace
 
 MotionModes motion_modes(const results::StoreReader& motion, Eigen::Index modes) {
+  check_modes(modes, "all there are");
   MotionModes found{.scene = {}, .provenance = results::load_provenance(motion), .pod = {}, .shaken = {}};
   const pod::Ensemble ensemble = results::load_snapshots(motion);
   found.scene = results::load_scene_of(motion);
@@ -35,7 +40,7 @@ MotionModes motion_modes(const results::StoreReader& motion, Eigen::Index modes)
     return found;
   }
   if (modes > 0)
-    throw InvalidInput("--modes: under a shaker all modes are kept, 'slipmode reduce --modes' takes as many as wanted");
+    throw InvalidInput(fmt::format("modes = {}: under a shaker all are kept, 'reduce' takes as many as wanted", modes));
   found.shaken = shaken_modes(found.scene, scene::build_system(found.scene).structure(), ensemble);
   return found;
 }
@@ -52,11 +57,12 @@ results::Content content_of(const std::shared_ptr<const MotionModes>& modes) {
 
 Reduction reduce(const scene::Scene& scene, const dynamics::HybridSystem& full, const pod::NamedBasis& source,
                  const std::string& name, Eigen::Index modes) {
+  check_modes(modes, "as many as [reduction] says");
   pod::ModeChoice choice = scene.reduction.choice;
   if (modes > 0) choice.modes = modes;
   if (choice.modes == 0 && source.captured.size() == 0) {  // LNMs have no energies of their own
     throw InvalidInput(
-        fmt::format("basis '{}' has no energy shares to choose by; give --modes or reduction.modes", name));
+        fmt::format("basis '{}' has no energy shares to choose by; give modes or reduction.modes", name));
   }
   const Eigen::Index taken =
       pod::chosen_modes(choice, source.captured, source.basis.modes(), fmt::format("basis '{}'", name));

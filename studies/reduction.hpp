@@ -26,7 +26,8 @@ struct MotionModes {
 
 /// @param motion  an ensemble, or the samples of a trajectory or an orbit
 /// @param modes   kept; 0: all there are
-/// @throws InvalidInput  for another kind of result, more modes than there are, a number of modes under a shaker
+/// @throws InvalidInput  for another kind of result, modes < 0, more modes than there are, a number of modes under a
+/// shaker
 [[nodiscard]] MotionModes motion_modes(const results::StoreReader& motion, Eigen::Index modes = 0);
 [[nodiscard]] results::Content content_of(const std::shared_ptr<const MotionModes>& modes);
 
@@ -40,7 +41,7 @@ struct Reduction {
 /// @param source  with all its vectors
 /// @param name    of the basis, for messages
 /// @param modes   0: as [reduction] says
-/// @throws InvalidInput  for more modes than there are, or where nothing says how many
+/// @throws InvalidInput  for modes < 0, more than there are, or where nothing says how many
 [[nodiscard]] Reduction reduce(const scene::Scene& scene, const dynamics::HybridSystem& full,
                                const pod::NamedBasis& source, const std::string& name, Eigen::Index modes = 0);
 [[nodiscard]] results::Content content_of(const scene::Scene& scene, const std::shared_ptr<const Reduction>& reduction);

@@ -137,7 +137,9 @@ Validation validate(const scene::Scene& scene, const std::vector<pod::NamedBasis
   if (!is_shaken(scene)) return validate_belt(scene, bases, request, file_of(file, scene, bases), run);
   if (request.verdict)
     throw InvalidInput(
-        "--verdict: expected a belt, found a shaker; there 'slipmode diagnose SCENE FILE --verdict' does it");
+        "verdict: expected a belt, found a shaker; there 'slipmode diagnose SCENE FILE --verdict', in Python "
+        "exponents, "
+        "does it");
   scene::Scene own = scene;
   if (!request.sweep) own.shaken.frequencies.reset();
   return validate_shaken(own, bases, file_of(file, own, bases), run);
