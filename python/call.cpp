@@ -1,5 +1,7 @@
 #include "python/call.hpp"
 
+#include <slipmode/results/store.hpp>
+
 #include <fmt/ranges.h>
 
 #include <array>
@@ -43,7 +45,10 @@ int begin_watch() {
     own = k;
   }
   if (watched++ > 0) return own;
-  sigaction(SIGINT, nullptr, &before);
+  struct sigaction now = {};
+  sigaction(SIGINT, nullptr, &now);
+  if (now.sa_handler == stop_all) return own;  // saved during a call and set again later: `before` still is Python's
+  before = now;
   const bool handled =
       (before.sa_flags & SA_SIGINFO) == 0 && before.sa_handler != SIG_DFL && before.sa_handler != SIG_IGN;
   if (!handled) return own;
@@ -79,6 +84,12 @@ std::string Keywords::text(const char* name, std::string otherwise) {
   if (!value) return otherwise;
   if (!py::isinstance<py::str>(value)) refuse(name, value, "a text");
   return value.cast<std::string>();
+}
+
+std::string Keywords::output() {
+  std::string file = text("output");
+  if (!file.empty()) results::require_writable(file);
+  return file;
 }
 
 void Keywords::finish() const {

@@ -45,6 +45,8 @@ class Keywords {
   [[nodiscard]] py::object take(const char* name);
   /// Text, or what stands where it was not given.
   [[nodiscard]] std::string text(const char* name, std::string otherwise = {});
+  /// `output`, the file that a long study writes; empty: none. @throws InvalidInput  where no file can be made
+  [[nodiscard]] std::string output();
   /// @throws InvalidInput  for what nobody took
   void finish() const;
   [[noreturn]] void refuse(const std::string& name, const py::handle& value, const std::string& expected) const;
@@ -78,15 +80,20 @@ class Keywords {
   std::vector<std::string> known_;
 };
 
-/// The fields of an options struct as lines of a docstring: "name: meaning [unit], default".
+/// A field as the beginning of a docstring's line: "    name: meaning [unit]".
+template <class S, class T>
+[[nodiscard]] std::string field_text(const Field<S, T>& field) {
+  const std::string unit = *field.unit == '\0' ? "" : fmt::format(" [{}]", field.unit);
+  return fmt::format("    {}: {}{}", field.name, field.meaning, unit);
+}
+
+/// The fields of an options struct as lines of a docstring, with their defaults.
 template <class S>
 [[nodiscard]] std::string options_text() {
   const S own;
   std::string text;
   for_each_field<S>([&](const auto& field) {
-    const std::string unit = *field.unit == '\0' ? "" : fmt::format(" [{}]", field.unit);
-    text += fmt::format("    {}: {}{} (default {})\n", field.name, field.meaning, unit,
-                        std::string(py::str(py::cast(own.*field.member))));
+    text += fmt::format("{} (default {})\n", field_text(field), std::string(py::str(py::cast(own.*field.member))));
   });
   return text;
 }

@@ -28,15 +28,15 @@ Result exponents(const Scene& scene, const py::args& bases, const py::kwargs& gi
   std::vector<results::StoreReader> stores;
   for (const py::handle basis : bases) {
     if (!py::isinstance<Result>(basis)) keywords.refuse("models", basis, "results of pod, ensemble or reduce");
-    stores.push_back(basis.cast<Result&>().reader());
+    stores.push_back(basis.cast<const Result&>().reader());
   }
   Call call(keywords);
-  return Result(call([&] {
+  return call([&] {
     const Scene timed = scene::with_own_times(scene);
     const studies::Subjects subjects = studies::subjects_of(timed, stores, own.modes);
-    return studies::content_of(timed, std::make_shared<const studies::ModelDiagnosis>(studies::diagnose_models(
-                                          timed, subjects, request, own.verdict, call.options())));
-  }));
+    return Result(studies::content_of(timed, std::make_shared<const studies::ModelDiagnosis>(studies::diagnose_models(
+                                                 timed, subjects, request, own.verdict, call.options()))));
+  });
 }
 
 std::vector<std::string> run(const Scene& scene, const std::filesystem::path& folder, const py::kwargs& given) {

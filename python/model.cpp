@@ -9,7 +9,7 @@ ModelChoice::ModelChoice(Keywords& keywords) {
   const py::object given = keywords.take("model");
   if (!given) return;
   if (py::isinstance<Result>(given)) {
-    reduced_ = given.cast<Result&>().store();
+    reduced_ = given.cast<const Result&>().store();
   } else if (py::isinstance<py::str>(given)) {
     word_ = given.cast<std::string>();
   } else {

@@ -11,6 +11,7 @@
 #include "python/result.hpp"
 
 #include <optional>
+#include <utility>
 #include <variant>
 
 namespace slipmode::python {
@@ -21,37 +22,40 @@ using scene::Scene;
 Result simulate(const Scene& scene, const py::kwargs& given) {
   Keywords keywords("simulate", given);
   Call call(keywords);
-  const auto run =
-      call([&] { return std::make_shared<const studies::Simulation>(studies::simulate(scene, call.options())); });
-  Result result(studies::content_of(scene, run));
-  if (run->failure) raise(*run->failure, py::cast(std::move(result)));
-  return result;
+  auto [failure, result] = call([&] {
+    const auto run = std::make_shared<const studies::Simulation>(studies::simulate(scene, call.options()));
+    return std::pair(run->failure, Result(studies::content_of(scene, run)));
+  });
+  if (failure) raise(*failure, py::cast(std::move(result)));
+  return std::move(result);
 }
 
 Result ensemble(const Scene& scene, const py::kwargs& given) {
   Keywords keywords("ensemble", given);
   Call call(keywords);
-  const auto run =
-      call([&] { return std::make_shared<const diagnostics::EnsembleRun>(studies::ensemble(scene, call.options())); });
-  return Result(studies::content_of(scene, run));
+  return call([&] {
+    return Result(studies::content_of(
+        scene, std::make_shared<const diagnostics::EnsembleRun>(studies::ensemble(scene, call.options()))));
+  });
 }
 
 Result modes(const Scene& scene, Eigen::Index count) {
+  const py::gil_scoped_release unlocked;
   const auto sets =
       std::make_shared<const studies::ModeSets>(studies::natural_modes(scene, scene::build_system(scene), count));
   return Result(studies::content_of(scene, sets));
 }
 
-Result pod(Result& motion, Eigen::Index modes) {
+Result pod(const Result& motion, Eigen::Index modes) {
   const results::StoreReader reader = motion.reader();
   const py::gil_scoped_release unlocked;
   return Result(
       studies::content_of(std::make_shared<const studies::MotionModes>(studies::motion_modes(reader, modes))));
 }
 
-Result reduce(const Scene& scene, const std::variant<std::string, Result*>& basis, Eigen::Index modes) {
+Result reduce(const Scene& scene, const std::variant<std::string, const Result*>& basis, Eigen::Index modes) {
   std::optional<results::StoreReader> reader;
-  if (const auto* result = std::get_if<Result*>(&basis)) reader.emplace((*result)->store());
+  if (const auto* result = std::get_if<const Result*>(&basis)) reader.emplace((*result)->store());
   const py::gil_scoped_release unlocked;
   const dynamics::HybridSystem full = scene::build_system(scene);
   const std::string name = reader ? reader->path().string() : std::get<std::string>(basis);
@@ -61,14 +65,14 @@ Result reduce(const Scene& scene, const std::variant<std::string, Result*>& basi
       scene, std::make_shared<const studies::Reduction>(studies::reduce(scene, full, source, name, modes))));
 }
 
-Result validate(const Scene& scene, Result& basis, const py::kwargs& given) {
+Result validate(const Scene& scene, const Result& basis, const py::kwargs& given) {
   Keywords keywords("validate", given);
   studies::ValidationRequest request;
   keywords.read(request);
-  const std::string output = keywords.text("output");
+  const std::string output = keywords.output();
   Call call(keywords);
   const results::StoreReader reader = basis.reader();
-  return Result(call([&] { return studies::validate(scene, reader, request, output, call.options()).content; }));
+  return call([&] { return Result(studies::validate(scene, reader, request, output, call.options()).content); });
 }
 
 }  // namespace

@@ -10,6 +10,9 @@
 #include <fmt/format.h>
 #include <pybind11/eigen.h>
 
+#include <optional>
+#include <utility>
+
 namespace slipmode::python {
 namespace {
 
@@ -55,13 +58,17 @@ Result find_orbit(const Scene& scene, const py::kwargs& given) {
   const studies::OrbitSearch search = search_of(keywords, scene);
   const ModelChoice choice(keywords);
   Call call(keywords);
-  const auto [model, found] = call([&] {
+  const auto [found, result] = call([&] {
     const studies::Family family(scene, {}, choice.basis(scene, call.options()));
     call.options().check_interrupt();
-    return std::pair(family, studies::find_orbit(family, search));
+    orbits::ShootingResult search_result = studies::find_orbit(family, search);
+    std::optional<Result> kept;
+    if (search_result.converged())
+      kept.emplace(studies::content_of(family, std::make_shared<const orbits::PeriodicOrbit>(search_result.orbit)));
+    return std::pair(std::move(search_result), std::move(kept));
   });
-  if (!found.converged()) raise_not_found(found);
-  return Result(studies::content_of(model, std::make_shared<const orbits::PeriodicOrbit>(found.orbit)));
+  if (!result) raise_not_found(found);
+  return *result;
 }
 
 Result continue_orbit(const Scene& scene, const std::string& over, double to, const std::optional<double>& from,
@@ -76,23 +83,27 @@ Result continue_orbit(const Scene& scene, const std::string& over, double to, co
     throw InvalidInput(fmt::format("continue_orbit: to = {}: the range has no length", to));
   const ModelChoice choice(keywords);
   Call call(keywords);
-  const auto [model, found] = call([&] {
+  const auto [found, result] = call([&] {
     const auto basis = choice.basis(scene, call.options());
-    return std::pair(studies::Family(scene, {over}, basis),
-                     studies::continue_orbit(scene, over, basis, search, request, call.options()));
+    studies::Continuation continuation = studies::continue_orbit(scene, over, basis, search, request, call.options());
+    std::optional<Result> kept;
+    if (continuation.found.converged()) {
+      kept.emplace(studies::content_of(
+          studies::Family(scene, {over}, basis), continuation.start,
+          std::make_shared<const std::vector<results::NamedBranch>>(continuation.branches),
+          fmt::format("slipmode orbit continue --over {}={}:{}", over, request.from, request.to), call.options()));
+    }
+    return std::pair(std::move(continuation), std::move(kept));
   });
-  if (!found.found.converged()) raise_not_found(found.found);
-  Result result(
-      studies::content_of(model, found.start, std::make_shared<const std::vector<results::NamedBranch>>(found.branches),
-                          fmt::format("slipmode orbit continue --over {}={}:{}", over, request.from, request.to)));
+  if (!result) raise_not_found(found.found);
   const orbits::Branch& main = found.branches.front().branch;
   if (main.end == orbits::BranchEnd::kLost) {
     const bool any = !main.points.empty();
     raise(NumericalFailure("the branch was lost before the end of its range; what was found is kept: " + main.reason,
                            any ? main.points.back().parameter : found.start, {}, 0.0),
-          py::cast(std::move(result)));
+          py::cast(*result));
   }
-  return result;
+  return *result;
 }
 
 }  // namespace

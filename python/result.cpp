@@ -42,7 +42,7 @@ py::object value_of(const Dataset& dataset) {
   }
 }
 
-const Dataset& dataset_of(Result& own, const std::string& name) {
+const Dataset& dataset_of(const Result& own, const std::string& name) {
   const Dataset* dataset = own.store()->find(name);
   if (dataset == nullptr) throw py::key_error(name);
   return *dataset;
@@ -52,27 +52,32 @@ const Dataset& dataset_of(Result& own, const std::string& name) {
 
 void add_result(py::module_& module) {
   py::class_<Result>(module, "Store", "What a result file holds, in memory.")
-      .def_property_readonly("kind", &Result::kind)
+      .def_property_readonly("kind", [](const Result& own) { return own.store()->kind(); })
       .def("names",
-           [](Result& own) {
+           [](const Result& own) {
              std::vector<std::string> names;
              for (const Dataset& dataset : own.store()->datasets()) {
                if (dataset.kind != StoreEntry::Kind::kGroup) names.push_back(dataset.name);
              }
              return names;
            })
-      .def("value", [](Result& own, const std::string& name) { return value_of(dataset_of(own, name)); })
+      .def("value", [](const Result& own, const std::string& name) { return value_of(dataset_of(own, name)); })
       .def("meaning",
-           [](Result& own, const std::string& name) {
+           [](const Result& own, const std::string& name) {
              const Dataset* dataset = own.store()->find(name);
              if (dataset == nullptr) return std::pair<std::string, std::string>();
              return std::pair(dataset->meaning.units, dataset->meaning.description);
            })
-      .def("save", [](Result& own, const std::string& path) { own.store()->save(path); })
-      .def("scene", [](Result& own) { return results::load_scene_of(own.reader()); });
-  module.def("read", [](const std::string& path) {
-    return Result(std::make_shared<const results::MemoryStore>(results::StoreReader(path)));
-  });
+      .def(
+          "save", [](const Result& own, const std::string& path) { own.store()->save(path); },
+          py::call_guard<py::gil_scoped_release>())
+      .def("scene", [](const Result& own) { return results::load_scene_of(own.reader()); });
+  module.def(
+      "read",
+      [](const std::string& path) {
+        return Result(std::make_shared<const results::MemoryStore>(results::StoreReader(path)));
+      },
+      py::call_guard<py::gil_scoped_release>());
 }
 
 }  // namespace slipmode::python

@@ -3,30 +3,20 @@
 #include <slipmode/results/memory_store.hpp>
 
 #include <memory>
-#include <optional>
-#include <string>
+#include <utility>
 
 namespace slipmode::python {
 
-/// A result in memory. What a study gave is laid out when it is first asked for; Python's lock guards that.
+/// A result in memory. Laying out what a study gave may run the model again: to be done inside its call.
 class Result {
  public:
-  explicit Result(results::Content content) : content_(std::move(content)) {}
+  explicit Result(const results::Content& content) : store_(std::make_shared<const results::MemoryStore>(content)) {}
   explicit Result(std::shared_ptr<const results::MemoryStore> store) : store_(std::move(store)) {}
 
-  [[nodiscard]] const std::shared_ptr<const results::MemoryStore>& store() {
-    if (!store_) {
-      store_ = std::make_shared<const results::MemoryStore>(*content_);
-      content_.reset();
-    }
-    return store_;
-  }
-  /// The word of its kind; without laying it out.
-  [[nodiscard]] std::string kind() const { return content_ ? results::words_of(content_->kind).word : store_->kind(); }
-  [[nodiscard]] results::StoreReader reader() { return results::StoreReader(store()); }
+  [[nodiscard]] const std::shared_ptr<const results::MemoryStore>& store() const { return store_; }
+  [[nodiscard]] results::StoreReader reader() const { return results::StoreReader(store_); }
 
  private:
-  std::optional<results::Content> content_;
   std::shared_ptr<const results::MemoryStore> store_;
 };
 

@@ -1,6 +1,7 @@
 #include <slipmode/scene/scene.hpp>
 
 #include <slipmode/scene/shaken.hpp>
+#include "python/call.hpp"
 #include "python/module.hpp"
 
 #include <fmt/format.h>
@@ -17,14 +18,12 @@ namespace py = pybind11;
 
 namespace {
 
-/// The fields of a table: "  name: meaning [unit]".
+/// The fields of a table under its heading.
 template <class S>
 std::string table_text(const std::string& heading) {
   std::string text = fmt::format("\n{}\n", heading);
-  for_each_field<S>([&](const auto& field) {
-    const std::string unit = *field.unit == '\0' ? "" : fmt::format(" [{}]", field.unit);
-    text += fmt::format("    {}: {}{}{}\n", field.name, field.meaning, unit, field.is_required ? ", required" : "");
-  });
+  for_each_field<S>(
+      [&](const auto& field) { text += field_text(field) + (field.is_required ? ", required\n" : "\n"); });
   return text;
 }
 

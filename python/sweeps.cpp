@@ -44,9 +44,9 @@ Result sweep(const Scene& given_scene, const std::string& over, const std::vecto
   studies::SweepOptions options;
   keywords.read(options);
   const ModelChoice choice(keywords);
-  const std::string output = keywords.text("output");
+  const std::string output = keywords.output();
   Call call(keywords);
-  return Result(call([&] {
+  return call([&] {
     const Scene scene = scene::with_own_times(given_scene);
     studies::check(scene, options);
     const auto basis = choice.basis(scene, call.options());
@@ -58,8 +58,8 @@ Result sweep(const Scene& given_scene, const std::string& over, const std::vecto
     options.journal = file.journal();
     auto done = std::make_shared<const studies::Sweep>(studies::sweep(family, values, options, call.options()));
     if (done->interrupted) throw Interrupted();
-    return file.finish([family, done](results::StoreWriter& writer) { studies::store(writer, family, *done); });
-  }));
+    return Result(file.finish([family, done](results::StoreWriter& writer) { studies::store(writer, family, *done); }));
+  });
 }
 
 Result basins(const Scene& scene, const Over& across, const Over& up, const std::optional<Over>& along,
@@ -67,9 +67,9 @@ Result basins(const Scene& scene, const Over& across, const Over& up, const std:
   Keywords keywords("basins", given);
   studies::BasinsOptions options;
   keywords.read(options);
-  const std::string output = keywords.text("output");
+  const std::string output = keywords.output();
   Call call(keywords);
-  return Result(call([&] {
+  return call([&] {
     studies::BasinsRequest request{.over = {studies::StartAxis{across.first, across.second}, {up.first, up.second}}};
     std::vector<std::string> keys;
     std::vector<Over> over = {across, up};
@@ -86,9 +86,9 @@ Result basins(const Scene& scene, const Over& across, const Over& up, const std:
     options.journal = file.journal();
     auto done = std::make_shared<const studies::BasinsStudy>(studies::basins(family, request, options, call.options()));
     if (done->interrupted) throw Interrupted();
-    return file.finish(
-        [family, request, done](results::StoreWriter& writer) { studies::store(writer, family, request, *done); });
-  }));
+    return Result(file.finish(
+        [family, request, done](results::StoreWriter& writer) { studies::store(writer, family, request, *done); }));
+  });
 }
 
 Result orbit_map(const Scene& scene, const std::vector<Over>& over, const std::vector<std::string>& starts,
@@ -96,9 +96,9 @@ Result orbit_map(const Scene& scene, const std::vector<Over>& over, const std::v
   Keywords keywords("orbit_map", given);
   studies::OrbitMapOptions options{.starts = starts};
   keywords.read(options);
-  const std::string output = keywords.text("output");
+  const std::string output = keywords.output();
   Call call(keywords);
-  return Result(call([&] {
+  return call([&] {
     std::vector<std::string> keys;
     std::vector<std::vector<double>> values;
     for (const auto& [key, own] : over) {
@@ -115,8 +115,8 @@ Result orbit_map(const Scene& scene, const std::vector<Over>& over, const std::v
     auto done =
         std::make_shared<const studies::OrbitMapStudy>(studies::orbit_map(family, values, options, call.options()));
     if (done->interrupted) throw Interrupted();
-    return file.finish([family, done](results::StoreWriter& writer) { studies::store(writer, family, *done); });
-  }));
+    return Result(file.finish([family, done](results::StoreWriter& writer) { studies::store(writer, family, *done); }));
+  });
 }
 
 }  // namespace

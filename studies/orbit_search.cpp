@@ -182,15 +182,18 @@ results::Content content_of(const Family& model, std::shared_ptr<const orbits::P
 
 results::Content content_of(const Family& model, double start,
                             std::shared_ptr<const std::vector<results::NamedBranch>> branches,
-                            const std::string& command) {
+                            const std::string& command, const RunOptions& run) {
   const std::string key = model.keys().front();
   return {.kind = results::FileKind::kBranches,
           .unit_system = model.scene().units,
-          .write = [model, key, branches = std::move(branches),
+          .write = [model, key, run, branches = std::move(branches),
                     provenance = results::provenance_of(scene::set_key(model.scene(), key, start), command)](
                        results::StoreWriter& writer) {
             results::save(writer, provenance);
-            results::store_branches(writer, key, *branches, model.systems());
+            results::store_branches(writer, key, *branches, [&model, &run](double value) {
+              run.check_interrupt();
+              return model.at({value});
+            });
           }};
 }
 

@@ -111,10 +111,11 @@ struct Continuation {
 void store(results::StoreWriter& writer, const Family& model, const orbits::PeriodicOrbit* orbit);
 [[nodiscard]] results::Content content_of(const Family& model, std::shared_ptr<const orbits::PeriodicOrbit> orbit);
 
-/// What is kept of branches: every point with its orbit.
+/// What is kept of branches: every point with its orbit, computed when it is written.
 /// @param command  what was asked, for provenance
+/// @throws Interrupted  when written after the stop flag was set
 [[nodiscard]] results::Content content_of(const Family& model, double start,
                                           std::shared_ptr<const std::vector<results::NamedBranch>> branches,
-                                          const std::string& command);
+                                          const std::string& command, const RunOptions& run = {});
 
 }  // namespace slipmode::studies
