@@ -10,6 +10,7 @@ which has what its file would have, under the same names; `result.save(path)` wr
 Errors are InvalidInput (a ValueError) and NumericalFailure (a RuntimeError); Ctrl-C ends a study.
 """
 
+import contextlib
 import functools
 import html
 import os
@@ -136,7 +137,9 @@ class _Branch:
         return group if group._columns is None else group._table()
 
     def __getattr__(self, name):
-        if not name.startswith("_") and name in self._children:
+        if name.startswith("_"):  # also what __init__ has not set yet, which the message below needs
+            raise AttributeError(name)
+        if name in self._children:
             return self._child(name)
         raise AttributeError(f"no {name!r} here; there are: {', '.join(self._children)}")
 
@@ -233,7 +236,9 @@ class Result(_Branch):
         return {**places, **dict.fromkeys(self._children, "")}
 
     def __getattr__(self, name):
-        if not name.startswith("_") and name in self._places:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        if name in self._places:
             return _Branch(self._store, self._places[name])._child(name)
         raise AttributeError(f"a {self.kind} has no {name!r}; there are: {', '.join(self._places)}")
 
@@ -327,19 +332,30 @@ def _tqdm():
     return tqdm if sys.stderr.isatty() or "ipykernel" in sys.modules else None
 
 
-def _bars(tqdm):
-    """Progress as a bar per part."""
-    bars = {}
+class _Bars:
+    """Progress as a bar per part, and one more where a part begins anew; those left open are closed on leaving."""
 
-    def update(part, done, total):
-        bar = bars.get(part)
-        if bar is None or bar.total != total:
-            bar = bars[part] = tqdm(total=total, desc=part)
+    def __init__(self, tqdm):
+        self._tqdm = tqdm
+        self._open = {}
+
+    def __call__(self, part, done, total):
+        bar = self._open.get(part)
+        if bar is not None and (bar.total != total or done < bar.n):
+            self._open.pop(part).close()
+            bar = None
+        if bar is None:
+            bar = self._open[part] = self._tqdm(total=total, desc=part)
         bar.update(done - bar.n)
         if done == total:
-            bar.close()
+            self._open.pop(part).close()
 
-    return update
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *error):
+        for bar in self._open.values():
+            bar.close()
 
 
 def _native(value):
@@ -363,16 +379,18 @@ def _study(name, kind=Result):
 
     def call(scene, *arguments, **options):
         progress = options.pop("progress", None)
-        if progress is None and _tqdm() is not None:
-            progress = _bars(_tqdm())
+        bars = _Bars(_tqdm()) if progress is None and _tqdm() is not None else contextlib.nullcontext()
         if progress:
             options["progress"] = progress
+        elif isinstance(bars, _Bars):
+            options["progress"] = bars
         for key in options.keys() & {"model", "basis"}:
             options[key] = _native(options[key])
         if options.get("output") is not None:
             options["output"] = os.fspath(options["output"])
         try:
-            return kind(study(_load(scene), *map(_native, arguments), **options))
+            with bars:
+                return kind(study(_load(scene), *map(_native, arguments), **options))
         except NumericalFailure as failure:
             if failure.result is not None:
                 failure.result = kind(failure.result)

@@ -1,12 +1,13 @@
 """Studies from Python beside the executable's files and known values."""
 
-import importlib.util
+import io
 import os
 import pathlib
 import signal
 import subprocess
 import tempfile
 import threading
+import time
 import unittest
 
 import h5py
@@ -136,10 +137,13 @@ class BesideTheExecutable(unittest.TestCase):
         with h5py.File(self.folder / "own.h5", "w") as file:
             file["a/b"] = np.arange(6.0).reshape(2, 3)
             file["a/b"].attrs["units"] = "m"
+            file["a/nothing"] = h5py.Empty("f8")
+            file["a/no_text"] = h5py.Empty(h5py.string_dtype(length=4))
         own = sm.read(self.folder / "own.h5")
         self.assertEqual(own.kind, "")
         np.testing.assert_array_equal(own["a/b"], [[0.0, 1.0, 2.0], [3.0, 4.0, 5.0]])
         self.assertEqual(own.unit("a/b"), "m")
+        self.assertEqual(own._store.names(), ["a/b"])  # what has no value is left out
         with self.assertRaisesRegex(sm.InvalidInput, "copy the file"):
             own.save(self.folder / "again.h5")
         (self.folder / "own.h5").write_bytes(b"no")
@@ -169,7 +173,6 @@ class KnownValues(unittest.TestCase):
 
 
 class Elsewhere(unittest.TestCase):
-    @unittest.skipUnless(importlib.util.find_spec("xarray"), "xarray is not installed")
     def test_results_become_xarrays_with_units_and_shared_dimensions(self):
         scene = sm.Scene.load(CHAIN, set=SHORT)
         run = sm.simulate(scene)
@@ -184,6 +187,21 @@ class Elsewhere(unittest.TestCase):
                       if not name.startswith("provenance/") and np.ndim(result[name]) > 0]
             self.assertEqual(sorted(result.to_xarray().variables), sorted(arrays))
 
+    def test_a_bar_is_closed_when_its_part_ends_begins_anew_or_the_call_is_left(self):
+        import tqdm
+
+        made = []
+
+        def bar(**options):
+            made.append(tqdm.tqdm(file=io.StringIO(), **options))
+            return made[-1]
+
+        with sm._Bars(bar) as bars:
+            for done in (5, 10, 5, 10, 2):  # the same part and total three times, the last not to its end
+                bars("part", done, 10)
+        self.assertEqual([one.n for one in made], [10, 10, 2])
+        self.assertTrue(all(one.disable for one in made))  # as tqdm marks what was closed
+
     def test_figures_name_what_they_show(self):
         import matplotlib
 
@@ -197,6 +215,19 @@ class Elsewhere(unittest.TestCase):
 
 
 class Refused(unittest.TestCase):
+    def test_an_output_that_cannot_be_written_before_anything_is_computed(self):
+        scene = sm.Scene.load(CHAIN, set={"validation.sweep_limit": 1e10, "validation.transient": 9e9})  # hours
+        with tempfile.TemporaryDirectory() as folder:
+            for output, words in ((folder, "is a folder"), (f"{folder}/", "is a folder"),
+                                  (f"{folder}/none/sweep.h5", "does not exist")):
+                for call in (lambda: sm.sweep(scene, "drive.speed", [0.1], output=output),
+                             lambda: sm.validate(scene, sm.modes(scene), output=output),
+                             lambda: sm.orbit_map(BACKLASH, [("drive.omega", [1.0])], output=output),
+                             lambda: sm.basins(BACKLASH, ("initial.displacement.0", [0.0]),
+                                               ("initial.velocity.0", [0.0]), output=output)):
+                    with self.subTest(output), self.assertRaisesRegex(sm.InvalidInput, words):
+                        call()
+
     def test_what_a_study_cannot_take(self):
         scene = sm.Scene.load(CHAIN, set=SHORT)
         for call, words in (
@@ -210,6 +241,10 @@ class Refused(unittest.TestCase):
                 (lambda: sm.find_orbit(scene, tolerance=0.0), "> 0"),
                 (lambda: sm.run(scene, "/proc/none"), "a folder that can be made"),
                 (lambda: sm.sweep(scene, "drive.speed", []), "at least one"),
+                (lambda: sm.orbit_map(BACKLASH, [("drive.omega", [1.0])], starts=[]), "starts: found none"),
+                (lambda: sm.reduce(scene, "lnm", modes=-1), "^modes = -1: expected 1 or more"),
+                (lambda: sm.pod(sm.ensemble(scene), modes=-1), "^modes = -1: expected 1 or more"),
+                (lambda: sm.modes(scene, count=5), "^count = 5: expected"),
                 (lambda: sm.exponents(scene, scene), "results of pod"),
                 (lambda: sm.find_orbit(scene, model=3), "reduce"),
                 (lambda: sm.continue_orbit(BACKLASH, over="drive.omega", to=1.4), "no length"),
@@ -228,9 +263,18 @@ class GoesOn(unittest.TestCase):
         speeds = np.linspace(0.1, 0.5, 200)
         with tempfile.TemporaryDirectory() as folder:
             output = pathlib.Path(folder) / "sweep.h5"
-            threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
+            journal = pathlib.Path(f"{output}.journal")
+
+            def interrupt():
+                while not journal.exists() or journal.stat().st_size < 4000:  # some values of the 200
+                    time.sleep(1e-3)
+                os.kill(os.getpid(), signal.SIGINT)
+
+            thread = threading.Thread(target=interrupt)
             with self.assertRaises(KeyboardInterrupt):
+                thread.start()
                 sm.sweep(scene, "drive.speed", speeds, output=output)
+            thread.join()
             self.assertEqual([path.name for path in output.parent.iterdir()], ["sweep.h5.journal"])
             few = sm.sweep(scene, "drive.speed", speeds, output=output)
             self.assertEqual([path.name for path in output.parent.iterdir()], ["sweep.h5"])
