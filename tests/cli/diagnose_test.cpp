@@ -185,7 +185,7 @@ TEST_F(Diagnose, RefusesBadRecordsAndSaysWhere) {
   expect_refusal({"nan.csv", "--delay", "-3"}, {"--delay"});
   expect_refusal({"nan.csv", "--tools", "wulf"}, {"no such tool", "wolf"});
   expect_refusal({"nan.csv", "--unit", "trits"}, {"--unit"});
-  expect_refusal({"nan.csv", "-o", "nowhere/out.h5"}, {"no folder"});
+  expect_refusal({"nan.csv", "-o", "nowhere/out.h5"}, {"folder nowhere does not exist"});
 }
 
 }  // namespace
