@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds with the address and undefined-behaviour sanitizers, and runs all tests.
+# Builds with the address and undefined-behaviour sanitizers, and runs the tests but those that CMakePresets.json leaves out.
 # Arguments are passed on to ctest.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
