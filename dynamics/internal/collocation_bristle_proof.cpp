@@ -14,18 +14,17 @@ CollocationFlow::BristleDefect CollocationFlow::bristle_defect(int c, double rea
   const auto i = static_cast<std::size_t>(c);
   const friction::BristleForces& law = laws()[i].bristle;
   const double sign = sign_of(point_.modes[i]), between = nodes_.remainder[0] * ninth_.maxCoeff();
-  using Vector8 = RadauTables::Vector8;
-  alignas(64) const Vector8 s =
+  alignas(64) const RadauTables::Vector8 s =
       sign * (drive_nodes_.segment<kNodes>(kNodes * c) - velocity_.segment<kNodes>(kNodes * c));
-  alignas(64) const Vector8 z = sign * bristle_nodes_.segment<kNodes>(kNodes * c);
+  alignas(64) const RadauTables::Vector8 z = sign * bristle_nodes_.segment<kNodes>(kNodes * c);
   const double s_begin = guard_start_(c), z_begin = sign * internal_begin_(bristle_at_[i]);
   const ChebyshevSeries speed(kernels_, s_begin, s), bristle(kernels_, z_begin, z);
-  Vector8 rate;
+  RadauTables::Vector8 rate;
   for (int j = 0; j < kNodes; ++j) rate(j) = law.rate(1.0, s(j), z(j));
   // Newton's and the linear solution's rests, at the nodes.
-  const Vector8 force = law.stiffness * z + law.damping * rate + law.viscous * s;
+  const RadauTables::Vector8 force = law.stiffness * z + law.damping * rate + law.viscous * s;
   const double left = (sign * forces_.segment<kNodes>(kNodes * c) - force).cwiseAbs().maxCoeff();
-  const Vector8 missing = z - Vector8::Constant(z_begin) - h * (nodes_.integral * rate);
+  const RadauTables::Vector8 missing = z - RadauTables::Vector8::Constant(z_begin) - h * (nodes_.integral * rate);
   const double off = nodes_.lebesgue * (missing.array() / nodes_.node.array()).abs().maxCoeff();
 
   BristleDefect out;

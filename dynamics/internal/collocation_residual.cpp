@@ -31,13 +31,13 @@ double CollocationFlow::bristle_error(int c, const Between& at) const {
   const auto i = static_cast<std::size_t>(c);
   const friction::BristleForces& law = laws()[i].bristle;
   const double sign = sign_of(point_.modes[i]), h = tables_.step(step_level_);
-  using Vector8 = RadauTables::Vector8;
-  const Vector8 s = sign * (drive_nodes_.segment<kNodes>(kNodes * c) - velocity_.segment<kNodes>(kNodes * c));
-  const Vector8 z = sign * bristle_nodes_.segment<kNodes>(kNodes * c);
-  const Vector8 force = sign * forces_.segment<kNodes>(kNodes * c);
+  const RadauTables::Vector8 s =
+      sign * (drive_nodes_.segment<kNodes>(kNodes * c) - velocity_.segment<kNodes>(kNodes * c));
+  const RadauTables::Vector8 z = sign * bristle_nodes_.segment<kNodes>(kNodes * c);
+  const RadauTables::Vector8 force = sign * forces_.segment<kNodes>(kNodes * c);
   const double s_begin = sign * (drive_velocity(begin_, 0.0) - resolver_.contact_velocity(c, x_begin_.data())),
                z_begin = sign * internal_begin_(bristle_at_[i]);
-  Vector8 rate;
+  RadauTables::Vector8 rate;
   for (int j = 0; j < kNodes; ++j) rate(j) = law.rate(1.0, s(j), z(j));
   double worst = 0.0;
   for (Eigen::Index k = 0; k < at.begin.size(); ++k) {
