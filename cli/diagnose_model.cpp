@@ -1,5 +1,6 @@
 #include "cli/diagnose_model.hpp"
 #include "cli/exponents_report.hpp"
+#include "cli/field_options.hpp"
 
 #include <slipmode/figures/file_figures.hpp>
 #include <slipmode/scene/own_times.hpp>
@@ -85,24 +86,7 @@ ModelDiagnosis add_model_diagnosis(CLI::App& command) {
   command.add_option("--modes", models->modes, "of MODELS; else as [reduction] chooses")
       ->check(CLI::PositiveNumber)
       ->group(kGroup);
-  command
-      .add_option("--exponents", models->exponents.exponents,
-                  "how many, the largest; else all, eight of more than 64, four with --over")
-      ->check(CLI::PositiveNumber)
-      ->group(kGroup);
-  command.add_option("--transient", models->exponents.transient, "time run first; else that of [time]")
-      ->check(CLI::NonNegativeNumber)
-      ->group(kGroup);
-  command
-      .add_option("--duration", models->exponents.duration,
-                  "time measured; else that of [time], 500 periods of a drive, with --over a quarter")
-      ->check(CLI::PositiveNumber)
-      ->group(kGroup);
-  command
-      .add_option("--renormalise", models->exponents.interval,
-                  "time between renormalisations; else a thousandth of the duration, or the drive's period")
-      ->check(CLI::PositiveNumber)
-      ->group(kGroup);
+  add_fields(command, models->exponents, kGroup);
   command.add_option("--over", models->over, "exponents against a key: KEY=FROM:TO:STEP")->group(kGroup);
   command.add_flag("--follow", models->follow, "with --over: start each value where the one before it ended")
       ->group(kGroup);

@@ -69,7 +69,7 @@ std::string exponent_summary(const std::string& title, const std::vector<results
 Report diagnose_over(const Session& session, const scene::Scene& scene, const DiagnoseRequest& request,
                      const ModelRequest& models) {
   if (request.output.empty()) throw InvalidInput("--over: expected a result file for the sweep; give one with -o");
-  const Over over = parse_over(models.over);
+  const studies::Over over = parse_over(models.over);
   studies::check_values(scene, over.key, over.values);
   const std::vector<SweptModel> swept = swept_models(scene, over.key, models);
   diagnostics::TangentOptions tangent =
@@ -83,8 +83,8 @@ Report diagnose_over(const Session& session, const scene::Scene& scene, const Di
   studies::ResultFile file(
       request.output, scene, results::FileKind::kExponentSweep,
       fmt::format("slipmode diagnose --over {}{} --exponents {} --transient {} --duration {} --renormalise {} {}",
-                  models.over, models.follow ? " --follow" : "", tangent.exponents, tangent.transient, tangent.duration,
-                  tangent.interval, swept.back().title),
+                  studies::over_text(over), models.follow ? " --follow" : "", tangent.exponents, tangent.transient,
+                  tangent.duration, tangent.interval, swept.back().title),
       identity, session.division(), studies::pieces(over.values, options));
   options.journal = file.journal();
   std::vector<studies::Family> families;

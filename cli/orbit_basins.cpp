@@ -1,6 +1,7 @@
 #include <slipmode/studies/basins.hpp>
 
 #include <slipmode/studies/result_file.hpp>
+#include "cli/field_options.hpp"
 #include "cli/orbit_report.hpp"
 #include "cli/sweep_request.hpp"
 #include "cli/text_table.hpp"
@@ -115,12 +116,11 @@ Report run(const Session& session, const OrbitBasinsArguments& arguments) {
   }
   studies::BasinsRequest request;
   for (std::size_t k = 0; k < 2; ++k) {
-    Over over = parse_over(arguments.over[k]);
-    request.over[k] = {std::move(over.key), std::move(over.values)};
+    request.over[k] = parse_over(arguments.over[k]);
   }
   std::vector<std::string> keys;
   if (!arguments.along.empty()) {
-    const Over along = parse_over(arguments.along);
+    const studies::Over along = parse_over(arguments.along);
     keys.push_back(along.key);
     request.along = along.values;
   }
@@ -128,12 +128,9 @@ Report run(const Session& session, const OrbitBasinsArguments& arguments) {
   studies::check(family, request);
   if (!keys.empty()) studies::check_values(scene, keys.front(), request.along);
   studies::BasinsOptions options = arguments.options;
-  studies::ResultFile file(
-      arguments.output, scene, results::FileKind::kBasins,
-      fmt::format("slipmode orbit basins --over {}{} --max-order {} --periods {} --sample {}",
-                  fmt::join(arguments.over, " --over "), keys.empty() ? "" : " --along " + arguments.along,
-                  options.max_order, options.periods, options.sample),
-      "", session.division(), studies::pieces(request));
+  studies::ResultFile file(arguments.output, scene, results::FileKind::kBasins,
+                           studies::command_of(family, request, options), "", session.division(),
+                           studies::pieces(request));
   options.journal = file.journal();
   const studies::BasinsStudy study = studies::basins(family, request, options, session.run_options());
   if (study.interrupted) {
@@ -165,15 +162,7 @@ Verb add_orbit_basins(CLI::App& orbit) {
       ->allow_extra_args(false);
   command->add_option("-o,--output", arguments->output, "result file (HDF5)")->required();
   command->add_option("--along", arguments->along, "a third key, KEY=FROM:TO:STEP: shares at each of its values too");
-  command->add_option("--max-order", arguments->options.max_order, "longest period looked for, in periods of the drive")
-      ->check(CLI::PositiveNumber);
-  command
-      ->add_option("--periods", arguments->options.periods,
-                   "periods of the drive simulated at most where a start arrives at no attractor known before")
-      ->check(CLI::PositiveNumber);
-  command
-      ->add_option("--sample", arguments->options.sample, "starts each way that are followed first to find attractors")
-      ->check(CLI::PositiveNumber);
+  add_fields(*command, arguments->options);
   command->footer(
       "Attractors: orbits found by shooting, all motions in the gap as one with a coordinate, chaotic motions by their "
       "exponent.\nThe other coordinates of the start are those of the scene's [initial].\n"

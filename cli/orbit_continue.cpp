@@ -4,6 +4,7 @@
 #include <slipmode/studies/balance_search.hpp>
 #include <slipmode/studies/bases.hpp>
 #include "cli/balance_report.hpp"
+#include "cli/field_options.hpp"
 #include "cli/json_values.hpp"
 #include "cli/orbit_report.hpp"
 #include "cli/orbit_search.hpp"
@@ -108,12 +109,10 @@ struct Followed {
 };
 
 /// The branches stored and told; exit 3 where the main one was lost on its way.
-Report store_and_tell(const OrbitContinueArguments& arguments, const Followed& followed, double start,
-                      const std::vector<results::NamedBranch>& branches) {
+Report store_and_tell(const OrbitContinueArguments& arguments, const Followed& followed, const std::string& command,
+                      double start, const std::vector<results::NamedBranch>& branches) {
   const studies::Family model(followed.scene, {followed.key}, followed.basis);
-  studies::content_of(
-      model, start, std::make_shared<const std::vector<results::NamedBranch>>(branches),
-      fmt::format("slipmode orbit continue --over {} --model {}", arguments.over, arguments.search.model))
+  studies::content_of(model, start, std::make_shared<const std::vector<results::NamedBranch>>(branches), command)
       .save(arguments.output);
 
   Report report;
@@ -153,9 +152,11 @@ Report run_balance(const Session& session, const OrbitContinueArguments& argumen
     return balance_report("orbit continue", at_start, found.found);
   }
   const int harmonics = found.found.balance.harmonics;
-  Report report =
-      store_and_tell(arguments, followed, found.start,
-                     {{.title = fmt::format("balance of {} harmonics", harmonics), .branch = found.branch}});
+  Report report = store_and_tell(
+      arguments, followed,
+      fmt::format("slipmode orbit continue --over {} --model {} --by balance --harmonics {}", arguments.over,
+                  arguments.search.model, harmonics),
+      found.start, {{.title = fmt::format("balance of {} harmonics", harmonics), .branch = found.branch}});
   report.data["by"] = "balance";
   report.data["harmonics"] = harmonics;
   if (!found.certificate) return report;
@@ -190,10 +191,13 @@ Report run(const Session& session, const OrbitContinueArguments& arguments) {
   if (arguments.balance.by == "balance") return run_balance(session, arguments, followed);
   require_no_balance_options(arguments.balance);
   if (arguments.every) throw InvalidInput("--every: of a balance's certificates; add --by balance --certify");
-  const studies::Continuation found = studies::continue_orbit(
-      scene, range.key, followed.basis, search_of(arguments.search, scene), followed.request, run_options);
+  const studies::OrbitSearch search = search_of(arguments.search, scene);
+  const studies::Continuation found =
+      studies::continue_orbit(scene, range.key, followed.basis, search, followed.request, run_options);
   if (!found.found.converged()) return not_found("orbit continue", found.found);
-  return store_and_tell(arguments, followed, found.start, found.branches);
+  return store_and_tell(arguments, followed,
+                        studies::command_of(range.key, arguments.search.model, search, followed.request), found.start,
+                        found.branches);
 }
 
 }  // namespace
@@ -207,17 +211,7 @@ Verb add_orbit_continue(CLI::App& orbit) {
       ->check(CLI::PositiveNumber);
   command->add_option("--over", arguments->over, "key and range: KEY=FROM:TO")->required();
   command->add_option("-o,--output", arguments->output, "result file (HDF5)")->required();
-  command->add_flag("--switch", arguments->request.switches,
-                    "also follow the branches that leave at symmetry breakings and period doublings");
-  command->add_flag("--sequential", arguments->request.sequential,
-                    "step the key itself instead of the arc length: a fold ends the branch");
-  command
-      ->add_option("--step", arguments->request.step,
-                   "first step along the branch; 1 is the range, or the orbit's size")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--max-step", arguments->request.max_step, "largest step")->check(CLI::PositiveNumber);
-  command->add_option("--points", arguments->request.max_points, "orbits per branch at most")
-      ->check(CLI::Range(2, 10'000'000));
+  add_fields(*command, arguments->request);
   command->footer(
       "The branch starts at the scene's own value of the key when that lies in the range, and is then followed both "
       "ways; else at FROM.\n"

@@ -1,6 +1,7 @@
 #include <slipmode/studies/orbit_map.hpp>
 
 #include <slipmode/studies/result_file.hpp>
+#include "cli/field_options.hpp"
 #include "cli/sweep_request.hpp"
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
@@ -40,7 +41,8 @@ void say(const std::string& start, const OrderCount& count, Report& out_report) 
   out_report.text += table.str();
 }
 
-Report summary(const studies::Family& family, const studies::OrbitMapStudy& study, const std::vector<Over>& over) {
+Report summary(const studies::Family& family, const studies::OrbitMapStudy& study,
+               const std::vector<studies::Over>& over) {
   Report report;
   const std::string& title = family.scene().title;
   report.data = {{"verb", "orbit map"}, {"keys", family.keys()}};
@@ -69,7 +71,7 @@ Report summary(const studies::Family& family, const studies::OrbitMapStudy& stud
 Report run(const Session& session, const OrbitMapArguments& arguments) {
   require_writable(arguments.output);
   const scene::Scene scene = session.load(arguments.scene);
-  std::vector<Over> over;
+  std::vector<studies::Over> over;
   std::vector<std::string> keys;
   std::vector<std::vector<double>> values;
   for (const std::string& text : arguments.over) {
@@ -82,13 +84,10 @@ Report run(const Session& session, const OrbitMapArguments& arguments) {
   options.starts = {arguments.start};
   if (arguments.start == "both") options.starts = {"scene", "centre"};
   studies::check(family, options);
-  for (const Over& one : over) studies::check_values(scene, one.key, one.values);
+  for (const studies::Over& one : over) studies::check_values(scene, one.key, one.values);
   studies::ResultFile file(
       arguments.output, scene, keys.size() > 1 ? results::FileKind::kMap : results::FileKind::kStrobe,
-      fmt::format("slipmode orbit map --over {} --start {} --max-order {} --periods {} --kept {} --tolerance {}{}",
-                  fmt::join(arguments.over, " --over "), arguments.start, options.max_order, options.periods,
-                  options.kept, options.tolerance, options.follow ? " --follow" : ""),
-      "", session.division(), studies::pieces(values, options));
+      studies::command_of(over, options), "", session.division(), studies::pieces(values, options));
   options.journal = file.journal();
   const studies::OrbitMapStudy study = studies::orbit_map(family, values, options, session.run_options());
   if (study.interrupted) {
@@ -119,17 +118,7 @@ Verb add_orbit_map(CLI::App& orbit) {
   command->add_option("-o,--output", arguments->output, "result file (HDF5)")->required();
   command->add_option("--start", arguments->start,
                       "scene (its [initial]), centre (the steady linear motion in the gap), or both");
-  command->add_option("--max-order", arguments->options.max_order, "longest period looked for, in periods of the drive")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--periods", arguments->options.periods, "periods of the drive simulated at most")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--kept", arguments->options.kept, "one key: periods of them kept, the last ones")
-      ->check(CLI::PositiveNumber);
-  command
-      ->add_option("--tolerance", arguments->options.tolerance,
-                   "one key: sections nearer than this, relative, are the same")
-      ->check(CLI::PositiveNumber);
-  command->add_flag("--follow", arguments->options.follow, "one key: start each value where the one before it ended");
+  add_fields(*command, arguments->options);
   command->footer(
       "Two keys: crossings, largest |multiplier|, amplitude of the orbit found by shooting from the settled motion.\n"
       "One key: stroboscopic bifurcation diagram, alternating and effective amplitudes.\n"

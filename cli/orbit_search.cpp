@@ -1,6 +1,7 @@
 #include "cli/orbit_search.hpp"
 
 #include <slipmode/core/numbers.hpp>
+#include "cli/field_options.hpp"
 
 #include <fmt/format.h>
 #include <cmath>
@@ -40,25 +41,12 @@ dynamics::State given_state(const std::string& text, Eigen::Index n) {
 }  // namespace
 
 void add_search_options(CLI::App& command, OrbitSearchArguments& out_arguments) {
-  studies::OrbitSearch& search = out_arguments.search;
   command.add_option("SCENE", out_arguments.scene, "scene file (TOML)")->required();
   command.add_option("--model", out_arguments.model,
                      "full, or rom:FILE with a result of 'slipmode reduce'; under a shaker also BASIS:L, e.g. pomf:3");
-  command.add_option("--order", search.order, "period in periods of the drive")->check(CLI::PositiveNumber);
-  command.add_option("--period", search.period, "period: a multiple of the drive's; on a belt a guess")
-      ->check(CLI::PositiveNumber);
-  command.add_option("--segments", search.segments, "segments of multiple shooting; 1: single shooting")
-      ->check(CLI::Range(1, 10000));
   command.add_option("--start", out_arguments.start,
                      "where Newton's method begins: settle (a run from [initial]), initial, or q1,...,qn,v1,...,vn");
-  command
-      .add_option("--settle", search.settle,
-                  "length of that run, in periods of the drive, or time on a belt; 0: as [time] says")
-      ->check(CLI::NonNegativeNumber);
-  command.add_option("--tolerance", search.tolerance, "bound on the orbit's relative mismatch after a period")
-      ->check(CLI::PositiveNumber);
-  command.add_option("--iterations", search.iterations, "Newton steps at most")->check(CLI::PositiveNumber);
-  command.add_flag("--symmetric", search.half, "look for a symmetric orbit by its half period");
+  add_fields(command, out_arguments.search);
 }
 
 studies::OrbitSearch search_of(const OrbitSearchArguments& arguments, const scene::Scene& scene) {

@@ -6,6 +6,7 @@
 #include <slipmode/scene/own_times.hpp>
 #include <slipmode/studies/bases.hpp>
 #include <slipmode/studies/result_file.hpp>
+#include "cli/field_options.hpp"
 #include "cli/sweep_report.hpp"
 #include "cli/sweep_request.hpp"
 #include "cli/verbs.hpp"
@@ -22,15 +23,6 @@ struct SweepRequest {
   std::string model = "full";
   studies::SweepOptions options;
 };
-
-/// The command with what decides its values.
-std::string command_of(const SweepRequest& request) {
-  const studies::SweepOptions& options = request.options;
-  return fmt::format("slipmode sweep --over {} --model {}{}{}{}{}", request.over, request.model,
-                     options.follow ? fmt::format(" --follow --segments {}", options.segments) : "",
-                     options.reverse ? " --reverse" : "", options.both ? " --both" : "",
-                     options.exponent_cycles > 0.0 ? fmt::format(" --lyapunov {}", options.exponent_cycles) : "");
-}
 
 template <class Point>
 void say_motions(const std::vector<Point>& points, Report& out_report) {
@@ -94,14 +86,15 @@ Report interrupted(const Session& session, const SweepRequest& request, std::siz
 
 Report run(const Session& session, SweepRequest request) {
   require_writable(request.output);
-  const Over over = parse_over(request.over);
+  const studies::Over over = parse_over(request.over);
   const scene::Scene scene = scene::with_own_times(session.load(request.scene));
   studies::check(scene, request.options);
   const studies::RunOptions run_options = session.run_options();
   const auto basis = studies::model_basis(scene, request.model, run_options);
   const studies::Family family(scene, {over.key}, basis);
   studies::check_values(scene, over.key, over.values);
-  studies::ResultFile file(request.output, scene, results::FileKind::kSweep, command_of(request),
+  studies::ResultFile file(request.output, scene, results::FileKind::kSweep,
+                           studies::command_of(over, request.model, request.options),
                            basis ? studies::identity_of(basis->basis) : "full", session.division(),
                            studies::pieces(over.values, request.options));
   request.options.journal = file.journal();
@@ -122,18 +115,10 @@ Verb add_sweep(CLI::App& app) {
   command->add_option("SCENE", arguments->scene, "scene file (TOML)")->required();
   command->add_option("--over", arguments->over, "key and range: KEY=FROM:TO:STEP")->required();
   command->add_option("-o,--output", arguments->output, "result file (HDF5)")->required();
-  command->add_flag("--follow", arguments->options.follow, "start each value where the one before it ended");
-  command->add_option("--segments", arguments->options.segments, "with --follow: number of chains side by side")
-      ->check(CLI::PositiveNumber);
+  add_fields(*command, arguments->options);
   command->add_option("--model", arguments->model,
                       "full, or rom:FILE with a result of 'slipmode reduce'; under a shaker also BASIS:L, e.g. pomf:3, "
                       "lnm:10, lnm+static:4, mass-pom:3");
-  command->add_flag("--reverse", arguments->options.reverse, "shaker: from the last value to the first");
-  command->add_flag("--both", arguments->options.both, "shaker, with --follow: up and down, to show hysteresis");
-  command
-      ->add_option("--lyapunov", arguments->options.exponent_cycles,
-                   "shaker: measure the largest Lyapunov exponent over so many cycles more")
-      ->check(CLI::NonNegativeNumber);
   command->footer(
       "Time simulated at each value: [validation] transient, block, sweep_limit; under a shaker cycles.\n"
       "Example:\n  slipmode sweep datasets/chain10/scene.toml --over drive.speed=0.5:0.001:0.001 --follow "

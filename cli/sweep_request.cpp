@@ -9,7 +9,7 @@
 
 namespace slipmode::cli {
 
-Over parse_over(const std::string& text) {
+studies::Over parse_over(const std::string& text) {
   const auto complain = [&text](const std::string& what) {
     return InvalidInput(
         fmt::format("--over {}: {}; expected KEY=FROM:TO:STEP, e.g. drive.speed=0.5:0.001:0.001", text, what));

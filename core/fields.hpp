@@ -22,6 +22,9 @@ struct Limits {
     return (above ? value > low : value >= low) && value <= high;
   }
 };
+/// "an integer from 1 to 16", or "an integer >= 1" where nothing but the type ends them.
+[[nodiscard]] std::string integer_text(const Limits& limits);
+
 inline constexpr Limits kFinite{};
 inline constexpr Limits kPositive{.low = 0.0, .above = true, .text = "a number > 0"};
 inline constexpr Limits kNonNegative{.low = 0.0, .text = "a number >= 0"};

@@ -64,7 +64,7 @@ class Keywords {
       if (whole) number = value.cast<std::int64_t>();
       const double high = std::min(field.limits.high, static_cast<double>(std::numeric_limits<T>::max()));
       if (!whole || static_cast<double>(number) < field.limits.low || static_cast<double>(number) > high)
-        refuse(field.name, value, fmt::format("a whole number from {:.0f}", std::max(field.limits.low, 0.0)));
+        refuse(field.name, value, integer_text(field.limits));
       return static_cast<T>(number);
     } else {
       static_assert(std::is_same_v<T, double> || std::is_same_v<T, std::optional<double>>);

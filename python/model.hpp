@@ -20,6 +20,9 @@ class ModelChoice {
   /// @throws InvalidInput  as studies::model_basis; may take its time: without Python's lock
   [[nodiscard]] std::optional<pod::NamedBasis> basis(const scene::Scene& scene, const studies::RunOptions& run) const;
 
+  /// As the executable would be given it, but for the file of a reduced model.
+  [[nodiscard]] std::string word() const { return reduced_ ? "rom" : word_; }
+
  private:
   std::string word_ = "full";
   std::shared_ptr<const results::MemoryStore> reduced_;

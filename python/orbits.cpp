@@ -88,10 +88,9 @@ Result continue_orbit(const Scene& scene, const std::string& over, double to, co
     studies::Continuation continuation = studies::continue_orbit(scene, over, basis, search, request, call.options());
     std::optional<Result> kept;
     if (continuation.found.converged()) {
-      kept.emplace(studies::content_of(
-          studies::Family(scene, {over}, basis), continuation.start,
-          std::make_shared<const std::vector<results::NamedBranch>>(continuation.branches),
-          fmt::format("slipmode orbit continue --over {}={}:{}", over, request.from, request.to), call.options()));
+      kept.emplace(studies::content_of(studies::Family(scene, {over}, basis), continuation.start,
+                                       std::make_shared<const std::vector<results::NamedBranch>>(continuation.branches),
+                                       studies::command_of(over, choice.word(), search, request), call.options()));
     }
     return std::pair(std::move(continuation), std::move(kept));
   });

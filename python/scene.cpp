@@ -38,9 +38,8 @@ std::string law_texts(std::index_sequence<law...>) {
 /// The keys of a scene, from the field lists that read them.
 std::string scene_text() {
   constexpr std::size_t kWithWords = std::variant_size_v<friction::Law> - 1;  // the last is a function of C++
-  return "A scene: a structure, its contacts and drive, and what is wanted of them. Its tables and their keys; those "
-         "with\n"
-         "more than one form are in datasets/README.md.\n" +
+  return "A scene: a structure, its contacts and drive, and what is wanted of them. Its tables and their keys; those\n"
+         "with more than one form are in datasets/README.md.\n" +
          table_text<fem::ChainOptions>("[structure] kind = \"chain\"") +
          table_text<fem::BeamSpan>("[structure] kind = \"beam\", or [[structure.span]]") +
          table_text<fem::MassesOptions>("[structure] kind = \"masses\"") +

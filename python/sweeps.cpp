@@ -8,8 +8,6 @@
 #include "python/module.hpp"
 #include "python/result.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <pybind11/stl.h>
 
 #include <utility>
@@ -18,25 +16,10 @@ namespace slipmode::python {
 namespace {
 
 using scene::Scene;
-/// A key and its values.
-using Over = std::pair<std::string, std::vector<double>>;
+/// A key and its values, as Python gives them.
+using Pair = std::pair<std::string, std::vector<double>>;
 
-std::string over_text(const Over& over) { return fmt::format("--over {}={}", over.first, fmt::join(over.second, ",")); }
-
-/// What was asked, as provenance and an interrupted call's journal have it.
-std::string command_of(const std::string& verb, const std::vector<Over>& over, const std::string& options) {
-  std::string text = "slipmode " + verb;
-  for (const Over& one : over) text += " " + over_text(one);
-  return text + " " + options;
-}
-
-/// The fields of an options struct as text.
-template <class S>
-std::string said(const S& own) {
-  std::string text;
-  for_each_field<S>([&](const auto& field) { text += fmt::format("{}={} ", field.name, own.*field.member); });
-  return text;
-}
+studies::Over over_of(const Pair& pair) { return {pair.first, pair.second}; }
 
 Result sweep(const Scene& given_scene, const std::string& over, const std::vector<double>& values,
              const py::kwargs& given) {
@@ -53,7 +36,7 @@ Result sweep(const Scene& given_scene, const std::string& over, const std::vecto
     const studies::Family family(scene, {over}, basis);
     studies::check_values(scene, over, values);
     studies::ResultFile file(output, scene, results::FileKind::kSweep,
-                             command_of("sweep", {{over, values}}, said(options)),
+                             studies::command_of({over, values}, choice.word(), options),
                              basis ? studies::identity_of(basis->basis) : "full");
     options.journal = file.journal();
     auto done = std::make_shared<const studies::Sweep>(studies::sweep(family, values, options, call.options()));
@@ -62,7 +45,7 @@ Result sweep(const Scene& given_scene, const std::string& over, const std::vecto
   });
 }
 
-Result basins(const Scene& scene, const Over& across, const Over& up, const std::optional<Over>& along,
+Result basins(const Scene& scene, const Pair& across, const Pair& up, const std::optional<Pair>& along,
               const py::kwargs& given) {
   Keywords keywords("basins", given);
   studies::BasinsOptions options;
@@ -70,19 +53,16 @@ Result basins(const Scene& scene, const Over& across, const Over& up, const std:
   const std::string output = keywords.output();
   Call call(keywords);
   return call([&] {
-    studies::BasinsRequest request{.over = {studies::StartAxis{across.first, across.second}, {up.first, up.second}}};
+    studies::BasinsRequest request{.over = {over_of(across), over_of(up)}};
     std::vector<std::string> keys;
-    std::vector<Over> over = {across, up};
     if (along) {
       keys.push_back(along->first);
       request.along = along->second;
-      over.push_back(*along);
     }
     const studies::Family family(scene, keys);
     studies::check(family, request);
     if (along) studies::check_values(scene, along->first, along->second);
-    studies::ResultFile file(output, scene, results::FileKind::kBasins,
-                             command_of("orbit basins", over, said(options)));
+    studies::ResultFile file(output, scene, results::FileKind::kBasins, studies::command_of(family, request, options));
     options.journal = file.journal();
     auto done = std::make_shared<const studies::BasinsStudy>(studies::basins(family, request, options, call.options()));
     if (done->interrupted) throw Interrupted();
@@ -91,7 +71,7 @@ Result basins(const Scene& scene, const Over& across, const Over& up, const std:
   });
 }
 
-Result orbit_map(const Scene& scene, const std::vector<Over>& over, const std::vector<std::string>& starts,
+Result orbit_map(const Scene& scene, const std::vector<Pair>& given_over, const std::vector<std::string>& starts,
                  const py::kwargs& given) {
   Keywords keywords("orbit_map", given);
   studies::OrbitMapOptions options{.starts = starts};
@@ -99,18 +79,19 @@ Result orbit_map(const Scene& scene, const std::vector<Over>& over, const std::v
   const std::string output = keywords.output();
   Call call(keywords);
   return call([&] {
+    std::vector<studies::Over> over;
     std::vector<std::string> keys;
     std::vector<std::vector<double>> values;
-    for (const auto& [key, own] : over) {
+    for (const auto& [key, own] : given_over) {
+      over.push_back({key, own});
       keys.push_back(key);
       values.push_back(own);
     }
     const studies::Family family(scene, keys);
     studies::check(family, options);
-    for (const auto& [key, own] : over) studies::check_values(scene, key, own);
-    studies::ResultFile file(
-        output, scene, keys.size() > 1 ? results::FileKind::kMap : results::FileKind::kStrobe,
-        command_of("orbit map", over, fmt::format("{} {}", fmt::join(starts, " "), said(options))));
+    for (const studies::Over& one : over) studies::check_values(scene, one.key, one.values);
+    studies::ResultFile file(output, scene, keys.size() > 1 ? results::FileKind::kMap : results::FileKind::kStrobe,
+                             studies::command_of(over, options));
     options.journal = file.journal();
     auto done =
         std::make_shared<const studies::OrbitMapStudy>(studies::orbit_map(family, values, options, call.options()));

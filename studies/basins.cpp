@@ -53,7 +53,7 @@ orbits::BasinOptions options_of(const Family& family, const BasinsOptions& optio
 }  // namespace
 
 void check(const Family& family, const BasinsRequest& request) {
-  for (const StartAxis& axis : request.over) {
+  for (const Over& axis : request.over) {
     (void)coordinate_of(family, axis.key);
     if (!axis.values.empty() && std::ranges::all_of(axis.values, [](double value) { return std::isfinite(value); })) {
       continue;
@@ -74,6 +74,12 @@ void check(const Family& family, const BasinsRequest& request) {
         "orbit basins: the scene's drive has no period, so motions have no common phase; valid: drive.kind = \"force\" "
         "or \"shaker\". For a belt see 'sweep' and 'orbit find --start'");
   }
+}
+
+std::string command_of(const Family& family, const BasinsRequest& request, const BasinsOptions& options) {
+  std::string along;
+  if (!family.keys().empty()) along = " --along " + over_text({family.keys().front(), request.along});
+  return command_text("orbit basins", {request.over.begin(), request.over.end()}, along + options_text(options));
 }
 
 Pieces pieces(const BasinsRequest& request) {

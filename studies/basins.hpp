@@ -2,6 +2,7 @@
 
 #include <slipmode/core/fields.hpp>
 #include <slipmode/results/basins_store.hpp>
+#include <slipmode/studies/command.hpp>
 #include <slipmode/studies/family.hpp>
 #include <slipmode/studies/result_file.hpp>
 #include <slipmode/studies/run_options.hpp>
@@ -13,15 +14,9 @@
 
 namespace slipmode::studies {
 
-/// A coordinate of the start, "initial.displacement.0" or "initial.velocity.2", and its values.
-struct StartAxis {
-  std::string key;
-  std::vector<double> values;
-};
-
 /// A plane of starts; what the two keys leave is as the scene's start has it.
 struct BasinsRequest {
-  std::array<StartAxis, 2> over;   ///< across, up
+  std::array<Over, 2> over;        ///< across, up: coordinates of the start, "initial.velocity.2"
   std::vector<double> along = {};  ///< values of the family's key, where it has one
 };
 
@@ -53,6 +48,9 @@ struct BasinsStudy {
 /// @throws InvalidInput  for a key that is no coordinate of the start, two alike, no values or values that are not
 ///                       finite, a third key that is one of the start, a drive without period
 void check(const Family& family, const BasinsRequest& request);
+
+/// @param family  as basins
+[[nodiscard]] std::string command_of(const Family& family, const BasinsRequest& request, const BasinsOptions& options);
 
 /// A row of each plane can be computed alone.
 [[nodiscard]] Pieces pieces(const BasinsRequest& request);

@@ -48,9 +48,7 @@ LeadingExponents exponents_at(const Family& family, const dynamics::State& start
 }  // namespace
 
 Pieces pieces(const std::vector<double>& values, const ExponentSweepOptions& options) {
-  if (!options.follow) return {.count = values.size(), .what = "values"};
-  return {.count = 1,
-          .what = "chains of values, each of which starts where the one before it ended (more without --follow)"};
+  return options.follow ? chains(1, "without --follow") : Pieces{values.size(), "values"};
 }
 
 std::vector<ExponentSweep> exponent_sweeps(const std::vector<Family>& families, const std::vector<double>& values,

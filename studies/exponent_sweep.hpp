@@ -27,8 +27,7 @@ struct ExponentSweepOptions {
 [[nodiscard]] Pieces pieces(const std::vector<double>& values, const ExponentSweepOptions& options);
 
 /// One sweep per family, in their order: each over its one key, from its start. A value that fails is recorded in its
-/// point;
-/// one that the journal leaves to others is in none.
+/// point; one that the journal leaves to others is in none.
 /// @param families  models side by side, the full one first
 /// @throws Interrupted  when the stop flag was set
 [[nodiscard]] std::vector<ExponentSweep> exponent_sweeps(const std::vector<Family>& families,

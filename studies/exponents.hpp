@@ -37,10 +37,11 @@ struct ExponentRequest {
   static constexpr auto fields() {
     using Own = ExponentRequest;
     return std::tuple{
-        optional("exponents", &Own::exponents, "", "how many, the largest; 0: all, eight of more than 64", kFromZero),
+        optional("exponents", &Own::exponents, "",
+                 "how many, the largest; 0: all, eight of more than 64, four over a key", kFromZero),
         optional("transient", &Own::transient, "s", "run first; else that of [time]", kNonNegative),
-        optional("duration", &Own::duration, "s", "measured; else that of [time], or 500 periods of a drive",
-                 kPositive),
+        optional("duration", &Own::duration, "s",
+                 "measured; else that of [time], or 500 periods of a drive, over a key a quarter", kPositive),
         optional("renormalise", &Own::interval, "s",
                  "between renormalisations; else a thousandth of the duration, or the drive's period", kPositive)};
   }

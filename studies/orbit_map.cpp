@@ -81,11 +81,13 @@ void check(const Family& family, const OrbitMapOptions& options) {
 
 Pieces pieces(const std::vector<std::vector<double>>& values, const OrbitMapOptions& options) {
   const SweepMode mode = options.follow ? SweepMode::kFollow : SweepMode::kIndependent;
-  return {.count = options.starts.size() * sweep_pieces(values.back().size(), mode, 1),
-          .what = options.follow       ? "chains of values, each of which starts where the one before it ended (more "
-                                         "without --follow)"
-                  : values.size() == 2 ? "rows"
-                                       : "values"};
+  const std::size_t count = options.starts.size() * sweep_pieces(values.back().size(), mode, 1);
+  return options.follow ? chains(count, "without --follow") : Pieces{count, values.size() == 2 ? "rows" : "values"};
+}
+
+std::string command_of(const std::vector<Over>& over, const OrbitMapOptions& options) {
+  const std::string start = options.starts.size() == 1 ? options.starts.front() : "both";
+  return command_text("orbit map", over, (start == "scene" ? "" : " --start " + start) + options_text(options));
 }
 
 OrbitMapStudy orbit_map(const Family& family, const std::vector<std::vector<double>>& values,

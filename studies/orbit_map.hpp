@@ -2,6 +2,7 @@
 
 #include <slipmode/core/fields.hpp>
 #include <slipmode/results/map_store.hpp>
+#include <slipmode/studies/command.hpp>
 #include <slipmode/studies/family.hpp>
 #include <slipmode/studies/result_file.hpp>
 #include <slipmode/studies/run_options.hpp>
@@ -42,13 +43,15 @@ struct OrbitMapStudy {
   bool interrupted = false;
 };
 
-/// @throws InvalidInput  for more than two keys, a drive without period, no start or another one, following over two
-/// keys
+/// @throws InvalidInput  for more than two keys, a drive without period, no start or another one, following
+///                       over two keys
 void check(const Family& family, const OrbitMapOptions& options);
 
 /// A row of a map can be computed alone, over one key a value, or where values follow each other all from one start.
 /// @param values  as orbit_map
 [[nodiscard]] Pieces pieces(const std::vector<std::vector<double>>& values, const OrbitMapOptions& options);
+
+[[nodiscard]] std::string command_of(const std::vector<Over>& over, const OrbitMapOptions& options);
 
 /// @param values  of each key of the family, in their order
 /// @throws InvalidInput  as check, orbits::orbit_map and orbits::strobe_map

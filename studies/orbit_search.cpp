@@ -7,6 +7,7 @@
 #include <slipmode/results/records.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <algorithm>
 #include <cmath>
 
@@ -143,6 +144,15 @@ KeyFamily family_over(const scene::Scene& scene, const std::string& key, const s
                       .max_step = request.max_step,
                       .max_points = request.max_points,
                       .arclength = !request.sequential}};
+}
+
+std::string command_of(const std::string& key, const std::string& model, const OrbitSearch& search,
+                       const ContinuationRequest& request) {
+  std::string start = search.settles ? "" : " --start initial";
+  if (search.guess)
+    start = fmt::format(" --start {},{}", fmt::join(search.guess->q, ","), fmt::join(search.guess->v, ","));
+  return fmt::format("slipmode orbit continue --over {}={}:{}{}{}{}{}", key, request.from, request.to,
+                     model == "full" ? "" : " --model " + model, options_text(search), start, options_text(request));
 }
 
 Continuation continue_orbit(const scene::Scene& scene, const std::string& key,

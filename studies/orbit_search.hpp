@@ -4,6 +4,7 @@
 #include <slipmode/orbits/shooting.hpp>
 #include <slipmode/results/branch_store.hpp>
 #include <slipmode/results/memory_store.hpp>
+#include <slipmode/studies/command.hpp>
 #include <slipmode/studies/family.hpp>
 #include <slipmode/studies/run_options.hpp>
 
@@ -91,6 +92,10 @@ struct KeyFamily {
 [[nodiscard]] KeyFamily family_over(const scene::Scene& scene, const std::string& key,
                                     const std::optional<pod::NamedBasis>& basis, const ContinuationRequest& request,
                                     const RunOptions& run);
+
+/// @param model  as model_basis
+[[nodiscard]] std::string command_of(const std::string& key, const std::string& model, const OrbitSearch& search,
+                                     const ContinuationRequest& request);
 
 /// Branches of periodic orbits over a key.
 struct Continuation {

@@ -22,6 +22,9 @@ struct Pieces {
   std::string what;  ///< "values", …; where there are few, also how there are more
 };
 
+/// Of values that follow each other. @param more  how there are more of them: "without --follow"
+[[nodiscard]] Pieces chains(std::size_t count, const std::string& more);
+
 /// How a study is divided among processes; by default not at all.
 struct Division {
   /// This process computes only this share, and leaves a part. Count 0: as many as there are pieces.
@@ -37,8 +40,7 @@ class ResultFile {
  public:
   /// @param path      empty: in memory only, without a journal
   /// @param command   what was asked, for provenance: with the scene, the version, kernels and `identity` it decides
-  /// whether a
-  ///                  journal found beside the file belongs to the same study
+  ///                  whether a journal found beside the file belongs to the same study
   /// @param identity  of what else decides values: the models of files, see identity_of
   /// @throws InvalidInput  as results::Journal; for more shards than pieces; for parts of another study, also where a
   ///                       part would be replaced

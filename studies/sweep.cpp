@@ -57,10 +57,12 @@ void check(const scene::Scene& scene, const SweepOptions& options) {
 
 Pieces pieces(const std::vector<double>& values, const SweepOptions& options) {
   const std::size_t of_pass = sweep_pieces(values.size(), mode_of(options), options.segments);
-  return {.count = options.both ? 2 * of_pass : of_pass,
-          .what = options.follow ? "chains of values, each of which starts where the one before it ended (more with "
-                                   "--segments, or without --follow)"
-                                 : "values"};
+  const std::size_t count = options.both ? 2 * of_pass : of_pass;
+  return options.follow ? chains(count, "with --segments, or without --follow") : Pieces{count, "values"};
+}
+
+std::string command_of(const Over& over, const std::string& model, const SweepOptions& options) {
+  return command_text("sweep", {over}, (model == "full" ? "" : " --model " + model) + options_text(options));
 }
 
 Sweep sweep(const Family& family, const std::vector<double>& values, const SweepOptions& options,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <slipmode/core/fields.hpp>
+#include <slipmode/studies/command.hpp>
 #include <slipmode/studies/family.hpp>
 #include <slipmode/studies/result_file.hpp>
 #include <slipmode/studies/run_options.hpp>
@@ -45,6 +46,9 @@ void check(const scene::Scene& scene, const SweepOptions& options);
 
 /// A sweep that follows is divided at its chains; up and down are two.
 [[nodiscard]] Pieces pieces(const std::vector<double>& values, const SweepOptions& options);
+
+/// @param model  as model_basis
+[[nodiscard]] std::string command_of(const Over& over, const std::string& model, const SweepOptions& options);
 
 /// Sweeps a family over its one key from its scene's start, with the times of [validation].
 /// @throws InvalidInput  as check

@@ -9,16 +9,6 @@
 
 namespace slipmode::scene {
 
-namespace {
-
-std::string integer_range_text(const Limits& limits) {
-  const auto low = static_cast<std::int64_t>(limits.low);
-  if (limits.high >= std::numeric_limits<int>::max()) return fmt::format("an integer >= {}", low);
-  return fmt::format("an integer from {} to {}", low, static_cast<std::int64_t>(limits.high));
-}
-
-}  // namespace
-
 const toml::node* TomlReader::find(const std::string& key) {
   known_.insert(key);
   return table_ != nullptr ? table_->get(key) : nullptr;
@@ -91,10 +81,10 @@ double TomlReader::checked_number(const std::string& key, const toml::node& node
 
 std::int64_t TomlReader::checked_integer(const std::string& key, const toml::node& node, const Limits& limits,
                                          std::int64_t most) {
-  if (!node.is_integer()) fail(key, "wrong type", integer_range_text(limits));
+  if (!node.is_integer()) fail(key, "wrong type", integer_text(limits));
   const std::int64_t value = node.as_integer()->get();
   if (!limits.hold(static_cast<double>(value)) || value > most) {
-    fail(key, "impossible value", integer_range_text(limits));
+    fail(key, "impossible value", integer_text(limits));
   }
   return value;
 }
@@ -188,7 +178,7 @@ std::vector<double> TomlReader::numbers(const std::string& key, const Limits& li
 
 std::vector<int> TomlReader::integers(const std::string& key, const Limits& limits) {
   const toml::node& node = need(key);
-  if (!node.is_array()) fail(key, "wrong type", "an array, each " + integer_range_text(limits));
+  if (!node.is_array()) fail(key, "wrong type", "an array, each " + integer_text(limits));
   std::vector<int> values;
   for (const toml::node& item : *node.as_array()) {
     values.push_back(static_cast<int>(checked_integer(key, item, limits, std::numeric_limits<int>::max())));

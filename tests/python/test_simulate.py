@@ -170,8 +170,8 @@ class Errors(unittest.TestCase):
                 sm.simulate(source)
 
     def test_options_that_are_none_are_refused(self):
-        for options, words in (({"thread": 1}, "valid: threads"), ({"threads": -1}, "whole number"),
-                               ({"threads": 1.5}, "whole number"), ({"threads": True}, "whole number"),
+        for options, words in (({"thread": 1}, "valid: threads"), ({"threads": -1}, "an integer from 0"),
+                               ({"threads": 1.5}, "an integer from 0"), ({"threads": True}, "an integer from 0"),
                                ({"progress": 3}, "function")):
             with self.subTest(options), self.assertRaisesRegex(sm.InvalidInput, words):
                 sm.simulate(BELT, **options)
