@@ -30,7 +30,19 @@ struct Checker {
   /// Every number of `own` within its field's limits.
   template <class S>
   void fields(const S& own, const std::string& whose = "") const {
-    for_each_number<S>([&](const auto& field) { within(whose + field.name, own.*field.member, field.limits); });
+    for_each_field<S>([&]<class T>(const Field<S, T>& field) {
+      if constexpr (std::is_same_v<T, double>) within(whose + field.name, own.*field.member, field.limits);
+      if constexpr (std::is_same_v<T, std::vector<double>>)
+        for (const double value : own.*field.member) within(whose + field.name, value, field.limits);
+    });
+  }
+
+  /// @param name      of the coefficient in slip, mu
+  /// @param rounding  of a coefficient that was computed, relative
+  void holds_at_rest(double mu_s, const std::string& name, double mu, double rounding = 0.0) const {
+    if (mu_s < mu * (1.0 - rounding))
+      fail(fmt::format("mu_s = {} is below {} = {}", mu_s, name, mu),
+           fmt::format("mu_s >= {} (static friction holds at least as much as sliding friction)", name));
   }
 
   void load(const NormalLoad& load) const {
@@ -65,30 +77,21 @@ struct Checker {
   }
 
   void law(const Characteristic& law) const {
-    constexpr double kRounding = 1e-12;
     if (!law.mu || !law.slope) fail("a characteristic without its functions", "mu and slope, of the sliding speed");
     within("mu_s", law.mu_s, kNonNegative);
     within("mu(0)", law.mu(0.0), kNonNegative);
     within("slope(0)", law.slope(0.0), kFinite);
-    if (law.mu_s < law.mu(0.0) * (1.0 - kRounding))
-      fail(fmt::format("mu_s = {} is below mu(0) = {}", law.mu_s, law.mu(0.0)),
-           "mu_s >= mu(0) (static friction holds at least as much as sliding friction)");
+    holds_at_rest(law.mu_s, "mu(0)", law.mu(0.0), 1e-12);
   }
 
   void law(const Measured& law) const {
     fields(law);
-    for (const double speed : law.speeds) within("speeds", speed, kNonNegative);
-    for (const double mu : law.coefficients) within("coefficients", mu, kNonNegative);
     if (const auto fault = fault_of(law)) fail(fmt::format("{}: {}", fault->field, fault->found), fault->expected);
   }
 
   void law(const auto& law) const {
     fields(law);
-    if constexpr (requires { law.mu_s < law.mu_k; }) {
-      if (law.mu_s < law.mu_k)
-        fail(fmt::format("mu_s = {} is below mu_k = {}", law.mu_s, law.mu_k),
-             "mu_s >= mu_k (static friction holds at least as much as sliding friction)");
-    }
+    if constexpr (requires { law.mu_s < law.mu_k; }) holds_at_rest(law.mu_s, "mu_k", law.mu_k);
   }
 };
 

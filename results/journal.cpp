@@ -187,8 +187,7 @@ Journal::Journal(std::filesystem::path path, const std::string& fingerprint)
   if (!fresh && !text.starts_with(header)) {
     throw InvalidInput(
         fmt::format("{}: holds unfinished results of another task (other scene, overrides, range, shard or kernels); "
-                    "remove it to start "
-                    "anew, or choose another output",
+                    "remove it to start anew, or choose another output",
                     path_.string()));
   }
 

@@ -285,14 +285,15 @@ Dataset StoreReader::dataset(const std::string& name) const {
   Dataset found{entry(name)};
   if (found.kind == StoreEntry::Kind::kGroup) return found;
   source_->open(name);
+  const auto read = [&]<class T>(std::shared_ptr<const T>& out) {
+    const std::shared_ptr<T[]> values(new T[found.count()]);
+    source_->read(values.get());
+    out = {values, values.get()};
+  };
   if (found.kind == StoreEntry::Kind::kDouble) {
-    const std::shared_ptr<double[]> numbers(new double[found.count()]);
-    source_->read(numbers.get());
-    found.numbers = std::shared_ptr<const double>(numbers, numbers.get());
+    read(found.numbers);
   } else if (found.kind == StoreEntry::Kind::kInteger) {
-    const std::shared_ptr<std::int64_t[]> integers(new std::int64_t[found.count()]);
-    source_->read(integers.get());
-    found.integers = std::shared_ptr<const std::int64_t>(integers, integers.get());
+    read(found.integers);
   } else if (found.kind == StoreEntry::Kind::kText) {
     found.texts = source_->texts();
   }

@@ -162,8 +162,8 @@ class Pipeline {
 
   void validate() {
     const Validation done = studies::validate(scene_, bases_, ValidationRequest{}, file("validation.h5"), run_);
-    if (done.shaken) result_.driven_validation = *done.shaken;
-    if (done.belt) result_.validation = *done.belt;
+    result_.driven_validation = done.shaken;
+    result_.validation = done.belt;
   }
 
   /// Files that show the same as another one are skipped.

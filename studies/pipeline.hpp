@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,11 +32,11 @@ struct PipelineResult {
   Eigen::VectorXd slipping, sticking;                ///< lowest circular frequencies [rad/s]
   std::optional<diagnostics::EnsembleRun> ensemble;  ///< without its snapshots
   Eigen::Index snapshots = 0;
-  std::optional<pod::PodResult> pod;                                     ///< under a belt
-  std::optional<results::ShakenModes> shaken_modes;                      ///< under a shaker
-  Eigen::Index chosen = 0;                                               ///< modes of the reduced models written
-  std::optional<diagnostics::ValidationReport> validation;               ///< under a belt
-  std::optional<diagnostics::DrivenValidationReport> driven_validation;  ///< under a shaker
+  std::optional<pod::PodResult> pod;                                ///< under a belt
+  std::optional<results::ShakenModes> shaken_modes;                 ///< under a shaker
+  Eigen::Index chosen = 0;                                          ///< modes of the reduced models written
+  std::shared_ptr<const diagnostics::ValidationReport> validation;  ///< under a belt
+  std::shared_ptr<const diagnostics::DrivenValidationReport> driven_validation;  ///< under a shaker
   std::vector<LeftOut> left_out;
   std::vector<std::string> files, figures;  ///< names in the folder
 

@@ -26,8 +26,8 @@ struct MotionModes {
 
 /// @param motion  an ensemble, or the samples of a trajectory or an orbit
 /// @param modes   kept; 0: all there are
-/// @throws InvalidInput  for another kind of result, modes < 0, more modes than there are, a number of modes under a
-/// shaker
+/// @throws InvalidInput  for another kind of result, modes < 0, more modes than there are, a number of modes under
+///                       a shaker
 [[nodiscard]] MotionModes motion_modes(const results::StoreReader& motion, Eigen::Index modes = 0);
 [[nodiscard]] results::Content content_of(const std::shared_ptr<const MotionModes>& modes);
 
