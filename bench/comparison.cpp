@@ -138,28 +138,6 @@ Comparison compare(const ComparisonCase& setting) {
   return row;
 }
 
-EventAgreement check_events(const ChainProblem& problem) {
-  constexpr double kStretch = 25.0, kTight = 1e-12, kTightAbsolute = 1e-14;
-  constexpr int kStretches = 40;
-  const HybridSystem system = system_of(problem);
-  const auto truth = true_stretches(system, start_on_attractor(system, 2000.0), kStretch, kStretches);
-  const Method own_method = slipmode_method(system, kTight, Checks::kAudit),
-               cvode = cvode_method(problem, kTight, kTightAbsolute);
-  EventAgreement result{.name = problem.name};
-  for (const Truth& t : truth) {
-    const PeerRun own = own_method(t.start, kStretch), peer = cvode(t.start, kStretch);
-    result.events += static_cast<long>(own.event_times.size());
-    result.same_number = result.same_number && own.event_times.size() == peer.event_times.size();
-    const std::size_t common = std::min(own.event_times.size(), peer.event_times.size());
-    for (std::size_t i = 0; i < common; ++i) {
-      result.difference = std::max(result.difference, std::abs(own.event_times[i] - peer.event_times[i]));
-    }
-  }
-  result.error_slipmode = errors_of(own_method, truth, kStretch).event_time_error;
-  result.error_cvode = errors_of(cvode, truth, kStretch).event_time_error;
-  return result;
-}
-
 TanhFigures measure_tanh(const Comparison& exact, double epsilon) {
   const ComparisonCase& setting = exact.setting;
   const HybridSystem system = system_of(setting.problem);
@@ -197,15 +175,6 @@ void to_json(nlohmann::json& out, const Comparison& row) {
          {"audit_residual", row.audit_residual},
          {"setup_rows_seconds", row.setup_rows_seconds},
          {"setup_shapes_seconds", row.setup_shapes_seconds}};
-}
-
-void to_json(nlohmann::json& out, const EventAgreement& row) {
-  out = {{"case", row.name},
-         {"events", row.events},
-         {"same_number", row.same_number},
-         {"difference", row.difference},
-         {"error_slipmode", row.error_slipmode},
-         {"error_cvode", row.error_cvode}};
 }
 
 void to_json(nlohmann::json& out, const TanhFigures& row) {

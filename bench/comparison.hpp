@@ -69,22 +69,7 @@ struct TanhFigures {
 /// @param exact  the comparison of the same case: where the exact law's figures come from
 [[nodiscard]] TanhFigures measure_tanh(const Comparison& exact, double epsilon);
 
-/// Event times of slipmode at tolerance 1e-12 and CVODE at rtol 1e-12 and atol 1e-14, on 40 stretches of 25 units.
-struct EventAgreement {
-  std::string name;
-  long events = 0;
-  bool same_number = true;
-  double difference = 0.0;                         ///< largest between the two
-  double error_slipmode = 0.0, error_cvode = 0.0;  ///< largest against the reference
-
-  /// Ours within 1e-9 of the reference, and of CVODE as far as CVODE itself keeps to it: its own error is what chaos
-  /// makes of rtol 1e-12, 6e-10 on one stretch and 1.8e-9 on another.
-  [[nodiscard]] bool holds() const { return same_number && error_slipmode <= 1e-9 && difference <= 1e-9 + error_cvode; }
-};
-[[nodiscard]] EventAgreement check_events(const ChainProblem& problem);
-
 void to_json(nlohmann::json& out, const Comparison& row);
-void to_json(nlohmann::json& out, const EventAgreement& row);
 void to_json(nlohmann::json& out, const TanhFigures& row);
 
 }  // namespace slipmode::bench

@@ -61,7 +61,7 @@ std::vector<LibraryCase> library_cases() {
 }
 
 std::vector<std::string> known_cases() {
-  std::vector<std::string> names{"tanh", "events"};
+  std::vector<std::string> names{"tanh"};
   for (const auto& c : comparison_cases(true)) names.push_back(c.problem.name);
   for (const auto& c : library_cases()) names.push_back(c.name);
   return names;
@@ -146,22 +146,6 @@ void run_comparisons(const Request& request, Record& record, nlohmann::json& out
   say(request, "");
 }
 
-/// True when all event times agree.
-bool run_events(const Request& request, Record& record, nlohmann::json& out) {
-  if (!request.wants("events")) return true;
-  say(request, events_header());
-  bool all = true;
-  for (const ComparisonCase& setting : comparison_cases(true)) {
-    if (setting.problem.n > 10) continue;
-    const EventAgreement row = check_events(setting.problem);
-    say(request, events_line(row) + record.finish({}));
-    out["events"].push_back(row);
-    all = all && row.holds();
-  }
-  say(request, "");
-  return all;
-}
-
 void run_library_cases(const Request& request, Record& record, nlohmann::json& out) {
   for (const LibraryCase& c : library_cases()) {
     if (!(request.names(c.name) || (request.cases.empty() && (request.all || !c.slow)))) continue;
@@ -196,11 +180,10 @@ int main(int argc, char** argv) {
     nlohmann::json out{{"machine", to_json(record.machine())}, {"quick", request.quick}};
     say(request, description(record.machine()) + "\n");
     run_comparisons(request, record, out);
-    const bool events_agree = run_events(request, record, out);
     run_library_cases(request, record, out);
     record.close(out);
     if (request.json) fmt::print("{}\n", out.dump(2));
-    return events_agree ? 0 : 1;
+    return 0;
   } catch (const std::exception& error) {
     fmt::print(stderr, "slipmode_bench: {}\n", error.what());
     return 3;

@@ -68,14 +68,4 @@ std::string tanh_line(const TanhFigures& row) {
                      row.error);
 }
 
-std::string events_header() {
-  return fmt::format("{:<19} {:>8} {:>12} {:>10} {:>10}", "event times, 1e-12", "events", "to CVODE", "slipmode",
-                     "CVODE");
-}
-
-std::string events_line(const EventAgreement& row) {
-  return fmt::format("{:<19} {:>8} {:>12.1e} {:>10.1e} {:>10.1e}{}", row.name, row.events, row.difference,
-                     row.error_slipmode, row.error_cvode, row.holds() ? "" : "  apart");
-}
-
 }  // namespace slipmode::bench

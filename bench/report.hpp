@@ -17,7 +17,5 @@ namespace slipmode::bench {
 [[nodiscard]] std::string error_line(const Comparison& row);
 [[nodiscard]] std::string tanh_header();
 [[nodiscard]] std::string tanh_line(const TanhFigures& row);
-[[nodiscard]] std::string events_header();
-[[nodiscard]] std::string events_line(const EventAgreement& row);
 
 }  // namespace slipmode::bench
