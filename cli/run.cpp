@@ -1,4 +1,5 @@
 #include <slipmode/figures/gnuplot.hpp>
+#include <slipmode/report/report.hpp>
 #include <slipmode/scene/own_times.hpp>
 #include <slipmode/studies/pipeline.hpp>
 #include "cli/pipeline_report.hpp"
@@ -49,13 +50,19 @@ Report run(const Session& session, const RunArguments& arguments) {
   std::filesystem::remove(folder.path() / "INCOMPLETE.txt");
   try {
     const studies::PipelineResult result = studies::pipeline(scene, folder.path(), session.run_options());
-    Report report{.data = to_json(result, scene), .text = summary_text(result, scene)};
-    report.data["folder"] = arguments.output;
-    write_text(folder.path() / "summary.json", report.data.dump(2) + "\n");
-    write_text(folder.path() / "summary.txt", report.text);
+    Report out{.data = to_json(result, scene), .text = summary_text(result, scene)};
+    out.data["folder"] = arguments.output;
+    write_text(folder.path() / "summary.json", out.data.dump(2) + "\n");
+    write_text(folder.path() / "summary.txt", out.text);
     folder.finish();
-    report.text += fmt::format("Results and figures (*.svg, *.png): {}\n", arguments.output);
-    return report;
+    out.text += fmt::format("Results and figures (*.svg, *.png): {}\n", arguments.output);
+    if (report::is_available()) {
+      std::vector<std::filesystem::path> files;
+      for (const std::string& name : result.files) files.push_back(folder.target() / name);
+      write_text(folder.target() / "report.html", report::page(files, {.threads = session.threads}));
+      out.text += fmt::format("To look at it all, in a browser: {}\n", arguments.output + "/report.html");
+    }
+    return out;
   } catch (const NumericalFailure& failure) {
     folder.keep();
     return incomplete(folder, failure);

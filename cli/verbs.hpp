@@ -25,6 +25,7 @@ struct Verb {
 [[nodiscard]] Verb add_sweep(CLI::App& app);
 [[nodiscard]] Verb add_plot(CLI::App& app);
 [[nodiscard]] Verb add_info(CLI::App& app);
+[[nodiscard]] Verb add_report(CLI::App& app);
 [[nodiscard]] Verb add_selftest(CLI::App& app);
 [[nodiscard]] Verb add_diagnose(CLI::App& app);
 [[nodiscard]] Verb add_trade(CLI::App& app);

@@ -37,7 +37,7 @@ endif()
 # What only reads, writes and reports is compiled faster: -O1 in release builds.
 add_library(slipmode_light INTERFACE)
 target_compile_options(slipmode_light INTERFACE $<$<CONFIG:Release>:-O1>)
-set(SLIPMODE_LIGHT_MODULES scene trade results figures studies)
+set(SLIPMODE_LIGHT_MODULES scene trade results figures studies report)
 
 # Eigen's alignment, of what is on the heap and of arrays of fixed size, must be the same in the library and in whoever
 # links it, whatever -march each uses.

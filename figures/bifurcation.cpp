@@ -26,6 +26,21 @@ double dot_size(const Eigen::VectorXd& parameter) {
   return std::clamp(1.5 * spacing / 12.0, 0.16, 0.6);
 }
 
+/// Finer than gnuplot's, as a reader may zoom in.
+Drawing diagram_drawing(const std::vector<BifurcationPanel>& panels, const BifurcationLabels& labels, const Range& x,
+                        const Range& y) {
+  constexpr double kCells = 2000.0;
+  Drawing drawing;
+  for (const BifurcationPanel& panel : panels) {
+    BifurcationPanel points = thinned(panel, x, y, kCells, kCells);
+    drawing.panels.push_back({.title = panel.title,
+                              .series = {{"", points.parameter, points.value, Series::Look::kDots, panel.colour}},
+                              .x_label = axis_label(labels.parameter, labels.parameter_unit),
+                              .y_label = axis_label(labels.value, labels.value_unit)});
+  }
+  return drawing;
+}
+
 }  // namespace
 
 Figure bifurcation_diagram(const std::vector<BifurcationPanel>& panels, const BifurcationLabels& labels) {
@@ -39,6 +54,7 @@ Figure bifurcation_diagram(const std::vector<BifurcationPanel>& panels, const Bi
     x.include(panel.parameter);
     y.include(panel.value);
   }
+  figure.show(diagram_drawing(panels, labels, x, y));
   const double bottom = 90.0 / figure.height(), top = 1.0 - 40.0 / figure.height();
   figure.command(fmt::format("set multiplot layout {},1 margins 0.1,0.975,{:.4f},{:.4f} spacing 0,{:.4f}", count,
                              bottom, top, 45.0 / figure.height()));

@@ -17,6 +17,11 @@ Figure delay_map(const DelayMap& map) {
     return axis_label(fmt::format("{}({})", map.symbol, shift), map.unit);
   };
   const std::string data = figure.data({map.now, map.later, map.last});
+  figure.show({.panels = {{.title = "delay " + map.delay,
+                           .series = {{"", map.now, map.later, map.is_path ? Series::Look::kLine : Series::Look::kDots,
+                                       kFullColour}},
+                           .x_label = label("t"),
+                           .y_label = label("t + delay")}}});
   figure.command("unset key");
   figure.command("set multiplot");
   figure.command("set lmargin at screen 0.095; set rmargin at screen 0.485");

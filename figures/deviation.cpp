@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace slipmode::figures {
 namespace {
@@ -52,12 +53,30 @@ std::string curves(Figure& figure, const DeviationCase& motion, Eigen::VectorXd 
   return plot;
 }
 
+Drawing deviation_drawing(const std::vector<DeviationCase>& cases) {
+  Drawing drawing{.panels = {}, .columns = static_cast<int>(cases.size())};
+  for (const bool upper : {true, false}) {
+    for (const DeviationCase& motion : cases) {
+      Drawing::Axes axes{.title = motion.title,
+                         .x_label = "number of modes, L",
+                         .y_label = upper ? "ΔX [%]" : "|ΔE| [%]",
+                         .log_y = true};
+      for (const DeviationCurve& curve : motion.curves)
+        axes.series.push_back({curve.name, curve.modes, drawable(upper ? curve.delta_x : curve.delta_e),
+                               Series::Look::kMarkedLine, curve.colour});
+      drawing.panels.push_back(std::move(axes));
+    }
+  }
+  return drawing;
+}
+
 }  // namespace
 
 Figure deviation(const std::vector<DeviationCase>& cases) {
   const int columns = static_cast<int>(cases.size());
   Figure figure(1200, 860);
   common_style(figure);
+  figure.show(deviation_drawing(cases));
   double most = 1.0;
   for (const auto& motion : cases) {
     for (const auto& curve : motion.curves) most = std::max(most, curve.modes.maxCoeff());

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <utility>
 
 namespace slipmode::figures {
 namespace {
@@ -31,6 +32,17 @@ Figure energy_shares(const EnergyShares& shares) {
   const Eigen::VectorXd rest = left_out(shares.pom).head(std::min<Eigen::Index>(n, shares.pom.size() - 1));
   const double smallest = std::max(1e-12, 100.0 * shares.pom.head(n).minCoeff());
 
+  Drawing::Axes each{.title = "share of each proper orthogonal mode",
+                     .series = {{"", numbers(n), pom, Series::Look::kPoints, kPomColour}},
+                     .x_label = "mode",
+                     .y_label = "energy share [%]",
+                     .log_y = true};
+  Drawing::Axes kept{.title = "what the first L modes leave out",
+                     .series = {{"POM", numbers(rest.size()), rest, Series::Look::kMarkedLine, kPomColour}},
+                     .x_label = "number of modes kept, L",
+                     .y_label = "energy left out [%]",
+                     .log_y = true};
+
   figure.command("set multiplot layout 1,2 margins 0.085,0.985,0.165,0.91 spacing 0.095,0");
   figure.command(fmt::format("set xrange [0.4:{}]", static_cast<double>(n) + 0.6));
   figure.command(fmt::format("set logscale y; set yrange [{:.3g}:160]", 0.5 * smallest));
@@ -48,6 +60,8 @@ Figure energy_shares(const EnergyShares& shares) {
   figure.command("set key top right");
   std::string plot = "plot ";
   if (threshold > 0.0) {
+    kept.series.push_back({fmt::format("{:g} % kept", 100.0 * shares.threshold), numbers(rest.size()),
+                           Eigen::VectorXd::Constant(rest.size(), threshold), Series::Look::kDashed, "#666666"});
     plot += fmt::format("{:.6g} with lines dashtype 3 linewidth 1.2 linecolor rgb '#666666' title '{:g} % kept', ",
                         threshold, 100.0 * shares.threshold);
   }
@@ -56,6 +70,7 @@ Figure energy_shares(const EnergyShares& shares) {
   const Eigen::Index compared = std::min<Eigen::Index>(shares.lnm_captured.size(), rest.size());
   if (compared > 0) {
     const Eigen::VectorXd lnm = 100.0 * (1.0 - shares.lnm_captured.head(compared).array()).max(1e-14);
+    kept.series.push_back({"LNM", numbers(compared), lnm, Series::Look::kMarkedLine, kLnmColour});
     plot += fmt::format(
         ", {} using 1:2 with linespoints pointtype 4 dashtype 2 linewidth 1.6 linecolor rgb '{}' "
         "title 'LNM'",
@@ -63,6 +78,7 @@ Figure energy_shares(const EnergyShares& shares) {
   }
   figure.command(plot);
   figure.command("unset multiplot");
+  figure.show({.panels = {std::move(each), std::move(kept)}, .columns = 2});
   return figure;
 }
 

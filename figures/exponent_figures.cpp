@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace slipmode::figures {
 namespace {
@@ -31,7 +32,8 @@ struct ExponentRange {
 };
 
 /// One entry per model in the legend of the first panel only; models a little apart.
-void plot_exponents(Figure& figure, const std::vector<ExponentSeries>& models, Eigen::Index shown, bool titled) {
+void plot_exponents(Figure& figure, const std::vector<ExponentSeries>& models, Eigen::Index shown, bool titled,
+                    Drawing::Axes& out_axes) {
   std::string plots = "plot 0 notitle with lines linewidth 1 linecolor rgb '#888888'";
   for (std::size_t m = 0; m < models.size(); ++m) {
     const Eigen::Index count = std::min(shown, models[m].value.size());
@@ -40,6 +42,8 @@ void plot_exponents(Figure& figure, const std::vector<ExponentSeries>& models, E
     const Eigen::VectorXd number = Eigen::VectorXd::LinSpaced(count, 1.0, static_cast<double>(count)).array() + shift;
     const Eigen::VectorXd error =
         models[m].error.head(count).unaryExpr([](double e) { return std::isfinite(e) ? e : 0.0; });
+    out_axes.series.push_back(
+        {models[m].title, number, models[m].value.head(count), Series::Look::kPoints, models[m].colour});
     plots += fmt::format(
         ", {} using 1:2:3 {} with yerrorbars pointtype 7 pointsize 0.7 linewidth 1.4 linecolor rgb '{}'",
         figure.data({number, models[m].value.head(count), error}),
@@ -66,15 +70,18 @@ Figure exponent_spectrum(const std::vector<ExponentSeries>& models, Eigen::Index
   front.include(0.0);
   figure.command("set multiplot layout 2,1 margins 0.115,0.97,0.09,0.93 spacing 0,0.09");
   figure.command(kLegendAbove);
+  Drawing drawing;
   const auto panel = [&](Eigen::Index shown, const ExponentRange& range, bool first) {
     figure.command(fmt::format("set xrange [0.5:{}]", static_cast<double>(shown) + 0.5));
     figure.command("set yrange " + padded_range(range.low, range.high, 0.08));
     figure.command(exponent_label(unit));
     if (!first) figure.command("set xlabel \"number of the exponent\"");
-    plot_exponents(figure, models, shown, first);
+    drawing.panels.push_back({.x_label = "number of the exponent", .y_label = fmt::format("exponent [{}]", unit)});
+    plot_exponents(figure, models, shown, first, drawing.panels.back());
   };
   panel(all, whole, true);
   panel(std::min(leading, all), front, false);
+  figure.show(std::move(drawing));
   figure.command("unset multiplot");
   return figure;
 }
@@ -100,18 +107,24 @@ Figure exponent_convergence(const std::vector<ExponentHistory>& models, const st
   figure.command(fmt::format("set xrange [0:{:.10g}]", end));
   figure.command("set yrange " + padded_range(range.low, range.high, 0.06));
   figure.command(exponent_label(unit));
+  Drawing drawing;
   for (int m = 0; m < count; ++m) {
     const ExponentHistory& model = models[static_cast<std::size_t>(m)];
     figure.command(fmt::format("set title \"{}\" offset 0,-0.6", literal(model.title)));
     if (m + 1 == count) figure.command(fmt::format("set xlabel \"{}\"", axis_label("time measured", time_unit)));
+    drawing.panels.push_back({.title = model.title,
+                              .x_label = axis_label("time measured", time_unit),
+                              .y_label = fmt::format("exponent [{}]", unit)});
     std::string plots = "plot 0 with lines linewidth 1 linecolor rgb '#888888'";
     for (Eigen::Index i = 0; i < model.running.rows(); ++i) {
       const Eigen::VectorXd curve = model.running.row(i).transpose();
+      drawing.panels.back().series.push_back({"", model.time, curve, Series::Look::kLine, exponent_colour(i)});
       plots += fmt::format(", {} using 1:2 with lines linewidth 1.5 linecolor rgb '{}'",
                            figure.data({model.time, curve}), exponent_colour(i));
     }
     figure.command(plots);
   }
+  figure.show(std::move(drawing));
   figure.command("unset multiplot");
   return figure;
 }
@@ -134,6 +147,7 @@ Figure exponent_sweep(const std::vector<ExponentSweep>& models, const std::strin
                              1.0 - 40.0 / figure.height()));
   figure.command("unset key");
   figure.command("set xrange " + padded_range(x.low, x.high, 0.012));
+  Drawing drawing{.panels = {}, .columns = columns};
   const auto row = [&](bool upper) {
     figure.command("set yrange " +
                    (upper ? padded_range(slips.low, slips.high) : padded_range(exponents.low, exponents.high)));
@@ -146,7 +160,12 @@ Figure exponent_sweep(const std::vector<ExponentSweep>& models, const std::strin
                              : exponent_label(unit) + "; set format y '%g'");
       figure.command(upper ? std::string("unset xlabel; set format x ''")
                            : fmt::format("set xlabel \"{}\"; set format x '%g'", parameter_label));
+      drawing.panels.push_back({.title = model.title,
+                                .x_label = parameter_label,
+                                .y_label = upper ? value_label : fmt::format("exponent [{}]", unit)});
+      std::vector<Series>& drawn = drawing.panels.back().series;
       if (upper) {
+        drawn.push_back({"", model.slip_parameter, model.slip_value, Series::Look::kDots, model.colour});
         figure.command(fmt::format("plot {} using 1:2 with points pointtype 7 pointsize 0.18 linecolor rgb '{}'",
                                    figure.data({model.slip_parameter, model.slip_value}), model.colour));
         continue;
@@ -154,6 +173,7 @@ Figure exponent_sweep(const std::vector<ExponentSweep>& models, const std::strin
       std::string plots = "plot 0 with lines linewidth 1 linecolor rgb '#888888'";
       for (Eigen::Index i = model.exponents.rows() - 1; i >= 0; --i) {
         const Eigen::VectorXd curve = model.exponents.row(i).transpose();
+        drawn.push_back({"", model.parameter, curve, Series::Look::kMarkedLine, exponent_colour(i)});
         plots +=
             fmt::format(", {} using 1:2 with linespoints pointtype 7 pointsize 0.3 linewidth 1.2 linecolor rgb '{}'",
                         figure.data({model.parameter, curve}), exponent_colour(i));
@@ -163,6 +183,7 @@ Figure exponent_sweep(const std::vector<ExponentSweep>& models, const std::strin
   };
   if (diagram) row(true);
   row(false);
+  figure.show(std::move(drawing));
   figure.command("unset multiplot");
   return figure;
 }

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <slipmode/figures/drawing.hpp>
+
 #include <Eigen/Core>
 #include <filesystem>
 #include <initializer_list>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace slipmode::figures {
@@ -25,6 +28,10 @@ class Figure {
   /// Appends one line of commands.
   void command(std::string_view line);
 
+  /// Tells what is shown.
+  void show(Drawing drawing) { drawing_ = std::move(drawing); }
+  [[nodiscard]] const Drawing& drawing() const { return drawing_; }
+
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
   [[nodiscard]] const std::string& data_blocks() const { return data_; }
@@ -34,6 +41,7 @@ class Figure {
   int width_, height_;
   int blocks_ = 0;
   std::string data_, commands_;
+  Drawing drawing_;
 };
 
 /// Throws unless the path ends in .svg, .png or .pdf: to be called before any work that would be lost.

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <utility>
 
 namespace slipmode::figures {
 namespace {
@@ -51,6 +52,7 @@ Figure mode_shapes(const ModeShapes& shapes) {
   if (n <= 20) figure.command(columns <= 3 || n <= 5 ? "set xtics 1" : "set xtics 2");
   figure.command("set xzeroaxis linecolor rgb '#999999' linewidth 0.8 linetype 1");
   const std::string marker = n <= 60 ? "linespoints pointtype 7 pointsize 0.7" : "lines";
+  Drawing drawing{.panels = {}, .columns = columns};
   for (int i = 0; i < count; ++i) {
     const Eigen::VectorXd pom = normalised(shapes.poms.col(i));
     const bool with_lnm = i < shapes.lnms.cols();
@@ -60,10 +62,15 @@ Figure mode_shapes(const ModeShapes& shapes) {
     figure.command(i % columns == 0 ? "set ylabel \"shape [–]\"; set format y '%g'" : "unset ylabel; set format y ''");
     figure.command(i + columns >= count ? "set xlabel \"mass number\"; set format x '%g'"
                                         : "unset xlabel; set format x ''");
+    drawing.panels.push_back({.title = fmt::format("mode {}{}", i + 1, share),
+                              .series = {{"POM", number, pom, Series::Look::kMarkedLine, kPomColour}},
+                              .x_label = "mass number",
+                              .y_label = "shape [–]"});
     std::string plot = fmt::format("plot {} using 1:2 with {} linewidth 1.6 linecolor rgb '{}' title 'POM'",
                                    figure.data({number, pom}), marker, kPomColour);
     if (with_lnm) {
       const Eigen::VectorXd lnm = turned_to(normalised(shapes.lnms.col(i)), pom);
+      drawing.panels.back().series.push_back({"LNM", number, lnm, Series::Look::kDashed, kLnmColour});
       plot += fmt::format(", {} using 1:2 with lines dashtype 2 linewidth 1.6 linecolor rgb '{}' title 'LNM'",
                           figure.data({number, lnm}), kLnmColour);
     }
@@ -71,6 +78,7 @@ Figure mode_shapes(const ModeShapes& shapes) {
     figure.command("unset label");
   }
   figure.command("unset multiplot");
+  figure.show(std::move(drawing));
   return figure;
 }
 

@@ -62,6 +62,18 @@ std::string plot_of(Figure& figure, const Panel& panel, const Ranges& ranges) {
   return plot.empty() ? "plot NaN notitle" : plot;
 }
 
+Drawing drawing_of(const std::vector<Panel>& panels, const PanelLayout& layout) {
+  Drawing drawing{.panels = {}, .columns = layout.columns};
+  for (const Panel& panel : panels) {
+    drawing.panels.push_back({.title = panel.title,
+                              .series = panel.series,
+                              .x_label = panel.x_label.empty() ? layout.x_label : panel.x_label,
+                              .y_label = layout.y_label,
+                              .log_y = layout.log_y});
+  }
+  return drawing;
+}
+
 }  // namespace
 
 Figure panel_grid(const std::vector<Panel>& panels, const PanelLayout& layout) {
@@ -70,6 +82,7 @@ Figure panel_grid(const std::vector<Panel>& panels, const PanelLayout& layout) {
   const int rows = (count + columns - 1) / columns;
   Figure figure(1200, rows * layout.panel_height + 170);
   common_style(figure);
+  figure.show(drawing_of(panels, layout));
   Ranges all;
   for (const Panel& panel : panels) all.include(panel, layout.log_y);
   const double height = figure.height();

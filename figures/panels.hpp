@@ -10,14 +10,6 @@
 
 namespace slipmode::figures {
 
-/// A curve or a cloud of points in a panel.
-struct Series {
-  std::string title = {};  ///< for the legend; empty: none
-  Eigen::VectorXd x, y;
-  enum class Look { kLine, kDashed, kDots, kMarkedLine, kPoints } look = Look::kLine;
-  std::string_view colour;
-};
-
 /// One pair of axes.
 struct Panel {
   std::string title;

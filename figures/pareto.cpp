@@ -44,7 +44,8 @@ std::vector<std::string> groups_of(const std::vector<ParetoPoint>& points) {
 }
 
 /// The front as steps: along the error of a point until the next one takes over.
-std::string front_data(Figure& figure, std::vector<ParetoPoint> front, const Limits& x, const Limits& y) {
+std::string front_data(Figure& figure, std::vector<ParetoPoint> front, const Limits& x, const Limits& y,
+                       std::vector<Series>& out_drawn) {
   std::vector<double> cost, error;
   const auto add = [&](double at, double value) {
     cost.push_back(at);
@@ -55,6 +56,7 @@ std::string front_data(Figure& figure, std::vector<ParetoPoint> front, const Lim
     add(front[k].cost, front[k].resolved);
   }
   if (!front.empty()) add(x.high, front.back().resolved);
+  out_drawn.push_back({"front", to_vector(cost), to_vector(error), Series::Look::kLine, "#777777"});
   return figure.data({to_vector(cost), to_vector(error)});
 }
 
@@ -116,8 +118,9 @@ Figure pareto_diagram(const std::vector<ParetoPoint>& points, const ParetoLabels
   }
   label_front(figure, front, x, y);
 
+  std::vector<Series> drawn;
   std::string plot = fmt::format("plot {} using 1:2 with lines linewidth 1.2 linecolor rgb '#777777' title 'front'",
-                                 front_data(figure, front, x, y));
+                                 front_data(figure, front, x, y, drawn));
   const std::vector<std::string> groups = groups_of(points);
   for (std::size_t g = 0; g < groups.size(); ++g) {
     std::vector<double> cost, error;
@@ -127,11 +130,19 @@ Figure pareto_diagram(const std::vector<ParetoPoint>& points, const ParetoLabels
       error.push_back(std::max(point.error, y.low));
     }
     if (cost.empty()) continue;
+    drawn.push_back(
+        {groups[g], to_vector(cost), to_vector(error), Series::Look::kPoints, kColours[g % kColours.size()]});
     plot += fmt::format(", {} using 1:2 with points pointtype {} pointsize {} linecolor rgb '{}' title \"{}\"",
                         figure.data({to_vector(cost), to_vector(error)}), kSymbols[g % kSymbols.size()],
                         g == 0 ? 2.0 : 1.1, kColours[g % kColours.size()], literal(groups[g]));
   }
   figure.command(plot);
+  figure.show({.panels = {{.title = labels.title,
+                           .series = drawn,
+                           .x_label = labels.cost,
+                           .y_label = labels.error,
+                           .log_x = true,
+                           .log_y = true}}});
   return figure;
 }
 

@@ -26,6 +26,17 @@ struct Box {
   }
 };
 
+Drawing portraits_drawing(const std::vector<PhasePortrait>& portraits, const PortraitLayout& layout) {
+  Drawing drawing{.panels = {}, .columns = layout.columns};
+  for (const PhasePortrait& portrait : portraits)
+    drawing.panels.push_back(
+        {.title = portrait.title,
+         .series = {{"", portrait.displacement, portrait.velocity, Series::Look::kLine, portrait.colour}},
+         .x_label = axis_label(layout.displacement, layout.displacement_unit),
+         .y_label = axis_label(layout.velocity, layout.velocity_unit)});
+  return drawing;
+}
+
 }  // namespace
 
 Figure phase_portraits(const std::vector<PhasePortrait>& portraits, const PortraitLayout& layout) {
@@ -35,6 +46,7 @@ Figure phase_portraits(const std::vector<PhasePortrait>& portraits, const Portra
   const int panel_height = columns <= 2 ? 480 : 370;
   Figure figure(1200, rows * panel_height + 60);
   common_style(figure);
+  figure.show(portraits_drawing(portraits, layout));
 
   const bool shared_axes = layout.axes == PortraitLayout::Axes::kShared;
   std::vector<Box> boxes(columns);

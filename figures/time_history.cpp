@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <array>
+#include <utility>
 
 namespace slipmode::figures {
 
@@ -29,7 +30,13 @@ Figure time_history(const TimeHistory& history) {
                     "fillcolor rgb '{}' fillstyle solid 0.7 noborder",
                     std::max(from, begin), std::min(to, end), kStickShade));
   }
+  Drawing drawing;
   for (std::size_t i = 0; i < rows.size(); ++i) {
+    drawing.panels.push_back({.title = i == 0 ? history.contact + ": stick is shaded" : std::string(),
+                              .series = {{"", history.time, rows[i].values, Series::Look::kLine, kFullColour}},
+                              .x_label = axis_label("time", history.time_unit),
+                              .y_label = axis_label(rows[i].quantity, rows[i].unit),
+                              .shaded = history.stick});
     const bool last = i + 1 == rows.size();
     figure.command(i == 0 ? fmt::format("set title \"{}: stick is shaded\" offset 0,-0.5", literal(history.contact))
                           : std::string("unset title"));
@@ -41,6 +48,7 @@ Figure time_history(const TimeHistory& history) {
                                figure.data({history.time, rows[i].values}), kFullColour));
   }
   figure.command("unset multiplot");
+  figure.show(std::move(drawing));
   return figure;
 }
 

@@ -11,7 +11,7 @@ packages=(
   # tests, benchmarks and the peers they measure against
   libgtest-dev libgmock-dev libarpack2-dev libbenchmark-dev libsundials-dev libboost-dev
   # figures
-  gnuplot-nox
+  gnuplot-nox node-d3
   # the Python package, its tests and examples
   pybind11-dev python3-dev python3-numpy python3-scipy python3-h5py python3-matplotlib
   python3-xarray python3-tqdm

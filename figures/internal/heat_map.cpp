@@ -107,6 +107,26 @@ std::string cell_range(const Eigen::VectorXd& values) {
   return fmt::format("[{:.9g}:{:.9g}]", low - half, high + half);
 }
 
+Drawing fields_drawing(const std::vector<HeatMapPanel>& panels, const HeatMapLayout& layout) {
+  Drawing drawing{.panels = {}, .columns = static_cast<int>(panels.size())};
+  for (const HeatMapPanel& panel : panels) {
+    drawing.panels.push_back({.title = panel.title,
+                              .x_label = layout.x_label,
+                              .y_label = layout.y_label,
+                              .field = ColourField{.x = panel.x,
+                                                   .y = panel.y,
+                                                   .value = panel.value,
+                                                   .label = layout.value_label,
+                                                   .low = layout.low,
+                                                   .high = layout.high,
+                                                   .words = layout.words,
+                                                   .missing = layout.missing}});
+    if (panel.line_x.size() > 0)
+      drawing.panels.back().series.push_back({"", panel.line_x, panel.line_y, Series::Look::kLine, kLnmColour});
+  }
+  return drawing;
+}
+
 }  // namespace
 
 Figure heat_maps(const std::vector<HeatMapPanel>& panels, const HeatMapLayout& layout) {
@@ -114,6 +134,7 @@ Figure heat_maps(const std::vector<HeatMapPanel>& panels, const HeatMapLayout& l
   const Scale scale = scale_of(layout);
   Figure figure(1200, count == 1 ? 800 : 620);
   common_style(figure);
+  figure.show(fields_drawing(panels, layout));
   figure.command("unset grid; unset key");
   figure.command(palette(layout, scale));
   figure.command(fmt::format("set cbrange [{:.9g}:{:.9g}]", scale.bottom(), scale.colour_high()));

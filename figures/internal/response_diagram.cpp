@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace slipmode::figures {
 namespace {
@@ -71,7 +72,8 @@ std::vector<std::string> kinds_of(const std::vector<ResponseMark>& marks) {
   return kinds;
 }
 
-void add_marks(Figure& figure, const std::vector<ResponseMark>& marks, std::vector<std::string>& plots) {
+void add_marks(Figure& figure, const std::vector<ResponseMark>& marks, std::vector<std::string>& plots,
+               std::vector<Series>& drawn) {
   constexpr std::array kSymbols = {7, 5, 9, 13, 6, 4, 8, 12, 2};  // filled, then open ones
   constexpr std::array<std::string_view, 4> kColours = {kLnmColour, kSecondColour, "#CC79A7", "#E69F00"};
   std::vector<std::string> kinds = kinds_of(marks);
@@ -81,6 +83,8 @@ void add_marks(Figure& figure, const std::vector<ResponseMark>& marks, std::vect
     for (const ResponseMark& mark : marks) {
       if (mark.kind == kinds[k]) points.add(mark.parameter, mark.value);
     }
+    drawn.push_back(
+        {kinds[k], to_vector(points.x), to_vector(points.y), Series::Look::kPoints, kColours[k % kColours.size()]});
     plots.push_back(fmt::format("{} using 1:2 with points pointtype {} pointsize 1.1 linecolor rgb '{}' title \"{}\"",
                                 points.data(figure), kSymbols[k % kSymbols.size()], kColours[k % kColours.size()],
                                 literal(kinds[k])));
@@ -101,6 +105,7 @@ Figure response_diagram(const std::vector<ResponseBranch>& branches, const std::
   common_style(figure);
   double low_x = INFINITY, high_x = -INFINITY, low_y = INFINITY, high_y = -INFINITY;
   std::vector<std::string> plots;
+  std::vector<Series> drawn;
   bool has_band = false;
   for (const ResponseBranch& branch : branches) {
     if (branch.parameter.size() == 0) continue;
@@ -121,17 +126,22 @@ Figure response_diagram(const std::vector<ResponseBranch>& branches, const std::
     }
     const Looks looks = looks_of(branch);
     if (!looks.stable.x.empty()) {
+      drawn.push_back(
+          {branch.title, to_vector(looks.stable.x), to_vector(looks.stable.y), Series::Look::kLine, branch.colour});
       plots.push_back(fmt::format(
           "{} using 1:2 with lines linewidth 1.8 linecolor rgb '{}' {}", looks.stable.data(figure), branch.colour,
           branch.title.empty() ? "notitle" : fmt::format("title \"{}\"", literal(branch.title))));
     }
     if (!looks.unstable.x.empty()) {
+      drawn.push_back(
+          {"unstable", to_vector(looks.unstable.x), to_vector(looks.unstable.y), Series::Look::kDashed, branch.colour});
       plots.push_back(fmt::format("{} using 1:2 with lines dashtype 2 linewidth 1.5 linecolor rgb '{}' notitle",
                                   looks.unstable.data(figure), branch.colour));
     }
   }
   plots.push_back("NaN with lines dashtype 2 linewidth 1.5 linecolor rgb '#222222' title 'unstable'");
-  add_marks(figure, marks, plots);
+  add_marks(figure, marks, plots, drawn);
+  figure.show({.panels = {{.series = drawn, .x_label = labels.parameter, .y_label = labels.value}}});
   figure.command("set margins screen 0.09, screen 0.98, screen 0.11, screen 0.84");
   figure.command("set key at screen 0.985,0.985 right top horizontal maxrows 3 width 1");
   figure.command(fmt::format("set xrange {}; set yrange {}", padded_range(low_x, high_x), padded_range(low_y, high_y)));
@@ -145,6 +155,13 @@ Figure multiplier_plane(const Eigen::MatrixXd& parts, const std::string& title) 
   common_style(figure);
   const double reach = std::max(1.1, 1.08 * parts.cwiseAbs().maxCoeff());
   const std::string data = figure.data({parts.col(0), parts.col(1)});
+  const Eigen::VectorXd angle = Eigen::VectorXd::LinSpaced(181, 0.0, 2.0 * std::numbers::pi);
+  figure.show(
+      {.panels = {{.title = title,
+                   .series = {{"unit circle", angle.array().cos(), angle.array().sin(), Series::Look::kLine, "#888888"},
+                              {"", parts.col(0), parts.col(1), Series::Look::kPoints, kFullColour}},
+                   .x_label = "real part [–]",
+                   .y_label = "imaginary part [–]"}}});
   figure.command("set size ratio -1; set parametric; set trange [0:2*pi]; set samples 400");
   figure.command(fmt::format("set xrange [{:.4g}:{:.4g}]; set yrange [{:.4g}:{:.4g}]", -reach, reach, -reach, reach));
   figure.command("set xlabel 'real part [–]'; set ylabel 'imaginary part [–]'");

@@ -1,0 +1,40 @@
+#include <slipmode/core/files.hpp>
+#include <slipmode/report/report.hpp>
+#include "cli/verbs.hpp"
+
+#include <fmt/format.h>
+#include <filesystem>
+
+namespace slipmode::cli {
+namespace {
+
+struct ReportArguments {
+  std::vector<std::string> inputs;
+  std::string output = "report.html";
+};
+
+Report run(const Session& session, const ReportArguments& arguments) {
+  report::require_available();
+  require_writable(arguments.output);
+  const std::string page = report::page({arguments.inputs.begin(), arguments.inputs.end()}, session.run_options());
+  write_renamed(arguments.output, page);
+  Report out;
+  out.text = fmt::format("{}: {:.2f} MB, opens in any browser, needs no network\n", arguments.output,
+                         1e-6 * static_cast<double>(page.size()));
+  out.data = {{"verb", "report"}, {"file", arguments.output}, {"bytes", page.size()}};
+  return out;
+}
+
+}  // namespace
+
+Verb add_report(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("report", "results as one interactive HTML page: what was found, every figure and table");
+  const auto arguments = std::make_shared<ReportArguments>();
+  command->add_option("INPUT", arguments->inputs, "folders of results and result files (HDF5)")->required();
+  command->add_option("-o,--output", arguments->output, "page (HTML)")->capture_default_str();
+  command->footer("Example:\n  slipmode report out/chain10 -o report.html");
+  return {command, [arguments](const Session& session) { return run(session, *arguments); }};
+}
+
+}  // namespace slipmode::cli

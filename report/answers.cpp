@@ -1,0 +1,200 @@
+#include "report/internal/answers.hpp"
+
+#include <slipmode/fem/beam.hpp>
+#include <slipmode/friction/contact.hpp>
+#include <slipmode/results/table.hpp>
+#include <slipmode/scene/shaken.hpp>
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace slipmode::report {
+namespace {
+
+using results::StoreReader;
+using results::Table;
+
+/// Slip states within so many times the distance of two full runs are taken for the full model's own, as in
+/// diagnostics::ValidationOptions::grow.
+constexpr double kScatter = 3.0;
+
+Json answer(const char* question, std::string text, const char* tone) {
+  return {{"question", question}, {"answer", std::move(text)}, {"tone", tone}};
+}
+
+std::string structure_text(const scene::Scene& scene) {
+  if (const fem::ChainOptions* chain = scene.chain()) return fmt::format("A chain of {} masses", chain->masses);
+  if (const fem::BeamOptions* beam = scene.beam()) {
+    double length = 0.0;
+    for (const fem::BeamSpan& span : beam->spans) length += span.length;
+    return fmt::format("A beam of {:g} m with {} degrees of freedom", length, scene.size());
+  }
+  return fmt::format("A structure with {} degrees of freedom", scene.size());
+}
+
+std::string drive_text(const scene::Scene& scene) {
+  if (scene.force) return fmt::format("driven by a force at ω = {:g}", scene.force->omega);
+  if (is_shaken(scene)) return fmt::format("shaken at {:g} Hz", scene::drive_parameter(scene));
+  return fmt::format("on a belt at V = {:g}", scene::drive_parameter(scene));
+}
+
+/// Of the basis that numbers of modes are chosen by, in the order of their numbers.
+struct Levels {
+  std::string basis;
+  std::vector<double> modes, distance, dX, energy;
+  std::vector<std::string> motion;
+
+  explicit Levels(const Table& shares) : basis(shares.texts("basis").front()) {
+    for (std::size_t i = 0; i < shares.rows(); ++i) {
+      if (shares.texts("basis")[i] != basis) continue;
+      modes.push_back(shares.numbers("modes")[i]);
+      distance.push_back(shares.numbers("wasserstein")[i]);
+      dX.push_back(shares.numbers("dX")[i]);
+      energy.push_back(shares.numbers("energy")[i]);
+      motion.push_back(shares.texts("motion")[i]);
+    }
+  }
+  [[nodiscard]] std::optional<std::size_t> of(double count) const {
+    const auto found = std::ranges::find(modes, count);
+    if (found == modes.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - modes.begin());
+  }
+  /// The fewest modes from which on all are within the scatter of the full model.
+  [[nodiscard]] std::optional<std::size_t> first_within(double noise) const {
+    std::optional<std::size_t> first;
+    for (std::size_t i = modes.size(); i-- > 0 && distance[i] <= kScatter * noise;) first = i;
+    return first;
+  }
+};
+
+/// Where both are decided: the speeds at which motion and period agree, and stretches where they do not.
+std::string where_text(const StoreReader& store, const char*& tone) {
+  const Table full = results::load_table(store, "sweep/full/values");
+  const Table reduced = results::load_table(store, "sweep/reduced/values");
+  const std::string label = store.text("sweep/full/label");
+  std::vector<std::pair<double, double>> apart;
+  std::size_t same = 0, decided = 0;
+  bool last_apart = false;
+  for (std::size_t i = 0; i < full.rows(); ++i) {
+    const std::string &a = full.texts("motion")[i], &b = reduced.texts("motion")[i];
+    const bool known = a != "undecided" && b != "undecided" && a != "failed" && b != "failed";
+    const bool agree = a == b && (a != "periodic" || full.numbers("period")[i] == reduced.numbers("period")[i]);
+    decided += known ? 1 : 0;
+    same += known && agree ? 1 : 0;
+    const double speed = full.numbers("parameter")[i];
+    if (known && !agree && !last_apart) apart.emplace_back(speed, speed);
+    if (known && !agree) apart.back().second = speed;
+    last_apart = known && !agree;
+  }
+  if (decided == 0) {
+    tone = "poor";
+    return "At none of the speeds are both motions decided: see the bifurcation diagram.";
+  }
+  const double share = 100.0 * static_cast<double>(same) / static_cast<double>(decided);
+  tone = share >= 99.0 ? "good" : share >= 90.0 ? "fair" : "poor";
+  std::string text = fmt::format(
+      "{}: the same kind of motion and period at {:.1f} % of the {} values where both are "
+      "decided ({} of {} are not).",
+      label, share, decided, full.rows() - decided, full.rows());
+  constexpr std::size_t kTold = 4;
+  for (std::size_t i = 0; i < std::min(kTold, apart.size()); ++i) {
+    const auto [from, to] = apart[i];
+    text += i == 0 ? " They differ at " : ", ";
+    text += from == to ? fmt::format("{:g}", from) : fmt::format("{:g} to {:g}", from, to);
+  }
+  if (apart.size() > kTold) text += fmt::format(" and {} more stretches", apart.size() - kTold);
+  return apart.empty() ? text : text + ".";
+}
+
+Json trust(const Levels& levels, const StoreReader& store) {
+  const double chosen = static_cast<double>(store.integer("validation/chosen_modes"));
+  const double noise = store.number("validation/full/noise_wasserstein");
+  const double speed = store.number("validation/full/speed");
+  const auto row = levels.of(chosen);
+  if (!row || !std::isfinite(levels.distance[*row])) {
+    return answer("Is the reduced model to be trusted?",
+                  fmt::format("With {} {}s nothing can be said: it gave no settled motion.", chosen, levels.basis),
+                  "poor");
+  }
+  const auto enough = levels.first_within(noise);
+  const double distance = levels.distance[*row];
+  const bool within = distance <= kScatter * noise;
+  std::string text = fmt::format(
+      "{}: with {} {}s, which hold {:.2f} % of the energy, it settles to {} motion at V = {:g}; its slip states lie "
+      "{:.3g} "
+      "from the full model's, where two full runs lie {:.3g} apart.",
+      within ? "Yes" : "In part", chosen, levels.basis, levels.energy[*row], levels.motion[*row], speed, distance,
+      noise);
+  if (!within && enough)
+    text += fmt::format(" From {} modes on it is within {:g} times that scatter.", levels.modes[*enough], kScatter);
+  if (!enough) text += " No number of modes that was tried stays within the scatter of the full model.";
+  return answer("Is the reduced model to be trusted?", std::move(text), within ? "good" : enough ? "fair" : "poor");
+}
+
+Json saving(const StoreReader& store) {
+  const double full = store.number("validation/cost/full_cpu"), reduced = store.number("validation/cost/reduced_cpu");
+  const double gain = full / reduced;
+  return answer(
+      "What does it save?",
+      fmt::format("One run of {:g} time units takes {:.3g} ms in full and {:.3g} ms reduced, of processor time: "
+                  "{}.",
+                  store.number("validation/cost/duration"), 1e3 * full, 1e3 * reduced,
+                  gain > 1.05   ? fmt::format("{:.2g} times faster", gain)
+                  : gain < 0.95 ? fmt::format("{:.2g} times slower, it saves nothing at this size", 1.0 / gain)
+                                : std::string("no difference at this size")),
+      gain > 1.05 ? "good" : "fair");
+}
+
+Json accuracy(const Levels& levels, const StoreReader& store) {
+  const Table orbits = results::load_table(store, "validation/orbits");
+  const double chosen = static_cast<double>(store.integer("validation/chosen_modes"));
+  std::string text;
+  if (const auto row = levels.of(chosen))
+    text = fmt::format("From shared starts ΔX grows to {:.3g} % up to the horizon.", levels.dX[*row]);
+  double worst = 0.0;
+  std::size_t alike = 0, all = 0;
+  for (std::size_t i = 0; i < orbits.rows(); ++i) {
+    if (orbits.texts("basis")[i] != levels.basis || orbits.numbers("modes")[i] != chosen) continue;
+    ++all;
+    const double dX = orbits.numbers("dX")[i];
+    if (!std::isfinite(dX)) continue;
+    ++alike;
+    worst = std::max(worst, dX);
+  }
+  if (alike > 0)
+    text += fmt::format(
+        " On periodic orbits ΔX is at most {:.3g} % over one period, at {} of {} speeds where the periods "
+        "are the same.",
+        worst, alike, all);
+  else if (all > 0)
+    text += fmt::format(" At none of {} speeds has it the full model's periodic orbit.", all);
+  return answer("How accurate is it?", std::move(text), all > 0 && alike == all ? "good" : "fair");
+}
+
+}  // namespace
+
+std::string model_text(const scene::Scene& scene) {
+  std::string contacts;
+  for (const scene::ContactSpec& contact : scene.contacts)
+    contacts +=
+        fmt::format("; {} at {} ({})", contact.name, scene::to_string(contact.at), friction::law_word(contact.law));
+  return fmt::format("{}, {}{}.", structure_text(scene), drive_text(scene), contacts);
+}
+
+Json belt_answers(const StoreReader& validation) {
+  const Levels levels(results::load_table(validation, "validation/shares"));
+  Json out = Json::array();
+  out.push_back(trust(levels, validation));
+  if (validation.has("sweep/reduced")) {
+    const char* tone = "fair";
+    std::string text = where_text(validation, tone);
+    out.push_back(answer("Where?", std::move(text), tone));
+  }
+  if (validation.has("validation/cost")) out.push_back(saving(validation));
+  out.push_back(accuracy(levels, validation));
+  return out;
+}
+
+}  // namespace slipmode::report

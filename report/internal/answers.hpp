@@ -1,0 +1,19 @@
+#pragma once
+
+#include <slipmode/results/store.hpp>
+#include <slipmode/scene/scene.hpp>
+#include "report/internal/json.hpp"
+
+#include <string>
+
+namespace slipmode::report {
+
+/// "A chain of 10 masses; contact 1 at 10 (stribeck); belt at V = 0.2".
+[[nodiscard]] std::string model_text(const scene::Scene& scene);
+
+/// What a validation on a belt says of the reduced model, as questions with answers: is it to be trusted, where, what
+/// it saves, how accurate it is. Each has a tone, "good", "fair" or "poor".
+/// @throws InvalidInput  when the file lacks a table
+[[nodiscard]] Json belt_answers(const results::StoreReader& validation);
+
+}  // namespace slipmode::report

@@ -1,0 +1,191 @@
+#include <slipmode/report/report.hpp>
+
+#include <slipmode/core/errors.hpp>
+#include <slipmode/results/file_kind.hpp>
+#include <slipmode/results/provenance.hpp>
+#include <slipmode/scene/shaken.hpp>
+#include "report/internal/answers.hpp"
+#include "report/internal/assets.hpp"
+#include "report/internal/file_content.hpp"
+
+#include <fmt/format.h>
+#include <zlib.h>
+#include <algorithm>
+#include <iterator>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+namespace slipmode::report {
+namespace {
+
+namespace fs = std::filesystem;
+using results::FileKind;
+using results::StoreReader;
+
+/// The result files in a folder, in the order of their names; those of other programs are passed over.
+std::vector<StoreReader> stores_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == ".h5") files.push_back(entry.path());
+  }
+  std::ranges::sort(files);
+  std::vector<StoreReader> stores;
+  for (const fs::path& file : files) {
+    StoreReader store(file);
+    if (results::kind_of(store)) stores.push_back(std::move(store));
+  }
+  if (stores.empty())
+    throw InvalidInput(
+        fmt::format("{}: no result file (*.h5) in it; 'slipmode run SCENE -o DIR' leaves some", folder.string()));
+  return stores;
+}
+
+/// Folders as the files in them, a comparison before all others.
+std::vector<StoreReader> stores_of(const std::vector<fs::path>& inputs) {
+  std::vector<StoreReader> stores;
+  for (const fs::path& input : inputs) {
+    if (fs::is_directory(input)) {
+      std::ranges::move(stores_in(input), std::back_inserter(stores));
+    } else {
+      stores.emplace_back(input);
+    }
+  }
+  std::ranges::stable_partition(
+      stores, [](const StoreReader& store) { return results::kind_of(store) == FileKind::kValidation; });
+  return stores;
+}
+
+const StoreReader* first_of(const std::vector<StoreReader>& stores, FileKind kind) {
+  const auto found = std::ranges::find(stores, kind, [](const StoreReader& store) { return results::kind_of(store); });
+  return found == stores.end() ? nullptr : &*found;
+}
+
+/// As a shell takes it.
+std::string quoted(const std::string& word) {
+  const bool plain = !word.empty() && word.find_first_not_of(
+                                          "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                          "0123456789_-./=,:+") == std::string::npos;
+  if (plain) return word;
+  std::string out = "'";
+  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+/// The command that makes a folder again: of `slipmode run` every word is known, of other verbs what they computed.
+std::string command_of(const std::vector<StoreReader>& stores) {
+  for (const StoreReader& store : stores) {
+    if (!store.has("provenance")) continue;
+    const results::Provenance own = results::load_provenance(store);
+    const bool run = first_of(stores, FileKind::kTrajectory) != nullptr && stores.size() > 1;
+    std::string words = run ? "slipmode run" : own.command;
+    words += " " + quoted(own.scene_path);
+    for (const std::string& set : own.overrides) words += " --set " + quoted(set);
+    return words + " -o " +
+           quoted(run ? store.path().parent_path().filename().string() : store.path().filename().string());
+  }
+  return {};
+}
+
+Json document(const std::vector<StoreReader>& stores) {
+  Json out = {{"version", results::version()}, {"commit", results::git_commit()}, {"command", command_of(stores)}};
+  const StoreReader* own = nullptr;
+  for (const StoreReader& store : stores) {
+    if (own == nullptr && store.has("provenance")) own = &store;
+  }
+  out["title"] = stores.front().path().filename().string();
+  out["answers"] = Json::array();
+  if (own != nullptr) {
+    const scene::Scene scene = results::load_scene_of(*own);
+    if (!scene.title.empty()) out["title"] = scene.title;
+    out["units"] = scene.units;
+    out["answers"].push_back({{"question", "What was modelled?"}, {"answer", model_text(scene)}, {"tone", "plain"}});
+  }
+  if (const StoreReader* validation = first_of(stores, FileKind::kValidation);
+      validation != nullptr && validation->has("validation/shares")) {
+    for (Json& one : belt_answers(*validation)) out["answers"].push_back(std::move(one));
+  }
+  const bool has_pod = first_of(stores, FileKind::kPod) != nullptr;
+  out["files"] = Json::array();
+  for (const StoreReader& store : stores)
+    out["files"].push_back(file_json(store, !(has_pod && results::kind_of(store) == FileKind::kReduced)));
+  return out;
+}
+
+std::string deflated(const std::string& text) {
+  uLongf size = compressBound(text.size());
+  std::string out(size, '\0');
+  if (compress2(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(text.data()), text.size(),
+                Z_BEST_COMPRESSION) != Z_OK)
+    throw std::runtime_error("zlib: out of memory");
+  out.resize(size);
+  return out;
+}
+
+std::string base64(const std::string& bytes) {
+  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  out.reserve(4 * (bytes.size() / 3 + 1));
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const auto byte = [&](std::size_t k) { return k < bytes.size() ? static_cast<unsigned char>(bytes[k]) : 0U; };
+    const unsigned word = byte(i) << 16U | byte(i + 1) << 8U | byte(i + 2);
+    for (unsigned k = 0; k < 4; ++k) out += i + k <= bytes.size() ? kDigits[word >> (18U - 6U * k) & 63U] : '=';
+  }
+  return out;
+}
+
+/// Text as it is in HTML.
+std::string escaped(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '"')
+      out += "&quot;";
+    else
+      out += c;
+  }
+  return out;
+}
+
+/// The template with each @NAME@ of it filled in, once, from left to right: what is filled in is not looked at again.
+std::string filled(std::string_view text, const std::vector<std::pair<std::string_view, std::string_view>>& parts) {
+  std::string out;
+  for (const auto& [name, value] : parts) {
+    const std::size_t at = text.find(name);
+    out.append(text.substr(0, at)).append(value);
+    text.remove_prefix(at + name.size());
+  }
+  return out.append(text);
+}
+
+}  // namespace
+
+bool is_available() { return !kD3.empty(); }
+
+void require_available() {
+  if (is_available()) return;
+  throw InvalidInput(
+      "this build has no report: it was built without D3; install Debian's node-d3, then configure and build again");
+}
+
+std::string page(const std::vector<fs::path>& inputs, const studies::RunOptions& run) {
+  require_available();
+  const std::vector<StoreReader> stores = stores_of(inputs);
+  const Json content = document(stores);
+  run.check_interrupt();
+  const std::string data = base64(deflated(content.dump(-1, ' ', false, Json::error_handler_t::replace)));
+  const std::string title = escaped(content["title"].get<std::string>()), licence = escaped(kD3Licence);
+  return filled(kTemplate, {{"@TITLE@", title},
+                            {"@STYLE@", kStyle},
+                            {"@LICENCE@", licence},
+                            {"@DATA@", data},
+                            {"@D3@", kD3},
+                            {"@SCRIPT@", kScript}});
+}
+
+}  // namespace slipmode::report
