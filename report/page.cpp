@@ -7,6 +7,7 @@
 #include "report/internal/answers.hpp"
 #include "report/internal/assets.hpp"
 #include "report/internal/file_content.hpp"
+#include "report/internal/linked.hpp"
 
 #include <fmt/format.h>
 #include <zlib.h>
@@ -101,15 +102,22 @@ Json document(const std::vector<StoreReader>& stores) {
     out["units"] = scene.units;
     out["answers"].push_back({{"question", "What was modelled?"}, {"answer", model_text(scene)}, {"tone", "plain"}});
   }
-  if (const StoreReader* validation = first_of(stores, FileKind::kValidation);
-      validation != nullptr && validation->has("validation/shares")) {
+  const StoreReader* validation = first_of(stores, FileKind::kValidation);
+  if (validation != nullptr && validation->has("validation/shares")) {
     for (Json& one : belt_answers(*validation)) out["answers"].push_back(std::move(one));
   }
-  const bool has_pod = first_of(stores, FileKind::kPod) != nullptr;
+  const StoreReader* pod = first_of(stores, FileKind::kPod);
   out["files"] = Json::array();
   for (const StoreReader& store : stores)
-    out["files"].push_back(file_json(store, !(has_pod && results::kind_of(store) == FileKind::kReduced)));
+    out["files"].push_back(file_json(store, !(pod != nullptr && results::kind_of(store) == FileKind::kReduced)));
   return out;
+}
+
+/// Apart from the document: the first screen does not wait for them.
+Json motions_of(const std::vector<StoreReader>& stores, const studies::RunOptions& run) {
+  const StoreReader* validation = first_of(stores, FileKind::kValidation);
+  const StoreReader* pod = first_of(stores, FileKind::kPod);
+  return validation != nullptr && pod != nullptr ? linked_motions(*validation, *pod, run) : Json(nullptr);
 }
 
 std::string deflated(const std::string& text) {
@@ -132,6 +140,10 @@ std::string base64(const std::string& bytes) {
     for (unsigned k = 0; k < 4; ++k) out += i + k <= bytes.size() ? kDigits[word >> (18U - 6U * k) & 63U] : '=';
   }
   return out;
+}
+
+std::string packed(const Json& content) {
+  return base64(deflated(content.dump(-1, ' ', false, Json::error_handler_t::replace)));
 }
 
 /// Text as it is in HTML.
@@ -177,13 +189,13 @@ std::string page(const std::vector<fs::path>& inputs, const studies::RunOptions&
   require_available();
   const std::vector<StoreReader> stores = stores_of(inputs);
   const Json content = document(stores);
-  run.check_interrupt();
-  const std::string data = base64(deflated(content.dump(-1, ' ', false, Json::error_handler_t::replace)));
+  const std::string data = packed(content), motions = packed(motions_of(stores, run));
   const std::string title = escaped(content["title"].get<std::string>()), licence = escaped(kD3Licence);
   return filled(kTemplate, {{"@TITLE@", title},
                             {"@STYLE@", kStyle},
                             {"@LICENCE@", licence},
                             {"@DATA@", data},
+                            {"@MOTIONS@", motions},
                             {"@D3@", kD3},
                             {"@SCRIPT@", kScript}});
 }

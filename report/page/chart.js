@@ -68,7 +68,7 @@ function span(lists, logarithmic) {
 // own: title, x_label, y_label, log_x, log_y, series [{title, look, colour, x, y}], shaded, field; height; pick(x, y) on a
 // click; domain {x, y} instead of the data's span.
 function chart(parent, own) {
-  const margin = {left: 62, right: own.field ? 92 : 12, top: own.series.some(series => series.title) ? 26 : 8, bottom: 42};
+  const margin = {left: 62, right: own.field ? 92 : 12, top: 8, bottom: 42};
   const box = d3.select(parent).append("div").attr("class", "chart");
   const heading = box.append("h4").text(own.title || "");
   const tools = box.append("div").attr("class", "tools");
@@ -78,10 +78,11 @@ function chart(parent, own) {
   const axisX = svg.append("g"), axisY = svg.append("g");
   const labelX = svg.append("text").attr("text-anchor", "middle"), labelY = svg.append("text").attr("text-anchor", "middle");
   const legend = svg.append("g");
+  const dots = svg.append("g");
   const ring = svg.append("circle").attr("r", 5).attr("fill", "none").attr("stroke-width", 2).style("display", "none");
   const pane = svg.append("rect").attr("fill", "transparent");
   const height = own.height || 300;
-  let width = 0, scaleX, scaleY, shownX, shownY, transform = d3.zoomIdentity, marked = [];
+  let width = 0, placed = [], scaleX, scaleY, shownX, shownY, transform = d3.zoomIdentity, marked = [];
 
   svg.attr("tabindex", 0).attr("role", "img");
 
@@ -97,14 +98,15 @@ function chart(parent, own) {
     width = Math.max(200, stage.node().parentNode.clientWidth);
     stage.style("height", height + "px");
     svg.attr("width", width).attr("height", height);
-    const inner = [width - margin.left - margin.right, height - margin.top - margin.bottom];
-    pane.attr("x", margin.left).attr("y", margin.top).attr("width", inner[0]).attr("height", inner[1]);
-    const area = [[margin.left, margin.top], [width - margin.right, height - margin.bottom]];
-    zoom.extent(area).translateExtent(area);
     fit();
   }
 
   function fit() {
+    margin.top = own.series.some(series => series.title) ? 26 : 8;  // the legend stands above
+    const inner = [width - margin.left - margin.right, height - margin.top - margin.bottom];
+    pane.attr("x", margin.left).attr("y", margin.top).attr("width", inner[0]).attr("height", inner[1]);
+    const area = [[margin.left, margin.top], [width - margin.right, height - margin.bottom]];
+    zoom.extent(area).translateExtent(area);
     const half = list => list.length > 1 ? Math.abs(list[1] - list[0]) / 2 : 0.5;
     const edges = list => [d3.min(list) - half(list), d3.max(list) + half(list)];
     const domain = own.domain || {};
@@ -139,6 +141,25 @@ function chart(parent, own) {
       "Plus and minus zoom, arrows move, 0 resets.");
     paint();
     drawLegend();
+    place();
+  }
+
+  // Points that move over the figure without painting it anew.
+  function place() {
+    const [left, right] = scaleX.range(), [bottom, top] = scaleY.range();
+    const shown = placed.map(point => ({...point, px: shownX(point.x), py: shownY(point.y)}))
+      .filter(point => point.px >= left && point.px <= right && point.py >= top && point.py <= bottom);
+    const circles = dots.selectAll("circle").data(shown);
+    circles.exit().remove();
+    circles.enter().append("circle").attr("r", 5).attr("stroke-width", 1.5).merge(circles)
+      .attr("cx", point => point.px).attr("cy", point => point.py).attr("fill", point => css(point.colour)).attr("stroke", css("--paper"));
+  }
+
+  // Of many decades the whole ones.
+  function gridTicks(scale, count) {
+    const [low, high] = scale.domain();
+    const decades = scale.base && high / low > 30;
+    return scale.ticks(count).filter(tick => !decades || Math.abs(Math.log10(tick) % 1) < 1e-9);
   }
 
   function paint() {
@@ -153,8 +174,8 @@ function chart(parent, own) {
     pen.lineWidth = 1;
     pen.beginPath();
     if (!own.field) {
-      for (const tick of shownX.ticks(8)) { const x = Math.round(shownX(tick)) + 0.5; pen.moveTo(x, top); pen.lineTo(x, bottom); }
-      for (const tick of shownY.ticks(6)) { const y = Math.round(shownY(tick)) + 0.5; pen.moveTo(left, y); pen.lineTo(right, y); }
+      for (const tick of gridTicks(shownX, 8)) { const x = Math.round(shownX(tick)) + 0.5; pen.moveTo(x, top); pen.lineTo(x, bottom); }
+      for (const tick of gridTicks(shownY, 6)) { const y = Math.round(shownY(tick)) + 0.5; pen.moveTo(left, y); pen.lineTo(right, y); }
     }
     pen.stroke();
     pen.save();
@@ -341,7 +362,9 @@ function chart(parent, own) {
     node: box.node(),
     // Other content; the zoom stays unless the axes change.
     set(change) { Object.assign(own, change); if (change.title !== undefined) heading.text(own.title); if (width) fit(); },
+    points(points) { placed = points; if (width) place(); },
     mark(marks) { marked = marks; if (width) paint(); },
+    pixel(i) { return [shownX(own.series[0].x[i]), shownY(own.series[0].y[i])]; },
     get view() { return {x: shownX.domain(), y: shownY.domain(), k: transform.k}; },
   };
   charts.add(made);

@@ -1,7 +1,8 @@
 // The page from its document: answers first, then what is linked, then every figure and table of every file.
 
 async function documentOf(node) {
-  const bytes = Uint8Array.from(atob(node.textContent.trim()), letter => letter.charCodeAt(0));
+  const letters = atob(node.textContent), bytes = new Uint8Array(letters.length);
+  for (let i = 0; i < letters.length; ++i) bytes[i] = letters.charCodeAt(i);
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
   return JSON.parse(await new Response(stream).text());
 }
@@ -80,13 +81,22 @@ function decodedPanel(panel) {
   return {...panel, field, series: panel.series.map(series => ({...series, x: list(series.x), y: list(series.y)}))};
 }
 
+function takeFigure(file, name) {
+  const found = file.figures.find(own => own.name === name);
+  file.figures = file.figures.filter(own => own !== found);
+  return found;
+}
+
+const overModes = [];  // charts over the number of modes, marked by the slider
+
 function figure(parent, own) {
   parent.append("h3").text(own.what);
   const panels = own.drawing.panels, columns = Math.min(own.drawing.columns, panels.length, 4);
   const grid = parent.append("div").attr("class", "panels").style("--columns", columns);
   const height = columns === 1 ? (panels.length > 2 ? 220 : 340) : columns === 2 ? 300 : 240;
   for (const panel of panels) {
-    chart(grid.node(), {...decodedPanel(panel), what: own.what, height});
+    const made = chart(grid.node(), {...decodedPanel(panel), what: own.what, height});
+    if (/number of modes/.test(panel.x_label)) overModes.push(made);
   }
 }
 
@@ -113,8 +123,9 @@ function fileSection(main, file, index) {
   if (file.provenance) provenance(made, file.provenance);
 }
 
-function contents(main, data) {
+function contents(main, data, motions) {
   const nav = main.append("nav").attr("aria-label", "Contents");
+  if (motions) nav.append("a").attr("href", "#motions").text("motions");
   data.files.forEach((file, i) => nav.append("a").attr("href", `#file-${i}`).text(file.name));
 }
 
@@ -123,8 +134,14 @@ async function start() {
   const main = d3.select("#report");
   main.select("#waiting").remove();
   firstScreen(main, data);
-  contents(main, data);
+  await new Promise(done => requestAnimationFrame(() => setTimeout(done)));  // shown before the rest is read
+  const motions = await documentOf(document.getElementById("motion-data"));
+  contents(main, data, motions);
+  // What stands among the motions is not shown twice.
+  const place = motions && main.append("div");
+  const diagram = motions && takeFigure(data.files[0], "bifurcation");
   data.files.forEach((file, i) => fileSection(main, file, i));
+  if (motions) motionSection(place, motions, diagram);
   const licence = main.append("details");
   licence.append("summary").attr("class", "soft").text("Drawn with D3; its licence");
   licence.append("pre").text(document.getElementById("licence").textContent);

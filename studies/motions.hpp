@@ -1,0 +1,57 @@
+#pragma once
+
+#include <slipmode/diagnostics/attractors/sweep.hpp>
+#include <slipmode/diagnostics/series/spectrum.hpp>
+#include <slipmode/dynamics/simulate.hpp>
+#include <slipmode/pod/basis.hpp>
+#include <slipmode/scene/scene.hpp>
+#include <slipmode/studies/run_options.hpp>
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace slipmode::studies {
+
+/// Which motions are computed, and how much of each is kept.
+struct MotionsRequest {
+  std::vector<double> speeds = {};       ///< belt speeds, in the order they are gone through
+  std::vector<bool> recorded = {};       ///< at which of them the motion itself is kept
+  std::vector<Eigen::Index> modes = {};  ///< of the reduced models
+  /// What is kept of the structure's shape, from the full degrees of freedom [readings x n].
+  Eigen::MatrixXd readings = {};
+  Eigen::Index samples = 1500;         ///< kept of contacts
+  Eigen::Index samples_per_shape = 4;  ///< the shape is kept at every so many
+  double periods = 6.0;                ///< of the slowest natural mode, kept
+  double spectrum_periods = 40.0;      ///< of which the spectrum is taken
+};
+
+/// A settled motion from one of its slips on, that from the largest displacement within two slowest periods: so
+/// periodic motions of two models are in phase.
+struct Motion {
+  double interval = 0.0;                     ///< between samples [s]
+  Eigen::MatrixXd q, v, lambda;              ///< of the contacts [contacts x samples]
+  Eigen::MatrixXd shape;                     ///< readings of the full structure [readings x shapes]
+  std::vector<dynamics::Event> events;       ///< of these samples, times from their first
+  std::vector<dynamics::ContactMode> modes;  ///< of each contact at the first sample
+  diagnostics::AmplitudeSpectrum spectrum;   ///< of the first contact's velocity
+};
+
+/// One model over the speeds.
+struct MotionsOf {
+  Eigen::Index modes = 0;                       ///< 0: the full model
+  std::vector<diagnostics::SweepPoint> points;  ///< one per speed
+  std::vector<std::optional<Motion>> motions;   ///< one per recorded speed; empty where it failed
+};
+
+/// What the full model and reduced ones settle to over the belt's speed, each following its own motion from speed to
+/// speed from the scene's start, settled as [validation] says for its sweep.
+/// @param basis  with as many vectors as the largest model has modes
+/// @return       the full model, then the reduced ones in their order
+/// @throws InvalidInput  for no speeds, a scene without a belt, more modes than vectors
+/// @throws Interrupted   when the stop flag was set
+[[nodiscard]] std::vector<MotionsOf> motions(const scene::Scene& scene, const pod::NamedBasis& basis,
+                                             const MotionsRequest& request, const RunOptions& run);
+
+}  // namespace slipmode::studies
