@@ -14,7 +14,8 @@ struct Series {
   std::string title = {};  ///< for the legend; empty: none
   Eigen::VectorXd x, y;    ///< same length; an entry that is not finite breaks a curve
   enum class Look { kLine, kDashed, kDots, kMarkedLine, kPoints } look = Look::kLine;
-  std::string_view colour;  ///< lives as long as the program
+  std::string_view colour;     ///< lives as long as the program
+  Eigen::VectorXd error = {};  ///< half the height of a bar about each point; empty: none
 };
 
 /// A number over a plane of two parameters, as colours.

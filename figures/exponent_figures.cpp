@@ -43,7 +43,7 @@ void plot_exponents(Figure& figure, const std::vector<ExponentSeries>& models, E
     const Eigen::VectorXd error =
         models[m].error.head(count).unaryExpr([](double e) { return std::isfinite(e) ? e : 0.0; });
     out_axes.series.push_back(
-        {models[m].title, number, models[m].value.head(count), Series::Look::kPoints, models[m].colour});
+        {models[m].title, number, models[m].value.head(count), Series::Look::kPoints, models[m].colour, error});
     plots += fmt::format(
         ", {} using 1:2:3 {} with yerrorbars pointtype 7 pointsize 0.7 linewidth 1.4 linecolor rgb '{}'",
         figure.data({number, models[m].value.head(count), error}),

@@ -31,7 +31,7 @@ std::string structure_text(const scene::Scene& scene) {
     for (const fem::BeamSpan& span : beam->spans) length += span.length;
     return fmt::format("A beam of {:g} m with {} degrees of freedom", length, scene.size());
   }
-  return fmt::format("A structure with {} degrees of freedom", scene.size());
+  return fmt::format("A structure with {} degree{} of freedom", scene.size(), scene.size() == 1 ? "" : "s");
 }
 
 std::string drive_text(const scene::Scene& scene) {
@@ -194,6 +194,45 @@ Json belt_answers(const StoreReader& validation) {
   }
   if (validation.has("validation/cost")) out.push_back(saving(validation));
   out.push_back(accuracy(levels, validation));
+  return out;
+}
+
+Json shaken_answers(const StoreReader& validation) {
+  const Table models = results::load_table(validation, "shaken_validation/agreement");
+  const double noise = validation.number("shaken_validation/noise");
+  const auto& distance = models.numbers("mean_distance");
+  const auto& modes = models.numbers("modes");
+  std::optional<std::size_t> smallest, nearest;
+  for (std::size_t i = 0; i < models.rows(); ++i) {
+    if (!std::isfinite(distance[i])) continue;
+    if (!nearest || distance[i] < distance[*nearest]) nearest = i;
+    if (distance[i] <= kScatter * noise && (!smallest || modes[i] < modes[*smallest])) smallest = i;
+  }
+  constexpr const char* kTrust = "Are reduced models to be trusted?";
+  if (!nearest) return Json::array({answer(kTrust, "None gave a settled motion.", "poor")});
+  const std::size_t told = smallest.value_or(*nearest);
+  const auto model_name = [&](std::size_t i) {
+    return fmt::format("{} modes of {}", modes[i], models.texts("basis")[i]);
+  };
+  Json out = Json::array();
+  out.push_back(answer(
+      kTrust,
+      fmt::format(
+          "{} {}: section points lie {:.3g} from the full model's, in units of its rms, where two full sweeps lie "
+          "{:.3g} apart; the same kind of motion at {:.3g} % of the values. Nearest of all that were tried: {}, "
+          "{:.3g}.",
+          smallest ? "Yes, from" : "Not within the scatter of two full sweeps. Nearest:", model_name(told),
+          distance[told], noise, 100.0 * models.numbers("same_label")[told], model_name(*nearest), distance[*nearest]),
+      smallest ? "good" : "fair"));
+  if (!validation.has("shaken_validation/full_cpu")) return out;
+  const double full = validation.number("shaken_validation/full_cpu"), reduced = models.numbers("cpu")[told];
+  out.push_back(
+      answer("What does it save?",
+             fmt::format("The timed run takes {:.3g} s in full and {:.3g} s with {}, of processor time: {:.2g} "
+                         "times {}.",
+                         full, reduced, model_name(told), std::max(full / reduced, reduced / full),
+                         full > reduced ? "faster" : "slower"),
+             full > 1.05 * reduced ? "good" : "fair"));
   return out;
 }
 

@@ -1,4 +1,5 @@
 #include "report/internal/file_content.hpp"
+#include "report/internal/animation.hpp"
 
 #include <slipmode/core/to_vector.hpp>
 #include <slipmode/figures/file_figures.hpp>
@@ -30,11 +31,13 @@ Json series_json(const figures::Series& own, const figures::Drawing::Axes& axes)
   const bool dots = own.look == figures::Series::Look::kDots;
   const figures::Series drawn = dots ? sorted(own) : own;
   const Grain grain = dots ? Grain::kCoarse : Grain::kFine;
-  return {{"title", own.title},
-          {"look", kLooks[static_cast<std::size_t>(own.look)]},
-          {"colour", own.colour},
-          {"x", list_json(drawn.x, grain, axes.log_x)},
-          {"y", list_json(drawn.y, grain, axes.log_y)}};
+  Json out = {{"title", own.title},
+              {"look", kLooks[static_cast<std::size_t>(own.look)]},
+              {"colour", own.colour},
+              {"x", list_json(drawn.x, grain, axes.log_x)},
+              {"y", list_json(drawn.y, grain, axes.log_y)}};
+  if (own.error.size() > 0) out["error"] = list_json(own.error);
+  return out;
 }
 
 Json field_json(const figures::ColourField& field) {
@@ -134,6 +137,7 @@ Json file_json(const results::StoreReader& store, bool with_figures) {
               {"meaning", words.meaning},
               {"made_by", words.made_by}};
   if (store.has("provenance")) out["provenance"] = provenance_json(results::load_provenance(store));
+  out["animation"] = animation_json(store);
   out["tables"] = tables_json(store);
   out["figures"] = with_figures ? figures_json(store) : Json::array();
   return out;

@@ -26,7 +26,6 @@ using studies::MotionsOf;
 using studies::MotionsRequest;
 
 constexpr std::size_t kMostSpeeds = 64, kMostRecorded = 22, kMostModels = 8;
-constexpr Eigen::Index kMostDofs = 2000;
 
 /// Some of the values, ends included, that have their places in the order of all.
 std::set<std::size_t> spread(std::size_t count, std::size_t most) {
@@ -62,43 +61,13 @@ MotionsRequest request_of(const scene::Scene& scene, const StoreReader& validati
   return request;
 }
 
-/// Half as many shapes as bytes allow would still move smoothly: a two-hundredth of the span is less than a pixel.
-Json shape_json(const Eigen::MatrixXd& shape) {
-  const double low = shape.minCoeff(), high = shape.maxCoeff(), step = high > low ? (high - low) / 250.0 : 1.0;
-  Json rows = Json::array();
-  for (const auto& row : shape.rowwise()) {
-    Json differences = Json::array();
-    std::int64_t last = 0;
-    for (const double value : row) {
-      const std::int64_t now = std::llround((value - low) / step);
-      differences.push_back(now - last);
-      last = now;
-    }
-    rows.push_back({{"low", low}, {"step", step}, {"d", std::move(differences)}});
-  }
-  return rows;
-}
-
-Json contact_modes_json(const Motion& motion) {
-  Json out = Json::array();
-  for (std::size_t c = 0; c < motion.modes.size(); ++c) {
-    Json times = {{0.0, static_cast<int>(motion.modes[c])}};
-    for (const dynamics::Event& event : motion.events) {
-      if (event.contact == static_cast<int>(c))
-        times.push_back({number_json(event.time), static_cast<int>(event.after)});
-    }
-    out.push_back(std::move(times));
-  }
-  return out;
-}
-
 Json motion_json(const Motion& motion) {
   return {{"interval", motion.interval},
           {"q", list_json(motion.q.row(0), Grain::kCoarse)},
           {"v", list_json(motion.v.row(0), Grain::kCoarse)},
           {"force", list_json(motion.lambda.row(0), Grain::kCoarse)},
-          {"modes", contact_modes_json(motion)},
-          {"shape", shape_json(motion.shape)},
+          {"modes", contact_modes_json(motion.events, motion.modes, 0.0)},
+          {"shape", shapes_json(motion.shape)},
           {"hz", list_json(motion.spectrum.frequency_hz, Grain::kCoarse)},
           {"amplitude", list_json(motion.spectrum.amplitude, Grain::kCoarse, true)}};
 }
@@ -134,7 +103,7 @@ Json model_json(const MotionsOf& model, const MotionsRequest& request, const std
 
 Json linked_motions(const StoreReader& validation, const StoreReader& bases, const studies::RunOptions& run) {
   const scene::Scene scene = scene::with_own_times(results::load_scene_of(validation));
-  if (!validation.has("sweep/full/values") || scene.force || is_shaken(scene) || scene.size() > kMostDofs)
+  if (!validation.has("sweep/full/values") || scene.force || is_shaken(scene) || scene.size() > kMostDrawnDofs)
     return nullptr;
   const DrawnStructure structure = drawn_structure(scene);
   const pod::NamedBasis basis = studies::load_bases(scene, scene::build_system(scene), bases).front();

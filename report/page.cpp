@@ -73,23 +73,27 @@ std::string quoted(const std::string& word) {
   return out + "'";
 }
 
-/// The command that makes a folder again: of `slipmode run` every word is known, of other verbs what they computed.
+/// Of `slipmode run` every word is known; other verbs keep what they computed, not all they started from.
+bool is_of_run(const std::vector<StoreReader>& stores) {
+  return stores.size() > 1 && first_of(stores, FileKind::kTrajectory) != nullptr;
+}
+
 std::string command_of(const std::vector<StoreReader>& stores) {
-  for (const StoreReader& store : stores) {
-    if (!store.has("provenance")) continue;
-    const results::Provenance own = results::load_provenance(store);
-    const bool run = first_of(stores, FileKind::kTrajectory) != nullptr && stores.size() > 1;
-    std::string words = run ? "slipmode run" : own.command;
-    words += " " + quoted(own.scene_path);
-    for (const std::string& set : own.overrides) words += " --set " + quoted(set);
-    return words + " -o " +
-           quoted(run ? store.path().parent_path().filename().string() : store.path().filename().string());
-  }
-  return {};
+  const auto own = std::ranges::find_if(stores, [](const StoreReader& store) { return store.has("provenance"); });
+  if (own == stores.end()) return {};
+  const bool run = is_of_run(stores);
+  const results::Provenance provenance = results::load_provenance(*own);
+  std::string words = (run ? "slipmode run" : provenance.command) + " " + quoted(provenance.scene_path);
+  for (const std::string& set : provenance.overrides) words += " --set " + quoted(set);
+  const fs::path made = run ? fs::absolute(own->path()).parent_path() : own->path();
+  return words + " -o " + quoted(made.filename().string());
 }
 
 Json document(const std::vector<StoreReader>& stores) {
-  Json out = {{"version", results::version()}, {"commit", results::git_commit()}, {"command", command_of(stores)}};
+  Json out = {{"version", results::version()},
+              {"commit", results::git_commit()},
+              {"command", command_of(stores)},
+              {"repeats", is_of_run(stores)}};
   const StoreReader* own = nullptr;
   for (const StoreReader& store : stores) {
     if (own == nullptr && store.has("provenance")) own = &store;
@@ -105,6 +109,9 @@ Json document(const std::vector<StoreReader>& stores) {
   const StoreReader* validation = first_of(stores, FileKind::kValidation);
   if (validation != nullptr && validation->has("validation/shares")) {
     for (Json& one : belt_answers(*validation)) out["answers"].push_back(std::move(one));
+  }
+  if (validation != nullptr && validation->has("shaken_validation/agreement")) {
+    for (Json& one : shaken_answers(*validation)) out["answers"].push_back(std::move(one));
   }
   const StoreReader* pod = first_of(stores, FileKind::kPod);
   out["files"] = Json::array();

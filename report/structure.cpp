@@ -3,6 +3,8 @@
 #include <slipmode/fem/beam.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <set>
 
 namespace slipmode::report {
@@ -33,7 +35,9 @@ DrawnStructure drawn_masses(const scene::Scene& scene) {
   Eigen::Index row = 0;
   for (const int mass : shown) out.readings(row++, mass - 1) = 1.0;
   const fem::ChainOptions* chain = scene.chain();
-  out.about = {{"kind", chain != nullptr ? "chain" : "masses"},
+  out.about = {{"kind", chain != nullptr                                               ? "chain"
+                        : std::holds_alternative<scene::MatricesSpec>(scene.structure) ? "matrices"
+                                                                                       : "masses"},
                {"x", shown},
                {"size", n},
                {"fixed", {chain != nullptr && chain->left_fixed, chain != nullptr && chain->right_fixed}},
@@ -59,6 +63,42 @@ DrawnStructure drawn_beam(const scene::Scene& scene) {
 
 DrawnStructure drawn_structure(const scene::Scene& scene) {
   return scene.beam() != nullptr ? drawn_beam(scene) : drawn_masses(scene);
+}
+
+Json shapes_json(const Eigen::MatrixXd& shapes) {
+  const double low = shapes.minCoeff(), high = shapes.maxCoeff(), step = high > low ? (high - low) / 250.0 : 1.0;
+  Json rows = Json::array();
+  for (const auto& row : shapes.rowwise()) {
+    Json differences = Json::array();
+    std::int64_t last = 0;
+    for (const double value : row) {
+      const std::int64_t now = std::llround((value - low) / step);
+      differences.push_back(now - last);
+      last = now;
+    }
+    rows.push_back({{"low", low}, {"step", step}, {"d", std::move(differences)}});
+  }
+  return rows;
+}
+
+Json contact_modes_json(const std::vector<dynamics::Event>& events, const std::vector<dynamics::ContactMode>& modes,
+                        double start) {
+  Json out = Json::array();
+  for (std::size_t c = 0; c < modes.size(); ++c) {
+    auto first = modes[c];
+    Json later = Json::array();
+    bool known = false;
+    for (const dynamics::Event& event : events) {
+      if (event.contact != static_cast<int>(c)) continue;
+      const bool before = event.time <= start;
+      if (before || !known) first = before ? event.after : event.before;
+      known = true;
+      if (!before) later.push_back({number_json(event.time - start), static_cast<int>(event.after)});
+    }
+    later.insert(later.begin(), Json{0.0, static_cast<int>(first)});
+    out.push_back(std::move(later));
+  }
+  return out;
 }
 
 }  // namespace slipmode::report

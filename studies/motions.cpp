@@ -50,21 +50,6 @@ double time_to_slip(const dynamics::HybridSystem& system, const dynamics::State&
   return begin == nullptr ? 0.0 : begin->time - start.time;
 }
 
-/// Events of what is kept and the contacts' modes where it begins: those after the last event before it.
-void keep_events(const dynamics::Trajectory& run, double from, double to, Motion& out_motion) {
-  std::vector<bool> told(out_motion.modes.size(), false);
-  for (const Event& event : run.events) {
-    if (event.contact < 0) continue;
-    const auto contact = static_cast<std::size_t>(event.contact);
-    if (event.time <= from) out_motion.modes[contact] = event.after;
-    if (event.time > from && !told[contact]) out_motion.modes[contact] = event.before;
-    told[contact] = true;
-    if (event.time <= from || event.time > to) continue;
-    out_motion.events.push_back(event);
-    out_motion.events.back().time -= from;
-  }
-}
-
 Motion recorded(const dynamics::HybridSystem& system, const Model& model, const dynamics::State& start,
                 const MotionsRequest& request, const MotionTimes& times) {
   const dynamics::State from = dynamics::handed_on(system, start);
@@ -88,7 +73,10 @@ Motion recorded(const dynamics::HybridSystem& system, const Model& model, const 
   motion.shape = model.basis ? Eigen::MatrixXd((request.readings * model.basis->vectors * q).colwise() +
                                                request.readings * model.basis->mean)
                              : Eigen::MatrixXd(request.readings * q);
-  keep_events(run, run.times[0], run.times[count - 1], motion);
+  for (Event event : run.events) {
+    event.time -= run.times[0];
+    motion.events.push_back(event);
+  }
   const double sample = std::min(2.0 * times.interval, 0.4 / times.highest_hz);
   const dynamics::Trajectory longer = dynamics::simulate(system, from,
                                                          {.duration = times.spectrum,

@@ -34,7 +34,7 @@ struct Motion {
   Eigen::MatrixXd q, v, lambda;              ///< of the contacts [contacts x samples]
   Eigen::MatrixXd shape;                     ///< readings of the full structure [readings x shapes]
   std::vector<dynamics::Event> events;       ///< of these samples, times from their first
-  std::vector<dynamics::ContactMode> modes;  ///< of each contact at the first sample
+  std::vector<dynamics::ContactMode> modes;  ///< of each contact at the end
   diagnostics::AmplitudeSpectrum spectrum;   ///< of the first contact's velocity
 };
 

@@ -46,7 +46,7 @@ Looks looks_of(const ResponseBranch& branch) {
 }
 
 /// Outlines of a branch's band, one for each stretch along which it is known.
-std::string band_data(Figure& figure, const ResponseBranch& branch) {
+std::string band_data(Figure& figure, const ResponseBranch& branch, std::vector<Series>& out_drawn) {
   Pieces outlines, back;
   const auto close = [&] {
     for (std::size_t k = back.x.size(); k-- > 0;) outlines.add(back.x[k], back.y[k]);
@@ -61,6 +61,8 @@ std::string band_data(Figure& figure, const ResponseBranch& branch) {
     back.add(branch.parameter[k], branch.value[k] - half);
   }
   close();
+  if (!outlines.x.empty())
+    out_drawn.push_back({"true error", to_vector(outlines.x), to_vector(outlines.y), Series::Look::kLine, kPomColour});
   return outlines.x.empty() ? "" : outlines.data(figure);
 }
 
@@ -118,7 +120,7 @@ Figure response_diagram(const std::vector<ResponseBranch>& branches, const std::
       low_y = std::min(low_y, branch.value[k] - branch.band[k]);
       high_y = std::max(high_y, branch.value[k] + branch.band[k]);
     }
-    if (const std::string band = band_data(figure, branch); !band.empty()) {
+    if (const std::string band = band_data(figure, branch, drawn); !band.empty()) {
       plots.push_back(fmt::format(
           "{} using 1:2 with filledcurves closed fillstyle transparent solid 0.3 noborder fillcolor rgb '{}' {}", band,
           kPomColour, has_band ? "notitle" : "title 'true error'"));

@@ -16,4 +16,7 @@ namespace slipmode::report {
 /// @throws InvalidInput  when the file lacks a table
 [[nodiscard]] Json belt_answers(const results::StoreReader& validation);
 
+/// The same of a validation under a shaker.
+[[nodiscard]] Json shaken_answers(const results::StoreReader& validation);
+
 }  // namespace slipmode::report

@@ -68,7 +68,7 @@ function span(lists, logarithmic) {
 // own: title, x_label, y_label, log_x, log_y, series [{title, look, colour, x, y}], shaded, field; height; pick(x, y) on a
 // click; domain {x, y} instead of the data's span.
 function chart(parent, own) {
-  const margin = {left: 62, right: own.field ? 92 : 12, top: 8, bottom: 42};
+  const margin = {left: 62, right: !own.field ? 12 : own.field.words.length ? 170 : 92, top: 8, bottom: 42};
   const box = d3.select(parent).append("div").attr("class", "chart");
   const heading = box.append("h4").text(own.title || "");
   const tools = box.append("div").attr("class", "tools");
@@ -84,6 +84,7 @@ function chart(parent, own) {
   const height = own.height || 300;
   let width = 0, placed = [], scaleX, scaleY, shownX, shownY, transform = d3.zoomIdentity, marked = [];
 
+  stage.style("height", height + "px");  // before it is drawn too: the page must not grow under its reader
   svg.attr("tabindex", 0).attr("role", "img");
 
   const zoom = d3.zoom().scaleExtent([1, 500])
@@ -96,7 +97,6 @@ function chart(parent, own) {
 
   function resize() {
     width = Math.max(200, stage.node().parentNode.clientWidth);
-    stage.style("height", height + "px");
     svg.attr("width", width).attr("height", height);
     fit();
   }
@@ -117,12 +117,20 @@ function chart(parent, own) {
     draw();
   }
 
-  function axis(make, scale, logarithmic, length, pixels) {
-    const count = Math.max(2, Math.floor(length / pixels));
-    const drawn = make(scale).ticks(count).tickSizeOuter(0);
-    if (!logarithmic) return drawn;
-    const decades = Math.log10(scale.domain()[1] / scale.domain()[0]);
-    return decades < 1 ? drawn.ticks(count, "~g") : drawn.ticks(Math.min(count, Math.ceil(decades)), "~g");
+  // pixels(longest): what a tick takes whose text has so many letters
+  function axis(make, scale, logarithmic, length, pixels, label) {
+    const drawn = make(scale).tickSizeOuter(0);
+    if (logarithmic) {
+      const decades = Math.log10(scale.domain()[1] / scale.domain()[0]), count = Math.max(2, Math.floor(length / pixels(5)));
+      return drawn.ticks(decades < 1 ? count : Math.min(count, Math.ceil(decades)), "~g");
+    }
+    const largest = d3.max(scale.domain(), Math.abs);
+    const format = largest < 0.01 || largest >= 1e5 ? value => value === 0 ? "0" : d3.format(".3~e")(value) : value => String(+value.toPrecision(7));
+    let count = Math.max(2, Math.floor(length / pixels(4)));
+    const longest = d3.max(scale.ticks(count), tick => format(tick).length) || 4;
+    count = Math.max(2, Math.floor(length / pixels(longest)));
+    const whole = /^(number|mode)\b/.test(label || "");
+    return drawn.tickValues(scale.ticks(count).filter(tick => !whole || Number.isInteger(tick))).tickFormat(format);
   }
 
   function draw() {
@@ -130,9 +138,9 @@ function chart(parent, own) {
     shownX = transform.rescaleX(scaleX);
     shownY = transform.rescaleY(scaleY);
     axisX.attr("transform", `translate(0,${height - margin.bottom})`)
-      .call(axis(d3.axisBottom, shownX, own.log_x, width - margin.left - margin.right, own.log_x ? 75 : 46));
+      .call(axis(d3.axisBottom, shownX, own.log_x, width - margin.left - margin.right, letters => 18 + 7 * letters, own.x_label));
     axisY.attr("transform", `translate(${margin.left},0)`)
-      .call(axis(d3.axisLeft, shownY, own.log_y, height - margin.top - margin.bottom, 42));
+      .call(axis(d3.axisLeft, shownY, own.log_y, height - margin.top - margin.bottom, () => 42));
     labelX.attr("transform", `translate(${(margin.left + width - margin.right) / 2},${height - 7})`);
     labelY.attr("transform", `translate(14,${(margin.top + height - margin.bottom) / 2}) rotate(-90)`);
     writeLabel(labelX, own.x_label || "");
@@ -195,7 +203,7 @@ function chart(parent, own) {
     const {x, y, look} = series, colour = ink(series.colour);
     pen.strokeStyle = pen.fillStyle = colour;
     if (look === "dots") {
-      const side = series.side || (x.length > 20000 ? 1.1 : 1.8);
+      const side = series.side || (x.length > 20000 ? 1.1 : x.length > 500 ? 1.8 : 3.5);
       for (let i = 0; i < x.length; ++i) pen.fillRect(shownX(x[i]) - side / 2, shownY(y[i]) - side / 2, side, side);
       return;
     }
@@ -212,6 +220,16 @@ function chart(parent, own) {
       }
       pen.stroke();
       pen.setLineDash([]);
+    }
+    if (series.error) {
+      pen.lineWidth = 1.3;
+      pen.beginPath();
+      for (let i = 0; i < x.length; ++i) {
+        if (!Number.isFinite(series.error[i])) continue;
+        pen.moveTo(shownX(x[i]), shownY(y[i] - series.error[i]));
+        pen.lineTo(shownX(x[i]), shownY(y[i] + series.error[i]));
+      }
+      pen.stroke();
     }
     if (look === "line" || look === "dashed") return;
     for (let i = 0; i < x.length; ++i) {
@@ -254,7 +272,7 @@ function chart(parent, own) {
     for (let k = 0; k < count; ++k) {
       const y = words ? bottom - (k + 0.5) * (bottom - top) / steps : bottom - k * (bottom - top) / (count - 1);
       const text = words ? words[k] : number(field.low + k * (field.high - field.low) / (count - 1));
-      pen.fillText(text, x + 16, y, 60);
+      pen.fillText(text, x + 16, y);
     }
   }
 
@@ -295,7 +313,7 @@ function chart(parent, own) {
     let best = null, least = 24 * 24;
     for (const series of own.series) for (let i = 0; i < series.x.length; ++i) {
       const dx = shownX(series.x[i]) - px, dy = shownY(series.y[i]) - py, distance = dx * dx + dy * dy;
-      if (distance < least) { least = distance; best = {series, x: series.x[i], y: series.y[i]}; }
+      if (distance < least) { least = distance; best = {series, x: series.x[i], y: series.y[i], error: series.error && series.error[i]}; }
     }
     return best;
   }
@@ -316,7 +334,7 @@ function chart(parent, own) {
       lines.push(!Number.isFinite(found.value) ? own.field.missing || "no value" : word || quantity(own.field.label, found.value));
     }
     if (!found) return null;
-    lines.push(quantity(own.x_label || "x", found.x), quantity(own.y_label || "y", found.y));
+    lines.push(quantity(own.x_label || "x", found.x), quantity(own.y_label || "y", found.y) + (found.error ? ` ± ${number(found.error)}` : ""));
     return {found, lines};
   }
 

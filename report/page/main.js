@@ -66,7 +66,7 @@ function firstScreen(main, data) {
   cards.append("p").text(own => own.answer);
 
   if (!data.command) return;
-  main.append("h3").text("The command that repeats it");
+  main.append("h3").text(data.repeats ? "The command that repeats it" : "The command that made it, as far as the file keeps it");
   const line = main.append("div").attr("class", "command");
   line.append("code").text(data.command);
   const copy = line.append("button").attr("type", "button").text("Copy").on("click", async () => {
@@ -78,7 +78,7 @@ function firstScreen(main, data) {
 
 function decodedPanel(panel) {
   const field = panel.field && {...panel.field, x: list(panel.field.x), y: list(panel.field.y), value: list(panel.field.value)};
-  return {...panel, field, series: panel.series.map(series => ({...series, x: list(series.x), y: list(series.y)}))};
+  return {...panel, field, series: panel.series.map(series => ({...series, x: list(series.x), y: list(series.y), error: series.error && list(series.error)}))};
 }
 
 function takeFigure(file, name) {
@@ -118,8 +118,10 @@ function provenance(parent, own) {
 function fileSection(main, file, index) {
   const made = section(main, `file-${index}`, `${file.name}: ${file.meaning}`);
   file.figures.forEach(own => figure(made, own));
+  if (file.animation) (file.animation.shapes ? movingModes : movingTrajectory)(made, file.animation);
   if (file.tables.length) made.append("h3").text("Tables");
-  file.tables.forEach(own => table(made.node(), own));
+  const short = file.tables.filter(own => own.rows > 1 && own.rows <= 30).slice(0, 3);
+  file.tables.forEach(own => table(made.node(), own, short.includes(own)));
   if (file.provenance) provenance(made, file.provenance);
 }
 

@@ -23,13 +23,19 @@ function shapeAt(frames, place) {
   });
 }
 
+// Masses move along the line they stand on, beams and degrees of freedom across it.
+function alongLine(structure) {
+  return structure.kind === "chain" || structure.kind === "masses";
+}
+
 // The mean of each point, and pixels for one unit of displacement about it, so that nothing leaves its place.
 function layoutOf(structure, frames, width, height) {
   const mean = frames.map(list => d3.mean(list));
   const largest = d3.max(frames, (list, i) => d3.max(list, value => Math.abs(value - mean[i]))) || 1;
-  if (structure.kind !== "chain") return {mean: structure.kind === "beam" ? frames.map(() => 0) : mean,
+  if (!alongLine(structure)) return {mean: structure.kind === "beam" ? frames.map(() => 0) : mean,
     gain: 0.4 * height / (structure.kind === "beam" ? d3.max(frames, list => d3.max(list, Math.abs)) || 1 : largest)};
   const spacing = width / (structure.x.length + 1.5);
+  if (structure.x.length === 1) return {mean, gain: 0.4 * spacing / largest};
   let apart = 1e-300;
   for (let i = 1; i < frames.length; ++i) for (let k = 0; k < frames[i].length; ++k)
     apart = Math.max(apart, Math.abs(frames[i][k] - mean[i] - frames[i - 1][k] + mean[i - 1]));
@@ -69,7 +75,7 @@ function drawContactWord(pen, state, x, y) {
 function drawStructure(pen, box, structure, layout, shape, states, belt) {
   const shift = i => layout.gain * (shape[i] - layout.mean[i]);
   const middle = box.top + box.height / 2, points = structure.x.length;
-  if (structure.kind === "chain") {
+  if (alongLine(structure)) {
     const spacing = box.width / (points + 1.5), side = Math.min(22, 0.42 * spacing);
     const x = structure.x.map((own, i) => box.left + (i + 1) * spacing + shift(i));
     const touched = new Map(structure.contacts.map((contact, c) => [structure.x.indexOf(contact.x), c]));
@@ -79,7 +85,7 @@ function drawStructure(pen, box, structure, layout, shape, states, belt) {
     pen.lineWidth = 1.3;
     const ends = [...(structure.fixed[0] ? [box.left + side / 2] : []), ...x,
       ...(structure.fixed[1] ? [box.left + (points + 1) * spacing - side / 2] : [])];
-    for (let i = 1; i < ends.length; ++i) {
+    for (let i = 1; i < ends.length && structure.kind === "chain"; ++i) {
       const wall = structure.fixed[0] && i === 1 ? side / 2 : 0;
       drawSpring(pen, ends[i - 1] + (wall ? -wall : side / 2), ends[i] - side / 2, middle);
     }
@@ -162,6 +168,7 @@ function stage(parent, rows, rowHeight) {
       row.draw(pen, {left: 14, top: r * rowHeight + 12, width: width - 28, height: rowHeight - 12});
     });
   }
+  area.style.height = rows.length * rowHeight + "px";
   charts.add(made);
   whenSeen(parent, paint);
   return made;

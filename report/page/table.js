@@ -33,8 +33,8 @@ function said(button, text) {
   setTimeout(() => { button.textContent = before; }, 1500);
 }
 
-function table(parent, own) {
-  const details = d3.select(parent).append("details").property("open", !own.left_out && own.rows <= 30 && own.rows > 0);
+function table(parent, own, open) {
+  const details = d3.select(parent).append("details").property("open", open);
   const what = own.what || own.name;
   details.append("summary").text(`${what}: ${own.rows} row${own.rows === 1 ? "" : "s"} (${own.name})`);
   if (own.left_out) {
