@@ -101,7 +101,8 @@ Report balance_report(const std::string& verb, const studies::Family& model, con
       "{}, {}: balance of {} harmonics by {}, order 1 at {:.10g} rad/s{}\n  {} switches of contact, "
       "residual {:.1e} after {} Newton steps\n",
       model.scene().title, model.title(), balance.harmonics, forces, balance.omega,
-      balance.family ? ", one of a family in the gap" : "", balance.switches, balance.residual, balance.iterations);
+      balance.family ? ", one of a family that nothing holds" : "", balance.switches, balance.residual,
+      balance.iterations);
   if (!balance.converged) report.text += balance.message + "\n";
   if (balance.converged) report.text += coefficient_table(balance);
   if (found.hill.size() > 0) {
@@ -109,6 +110,18 @@ Report balance_report(const std::string& verb, const studies::Family& model, con
                            {"without_jumps", complex_json(found.hill_without_jumps)}};
     report.text += fmt::format("  multipliers by Hill's method {}; were the jumps at stops left out, {}\n",
                                multipliers_text(found.hill), multipliers_text(found.hill_without_jumps));
+  }
+  if (balance.converged && orbits::has_memory(model.own())) {
+    constexpr const char* kWhy =
+        "multipliers: none by Hill's method, which does not hold where friction has a contact spring; by --certify";
+    report.data["hill"] = {{"multipliers", nullptr}, {"message", kWhy}};
+    report.text += fmt::format("  {}\n", kWhy);
+  }
+  if (balance.converged && balance.stuck > 0) {
+    report.text += fmt::format(
+        "  {} of {} contacts never slide: where the slider stands the motion does not tell, the place nearest to 0 is "
+        "taken\n",
+        balance.stuck, balance.displacement.size());
   }
   Json trials = Json::array();
   for (const orbits::OrderTrial& trial : found.trials) trials.push_back(fields_json(trial));

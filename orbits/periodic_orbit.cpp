@@ -16,6 +16,8 @@ const char* to_string(Stability stability) {
       return "unstable";
     case Stability::kMarginal:
       return "marginal";
+    case Stability::kUnknown:
+      return "unknown";
   }
   return "unknown";
 }

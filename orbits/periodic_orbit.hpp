@@ -19,6 +19,7 @@ enum class Stability : std::uint8_t {
   kStable,
   kUnstable,
   kMarginal,  ///< a multiplier is within `marginal_band` of the unit circle and none is outside
+  kUnknown,   ///< not judged: a balance whose contacts remember
 };
 
 [[nodiscard]] const char* to_string(OrbitKind kind);

@@ -3,6 +3,7 @@
 #include "results/internal/field_record.hpp"
 
 #include <fmt/format.h>
+#include <limits>
 
 namespace slipmode::results {
 namespace {
@@ -57,8 +58,11 @@ Table point_table(const std::string& key, const std::vector<BranchPoint>& points
       {"parameter", {"", key}, gather(points, [](const BranchPoint& p) { return p.parameter; })},
       add("arclength", "1", "along the branch, scaled", [](const BranchPoint& p) { return p.arclength; }),
       add("period", "s", "period", [](const BranchPoint& p) { return p.orbit.period; }),
-      add("leading_modulus", "1", "largest |multiplier| without trivial ones",
-          [](const BranchPoint& p) { return p.orbit.leading_modulus; }),
+      add("leading_modulus", "1", "largest |multiplier| without trivial ones; NaN: not judged",
+          [](const BranchPoint& p) {
+            const bool judged = p.orbit.stability != orbits::Stability::kUnknown;
+            return judged ? p.orbit.leading_modulus : std::numeric_limits<double>::quiet_NaN();
+          }),
       {"stability", {"", "stability"}, stability},
       add("crossings", "", "events that change a force law", [](const BranchPoint& p) { return p.orbit.crossings; }),
       add("symmetric", "", "1: x(T/2) = -x(0)", [](const BranchPoint& p) { return p.orbit.symmetric ? 1.0 : 0.0; }),

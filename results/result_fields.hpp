@@ -89,7 +89,8 @@ inline constexpr auto kFields<orbits::Balance> = [] {
                     required("harmonics", &Own::harmonics, "", "highest order", kCount),
                     required("samples", &Own::samples, "", "of the alternating scheme; 0: exact forces", kFromZero),
                     required("switches", &Own::switches, "", "of contact in a period", kFromZero),
-                    required("family", &Own::family, "", "1: one of a family of motions in the gap", kFromZero),
+                    required("family", &Own::family, "", "1: one of a family of motions that nothing holds", kFromZero),
+                    required("stuck", &Own::stuck, "", "contacts behind springs that never slide", kFromZero),
                     required("residual", &Own::residual, "1", "largest, as a share of the largest displacement"),
                     required("iterations", &Own::iterations, "", "Newton steps", kFromZero)};
 }();

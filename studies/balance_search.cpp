@@ -10,7 +10,8 @@ namespace {
 
 void add_exponents(const Family& model, BalanceFound& out_found) {
   const orbits::Balance& balance = out_found.balance;
-  if (!balance.converged || model.own().size() * balance.harmonics > kMostForHill) return;
+  if (!balance.converged || orbits::has_memory(model.own()) || model.own().size() * balance.harmonics > kMostForHill)
+    return;
   out_found.hill = orbits::hill_multipliers(model.own(), balance);
   out_found.hill_without_jumps = orbits::hill_multipliers(model.own(), balance, {.jumps = false});
 }

@@ -21,8 +21,8 @@ struct BalanceFound {
   std::optional<orbits::Certificate> certificate = {};
   std::vector<orbits::OrderTrial> trials = {};  ///< of an order that is chosen
   bool met = true;                              ///< the error asked is
-  /// Multipliers by Hill's method, and by what it leaves when jumps are left out; empty without a balance, and where n
-  /// H is above kMostForHill.
+  /// Multipliers by Hill's method, and by what it leaves when jumps are left out; empty without a balance, where n H
+  /// is above kMostForHill, and where a contact remembers (orbits::has_memory).
   Eigen::VectorXcd hill = {}, hill_without_jumps = {};
 };
 

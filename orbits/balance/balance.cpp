@@ -47,19 +47,15 @@ void check(const HybridSystem& system, const BalanceOptions& options) {
                        2 * options.harmonics));
   if (system.drive().force() == nullptr)
     refuse("harmonic balance needs a force drive (drive.kind = \"force\"); find this orbit by shooting");
-  for (const friction::Contact& contact : system.contacts())
-    if (friction::clearance(contact.law) == nullptr)
-      refuse(
-          fmt::format("harmonic balance holds clearances (contact.law = \"clearance\") and no friction: contact '{}' "
-                      "has another law; find this orbit by shooting, which holds every law",
-                      contact.name));
+  static_cast<void>(balanced_laws(system));
   if (!options.guess.empty() && options.guess.size() != system.contacts().size())
     refuse(fmt::format("the guess has {} contacts and the system {}", options.guess.size(), system.contacts().size()));
 }
 
-/// The linear response with every stop pressing at once from gap zero, or without any.
+/// The linear response with all contacts pressing and sticking from gap zero on, or without any force of theirs.
 Eigen::VectorXd linear_response(const HybridSystem& system, const ContactResponse& response, bool pressed) {
   const Eigen::Index nc = response.contacts(), H = response.harmonics(), B = response.block();
+  const std::vector<BalancedLaw> laws = balanced_laws(system);
   Eigen::VectorXd x = Eigen::VectorXd::Zero(response.unknowns());
   const Eigen::Index nr = response.rigid_rows.cols();
   for (Eigen::Index k = 0; k <= H; ++k) {
@@ -73,12 +69,9 @@ Eigen::VectorXd linear_response(const HybridSystem& system, const ContactRespons
       b.tail(nr) = -response.rigid_load.cast<Complex>();
     }
     for (Eigen::Index c = 0; pressed && c < nc; ++c) {
-      const friction::Clearance& law = *friction::clearance(system.contacts()[static_cast<std::size_t>(c)].law);
-      Complex impedance = 0.0;  // of both stops, each half the time
-      for (const friction::Stop& stop : law.stops())
-        impedance += 0.5 * Complex(stop.stiffness, static_cast<double>(k) * response.omega() * stop.damping);
-      A.col(c).head(nc) += response.receptance[at].col(c) * impedance;
-      if (k == 0 && nr > 0) A.col(c).tail(nr) = -impedance * response.rigid_rows.row(c).transpose().cast<Complex>();
+      const Complex own = impedance(laws[static_cast<std::size_t>(c)], static_cast<double>(k) * response.omega());
+      A.col(c).head(nc) += response.receptance[at].col(c) * own;
+      if (k == 0 && nr > 0) A.col(c).tail(nr) = -own * response.rigid_rows.row(c).transpose().cast<Complex>();
     }
     const Eigen::VectorXcd y = A.completeOrthogonalDecomposition().solve(b);
     for (Eigen::Index c = 0; c < nc; ++c) {
@@ -90,15 +83,15 @@ Eigen::VectorXd linear_response(const HybridSystem& system, const ContactRespons
   return x;
 }
 
-/// From the linear response at no gap to the own gaps, by steps whose length follows Newton's method.
-BalanceEvaluation grow_gaps(const HybridSystem& system, BalanceProblem& problem, const Eigen::VectorXd& from,
-                            double tolerance, int& budget, bool& out_open) {
+/// From the linear response of linear laws to their own, by steps whose length follows Newton's method.
+BalanceEvaluation grow_laws(BalanceProblem& problem, const Eigen::VectorXd& from, double tolerance, int& budget,
+                            bool& out_open) {
   constexpr double kEnough = 1e-4, kLeastStep = 1e-3;
   Eigen::VectorXd before, now = from;
   double share_before = 0.0, share = 0.0, step = 0.5;
   while (budget > 0) {
     const double next = std::min(1.0, share + step);
-    problem.set_gaps(system, next);
+    problem.set_share(next);
     Eigen::VectorXd guess = now;
     if (before.size() > 0) guess += (next - share) / (share - share_before) * (now - before);
     BalanceEvaluation found =
@@ -113,8 +106,31 @@ BalanceEvaluation grow_gaps(const HybridSystem& system, BalanceProblem& problem,
       break;
     }
   }
-  problem.set_gaps(system, 1.0);
+  problem.set_share(1.0);
   return problem.evaluate(now);
+}
+
+/// From linear responses. Friction is mostly met from one of them, stops want a path.
+BalanceEvaluation search_cold(const HybridSystem& system, const ContactResponse& response, BalanceProblem& problem,
+                              const BalanceOptions& options, int& budget, bool& out_open) {
+  constexpr int kFromHeld = 10, kFromFree = 25;
+  const std::vector<BalancedLaw> laws = balanced_laws(system);
+  const bool pressed = options.start == BalanceStart::kContact, friction = std::ranges::any_of(laws, remembers);
+  const int from_free = std::ranges::all_of(laws, remembers) ? options.max_iterations : kFromFree;
+  const Eigen::VectorXd free = linear_response(system, response, false);
+  const Eigen::VectorXd held = pressed ? linear_response(system, response, true) : free;
+  std::optional<BalanceEvaluation> best;
+  const auto keep = [&](BalanceEvaluation found) {
+    if (!best || found.relative < best->relative) best = std::move(found);
+    return best->relative <= options.tolerance;
+  };
+  const auto descend_from = [&](const Eigen::VectorXd& from, int most) {
+    return keep(descend(problem, from, options.tolerance, most, budget, out_open));
+  };
+  if (pressed && friction && (descend_from(held, kFromHeld) || descend_from(free, from_free))) return *best;
+  if (pressed && keep(grow_laws(problem, held, options.tolerance, budget, out_open))) return *best;
+  descend_from(free, budget);
+  return *best;
 }
 
 }  // namespace
@@ -125,24 +141,16 @@ Balance balance(const HybridSystem& system, const BalanceOptions& options) {
   BalanceProblem problem(system, response, options.samples, response.lead(system));
   int budget = options.max_iterations;
   bool open = false;
-  const auto arrived = [&](const BalanceEvaluation& at) { return at.relative <= options.tolerance; };
   BalanceEvaluation found;
   if (!options.guess.empty()) {
     found = descend(problem, unknowns_of(options.guess, response), options.tolerance, budget, budget, open);
   } else {
-    const bool pressed = options.start == BalanceStart::kContact;
-    if (pressed)
-      found = grow_gaps(system, problem, linear_response(system, response, true), options.tolerance, budget, open);
-    if (!pressed || !arrived(found)) {
-      const Eigen::VectorXd free = linear_response(system, response, false);
-      BalanceEvaluation other = descend(problem, free, options.tolerance, budget, budget, open);
-      if (!pressed || other.relative < found.relative) found = std::move(other);
-    }
+    found = search_cold(system, response, problem, options, budget, open);
   }
   Balance out = problem.series_of(found, options.order);
   out.converged = found.relative <= 100.0 * options.tolerance;
   if (out.rigid.size() > 0) static_cast<void>(problem.step(found, open));  // a start may have been one already
-  out.family = open && out.switches == 0 && out.rigid.size() > 0;
+  out.family = open && out.rigid.size() > 0 && problem.leaves_means_open(found);
   out.iterations = options.max_iterations - budget;
   if (!out.converged)
     out.message = fmt::format(
@@ -160,6 +168,8 @@ BalanceEquations balance_equations(const HybridSystem& system, const Balance& at
   BalanceEvaluation found = problem.evaluate(x);
   return {std::move(found.residual), std::move(found.jacobian)};
 }
+
+bool has_memory(const HybridSystem& system) { return std::ranges::any_of(balanced_laws(system), remembers); }
 
 dynamics::State state_of(const HybridSystem& system, const Balance& balance) {
   const dynamics::ModalModel& model = system.cache().tables(system, false).model;
@@ -183,6 +193,11 @@ dynamics::State state_of(const HybridSystem& system, const Balance& balance) {
   dynamics::State state = system.rest();
   state.q = model.to_q * x;
   state.v = model.to_v * x;
+  const std::vector<BalancedLaw> laws = balanced_laws(system);
+  std::vector<double> internal;
+  for (std::size_t c = 0; c < laws.size(); ++c)
+    if (const auto own = own_state(laws[c], polynomial_of(balance.displacement[c]))) internal.push_back(*own);
+  state.internal = Eigen::Map<const Eigen::VectorXd>(internal.data(), std::ssize(internal));
   return state;
 }
 
@@ -190,11 +205,9 @@ std::vector<Amplitude> contact_amplitudes(const Balance& balance) {
   std::vector<Amplitude> out;
   for (const Harmonics& y : balance.displacement) {
     const TrigonometricPolynomial series = polynomial_of(y);
-    TrigonometricPolynomial slope = series;
-    for (Eigen::Index k = 0; k < slope.phasors.size(); ++k) slope.phasors[k] *= Complex(0.0, static_cast<double>(k));
     const double start = series.at(0.0).y;
     Amplitude own{.min = start, .max = start, .mean = y.cosine[0]};
-    for (const double theta : zeros(slope)) {
+    for (const double theta : zeros(derivative(series))) {
       const double here = series.at(theta).y;
       if (here < own.min) own.min = here, own.min_time = theta / balance.omega;
       if (here > own.max) own.max = here, own.max_time = theta / balance.omega;

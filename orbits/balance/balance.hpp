@@ -10,8 +10,10 @@ namespace slipmode::orbits {
 
 /// Where the search for a balance begins.
 enum class BalanceStart : std::uint8_t {
-  kContact,  ///< the linear response with all stops pressing, then gaps grown from nothing; the other where that fails
-  kGap,      ///< the linear response without contact
+  /// The linear response with all stops pressing and all springs of friction sticking, then gaps grown from nothing and
+  /// limits lowered to their own; the other where that fails.
+  kContact,
+  kGap,  ///< the linear response without forces of contact
 };
 
 struct BalanceOptions {
@@ -35,7 +37,10 @@ struct Balance {
   int harmonics = 0, samples = 0;
   std::vector<Harmonics> displacement, force;  ///< of each contact [m], [N]
   Eigen::VectorXd rigid;                       ///< mean amplitudes of the modes that float [nr]
-  int switches = 0;                            ///< of all contacts in a period: 0 in the gap
+  int switches = 0;                            ///< of all contacts in a period: 0 in the gap, or in stick
+  /// Contacts behind springs that never slide. Where their sliders stand, no periodic motion tells: they have the place
+  /// nearest to 0 from which none slides.
+  int stuck = 0;
   /// Nothing holds some mean displacement: the motion is one of a family, given with the least mean.
   bool family = false;
   double residual = 0.0;  ///< largest entry, as a share of the largest displacement
@@ -47,11 +52,12 @@ struct Balance {
 ///     y_k = e_k + R_k λ_k(y),    R_k = Wᵀ(K + ikΩC − k²Ω²M)⁻¹W,   k = 0 … H,
 ///
 /// with e_k the response to loads and drive, and the mean of what floats free beside them (Zᵀλ_0 + p = 0). Newton's
-/// method with the exact Jacobian; starts that do not converge are led there by growing the gaps. Cost of a step O((nc
-/// H)³), whatever the structure's size; receptances O(n nc² H), once.
+/// method with the exact Jacobian; starts that do not converge are led there by growing the gaps and lowering the
+/// limits of friction. Cost of a step O((nc H)³), whatever the structure's size; receptances O(n nc² H), once.
 /// @return  `converged` false, with the best residual, when Newton's method does not arrive
 /// @throws InvalidInput  for harmonics < 1, samples from 1 to 2H, order < 1, a guess for another number of contacts, a
-///                       drive that is no periodic force, and laws other than clearances, with what to do instead
+///                       drive that is no periodic force, and laws other than clearances and Coulomb friction behind
+///                       contact springs under constant limits, with what to do instead
 /// Source: docs/theory/harmonic-balance.md, sections 2 and 3; S2's schemes are the exact and the sampled one.
 [[nodiscard]] Balance balance(const dynamics::HybridSystem& system, const BalanceOptions& options = {});
 
@@ -63,7 +69,10 @@ struct BalanceEquations {
 };
 [[nodiscard]] BalanceEquations balance_equations(const dynamics::HybridSystem& system, const Balance& at);
 
-/// The state of the whole structure at time 0 that the series stand for.
+/// True where a contact's force depends on the motion before: Hill's method does not hold there.
+[[nodiscard]] bool has_memory(const dynamics::HybridSystem& system);
+
+/// The state of the whole structure at time 0 that the series stand for, stretches of contact springs with it.
 [[nodiscard]] dynamics::State state_of(const dynamics::HybridSystem& system, const Balance& balance);
 
 /// Sizes of the contacts' displacements as the series have them, one per contact.

@@ -48,10 +48,8 @@ BalanceBranchSolver::BalanceBranchSolver(dynamics::SystemFamily family, const Ba
   }
   size_ = x.cwiseAbs().maxCoeff();
   if (!(size_ > 0.0)) size_ = 1.0;
-  const dynamics::HybridSystem system = family_(parameter);
-  for (const friction::Contact& contact : system.contacts())
-    for (const friction::Stop& stop : friction::clearance(contact.law)->stops())
-      stiffness_ = std::max(stiffness_, stop.stiffness);
+  for (const BalancedLaw& law : balanced_laws(family_(parameter)))
+    stiffness_ = std::max(stiffness_, strongest(law, 0.0));
 }
 
 BalanceUnknowns BalanceBranchSolver::unknowns_of(const BranchPoint& point) const {
@@ -169,7 +167,7 @@ Eigen::VectorXd BalanceBranchSolver::difference(const BalanceUnknowns& b, const 
 std::optional<Balance> BalanceBranchSolver::balance_of(const BalanceBranchEvaluation& at) const {
   Balance out = at.own->problem.series_of(at.balance, first_.order);
   out.converged = true;
-  out.family = first_.family && out.switches == 0;
+  out.family = first_.family && at.own->problem.leaves_means_open(at.balance);
   return out;
 }
 

@@ -1,5 +1,5 @@
 #include "orbits/balance/internal/balance_orbit.hpp"
-#include "orbits/balance/internal/balanced_force.hpp"
+#include "orbits/balance/internal/balanced_law.hpp"
 
 #include <slipmode/orbits/balance/hill.hpp>
 #include <slipmode/orbits/floquet.hpp>
@@ -13,11 +13,7 @@ namespace {
 
 using dynamics::ContactMode;
 
-ContactMode mode_at(int side) {
-  return side == 0 ? ContactMode::kGap : side < 0 ? ContactMode::kLeftStop : ContactMode::kRightStop;
-}
-
-/// The regimes passed, as an orbit has them; a stop that has let go early is the gap.
+/// The regimes passed, as an orbit has them.
 std::vector<RegimeSpan> balance_regimes(const dynamics::HybridSystem& system, const Balance& balance) {
   struct Switch {
     double theta;
@@ -27,11 +23,10 @@ std::vector<RegimeSpan> balance_regimes(const dynamics::HybridSystem& system, co
   std::vector<Switch> switches;
   std::vector<RegimeSpan> out(1);
   for (std::size_t c = 0; c < system.contacts().size(); ++c) {
-    const StopSwitches own = stop_switches(*friction::clearance(system.contacts()[c].law),
-                                           polynomial_of(balance.displacement[c]), balance.omega);
-    out.front().modes.push_back(mode_at(own.side));
-    for (const StopSwitch& at : own.switches)
-      switches.push_back({at.theta, c, at.pressed ? mode_at(at.side) : ContactMode::kGap});
+    const Passage own =
+        passage(balanced_law(system.contacts()[c], c), polynomial_of(balance.displacement[c]), balance.omega);
+    out.front().modes.push_back(own.first);
+    for (const Passage::Switch& at : own.switches) switches.push_back({at.theta, c, at.after});
   }
   std::ranges::stable_sort(switches, {}, &Switch::theta);
   for (const Switch& at : switches) {
@@ -73,13 +68,17 @@ PeriodicOrbit in_terms_of_an_orbit(const dynamics::HybridSystem& system, const B
     orbit.asymmetry = asymmetry_of(balance);
     orbit.symmetric = orbit.asymmetry <= symmetry_tolerance;
   }
+  orbit.trivial_multipliers = balance.family ? static_cast<int>(balance.rigid.size()) : 0;
+  if (has_memory(system)) {
+    orbit.stability = Stability::kUnknown;
+    return orbit;
+  }
   if (orbit.symmetric) {
     orbit.half_multipliers = hill_multipliers(system, balance, {.half_period = true});
     orbit.multipliers = orbit.half_multipliers.array().square();
   } else {
     orbit.multipliers = hill_multipliers(system, balance);
   }
-  orbit.trivial_multipliers = balance.family ? static_cast<int>(balance.rigid.size()) : 0;
   set_stability(orbit, marginal_band);
   return orbit;
 }

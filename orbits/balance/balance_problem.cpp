@@ -86,13 +86,12 @@ Eigen::Index ContactResponse::lead(const HybridSystem& system) const {
   constexpr Eigen::Index kFew = 120;
   constexpr double kWeak = 0.005;
   if (harmonics_ <= kFew) return harmonics_;
+  const std::vector<BalancedLaw> laws = balanced_laws(system);
   for (Eigen::Index k = harmonics_; k > kFew / 2; --k) {
     double most = 0.0;
     for (Eigen::Index c = 0; c < contacts_; ++c)
-      for (const friction::Stop& stop :
-           friction::clearance(system.contacts()[static_cast<std::size_t>(c)].law)->stops())
-        most = std::max(most, receptance[static_cast<std::size_t>(k)].col(c).cwiseAbs().sum() *
-                                  std::hypot(stop.stiffness, static_cast<double>(k) * omega_ * stop.damping));
+      most = std::max(most, receptance[static_cast<std::size_t>(k)].col(c).cwiseAbs().sum() *
+                                strongest(laws[static_cast<std::size_t>(c)], static_cast<double>(k) * omega_));
     if (most > kWeak) return k;
   }
   return kFew / 2;
@@ -100,18 +99,10 @@ Eigen::Index ContactResponse::lead(const HybridSystem& system) const {
 
 BalanceProblem::BalanceProblem(const HybridSystem& system, const ContactResponse& response, int samples,
                                Eigen::Index lead)
-    : response_(response), samples_(samples), lead_(lead) {
-  set_gaps(system, 1.0);
-}
+    : response_(response), samples_(samples), lead_(lead), own_laws_(balanced_laws(system)), laws_(own_laws_) {}
 
-void BalanceProblem::set_gaps(const HybridSystem& system, double share) {
-  laws_.clear();
-  for (const friction::Contact& contact : system.contacts()) {
-    friction::Clearance law = *friction::clearance(contact.law);
-    if (law.left) law.left->gap *= share;
-    if (law.right) law.right->gap *= share;
-    laws_.push_back(law);
-  }
+void BalanceProblem::set_share(double share) {
+  for (std::size_t c = 0; c < laws_.size(); ++c) laws_[c] = at_share(own_laws_[c], share);
 }
 
 BalanceEvaluation BalanceProblem::evaluate(const Eigen::VectorXd& x) const {
@@ -143,6 +134,13 @@ BalanceEvaluation BalanceProblem::evaluate(const Eigen::VectorXd& x) const {
     if (force > 0.0) out.relative = std::max(out.relative, out.residual.tail(nr).cwiseAbs().maxCoeff() / force);
   }
   return out;
+}
+
+bool BalanceProblem::leaves_means_open(const BalanceEvaluation& at) const {
+  constexpr double kRounding = 1e-12;
+  return std::ranges::all_of(at.forces, [](const BalancedForce& force) {
+    return force.jacobian.col(0).norm() <= kRounding * force.jacobian.norm();
+  });
 }
 
 Eigen::VectorXd BalanceProblem::step(const BalanceEvaluation& at, bool& out_open) const {
@@ -204,6 +202,7 @@ Balance BalanceProblem::series_of(const BalanceEvaluation& at, int order) const 
     out.displacement.push_back(harmonics_of(phasors_of(at.x.segment(c * B, B), response_.harmonics())));
     out.force.push_back(harmonics_of(force.phasors));
     out.switches += force.switches;
+    out.stuck += force.stuck ? 1 : 0;
   }
   out.rigid = at.x.tail(response_.rigid_rows.cols());
   out.residual = at.relative;

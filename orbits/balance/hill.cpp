@@ -3,7 +3,7 @@
 #include <slipmode/core/decompositions.hpp>
 #include <slipmode/core/errors.hpp>
 #include <slipmode/orbits/floquet.hpp>
-#include "orbits/balance/internal/balanced_force.hpp"
+#include "orbits/balance/internal/clearance_balance.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -146,6 +146,10 @@ Eigen::VectorXcd hill_multipliers(const dynamics::HybridSystem& system, const Ba
   if (options.perturbation < 0)
     throw InvalidInput(
         fmt::format("perturbation: {}; valid: orders from 1 on, or 0 for the balance's", options.perturbation));
+  if (has_memory(system))
+    throw InvalidInput(
+        "Hill's method does not hold where friction has a contact spring, whose force depends on the motion before; "
+        "certify the balance (--certify): the orbit behind it has exact multipliers");
   const Eigen::Index L = options.perturbation > 0 ? options.perturbation : balance.harmonics;
   std::vector<StopTangent> answers;
   for (std::size_t c = 0; c < system.contacts().size(); ++c)

@@ -25,7 +25,7 @@ struct HillOptions {
 /// balance's order a multiplier passes 1 exactly where Newton's matrix is singular; by half periods, where that of the
 /// odd orders is, and −1 where that of the even ones is.
 /// @return  by modulus, descending [2n]
-/// @throws InvalidInput      for a perturbation < 0
+/// @throws InvalidInput      for a perturbation < 0; where a contact's force depends on the motion before (has_memory)
 /// @throws NumericalFailure  when the eigenvalues are not found
 /// Cost O((n L)³). Source: docs/theory/harmonic-balance.md, section 4.
 [[nodiscard]] Eigen::VectorXcd hill_multipliers(const dynamics::HybridSystem& system, const Balance& balance,

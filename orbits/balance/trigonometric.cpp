@@ -21,7 +21,7 @@ class ZeroSearch {
     const auto [y, slope] = polynomial_.at(middle);
     if (std::abs(y) > std::abs(slope) * half + 0.5 * curvature_ * half * half) return;
     if (std::abs(slope) > curvature_ * half || half < 0.5 * kNarrowest) {
-      if ((at_low < 0.0) != (at_high < 0.0)) found.push_back(refine(low, at_low < 0.0, high));
+      if ((at_low < 0.0) != (at_high < 0.0)) found.push_back(zero_between(polynomial_, low, at_low < 0.0, high));
       return;
     }
     search(low, at_low, middle, y);
@@ -31,20 +31,6 @@ class ZeroSearch {
   std::vector<double> found;
 
  private:
-  /// Newton's method within a bracket.
-  [[nodiscard]] double refine(double low, bool negative, double high) const {
-    double theta = 0.5 * (low + high);
-    for (int turn = 0; turn < 80; ++turn) {
-      const auto [y, slope] = polynomial_.at(theta);
-      ((y < 0.0) == negative ? low : high) = theta;
-      double next = theta - y / slope;
-      if (!(next >= low && next <= high)) next = 0.5 * (low + high);
-      if (std::abs(next - theta) <= 4e-16 * (1.0 + theta)) return next;
-      theta = next;
-    }
-    return theta;
-  }
-
   const TrigonometricPolynomial& polynomial_;
   double curvature_ = 0.0;  ///< bound on |y″|
 };
@@ -71,6 +57,26 @@ TrigonometricPolynomial polynomial_of(const Harmonics& y) {
   polynomial.phasors.real() = y.cosine;
   polynomial.phasors.imag() = -y.sine;
   return polynomial;
+}
+
+TrigonometricPolynomial derivative(const TrigonometricPolynomial& y) {
+  TrigonometricPolynomial out = y;
+  for (Eigen::Index k = 0; k < out.phasors.size(); ++k)
+    out.phasors[k] *= std::complex<double>(0.0, static_cast<double>(k));
+  return out;
+}
+
+double zero_between(const TrigonometricPolynomial& polynomial, double low, bool negative, double high) {
+  double theta = 0.5 * (low + high);  // Newton's method within a bracket
+  for (int turn = 0; turn < 80; ++turn) {
+    const auto [y, slope] = polynomial.at(theta);
+    ((y < 0.0) == negative ? low : high) = theta;
+    double next = theta - y / slope;
+    if (!(next >= low && next <= high)) next = 0.5 * (low + high);
+    if (std::abs(next - theta) <= 4e-16 * (1.0 + theta)) return next;
+    theta = next;
+  }
+  return theta;
 }
 
 std::vector<double> zeros(const TrigonometricPolynomial& polynomial) {

@@ -2,7 +2,7 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/orbits/balance/certificate.hpp>
 #include "clearance_systems.hpp"
-#include "orbits/balance/internal/balanced_force.hpp"
+#include "orbits/balance/internal/balanced_law.hpp"
 #include "play_table.hpp"
 
 #include <gmock/gmock.h>
@@ -86,9 +86,9 @@ TEST(BalancedForce, IsTheLimitOfManySamples) {
     const friction::Clearance law{stop, friction::Stop{.stiffness = 5.0, .damping = 0.2, .gap = -0.1},
                                   trial % 3 == 0 ? friction::ContactLoss::kGap : friction::ContactLoss::kZeroForce};
     const TrigonometricPolynomial y = random_polynomial(random, 9, 1.5);
-    const BalancedForce exact = balanced_force(law, y, 0.8, kExact, 9);
-    const double coarse = (balanced_force(law, y, 0.8, 2000, 9).phasors - exact.phasors).norm();
-    const double fine = (balanced_force(law, y, 0.8, 64000, 9).phasors - exact.phasors).norm();
+    const BalancedForce exact = balanced_force(BalancedClearance{law}, y, 0.8, kExact, 9);
+    const double coarse = (balanced_force(BalancedClearance{law}, y, 0.8, 2000, 9).phasors - exact.phasors).norm();
+    const double fine = (balanced_force(BalancedClearance{law}, y, 0.8, 64000, 9).phasors - exact.phasors).norm();
     EXPECT_LT(fine, 2e-4 * exact.phasors.norm());
     if (exact.switches > 0) {
       EXPECT_LT(fine, 0.3 * coarse);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <slipmode/orbits/balance/balance.hpp>
-#include "orbits/balance/internal/balanced_force.hpp"
+#include "orbits/balance/internal/balanced_law.hpp"
 
 #include <Eigen/Core>
 #include <vector>
@@ -52,10 +52,12 @@ class BalanceProblem {
   /// @param lead      orders that Newton's method solves together
   BalanceProblem(const dynamics::HybridSystem& system, const ContactResponse& response, int samples, Eigen::Index lead);
 
-  /// Gaps in this share of their own.
-  void set_gaps(const dynamics::HybridSystem& system, double share);
+  /// Laws on the way from linear ones to their own: gaps in this share, limits of friction over it.
+  void set_share(double share);
 
   [[nodiscard]] BalanceEvaluation evaluate(const Eigen::VectorXd& x) const;
+  /// No contact's force changes with its mean displacement: where the mean floats, it is free.
+  [[nodiscard]] bool leaves_means_open(const BalanceEvaluation& at) const;
 
   /// The step: Newton's for the leading orders, of least norm where the equations leave something open, and
   /// substitution for those beyond.
@@ -75,7 +77,7 @@ class BalanceProblem {
   const ContactResponse& response_;
   int samples_;
   Eigen::Index lead_;
-  std::vector<friction::Clearance> laws_;
+  std::vector<BalancedLaw> own_laws_, laws_;  ///< at share 1, and at the one set
 };
 
 /// The solution of a square system, of least norm where it is singular: a structure that floats in the gap.

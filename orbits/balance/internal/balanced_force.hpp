@@ -1,37 +1,10 @@
 #pragma once
 
-#include <slipmode/friction/clearance.hpp>
 #include "orbits/balance/internal/trigonometric.hpp"
 
 #include <Eigen/Core>
-#include <vector>
 
 namespace slipmode::orbits {
-
-/// An instant at which a stop begins to press, or lets go.
-struct StopSwitch {
-  double theta = 0.0;
-  int side = 1;          ///< −1 the left stop, +1 the right one
-  bool pressed = false;  ///< after it
-  bool jumps = false;    ///< the force does, by ∓ c ẏ: a damped stop that is reached, or let go at its gap
-};
-
-/// What a contact's stops do along a motion.
-struct StopSwitches {
-  int side = 0;                      ///< the stop that presses before the first of them, 0: none
-  std::vector<StopSwitch> switches;  ///< in [0, 2π), ascending
-};
-[[nodiscard]] StopSwitches stop_switches(const friction::Clearance& law, const TrigonometricPolynomial& y,
-                                         double omega);
-
-/// How a contact's force answers a motion beside y, δλ = s(θ) δy + d(θ) δẏ, as g_m = (1/2π) ∫ e^{imθ} s dθ of s and d.
-struct StopTangent {
-  Eigen::VectorXcd stiffness, damping;  ///< m = 0 … M
-};
-/// @param moments  M
-/// @param jumps    with s = Σ_s [λ]/|ẏ| at the switches at which the force jumps by [λ]
-[[nodiscard]] StopTangent stop_tangent(const friction::Clearance& law, const TrigonometricPolynomial& y, double omega,
-                                       Eigen::Index moments, bool jumps);
 
 /// How many instants a force is looked at: 0 for the exact integrals between its switches.
 inline constexpr int kExact = 0;
@@ -41,22 +14,37 @@ struct BalancedForce {
   Eigen::VectorXcd phasors;  ///< of λ [H + 1]
   /// d(λ's)/d(y's) of the orders up to `lead`, both in the order cosine_0 … cosine_L, sine_1 … sine_L [2L+1 x 2L+1].
   Eigen::MatrixXd jacobian;
-  int switches = 0;  ///< instants at which a stop is reached or let go; of samples, changes from one to the next
+  int switches = 0;    ///< instants at which the law's branch changes; of samples, changes from one to the next
+  bool stuck = false;  ///< behind a contact spring, and never sliding: the slider's place is not told by the motion
+
+  BalancedForce(Eigen::Index harmonics, Eigen::Index lead)
+      : phasors(Eigen::VectorXcd::Zero(harmonics + 1)), jacobian(Eigen::MatrixXd::Zero(2 * lead + 1, 2 * lead + 1)) {}
 };
 
-/// Force of a clearance along y(θ), θ = Ωt.
+/// g_m = (1/2π) ∫ e^{imθ} dθ over the arc from `begin` to `end` ≤ begin + 2π, m = 0 … `moments`.
+[[nodiscard]] Eigen::VectorXcd arc_moments(double begin, double end, Eigen::Index moments);
+
+/// e^{2πi n/N}, n = 0 … N − 1.
+[[nodiscard]] std::vector<std::complex<double>> sample_turns(int samples);
+
+/// A force −k y − cΩ y′ + constant on a set of θ, zero elsewhere.
+struct LinearPiece {
+  double stiffness = 0.0, damping = 0.0, constant = 0.0;  ///< k, cΩ
+  Eigen::VectorXcd set;                                   ///< its moments g_m, m = 0 … 2H
+  /// Σ_s ±e^{imθ_s}/2π over the set's ends at which the force jumps by cΩy′: + where the set ends, − where it begins.
+  /// Empty: none.
+  Eigen::VectorXcd jumps = {};
+};
+
+/// Adds such a force and its derivatives,
 ///
-/// A stop presses with λ = −k (y ∓ b) − c Ω y′ on the set of θ where its law says so, which ends at zeros of
-/// trigonometric polynomials. With g_m = (1/2π) ∫ e^{imθ} over that set and double-sided coefficients,
-///
-///     λ̂_j = Σ_k (−k_s − ikΩc) ŷ_k g_{k−j} ± k_s b g_{−j},   ∂λ̂_j/∂ŷ_k = (−k_s − ikΩc) g_{k−j} + Σ_s [f]
-///     e^{i(k−j)θ_s}/(2π y′_s),
-///
-/// the last where the force jumps at a switch: a damped stop that is reached, or let go at its gap. By samples g_m is a
-/// mean over them instead, and there are no switches. Source: docs/theory/harmonic-balance.md, section 2.
-/// @param samples  kExact, or their number
-/// @param lead     L ≤ H
-[[nodiscard]] BalancedForce balanced_force(const friction::Clearance& law, const TrigonometricPolynomial& y,
-                                           double omega, int samples, Eigen::Index lead);
+///     λ̂_j = Σ_k (−k − ikΩc) ŷ_k g_{k−j} + constant g_{−j},   ∂λ̂_j/∂ŷ_k = (−k − ikΩc) g_{k−j} + cΩ (jumps)_{k−j}.
+void add_linear(const TrigonometricPolynomial& y, const LinearPiece& piece, BalancedForce& out_force);
+
+/// Adds a constant on a set. @param set  its moments, m = 0 … H or more
+void add_constant(double value, const Eigen::VectorXcd& set, BalancedForce& out_force);
+
+/// Adds what a constant on a set does that follows `rate` times y(held_at): derivatives alone.
+void add_following(double rate, double held_at, const Eigen::VectorXcd& set, BalancedForce& out_force);
 
 }  // namespace slipmode::orbits

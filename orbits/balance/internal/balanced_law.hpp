@@ -1,0 +1,56 @@
+#pragma once
+
+#include <slipmode/friction/contact.hpp>
+#include "orbits/balance/internal/clearance_balance.hpp"
+#include "orbits/balance/internal/jenkins_balance.hpp"
+
+#include <variant>
+
+namespace slipmode::orbits {
+
+/// The laws that balance holds. Each is a struct with its numbers and
+///
+///     kRemembers                       the force depends on the motion before, too
+///     at_share(share)                  the law on the way from a linear one, share → 0, to its own, 1
+///     force(y, omega, samples, lead)   Fourier coefficients along y, and their derivatives
+///     passage(y, omega)                what the contact does over a period
+///     impedance(omega)                 −λ/y of the linear law at share 0, at this frequency
+///     strongest(omega)                 largest |−∂λ/∂y| there is, at this frequency
+///
+/// A law with a state of its own has it told by `own_state`.
+using BalancedLaw = std::variant<BalancedClearance, BalancedJenkins>;
+
+/// @param c  the contact's number, for the message
+/// @throws InvalidInput  for a law, load or coefficients that balance does not hold, with the key and what to do
+/// instead
+[[nodiscard]] BalancedLaw balanced_law(const friction::Contact& contact, std::size_t c);
+
+[[nodiscard]] inline bool remembers(const BalancedLaw& law) {
+  return std::visit([](const auto& own) { return own.kRemembers; }, law);
+}
+[[nodiscard]] inline BalancedLaw at_share(const BalancedLaw& law, double share) {
+  return std::visit([&](const auto& own) -> BalancedLaw { return own.at_share(share); }, law);
+}
+/// @param omega    Ω of the series
+/// @param samples  kExact, or their number
+/// @param lead     L ≤ H
+[[nodiscard]] inline BalancedForce balanced_force(const BalancedLaw& law, const TrigonometricPolynomial& y,
+                                                  double omega, int samples, Eigen::Index lead) {
+  return std::visit([&](const auto& own) { return own.force(y, omega, samples, lead); }, law);
+}
+[[nodiscard]] inline Passage passage(const BalancedLaw& law, const TrigonometricPolynomial& y, double omega) {
+  return std::visit([&](const auto& own) { return own.passage(y, omega); }, law);
+}
+[[nodiscard]] inline std::complex<double> impedance(const BalancedLaw& law, double omega) {
+  return std::visit([&](const auto& own) -> std::complex<double> { return own.impedance(omega); }, law);
+}
+[[nodiscard]] inline double strongest(const BalancedLaw& law, double omega) {
+  return std::visit([&](const auto& own) { return own.strongest(omega); }, law);
+}
+/// The contact's own state at θ = 0; nothing where it has none.
+[[nodiscard]] std::optional<double> own_state(const BalancedLaw& law, const TrigonometricPolynomial& y);
+
+/// Of a system's contacts.
+[[nodiscard]] std::vector<BalancedLaw> balanced_laws(const dynamics::HybridSystem& system);
+
+}  // namespace slipmode::orbits
