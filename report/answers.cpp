@@ -141,8 +141,8 @@ Json saving(const StoreReader& store) {
       fmt::format("One run of {:g} time units takes {:.3g} ms in full and {:.3g} ms reduced, of processor time: "
                   "{}.",
                   store.number("validation/cost/duration"), 1e3 * full, 1e3 * reduced,
-                  gain > 1.05   ? fmt::format("{:.2g} times faster", gain)
-                  : gain < 0.95 ? fmt::format("{:.2g} times slower, it saves nothing at this size", 1.0 / gain)
+                  gain > 1.05   ? fmt::format("{:.3g} times faster", gain)
+                  : gain < 0.95 ? fmt::format("{:.3g} times slower, it saves nothing at this size", 1.0 / gain)
                                 : std::string("no difference at this size")),
       gain > 1.05 ? "good" : "fair");
 }
@@ -228,7 +228,7 @@ Json shaken_answers(const StoreReader& validation) {
   const double full = validation.number("shaken_validation/full_cpu"), reduced = models.numbers("cpu")[told];
   out.push_back(
       answer("What does it save?",
-             fmt::format("The timed run takes {:.3g} s in full and {:.3g} s with {}, of processor time: {:.2g} "
+             fmt::format("The timed run takes {:.3g} s in full and {:.3g} s with {}, of processor time: {:.3g} "
                          "times {}.",
                          full, reduced, model_name(told), std::max(full / reduced, reduced / full),
                          full > reduced ? "faster" : "slower"),

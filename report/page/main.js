@@ -152,10 +152,16 @@ async function start() {
   matchMedia("(prefers-color-scheme: dark)").addListener(redrawAll);
   addEventListener("beforeprint", () => {
     before = document.documentElement.dataset.theme;
+    document.documentElement.classList.add("printing");
     for (const one of charts) if (one.node.drawFirst) one.node.drawFirst();
     setTheme("light");
   });
-  addEventListener("afterprint", () => { delete document.documentElement.dataset.theme; if (before) setTheme(before); else redrawAll(); });
+  addEventListener("afterprint", () => {
+    document.documentElement.classList.remove("printing");
+    delete document.documentElement.dataset.theme;
+    if (before) setTheme(before);
+    else redrawAll();
+  });
   document.documentElement.dataset.ready = "yes";
 }
 

@@ -61,9 +61,11 @@ function motionSection(main, own, diagram) {
   const rows = [0, 1].map(k => ({
     title: () => own.models[k ? state.model : 0].title,
     draw: (pen, box) => {
-      const motion = current()[k], full = current()[0] || motion;
+      const both = current(), motion = both[k];
       if (!motion) return;
-      const layout = layoutOf(own.structure, full.shape, box.width, box.height);
+      // One scale for both, about the first one's mean.
+      const layouts = both.filter(one => one).map(one => layoutOf(own.structure, one.shape, box.width, box.height));
+      const layout = {mean: layouts[0].mean, gain: d3.min(layouts, one => one.gain)};
       const shape = shapeAt(motion.shape, state.time / (motion.interval * own.samples_per_shape));
       drawStructure(pen, box, own.structure, layout, shape, motion.modes.map(modes => contactState(modeAt(modes, state.time))),
         speeds[state.speed] * state.time);
