@@ -92,7 +92,7 @@ const overModes = [];  // charts over the number of modes, marked by the slider
 function figure(parent, own) {
   parent.append("h3").text(own.what);
   const panels = own.drawing.panels, columns = Math.min(own.drawing.columns, panels.length, 4);
-  const grid = parent.append("div").attr("class", "panels").style("--columns", columns);
+  const grid = parent.append("div").attr("class", columns > 2 ? "panels many" : "panels").style("--columns", columns);
   const height = columns === 1 ? (panels.length > 2 ? 220 : 340) : columns === 2 ? 300 : 240;
   for (const panel of panels) {
     const made = chart(grid.node(), {...decodedPanel(panel), what: own.what, height});
