@@ -29,8 +29,9 @@ endif()
 target_compile_options(slipmode_flags INTERFACE -ffp-contract=fast)
 if(SLIPMODE_SANITIZE)
   # Checks of each pointer before each use double the time to compile; null and stray pointers the address sanitizer finds.
+  # Eigen's blocks of empty matrices are offsets from null (pointer-overflow).
   target_compile_options(slipmode_flags INTERFACE -fsanitize=address,undefined
-    -fno-sanitize=null,alignment,object-size,vptr -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    -fno-sanitize=null,alignment,object-size,vptr,pointer-overflow -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(slipmode_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
