@@ -3,6 +3,7 @@
 #include <slipmode/core/decompositions.hpp>
 #include <slipmode/core/errors.hpp>
 #include <slipmode/dynamics/cache.hpp>
+#include <slipmode/friction/shared_place.hpp>
 #include "dynamics/internal/drive_cache.hpp"
 
 #include <algorithm>
@@ -20,6 +21,30 @@ void check_drive(const friction::Drive& drive, Eigen::Index directions) {
                            " (from 0), but the system has " + std::to_string(directions) + " force directions");
 }
 
+Eigen::Index rank_of(const std::vector<Eigen::VectorXd>& directions) {
+  if (directions.empty()) return 0;
+  Eigen::MatrixXd W(directions.front().size(), std::ssize(directions));
+  for (std::size_t c = 0; c < directions.size(); ++c) W.col(static_cast<Eigen::Index>(c)) = directions[c];
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(W);
+  qr.setThreshold(1e-12);
+  return qr.rank();
+}
+
+/// Contacts that may share a place are independent of the others, and these of each other.
+void check_independence(const std::vector<friction::Contact>& contacts) {
+  std::vector<Eigen::VectorXd> all, shared;
+  for (const friction::Contact& contact : contacts) {
+    all.push_back(contact.direction.normalized());
+    if (friction::can_share_place(friction::kind(contact.law))) shared.push_back(all.back());
+  }
+  const Eigen::Index rank = rank_of(all);
+  if (rank < std::ssize(all) - std::ssize(shared) + rank_of(shared))
+    throw InvalidInput("the directions of the " + std::to_string(contacts.size()) +
+                       " contacts are linearly dependent (rank " + std::to_string(rank) +
+                       "): two contacts act on the same degree of freedom, or a reduced "
+                       "basis has fewer vectors than contacts; merge them or keep more modes");
+}
+
 }  // namespace
 
 HybridSystem::HybridSystem(fem::Structure structure, std::vector<friction::Contact> contacts, friction::Drive drive,
@@ -32,15 +57,14 @@ HybridSystem::HybridSystem(fem::Structure structure, std::vector<friction::Conta
       cache_(std::make_shared<SystemCache>()),
       drive_cache_(std::make_shared<DriveCache>()) {
   const auto n = structure_.size();
-  Eigen::MatrixXd W(n, static_cast<Eigen::Index>(contacts_.size()));
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     if (contacts_[c].direction.size() != n)
       throw InvalidInput("contact " + std::to_string(c + 1) + ": direction has " +
                          std::to_string(contacts_[c].direction.size()) + " entries, the structure has " +
                          std::to_string(n) + " degrees of freedom");
     friction::validate(contacts_[c]);
-    W.col(static_cast<Eigen::Index>(c)) = contacts_[c].direction.normalized();
   }
+  check_independence(contacts_);
   if (force_directions_.cols() == 0) force_directions_.resize(n, 0);
   if (force_directions_.rows() != n || !force_directions_.allFinite())
     throw InvalidInput("force directions have " + std::to_string(force_directions_.rows()) +
@@ -49,15 +73,6 @@ HybridSystem::HybridSystem(fem::Structure structure, std::vector<friction::Conta
   if (load_.size() > 0 && (load_.size() != n || !load_.allFinite()))
     throw InvalidInput("constant load has " + std::to_string(load_.size()) +
                        " entries or values that are not finite; " + std::to_string(n) + " finite values are expected");
-  if (W.cols() > 0) {
-    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(W);
-    qr.setThreshold(1e-12);
-    if (qr.rank() < W.cols())
-      throw InvalidInput("the directions of the " + std::to_string(W.cols()) +
-                         " contacts are linearly dependent (rank " + std::to_string(qr.rank()) +
-                         "): two contacts act on the same degree of freedom, or a reduced "
-                         "basis has fewer vectors than contacts; merge them or keep more modes");
-  }
 }
 
 HybridSystem HybridSystem::with_drive(friction::Drive drive) const {
@@ -75,6 +90,7 @@ HybridSystem HybridSystem::with_laws(std::vector<friction::Contact> contacts) co
   if (!std::ranges::equal(contacts, contacts_, same_place))
     throw InvalidInput("other laws: expected the same contacts in the same places, found others");
   for (const friction::Contact& contact : contacts) friction::validate(contact);
+  check_independence(contacts);
   HybridSystem copy = *this;
   copy.contacts_ = std::move(contacts);
   copy.cache_ = std::make_shared<SystemCache>(cache_->models());

@@ -49,7 +49,7 @@ class HybridSystem {
   /// @param load  constant load p [n], or empty for none
   /// @param force_directions  d_k: what the harmonics of a force drive act along, columns [n x nk]; may have none
   /// @throws InvalidInput  for a contact or force direction of wrong size, invalid laws or drive, linearly dependent
-  ///                       contacts, a harmonic along a direction that is not there
+  ///                       contacts that cannot share a place, a harmonic along a direction that is not there
   HybridSystem(fem::Structure structure, std::vector<friction::Contact> contacts, friction::Drive drive,
                Eigen::VectorXd load = {}, Eigen::MatrixXd force_directions = {});
 

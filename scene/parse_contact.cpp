@@ -1,4 +1,5 @@
 #include <slipmode/core/errors.hpp>
+#include <slipmode/friction/shared_place.hpp>
 #include "scene/internal/scene_parts.hpp"
 #include "scene/internal/scene_words.hpp"
 #include "scene/internal/toml_fields.hpp"
@@ -67,14 +68,14 @@ bool same_place(const ContactPlace& a, const ContactPlace& b, const Scene& scene
   return std::abs(position(a) - position(b)) <= kClosest * position(b);
 }
 
-void check_alone(TomlReader& in, const ContactPlace& place, const std::vector<ContactSpec>& others,
-                 const Scene& scene) {
+void check_alone(TomlReader& in, const ContactSpec& own, const std::vector<ContactSpec>& others, const Scene& scene) {
+  const auto can_share = [](const ContactSpec& spec) { return friction::can_share_place(friction::kind(spec.law)); };
   for (std::size_t other = 0; other < others.size(); ++other) {
-    if (!same_place(others[other].at, place, scene)) continue;
-    const bool pair = std::holds_alternative<Between>(place);
+    if (!same_place(others[other].at, own.at, scene) || (can_share(own) && can_share(others[other]))) continue;
+    const bool pair = std::holds_alternative<Between>(own.at);
     const char* where = pair ? "pair of masses" : scene.beam() == nullptr ? "mass" : "place";
     in.fail(pair ? "between" : "at", fmt::format("contact.{} is on this {} already", other, where),
-            fmt::format("one contact per {}", where));
+            fmt::format("one contact per {}, or all of them \"compliant\" or \"clearance\"", where));
   }
 }
 
@@ -108,9 +109,9 @@ std::vector<ContactSpec> read_contacts(TomlReader& in, const Scene& scene) {
   for (TomlReader& table : in.tables("contact")) {
     ContactSpec contact;
     contact.at = read_place(table, scene);
-    check_alone(table, contact.at, contacts, scene);
     contact.name = table.text_or("name", fmt::format("contact {}", contacts.size() + 1));
     contact.law = read_law(table);
+    check_alone(table, contact, contacts, scene);
     if (friction::clearance(contact.law) == nullptr) {
       contact.normal_load = read_load(table);
       contact.tilt_deg = read_tilt(table);

@@ -244,6 +244,26 @@ TEST(JenkinsBalance, BesideAStopIsAnExactOrbitToo) {
   EXPECT_EQ(own.switches, certificate.found.orbit.crossings);
 }
 
+TEST(JenkinsBalance, OfElementsOnOneDegreeOfFreedomIsThatOfTheirSum) {
+  const auto on = [](const std::vector<std::pair<double, double>>& elements) {
+    std::vector<friction::Contact> contacts;
+    for (const auto& [limit, stiffness] : elements)
+      contacts.push_back(jenkins(Eigen::VectorXd::Ones(1), limit, stiffness));
+    const HybridSystem one = rubbed_mass(0.7);
+    return HybridSystem(one.structure(), contacts, one.drive(), {}, one.force_directions());
+  };
+  const Balance whole = balance(rubbed_mass(0.7), {.harmonics = 25});
+  const Balance parts = balance(on({{0.12, 0.4}, {0.18, 0.6}}), {.harmonics = 25});
+  ASSERT_TRUE(parts.converged) << parts.message;
+  EXPECT_LT((parts.displacement[1].cosine - whole.displacement[0].cosine).norm(), 1e-11);
+  EXPECT_LT((parts.force[0].sine + parts.force[1].sine - whole.force[0].sine).norm(), 1e-11);
+  const HybridSystem iwan = on({{0.05, 0.3}, {0.1, 0.3}, {0.2, 0.4}});
+  const Certificate certificate = certify(iwan, balance(iwan, {.harmonics = 49}));
+  ASSERT_TRUE(certificate.behind) << certificate.verdict;
+  EXPECT_LT(certificate.relative, 1e-6);
+  EXPECT_EQ(certificate.found.orbit.crossings, 12);
+}
+
 TEST(JenkinsBalance, WhereNothingSlidesIsTheLinearResponseOfTheSpring) {
   const Balance own = balance(rubbed_mass(0.1), {.harmonics = 5});
   const std::complex<double> impedance(2.0 - 0.64, 0.05 * 0.8);

@@ -238,7 +238,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadValue{"between = [1, 2]\nlaw", "between = [1, 3]\nlaw", {"contact.0.between", "from 1 to 2"}},
         BadValue{"between = [1, 2]\nlaw", "between = [1]\nlaw", {"contact.0.between = [1]", "two different masses"}},
         BadValue{"[drive]",
-                 "[[contact]]\nbetween = [2, 1]\nlaw = \"clearance\"\nstop = { stiffness = 1.0, gap = 2.0 }\n[drive]",
+                 "[[contact]]\nbetween = [2, 1]\nlaw = \"coulomb\"\nmu_s = 0.1\nmu_k = 0.1\nnormal_load = 1\n[drive]",
                  {"contact.1.between", "contact.0 is on this pair of masses already"}}),
     tests::bad_value_name);
 

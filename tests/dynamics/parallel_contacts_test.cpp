@@ -1,0 +1,88 @@
+// Several contacts on one degree of freedom: those behind springs and stops add their forces.
+#include <slipmode/core/errors.hpp>
+#include <slipmode/dynamics/simulate.hpp>
+#include <slipmode/fem/masses.hpp>
+
+#include <gtest/gtest.h>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace slipmode::dynamics {
+namespace {
+
+/// One mass on a spring under 0.7 sin 0.8t, Jenkins elements (limit, stiffness) side by side, and a stop of
+/// so many equal parts.
+HybridSystem on_elements(const std::vector<std::pair<double, double>>& elements, int stops) {
+  std::vector<friction::Contact> contacts;
+  for (const auto& [limit, stiffness] : elements)
+    contacts.push_back({Eigen::VectorXd::Ones(1), friction::CompliantCoulomb{limit, limit, stiffness}, 1.0});
+  for (int part = 0; part < stops; ++part)
+    contacts.push_back(
+        {Eigen::VectorXd::Ones(1), friction::Clearance{{}, friction::Stop{.stiffness = 5.0 / stops, .gap = 0.4}}});
+  return {fem::masses({.links = {{.stiffness = 1.0, .damping = 0.05}}}),
+          contacts,
+          friction::Force{0.8, {{.amplitude = 0.7}}},
+          {},
+          Eigen::MatrixXd::Ones(1, 1)};
+}
+
+TEST(ParallelContacts, PartsOfAnElementMoveAsTheWhole) {
+  for (const int stops : {0, 1, 2}) {
+    const HybridSystem whole = on_elements({{0.3, 1.0}}, std::min(stops, 1)),
+                       parts = on_elements({{0.12, 0.4}, {0.18, 0.6}}, stops);
+    const Trajectory one = simulate(whole, whole.rest(), {.duration = 300.0});
+    const Trajectory two = simulate(parts, parts.rest(), {.duration = 300.0});
+    EXPECT_GT(one.events.size(), 100U);
+    EXPECT_NEAR(one.final_state.q[0], two.final_state.q[0], 1e-12);
+    EXPECT_NEAR(one.final_state.v[0], two.final_state.v[0], 1e-12);
+    EXPECT_LT(std::abs(two.audit.residual()), 1e-12);
+  }
+}
+
+TEST(ParallelContacts, AddUpAsAProgramOfFixedStepsAddsThem) {
+  // Runge-Kutta's rule with stretches marched as stop operators: first order where a slope jumps, some 1e-8 with
+  // 1,000,000 steps.
+  const std::vector<std::pair<double, double>> elements = {{0.05, 0.3}, {0.1, 0.3}, {0.2, 0.4}};
+  const HybridSystem system = on_elements(elements, 1);
+  const Trajectory run = simulate(system, system.rest(), {.duration = 100.0});
+  constexpr int kSteps = 1000000;
+  constexpr double h = 100.0 / kSteps;
+  std::vector<double> force(elements.size(), 0.0);
+  double q = 0.0, v = 0.0;
+  const auto at = [&](std::size_t k, double way) {
+    return std::clamp(force[k] - elements[k].second * way, -elements[k].first, elements[k].first);
+  };
+  for (int step = 0; step < kSteps; ++step) {
+    const double t = h * step;
+    const auto acceleration = [&](double ahead, double there, double speed) {
+      double sum = 0.7 * std::sin(0.8 * (t + ahead)) - there - 0.05 * speed - 5.0 * std::max(0.0, there - 0.4);
+      for (std::size_t k = 0; k < elements.size(); ++k) sum += at(k, there - q);
+      return sum;
+    };
+    const double v1 = v, a1 = acceleration(0.0, q, v1);
+    const double v2 = v + 0.5 * h * a1, a2 = acceleration(0.5 * h, q + 0.5 * h * v1, v2);
+    const double v3 = v + 0.5 * h * a2, a3 = acceleration(0.5 * h, q + 0.5 * h * v2, v3);
+    const double v4 = v + h * a3, a4 = acceleration(h, q + h * v3, v4);
+    const double way = h / 6.0 * (v1 + 2.0 * v2 + 2.0 * v3 + v4);
+    for (std::size_t k = 0; k < elements.size(); ++k) force[k] = at(k, way);
+    q += way;
+    v += h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
+  }
+  EXPECT_NEAR(run.final_state.q[0], q, 1e-7);
+  EXPECT_NEAR(run.final_state.v[0], v, 1e-7);
+  EXPECT_LT(std::abs(run.audit.residual()), 1e-12);
+}
+
+TEST(ParallelContacts, ThatStickRigidlyAreRefused) {
+  const HybridSystem system = on_elements({{0.1, 1.0}, {0.2, 1.0}}, 0);
+  std::vector<friction::Contact> rigid = system.contacts();
+  for (friction::Contact& contact : rigid) contact.law = friction::Coulomb{0.3, 0.3};
+  EXPECT_THROW((void)system.with_laws(rigid), InvalidInput);
+  rigid.front() = system.contacts().front();
+  EXPECT_THROW((void)system.with_laws(rigid), InvalidInput);
+}
+
+}  // namespace
+}  // namespace slipmode::dynamics
