@@ -81,12 +81,12 @@ double zero_between(const TrigonometricPolynomial& polynomial, double low, bool 
 
 std::vector<double> zeros(const TrigonometricPolynomial& polynomial) {
   ZeroSearch search(polynomial);
-  const auto parts = 4 * polynomial.phasors.size();
-  const double width = 2.0 * std::numbers::pi / static_cast<double>(parts), first = polynomial.at(0.0).y;
+  constexpr int kParts = 8;  // the bound tells where more are wanted
+  const double width = 2.0 * std::numbers::pi / kParts, first = polynomial.at(0.0).y;
   double low = 0.0, at_low = first;
-  for (Eigen::Index k = 1; k <= parts; ++k) {
-    const bool last = k == parts;
-    const double high = last ? 2.0 * std::numbers::pi : width * static_cast<double>(k);
+  for (int k = 1; k <= kParts; ++k) {
+    const bool last = k == kParts;
+    const double high = last ? 2.0 * std::numbers::pi : width * k;
     const double at_high = last ? first : polynomial.at(high).y;
     search.search(low, at_low, high, at_high);
     low = high;
