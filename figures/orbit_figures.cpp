@@ -174,11 +174,15 @@ std::vector<FileFigure> orbit_figures_of(const StoreReader&) {
           history_figure()};
 }
 
-std::vector<FileFigure> branch_figures_of(const StoreReader&) {
-  return {{"response",
-           "amplitude over the key, unstable orbits dashed, special points marked; of balances with their true error",
-           response},
-          {"multipliers", "moduli of the Floquet multipliers over the key", branch_multipliers}};
+std::vector<FileFigure> branch_figures_of(const StoreReader& store) {
+  std::vector<FileFigure> all = {
+      {"response",
+       "amplitude over the key, unstable orbits dashed, special points marked; of balances with their true error",
+       response}};
+  const auto has_multipliers = [](const results::StoredBranch& branch) { return branch.modulus.cols() > 0; };
+  if (std::ranges::any_of(results::load_branches(store), has_multipliers))
+    all.push_back({"multipliers", "moduli of the Floquet multipliers over the key", branch_multipliers});
+  return all;
 }
 
 }  // namespace slipmode::figures

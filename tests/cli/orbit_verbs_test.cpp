@@ -158,6 +158,36 @@ TEST_F(OrbitVerbs, BalanceWithItsTrueError) {
                  {"needs a force drive", "shooting"});
 }
 
+TEST_F(OrbitVerbs, BalanceOfFrictionBehindContactSprings) {
+  const std::string chain = SLIPMODE_SOURCE_DIR "/datasets/jenkins_chain/scene.toml";
+  const auto said = json_of({"find", chain, "--by", "balance", "--harmonics", "auto", "--error", "1e-4", "-o", "b.h5"});
+  EXPECT_TRUE(said["converged"]);
+  EXPECT_LE(said["certificate"]["relative"], 1e-4);
+  EXPECT_EQ(said["certificate"]["orbit"]["crossings"], said["switches"]);
+  EXPECT_TRUE(said["hill"]["multipliers"].is_null());
+  EXPECT_THAT(said["hill"]["message"].get<std::string>(), HasSubstr("--certify"));
+  EXPECT_EQ(said["stuck"], 0);
+  EXPECT_EQ(slipmode_in(folder, {"plot", "b.h5", "-o", "portrait.svg"}).exit_code, 0);
+  // By the alternating scheme: 512 samples miss a turning point by 0.006 rad at most, the force by its square.
+  const auto exact = json_of({"find", chain, "--by", "balance", "--harmonics", "9"});
+  const auto sampled = json_of({"find", chain, "--by", "balance", "--harmonics", "9", "--samples", "512"});
+  EXPECT_NEAR(sampled["contacts"][1]["displacement"]["cosine"][1].get<double>(),
+              exact["contacts"][1]["displacement"]["cosine"][1].get<double>(), 1e-3);
+  // At 0.65 neither contact reaches its limit, expected.toml.
+  const auto held =
+      slipmode_in(folder, {"orbit", "find", chain, "--set", "drive.omega=0.65", "--by", "balance", "--harmonics", "3"});
+  EXPECT_THAT(held.out, HasSubstr("2 of 2 contacts never slide"));
+  const auto beside = json_of({"find", chain, "--set", "contact.0.at=10", "--by", "balance", "--certify"});
+  EXPECT_TRUE(beside["certificate"]["behind"]) << "both on the last mass";
+  const auto branch = json_of({"continue", chain, "--by", "balance", "--harmonics", "5", "--over",
+                               "drive.omega=0.3:0.7", "--certify", "--every", "50", "-o", "c.h5"});
+  EXPECT_EQ(branch["branches"][0]["end"], "range");
+  EXPECT_EQ(branch["certificate"]["behind"], branch["certificate"]["certified"]);
+  EXPECT_EQ(slipmode_in(folder, {"plot", "c.h5", "-o", "response.svg"}).exit_code, 0);
+  EXPECT_NE(slipmode_in(folder, {"plot", "c.h5", "--figure", "multipliers", "-o", "none.svg"}).exit_code, 0);
+  expect_refused({"find", chain, "--by", "balance", "--set", "contact.1.mu_s=0.3"}, {"contact.1.mu_s", "shooting"});
+}
+
 TEST_F(OrbitVerbs, ContinueByBalanceWithItsTrueError) {
   const std::string two = SLIPMODE_SOURCE_DIR "/datasets/stop_2mass/scene.toml";
   const auto with = [&](std::vector<std::string> more) {
