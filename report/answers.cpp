@@ -152,7 +152,7 @@ Json accuracy(const Levels& levels, const StoreReader& store) {
   const double chosen = static_cast<double>(store.integer("validation/chosen_modes"));
   std::string text;
   if (const auto row = levels.of(chosen))
-    text = fmt::format("From shared starts ΔX grows to {:.3g} % up to the horizon.", levels.dX[*row]);
+    text = fmt::format("From shared starts ΔX is {:.3g} % over the horizon.", levels.dX[*row]);
   double worst = 0.0;
   std::size_t alike = 0, all = 0;
   for (std::size_t i = 0; i < orbits.rows(); ++i) {

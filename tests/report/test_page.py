@@ -1,5 +1,6 @@
 """The report's page in real Chromium: what clicks, sliders and keys do, and that hostile names stay text."""
 
+import json
 import os
 import pathlib
 import subprocess
@@ -238,6 +239,61 @@ class RunOfAChain(unittest.TestCase):
         self.page.frame()
 
 
+@unittest.skipUnless(chromium.executable(), "no Chromium here (Debian: chromium)")
+class FilesOfOtherKinds(unittest.TestCase):
+    BACKLASH = str(pathlib.Path(__file__).parents[2] / "datasets" / "backlash_sdof" / "scene.toml")
+    CHAIN = str(pathlib.Path(__file__).parents[2] / "datasets" / "chain10" / "scene.toml")
+
+    def look(self, words, examine, name="made.h5"):
+        with tempfile.TemporaryDirectory() as folder:
+            slipmode(*words, "-o", name, folder=folder)
+            slipmode("report", name, "-o", "page.html", folder=folder)
+            with chromium.Page(pathlib.Path(folder) / "page.html") as page:
+                examine(page)
+                self.assertEqual(page.complaints, [])
+
+    def moves(self, page, control):
+        """A control's ends give different pictures."""
+        page.run(f"document.querySelector('{control}').scrollIntoView({{block: 'center'}})")
+        pictures = []
+        for end in ("min", "max"):
+            page.run(f"""(() => {{ const own = document.querySelector('{control}');
+              own.value = own[{json.dumps(end)}]; own.dispatchEvent(new Event('input')); }})()""")
+            page.frame()
+            pictures.append(page.run("document.querySelector('canvas.structure').toDataURL()"))
+        self.assertNotEqual(*pictures)
+
+    def test_an_orbit_moves(self):
+        def examine(page):
+            self.assertIn("phase portrait of the orbit", page.run("document.body.textContent"))
+            # Half a period apart: an orbit's ends are the same.
+            page.run("document.querySelector('.scrub').max = 500")
+            self.moves(page, ".scrub")
+        self.look(("orbit", "find", self.CHAIN, "--set", "drive.speed=0.45"), examine)
+
+    def test_natural_modes_move(self):
+        self.look(("modes", self.CHAIN), lambda page: self.moves(page, ".mode"))
+
+    def test_basins_are_coloured_and_told(self):
+        def examine(page):
+            page.place(".chart svg > rect")
+            point = page.place(".chart svg > rect", 0.02, 0.02)
+            page.mouse("mouseMoved", point)
+            page.frame()
+            said = page.run("document.querySelector('.chart .readout').textContent")
+            # The corner of the plane of starts: displacement -3, velocity 3.
+            self.assertRegex(said, r"displacement at the start, q1 = -3velocity at the start, v1 = 3$")
+        self.look(("orbit", "basins", self.BACKLASH, "--over", "initial.displacement.0=-3:3:0.6", "--over",
+                   "initial.velocity.0=-3:3:0.6"), examine)
+
+    def test_a_branch_tells_stable_from_unstable(self):
+        def examine(page):
+            legend = page.run("document.querySelector('.chart svg').textContent")
+            for word in ("main branch", "unstable", "fold"):
+                self.assertIn(word, legend)
+        self.look(("orbit", "continue", self.BACKLASH, "--over", "drive.omega=1.8:1.0", "--start", "2.5,0"), examine)
+
+
 class Refusals(unittest.TestCase):
     def test_a_folder_without_results_is_told(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -248,4 +304,4 @@ class Refusals(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(verbosity=2)
