@@ -137,9 +137,9 @@ BalanceEvaluation BalanceProblem::evaluate(const Eigen::VectorXd& x) const {
 }
 
 bool BalanceProblem::leaves_means_open(const BalanceEvaluation& at) const {
-  constexpr double kRounding = 1e-12;
+  constexpr double kNothing = 1e-12;
   return std::ranges::all_of(at.forces, [](const BalancedForce& force) {
-    return force.jacobian.col(0).norm() <= kRounding * force.jacobian.norm();
+    return force.jacobian.col(0).norm() <= kNothing * force.jacobian.norm();
   });
 }
 
