@@ -30,7 +30,7 @@ double dot_size(const Eigen::VectorXd& parameter) {
 Drawing diagram_drawing(const std::vector<BifurcationPanel>& panels, const BifurcationLabels& labels, const Range& x,
                         const Range& y) {
   constexpr double kCells = 2000.0;
-  Drawing drawing;
+  Drawing drawing{.panels = {}, .x = Drawing::Shared::kAll, .y = Drawing::Shared::kAll};
   for (const BifurcationPanel& panel : panels) {
     BifurcationPanel points = thinned(panel, x, y, kCells, kCells);
     drawing.panels.push_back({.title = panel.title,

@@ -54,7 +54,8 @@ std::string curves(Figure& figure, const DeviationCase& motion, Eigen::VectorXd 
 }
 
 Drawing deviation_drawing(const std::vector<DeviationCase>& cases) {
-  Drawing drawing{.panels = {}, .columns = static_cast<int>(cases.size())};
+  Drawing drawing{
+      .panels = {}, .columns = static_cast<int>(cases.size()), .x = Drawing::Shared::kAll, .y = Drawing::Shared::kRow};
   for (const bool upper : {true, false}) {
     for (const DeviationCase& motion : cases) {
       Drawing::Axes axes{.title = motion.title,

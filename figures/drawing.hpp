@@ -41,6 +41,8 @@ struct Drawing {
   };
   std::vector<Axes> panels = {};  ///< row by row; none: the figure does not tell
   int columns = 1;
+  /// Which panels have one range, so that they can be compared by eye.
+  enum class Shared { kNone, kAll, kRow, kColumn } x = Shared::kNone, y = Shared::kNone;
 };
 
 }  // namespace slipmode::figures

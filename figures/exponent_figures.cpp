@@ -147,7 +147,7 @@ Figure exponent_sweep(const std::vector<ExponentSweep>& models, const std::strin
                              1.0 - 40.0 / figure.height()));
   figure.command("unset key");
   figure.command("set xrange " + padded_range(x.low, x.high, 0.012));
-  Drawing drawing{.panels = {}, .columns = columns};
+  Drawing drawing{.panels = {}, .columns = columns, .x = Drawing::Shared::kAll, .y = Drawing::Shared::kRow};
   const auto row = [&](bool upper) {
     figure.command("set yrange " +
                    (upper ? padded_range(slips.low, slips.high) : padded_range(exponents.low, exponents.high)));

@@ -52,7 +52,7 @@ Figure mode_shapes(const ModeShapes& shapes) {
   if (n <= 20) figure.command(columns <= 3 || n <= 5 ? "set xtics 1" : "set xtics 2");
   figure.command("set xzeroaxis linecolor rgb '#999999' linewidth 0.8 linetype 1");
   const std::string marker = n <= 60 ? "linespoints pointtype 7 pointsize 0.7" : "lines";
-  Drawing drawing{.panels = {}, .columns = columns};
+  Drawing drawing{.panels = {}, .columns = columns, .x = Drawing::Shared::kAll, .y = Drawing::Shared::kAll};
   for (int i = 0; i < count; ++i) {
     const Eigen::VectorXd pom = normalised(shapes.poms.col(i));
     const bool with_lnm = i < shapes.lnms.cols();

@@ -63,7 +63,11 @@ std::string plot_of(Figure& figure, const Panel& panel, const Ranges& ranges) {
 }
 
 Drawing drawing_of(const std::vector<Panel>& panels, const PanelLayout& layout) {
-  Drawing drawing{.panels = {}, .columns = layout.columns};
+  using enum Drawing::Shared;
+  Drawing drawing{.panels = {},
+                  .columns = layout.columns,
+                  .x = layout.shared_x ? kAll : kNone,
+                  .y = layout.shared_y ? kAll : kNone};
   for (const Panel& panel : panels) {
     drawing.panels.push_back({.title = panel.title,
                               .series = panel.series,

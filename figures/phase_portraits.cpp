@@ -27,7 +27,9 @@ struct Box {
 };
 
 Drawing portraits_drawing(const std::vector<PhasePortrait>& portraits, const PortraitLayout& layout) {
-  Drawing drawing{.panels = {}, .columns = layout.columns};
+  const Drawing::Shared shared =
+      layout.axes == PortraitLayout::Axes::kShared ? Drawing::Shared::kAll : Drawing::Shared::kColumn;
+  Drawing drawing{.panels = {}, .columns = layout.columns, .x = shared, .y = shared};
   for (const PhasePortrait& portrait : portraits)
     drawing.panels.push_back(
         {.title = portrait.title,

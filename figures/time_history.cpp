@@ -30,7 +30,7 @@ Figure time_history(const TimeHistory& history) {
                     "fillcolor rgb '{}' fillstyle solid 0.7 noborder",
                     std::max(from, begin), std::min(to, end), kStickShade));
   }
-  Drawing drawing;
+  Drawing drawing{.panels = {}, .x = Drawing::Shared::kAll};
   for (std::size_t i = 0; i < rows.size(); ++i) {
     drawing.panels.push_back({.title = i == 0 ? history.contact + ": stick is shaded" : std::string(),
                               .series = {{"", history.time, rows[i].values, Series::Look::kLine, kFullColour}},

@@ -61,7 +61,11 @@ Json drawing_json(const figures::Drawing& drawing) {
     if (axes.field) panel["field"] = field_json(*axes.field);
     panels.push_back(std::move(panel));
   }
-  return {{"columns", drawing.columns}, {"panels", std::move(panels)}};
+  constexpr const char* kShared[] = {"none", "all", "row", "column"};
+  return {{"columns", drawing.columns},
+          {"shared_x", kShared[static_cast<std::size_t>(drawing.x)]},
+          {"shared_y", kShared[static_cast<std::size_t>(drawing.y)]},
+          {"panels", std::move(panels)}};
 }
 
 Json figures_json(const results::StoreReader& store) {

@@ -39,6 +39,23 @@ std::size_t nearest(const std::vector<double>& values, double value) {
   return static_cast<std::size_t>(std::ranges::min_element(values, {}, distance) - values.begin());
 }
 
+/// Of the basis compared first, numbers of modes with which there is a reduced model: the chosen one, and others.
+std::vector<Eigen::Index> modes_of(const StoreReader& validation) {
+  const results::Table shares = results::load_table(validation, "validation/shares");
+  std::vector<Eigen::Index> made;
+  for (std::size_t i = 0; i < shares.rows(); ++i) {
+    const bool first = shares.texts("basis")[i] == shares.texts("basis").front();
+    if (first && shares.texts("failure")[i].empty())
+      made.push_back(static_cast<Eigen::Index>(shares.numbers("modes")[i]));
+  }
+  std::ranges::sort(made);
+  std::set<Eigen::Index> kept;
+  for (const std::size_t k : spread(made.size(), kMostModels)) kept.insert(made[k]);
+  const auto chosen = static_cast<Eigen::Index>(validation.integer("validation/chosen_modes"));
+  if (std::ranges::find(made, chosen) != made.end()) kept.insert(chosen);
+  return {kept.begin(), kept.end()};
+}
+
 MotionsRequest request_of(const scene::Scene& scene, const StoreReader& validation) {
   const std::vector<double> swept = results::load_table(validation, "sweep/full/values").numbers("parameter");
   std::set<std::size_t> shown = spread(swept.size(), kMostSpeeds), recorded = spread(swept.size(), kMostRecorded);
@@ -51,13 +68,7 @@ MotionsRequest request_of(const scene::Scene& scene, const StoreReader& validati
     request.speeds.push_back(swept[k]);
     request.recorded.push_back(recorded.contains(k));
   }
-  const results::Table shares = results::load_table(validation, "validation/shares");
-  std::set<Eigen::Index> tried;
-  for (const double modes : shares.numbers("modes")) tried.insert(static_cast<Eigen::Index>(modes));
-  const std::vector<Eigen::Index> all(tried.begin(), tried.end());
-  std::set<Eigen::Index> kept{static_cast<Eigen::Index>(validation.integer("validation/chosen_modes"))};
-  for (const std::size_t k : spread(all.size(), kMostModels)) kept.insert(all[k]);
-  request.modes.assign(kept.begin(), kept.end());
+  request.modes = modes_of(validation);
   return request;
 }
 
@@ -108,6 +119,7 @@ Json linked_motions(const StoreReader& validation, const StoreReader& bases, con
   const DrawnStructure structure = drawn_structure(scene);
   const pod::NamedBasis basis = studies::load_bases(scene, scene::build_system(scene), bases).front();
   MotionsRequest request = request_of(scene, validation);
+  if (request.modes.empty()) return nullptr;
   request.readings = structure.readings;
   const std::vector<MotionsOf> found = studies::motions(scene, basis, request, run);
   const results::Units units = results::Units::of(scene.units);

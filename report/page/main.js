@@ -94,10 +94,20 @@ function figure(parent, own) {
   const panels = own.drawing.panels, columns = Math.min(own.drawing.columns, panels.length, 4);
   const grid = parent.append("div").attr("class", columns > 2 ? "panels many" : "panels").style("--columns", columns);
   const height = columns === 1 ? (panels.length > 2 ? 220 : 340) : columns === 2 ? 300 : 240;
-  for (const panel of panels) {
-    const made = chart(grid.node(), {...decodedPanel(panel), what: own.what, height});
+  const decoded = panels.map(decodedPanel);
+  decoded.forEach((panel, i) => {
+    const made = chart(grid.node(), {...panel, what: own.what, height, domain: sharedDomain(own.drawing, decoded, i)});
     if (/number of modes/.test(panel.x_label)) overModes.push(made);
-  }
+  });
+}
+
+// One range for the panels that are compared by eye.
+function sharedDomain(drawing, panels, i) {
+  const columns = drawing.columns;
+  const groups = {all: () => true, row: k => Math.floor(k / columns) === Math.floor(i / columns), column: k => k % columns === i % columns};
+  const range = (shared, axis) => shared === "none" || panels[i].field ? undefined
+    : span(panels.filter((panel, k) => groups[shared](k)).flatMap(panel => panel.series.map(series => series[axis])), panels[i][`log_${axis}`]);
+  return {x: range(drawing.shared_x, "x"), y: range(drawing.shared_y, "y")};
 }
 
 function provenance(parent, own) {

@@ -18,7 +18,7 @@ function stickStretches(own) {
 
 function motionSection(main, own, diagram) {
   const label = own.labels, speeds = own.speeds;
-  const state = {speed: Math.max(0, speeds.indexOf(own.own_speed)), model: own.models.findIndex(model => model.modes === own.chosen),
+  const state = {speed: Math.max(0, speeds.indexOf(own.own_speed)), model: Math.max(1, own.models.findIndex(model => model.modes === own.chosen)),
     time: 0, playing: !kStill};
   const made = section(main, "motions", "Motions at a speed",
     `Click a speed in the diagram, or use the sliders. Motions are kept at ${speeds.length} speeds: the nearest is shown. ` +
