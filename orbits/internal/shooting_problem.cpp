@@ -15,6 +15,26 @@ using dynamics::State;
 
 double largest(const Eigen::VectorXd& x) { return x.size() > 0 ? x.cwiseAbs().maxCoeff() : 0.0; }
 
+/// What a contact does in the mirror image of a motion.
+ContactMode mirrored(ContactMode mode) {
+  switch (mode) {
+    case ContactMode::kSlipNegative:
+      return ContactMode::kSlipPositive;
+    case ContactMode::kSlipPositive:
+      return ContactMode::kSlipNegative;
+    case ContactMode::kLeftStop:
+      return ContactMode::kRightStop;
+    case ContactMode::kRightStop:
+      return ContactMode::kLeftStop;
+    case ContactMode::kLeftFlight:
+      return ContactMode::kRightFlight;
+    case ContactMode::kRightFlight:
+      return ContactMode::kLeftFlight;
+    default:
+      return mode;
+  }
+}
+
 }  // namespace
 
 ShootingProblem::ShootingProblem(const dynamics::HybridSystem& system, const ShootingOptions& options, OrbitKind kind)
@@ -142,6 +162,7 @@ ShootingPoint ShootingProblem::moved(const ShootingEvaluation& at, const Eigen::
     node = with_coordinates(node, stacked(at.point.nodes[k]) + scale_.cwiseProduct(step));
     node.time = out.nodes[0].time + length * static_cast<double>(k);
     node.modes = at.ends[(k + count - 1) % count].modes;
+    if (k == 0 && options_.half_period) std::ranges::transform(node.modes, node.modes.begin(), mirrored);
     put_on_constraint(node);
     if (k + 1 == count) break;
     step = at.transfer[k] * step + share * at.mismatch[k];
