@@ -52,8 +52,8 @@ std::vector<StoreReader> stores_of(const std::vector<fs::path>& inputs) {
       stores.emplace_back(input);
     }
   }
-  std::ranges::stable_partition(
-      stores, [](const StoreReader& store) { return results::kind_of(store) == FileKind::kValidation; });
+  std::stable_partition(stores.begin(), stores.end(),
+                        [](const StoreReader& store) { return results::kind_of(store) == FileKind::kValidation; });
   return stores;
 }
 
