@@ -1,3 +1,4 @@
+#include <slipmode/diagnostics/attractors/sweep.hpp>
 #include <slipmode/scene/own_times.hpp>
 #include <slipmode/studies/basins.hpp>
 #include <slipmode/studies/orbit_map.hpp>
@@ -103,6 +104,10 @@ Result orbit_map(const Scene& scene, const std::vector<Pair>& given_over, const 
 }  // namespace
 
 void add_sweeps(py::module_& module) {
+  module.def(
+      "values", &diagnostics::sweep_values, py::arg("start"), py::arg("stop"), py::arg("step"),
+      "Values of a range, both ends included: to the last bit those of the executable's START:STOP:STEP, so that\n"
+      "a study begun by one goes on in the other.");
   const std::string output = "    output: result file; an interrupted call goes on from there\n";
   module.def("sweep", &sweep, py::arg("scene"), py::arg("over"), py::arg("values"),
              ("Settled motion over values of a key.\n\n    over: key of the scene, e.g. \"drive.speed\"\n" +

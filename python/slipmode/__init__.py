@@ -409,6 +409,7 @@ orbit_map = _study("orbit_map")
 basins = _study("basins")
 exponents = _study("exponents")
 run = _study("run", list)
+values = _slipmode.values
 
 
 def modes(scene, count=0):

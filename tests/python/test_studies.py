@@ -3,6 +3,7 @@
 import io
 import os
 import pathlib
+import shutil
 import signal
 import subprocess
 import tempfile
@@ -258,15 +259,16 @@ class Refused(unittest.TestCase):
 
 class GoesOn(unittest.TestCase):
     def test_an_interrupted_sweep_is_taken_up_from_its_file(self):
-        scene = sm.Scene.load(CHAIN, set={**SHORT, "validation.transient": 2000.0, "validation.sweep_limit": 20000.0,
-                                          "validation.block": 1000.0})
-        speeds = np.linspace(0.1, 0.5, 200)
+        changes = {**SHORT, "validation.transient": 2000.0, "validation.sweep_limit": 20000.0,
+                   "validation.block": 1000.0}
+        scene = sm.Scene.load(CHAIN, set=changes)
+        speeds = sm.values(0.1, 0.5, 0.002)
         with tempfile.TemporaryDirectory() as folder:
             output = pathlib.Path(folder) / "sweep.h5"
             journal = pathlib.Path(f"{output}.journal")
 
             def interrupt():
-                while not journal.exists() or journal.stat().st_size < 4000:  # some values of the 200
+                while not journal.exists() or journal.stat().st_size < 4000:  # some values of the 201
                     time.sleep(1e-3)
                 os.kill(os.getpid(), signal.SIGINT)
 
@@ -276,8 +278,18 @@ class GoesOn(unittest.TestCase):
                 sm.sweep(scene, "drive.speed", speeds, output=output)
             thread.join()
             self.assertEqual([path.name for path in output.parent.iterdir()], ["sweep.h5.journal"])
+            theirs = pathlib.Path(folder + "_theirs")
+            self.addCleanup(shutil.rmtree, theirs)
+            shutil.copytree(folder, theirs)
             few = sm.sweep(scene, "drive.speed", speeds, output=output)
             self.assertEqual([path.name for path in output.parent.iterdir()], ["sweep.h5"])
+            # The executable takes it up from the same journal.
+            said = subprocess.run(
+                [EXECUTABLE, "sweep", CHAIN, "--over", "drive.speed=0.1:0.5:0.002", "-o", theirs / "sweep.h5",
+                 *(word for key, value in changes.items() for word in ("--set", f"{key}={value!r}"))],
+                capture_output=True, text=True, check=True)
+            self.assertIn("taken over from an interrupted run", said.stdout)
+            self.assertEqual(output.read_bytes(), (theirs / "sweep.h5").read_bytes())
             again = sm.read(output)
             self.assertEqual(sorted(again._store.names()), sorted(few._store.names()))
         fresh = sm.sweep(scene, "drive.speed", speeds)
