@@ -3,6 +3,7 @@
 #include "cli/verbs.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <filesystem>
 
 namespace slipmode::cli {
@@ -13,8 +14,17 @@ struct ReportArguments {
   std::string output = "report.html";
 };
 
+/// A page must not replace what it is made from.
+void require_other(const std::string& output, const std::vector<std::string>& inputs) {
+  namespace fs = std::filesystem;
+  const auto is_output = [&](const std::string& input) { return fs::exists(input) && fs::equivalent(input, output); };
+  if (fs::path(output).extension() == ".h5" || (fs::exists(output) && std::ranges::any_of(inputs, is_output)))
+    throw InvalidInput(fmt::format("-o {}: would replace a result; expected another name, e.g. report.html", output));
+}
+
 Report run(const Session& session, const ReportArguments& arguments) {
   report::require_available();
+  require_other(arguments.output, arguments.inputs);
   require_writable(arguments.output);
   const std::string page = report::page({arguments.inputs.begin(), arguments.inputs.end()}, session.run_options());
   write_renamed(arguments.output, page);

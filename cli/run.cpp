@@ -43,6 +43,22 @@ Report interrupted(const WorkFolder& folder) {
   return report;
 }
 
+/// The page beside the results, where this build has one. What keeps it from being made does them no harm.
+std::string add_page(const std::filesystem::path& folder, const std::vector<std::string>& names,
+                     const std::string& output, const studies::RunOptions& options) {
+  if (!report::is_available()) return "";
+  try {
+    std::vector<std::filesystem::path> files;
+    for (const std::string& name : names) files.push_back(folder / name);
+    write_text(folder / "report.html", report::page(files, options));
+    return fmt::format("To look at it all, in a browser: {}/report.html\n", output);
+  } catch (const Interrupted&) {
+    return fmt::format("No report.html: interrupted; 'slipmode report {} -o FILE' makes it\n", output);
+  } catch (const std::exception& failure) {
+    return fmt::format("No report.html: {}\n", failure.what());
+  }
+}
+
 Report run(const Session& session, const RunArguments& arguments) {
   const scene::Scene scene = scene::with_own_times(session.load(arguments.scene));
   figures::require_gnuplot();
@@ -56,12 +72,7 @@ Report run(const Session& session, const RunArguments& arguments) {
     write_text(folder.path() / "summary.txt", out.text);
     folder.finish();
     out.text += fmt::format("Results and figures (*.svg, *.png): {}\n", arguments.output);
-    if (report::is_available()) {
-      std::vector<std::filesystem::path> files;
-      for (const std::string& name : result.files) files.push_back(folder.target() / name);
-      write_text(folder.target() / "report.html", report::page(files, {.threads = session.threads}));
-      out.text += fmt::format("To look at it all, in a browser: {}\n", arguments.output + "/report.html");
-    }
+    out.text += add_page(folder.target(), result.files, arguments.output, session.run_options());
     return out;
   } catch (const NumericalFailure& failure) {
     folder.keep();

@@ -19,6 +19,8 @@ using results::Table;
 /// Slip states within so many times the distance of two full runs are taken for the full model's own, as in
 /// diagnostics::ValidationOptions::grow.
 constexpr double kScatter = 3.0;
+/// What counts as good: deviations on periodic orbits [%], and how many times faster.
+constexpr double kAccurate = 5.0, kPays = 1.5;
 
 Json answer(const char* question, std::string text, const char* tone) {
   return {{"question", question}, {"answer", std::move(text)}, {"tone", tone}};
@@ -144,7 +146,7 @@ Json saving(const StoreReader& store) {
                   gain > 1.05   ? fmt::format("{:.3g} times faster", gain)
                   : gain < 0.95 ? fmt::format("{:.3g} times slower, it saves nothing at this size", 1.0 / gain)
                                 : std::string("no difference at this size")),
-      gain > 1.05 ? "good" : "fair");
+      gain > kPays ? "good" : "fair");
 }
 
 Json accuracy(const Levels& levels, const StoreReader& store) {
@@ -170,7 +172,8 @@ Json accuracy(const Levels& levels, const StoreReader& store) {
         worst, alike, all);
   else if (all > 0)
     text += fmt::format(" At none of {} speeds has it the full model's periodic orbit.", all);
-  return answer("How accurate is it?", std::move(text), all > 0 && alike == all ? "good" : "fair");
+  return answer("How accurate is it?", std::move(text),
+                all > 0 && alike == all && worst <= kAccurate ? "good" : "fair");
 }
 
 }  // namespace
@@ -193,7 +196,7 @@ Json belt_answers(const StoreReader& validation) {
     out.push_back(answer("Where?", std::move(text), tone));
   }
   if (validation.has("validation/cost")) out.push_back(saving(validation));
-  out.push_back(accuracy(levels, validation));
+  if (Json last = accuracy(levels, validation); last["answer"] != "") out.push_back(std::move(last));
   return out;
 }
 

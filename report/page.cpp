@@ -24,11 +24,11 @@ namespace fs = std::filesystem;
 using results::FileKind;
 using results::StoreReader;
 
-/// The result files in a folder, in the order of their names; those of other programs are passed over.
+/// The result files in a folder, in the order of their names; HDF5 files of other programs are passed over.
 std::vector<StoreReader> stores_in(const fs::path& folder) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.path().extension() == ".h5") files.push_back(entry.path());
+    if (entry.is_regular_file() && entry.path().extension() == ".h5") files.push_back(entry.path());
   }
   std::ranges::sort(files);
   std::vector<StoreReader> stores;
@@ -73,9 +73,19 @@ std::string quoted(const std::string& word) {
   return out + "'";
 }
 
+/// Files side by side, of the same scene.
+bool belong_together(const StoreReader& a, const StoreReader& b) {
+  if (fs::absolute(a.path()).parent_path() != fs::absolute(b.path()).parent_path()) return false;
+  if (!a.has("provenance") || !b.has("provenance")) return false;
+  const results::Provenance one = results::load_provenance(a), other = results::load_provenance(b);
+  return one.scene_path == other.scene_path && one.overrides == other.overrides;
+}
+
 /// Of `slipmode run` every word is known; other verbs keep what they computed, not all they started from.
 bool is_of_run(const std::vector<StoreReader>& stores) {
-  return stores.size() > 1 && first_of(stores, FileKind::kTrajectory) != nullptr;
+  const StoreReader* run = first_of(stores, FileKind::kTrajectory);
+  return run != nullptr && run->has("provenance") && results::load_provenance(*run).command == "slipmode run" &&
+         std::ranges::all_of(stores, [run](const StoreReader& store) { return belong_together(*run, store); });
 }
 
 std::string command_of(const std::vector<StoreReader>& stores) {
@@ -124,7 +134,8 @@ Json document(const std::vector<StoreReader>& stores) {
 Json motions_of(const std::vector<StoreReader>& stores, const studies::RunOptions& run) {
   const StoreReader* validation = first_of(stores, FileKind::kValidation);
   const StoreReader* pod = first_of(stores, FileKind::kPod);
-  return validation != nullptr && pod != nullptr ? linked_motions(*validation, *pod, run) : Json(nullptr);
+  const bool linked = validation != nullptr && pod != nullptr && belong_together(*validation, *pod);
+  return linked ? linked_motions(*validation, *pod, run) : Json(nullptr);
 }
 
 std::string deflated(const std::string& text) {

@@ -39,7 +39,7 @@ changed() {
 compile_alone() {
   local seconds=$1
   configure
-  local file like all wanted=() headers=()
+  local file like all to_compile wanted=() headers=()
   while read -r file; do
     if [[ $file == *.cpp ]]; then
       wanted+=("/$file")
@@ -48,18 +48,17 @@ compile_alone() {
     fi
   done
   all=$(commands)
-  {
+  to_compile=$({
     for file in "${wanted[@]}"; do grep -m1 -F "$file" <<<"$all" || true; done
     for file in "${headers[@]}"; do  # as a source of its room: each room links what it needs
       like=$(grep -m1 "/${file%%/*}/[^ ]*$" <<<"$all")
       printf "echo '#include \"%s\"' | %s -x c++ -\n" "$file" "${like% *}"
     done
-  } | (
-    cd "$build"
-    # 143: stopped by timeout.
-    tr '\n' '\0' | timeout --preserve-status "$seconds" xargs -0 -r -P "$(nproc)" -I{} bash -c '{} || exit 255' ||
-      [[ $? -eq 143 ]]
-  )
+  })
+  [[ -n $to_compile ]] || return 0
+  # 143: stopped by timeout.
+  (cd "$build" && timeout --preserve-status "$seconds" xargs -0 -P "$(nproc)" -I{} bash -c '{} || exit 255' \
+    < <(tr '\n' '\0' <<<"$to_compile")) || [[ $? -eq 143 ]]
 }
 
 check_everything-alone() { git ls-files '*.hpp' '*.cpp' | grep -vE '^(tests|bench|fuzz|examples)/|/kernels/' | compile_alone 3600; }

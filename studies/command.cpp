@@ -5,7 +5,7 @@
 #include <slipmode/results/journal.hpp>
 
 #include <algorithm>
-#include <cstdlib>
+#include <cmath>
 
 namespace slipmode::studies {
 namespace {
@@ -15,9 +15,10 @@ std::optional<std::string> range_text(const std::vector<double>& values) {
   if (values.size() < 2) return fmt::format("{0}:{0}:1", values.front());
   const std::string to = fmt::format("{:.12g}", values.back()),
                     step = fmt::format("{:.12g}", std::abs(values[1] - values[0]));
-  const double stride = *number_in<double>(step);
-  if (stride == 0.0 || diagnostics::sweep_values(values.front(), *number_in<double>(to), stride) != values)
-    return std::nullopt;
+  const double stride = *number_in<double>(step), end = *number_in<double>(to);
+  const double count = std::abs(end - values.front()) / stride + 1.0;
+  if (!(std::abs(count - static_cast<double>(values.size())) < 0.5)) return std::nullopt;
+  if (diagnostics::sweep_values(values.front(), end, stride) != values) return std::nullopt;
   return fmt::format("{}:{}:{}", values.front(), to, step);
 }
 

@@ -42,7 +42,6 @@ State reflected(State state) {
   state.q = -state.q;
   state.v = -state.v;
   state.internal = -state.internal;
-  state.modes.clear();
   return state;
 }
 
@@ -117,7 +116,8 @@ void add_motion(PeriodicOrbit& orbit, ShootingProblem& problem, const ShootingEv
     orbit.half_multipliers = sorted_eigenvalues(-product);
     State second = reflected(orbit.start);
     second.time = at.ends.back().time;
-    const dynamics::TangentResult half = problem.flow().run(second, 0.5 * orbit.period);
+    second.modes = at.ends.back().modes;
+    const dynamics::TangentResult half = problem.flow().run(problem.runnable(second), 0.5 * orbit.period);
     orbit.events.insert(orbit.events.end(), half.events.begin(), half.events.end());
     orbit.start.modes = half.end.modes;
     product = scale.cwiseInverse().asDiagonal() * half.monodromy * scale.asDiagonal() * product;
@@ -174,10 +174,9 @@ PeriodicOrbit describe_orbit(ShootingProblem& problem, const ShootingEvaluation&
   orbit.repeats = count_repeats(problem, orbit);
   orbit.family = orbit_family(problem, at, orbit);
   if (orbit.family.cols() > 0)
-    orbit.family_note =
-        "one of a family of " + std::to_string(orbit.family.cols()) +
-        (orbit.family.cols() == 1 ? " parameter" : " parameters") +
-        ": shifted along `family` it is an orbit again, as of a structure that floats between its stops";
+    orbit.family_note = "one of a family of " + std::to_string(orbit.family.cols()) +
+                        (orbit.family.cols() == 1 ? " parameter" : " parameters") +
+                        ": shifted along `family` it is an orbit again, as of a structure that nothing holds there";
   orbit.trivial_multipliers = (problem.period_unknown() ? 1 : 0) + static_cast<int>(orbit.family.cols());
   set_stability(orbit, options.marginal_band);
   orbit.grazing = closest_to_grazing(orbit.events);

@@ -31,6 +31,8 @@ TEST(CompliantOrbits, HalfPeriodsFindTheOrbitOfWholeOnesWhereBothContactsSlideAt
   EXPECT_TRUE(whole.symmetric);
   EXPECT_EQ(whole.start.modes, std::vector<ContactMode>(2, ContactMode::kSlipPositive));
   EXPECT_EQ(half.word, whole.word);
+  EXPECT_EQ(half.crossings, whole.crossings);
+  EXPECT_EQ(half.events.size(), whole.events.size());
   EXPECT_LT((stacked(half.start) - stacked(whole.start)).cwiseAbs().maxCoeff(), 1e-9);
 }
 
