@@ -48,7 +48,7 @@ SLIPMODE_LANES_INLINE void products(const double* A, Index rows, Index columns, 
       sum_columns<2, vectors>(A, rows, columns, x, at);
     else
       sum_columns<1, vectors>(A, rows, columns, x, at);
-    A += kLanes * blocks;
+    if (columns > 0) A += kLanes * blocks;  // without columns there may be no A
     for (int k = 0; k < vectors; ++k) at[k] += kLanes * blocks;
     left -= blocks;
   }
