@@ -196,7 +196,8 @@ Json belt_answers(const StoreReader& validation) {
     out.push_back(answer("Where?", std::move(text), tone));
   }
   if (validation.has("validation/cost")) out.push_back(saving(validation));
-  if (Json last = accuracy(levels, validation); last["answer"] != "") out.push_back(std::move(last));
+  Json last = accuracy(levels, validation);
+  if (!last["answer"].get_ref<const std::string&>().empty()) out.push_back(std::move(last));
   return out;
 }
 
