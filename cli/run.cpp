@@ -49,6 +49,7 @@ std::string add_page(const std::filesystem::path& folder, const std::vector<std:
   if (!report::is_available()) return "";
   try {
     std::vector<std::filesystem::path> files;
+    files.reserve(names.size());
     for (const std::string& name : names) files.push_back(folder / name);
     write_text(folder / "report.html", report::page(files, options));
     return fmt::format("To look at it all, in a browser: {}/report.html\n", output);
