@@ -17,13 +17,9 @@ Report run(const Session& session, const MergeArguments& arguments) {
     throw InvalidInput("merge: --set and --seed have no use here, the parts hold their scene; give them with --shard");
   }
   std::vector<results::Part> parts;
-  for (const std::string& path : arguments.parts) {
-    parts.push_back(results::read_part(path));
-    std::error_code none;
-    if (std::filesystem::equivalent(path, arguments.output, none)) {
-      throw InvalidInput(fmt::format("-o {}: is one of the parts; give the result another name", arguments.output));
-    }
-  }
+  for (const std::string& path : arguments.parts) parts.push_back(results::read_part(path));
+  if (is_among(arguments.output, arguments.parts))
+    throw InvalidInput(fmt::format("-o {}: is one of the parts; give the result another name", arguments.output));
   results::check_parts(parts);
   // The parts' own verb, with their values: the same code writes the result as in one process.
   const std::vector<std::string> words = parts.front().head.words;

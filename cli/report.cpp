@@ -3,7 +3,6 @@
 #include "cli/verbs.hpp"
 
 #include <fmt/format.h>
-#include <algorithm>
 #include <filesystem>
 
 namespace slipmode::cli {
@@ -16,9 +15,7 @@ struct ReportArguments {
 
 /// A page must not replace what it is made from.
 void require_other(const std::string& output, const std::vector<std::string>& inputs) {
-  namespace fs = std::filesystem;
-  const auto is_output = [&](const std::string& input) { return fs::exists(input) && fs::equivalent(input, output); };
-  if (fs::path(output).extension() == ".h5" || (fs::exists(output) && std::ranges::any_of(inputs, is_output)))
+  if (std::filesystem::path(output).extension() == ".h5" || is_among(output, inputs))
     throw InvalidInput(fmt::format("-o {}: would replace a result; expected another name, e.g. report.html", output));
 }
 

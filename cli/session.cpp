@@ -61,6 +61,13 @@ void Session::check_interrupt() const {
   if (stop != nullptr && stop->load()) throw Interrupted();
 }
 
+bool is_among(const std::string& output, const std::vector<std::string>& inputs) {
+  return std::ranges::any_of(inputs, [&output](const std::string& input) {
+    std::error_code none;
+    return std::filesystem::equivalent(input, output, none);
+  });
+}
+
 void tell_resumed(const Session& session, std::size_t resumed, const std::string& what, Report& out_report) {
   out_report.data["resumed"] = resumed;
   if (resumed == 0) return;

@@ -65,6 +65,9 @@ struct Report {
 
 using results::require_writable;
 
+/// True when a result would replace one of the files, or folders, it is made from.
+[[nodiscard]] bool is_among(const std::string& output, const std::vector<std::string>& inputs);
+
 /// Says what an interrupted run, or the parts, had finished. @param what  is counted: "values", "rows"
 void tell_resumed(const Session& session, std::size_t resumed, const std::string& what, Report& out_report);
 

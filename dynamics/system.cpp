@@ -3,7 +3,6 @@
 #include <slipmode/core/decompositions.hpp>
 #include <slipmode/core/errors.hpp>
 #include <slipmode/dynamics/cache.hpp>
-#include <slipmode/friction/shared_place.hpp>
 #include "dynamics/internal/drive_cache.hpp"
 
 #include <algorithm>

@@ -31,6 +31,12 @@ enum class LawKind : std::uint8_t {
   return kind == LawKind::kCompliant || kind == LawKind::kBristle;
 }
 
+/// Several contacts of such laws may act on one displacement: behind springs and at stops each one's force follows from
+/// its own state, whatever acts beside it. What sticks rigidly must be told apart by its motion.
+[[nodiscard]] constexpr bool can_share_place(LawKind kind) {
+  return kind == LawKind::kCompliant || kind == LawKind::kClearance;
+}
+
 /// How fast a contact and what it is attached to can move.
 struct Pace {
   double load = 0.0;          ///< N [N]

@@ -19,7 +19,17 @@ Json stepped(const Eigen::VectorXd& values, double steps) {
     high = std::max(high, value);
   }
   if (!(high >= low)) low = high = 0.0;
-  const double step = high > low ? (high - low) / steps : 1.0;
+  return stepped_json(values, low, high > low ? (high - low) / steps : 1.0);
+}
+
+}  // namespace
+
+Json number_json(double value) {
+  if (!std::isfinite(value)) return nullptr;
+  return std::stod(fmt::format("{:.7g}", value));
+}
+
+Json stepped_json(const Eigen::VectorXd& values, double low, double step) {
   Json differences = Json::array();
   std::int64_t last = 0;
   for (const double value : values) {
@@ -32,13 +42,6 @@ Json stepped(const Eigen::VectorXd& values, double steps) {
     last = now;
   }
   return {{"low", low}, {"step", step}, {"d", std::move(differences)}};
-}
-
-}  // namespace
-
-Json number_json(double value) {
-  if (!std::isfinite(value)) return nullptr;
-  return std::stod(fmt::format("{:.7g}", value));
 }
 
 Json list_json(const Eigen::VectorXd& values, Grain grain, bool logarithmic) {

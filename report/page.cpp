@@ -2,6 +2,7 @@
 
 #include <slipmode/core/errors.hpp>
 #include <slipmode/results/file_kind.hpp>
+#include <slipmode/results/part.hpp>
 #include <slipmode/results/provenance.hpp>
 #include <slipmode/scene/shaken.hpp>
 #include "report/internal/answers.hpp"
@@ -22,6 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using results::FileKind;
+using results::shell_word;
 using results::StoreReader;
 
 /// The result files in a folder, in the order of their names; HDF5 files of other programs are passed over.
@@ -62,15 +64,10 @@ const StoreReader* first_of(const std::vector<StoreReader>& stores, FileKind kin
   return found == stores.end() ? nullptr : &*found;
 }
 
-/// As a shell takes it.
-std::string quoted(const std::string& word) {
-  const bool plain = !word.empty() && word.find_first_not_of(
-                                          "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                          "0123456789_-./=,:+") == std::string::npos;
-  if (plain) return word;
-  std::string out = "'";
-  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
+/// The first that says where it came from.
+const StoreReader* first_with_provenance(const std::vector<StoreReader>& stores) {
+  const auto found = std::ranges::find_if(stores, [](const StoreReader& store) { return store.has("provenance"); });
+  return found == stores.end() ? nullptr : &*found;
 }
 
 /// Files side by side, of the same scene.
@@ -88,26 +85,21 @@ bool is_of_run(const std::vector<StoreReader>& stores) {
          std::ranges::all_of(stores, [run](const StoreReader& store) { return belong_together(*run, store); });
 }
 
-std::string command_of(const std::vector<StoreReader>& stores) {
-  const auto own = std::ranges::find_if(stores, [](const StoreReader& store) { return store.has("provenance"); });
-  if (own == stores.end()) return {};
-  const bool run = is_of_run(stores);
-  const results::Provenance provenance = results::load_provenance(*own);
-  std::string words = (run ? "slipmode run" : provenance.command) + " " + quoted(provenance.scene_path);
-  for (const std::string& set : provenance.overrides) words += " --set " + quoted(set);
-  const fs::path made = run ? fs::absolute(own->path()).parent_path() : own->path();
-  return words + " -o " + quoted(made.filename().string());
+std::string command_of(const StoreReader& own, bool of_run) {
+  const results::Provenance provenance = results::load_provenance(own);
+  std::string words = (of_run ? "slipmode run" : provenance.command) + " " + shell_word(provenance.scene_path);
+  for (const std::string& set : provenance.overrides) words += " --set " + shell_word(set);
+  const fs::path made = of_run ? fs::absolute(own.path()).parent_path() : own.path();
+  return words + " -o " + shell_word(made.filename().string());
 }
 
 Json document(const std::vector<StoreReader>& stores) {
+  const StoreReader* own = first_with_provenance(stores);
+  const bool of_run = is_of_run(stores);
   Json out = {{"version", results::version()},
               {"commit", results::git_commit()},
-              {"command", command_of(stores)},
-              {"repeats", is_of_run(stores)}};
-  const StoreReader* own = nullptr;
-  for (const StoreReader& store : stores) {
-    if (own == nullptr && store.has("provenance")) own = &store;
-  }
+              {"command", own == nullptr ? std::string() : command_of(*own, of_run)},
+              {"repeats", of_run}};
   out["title"] = stores.front().path().filename().string();
   out["answers"] = Json::array();
   if (own != nullptr) {

@@ -68,16 +68,7 @@ DrawnStructure drawn_structure(const scene::Scene& scene) {
 Json shapes_json(const Eigen::MatrixXd& shapes) {
   const double low = shapes.minCoeff(), high = shapes.maxCoeff(), step = high > low ? (high - low) / 250.0 : 1.0;
   Json rows = Json::array();
-  for (const auto& row : shapes.rowwise()) {
-    Json differences = Json::array();
-    std::int64_t last = 0;
-    for (const double value : row) {
-      const std::int64_t now = std::llround((value - low) / step);
-      differences.push_back(now - last);
-      last = now;
-    }
-    rows.push_back({{"low", low}, {"step", step}, {"d", std::move(differences)}});
-  }
+  for (const auto& row : shapes.rowwise()) rows.push_back(stepped_json(row.transpose(), low, step));
   return rows;
 }
 

@@ -1,5 +1,4 @@
 #include <slipmode/core/errors.hpp>
-#include <slipmode/friction/shared_place.hpp>
 #include "scene/internal/scene_parts.hpp"
 #include "scene/internal/scene_words.hpp"
 #include "scene/internal/toml_fields.hpp"

@@ -6,7 +6,7 @@
 #           sources, which hides an include that is missing. What is not reached after three minutes stays unread, changed
 #           sources come first. everything-alone: all of them, some ten minutes of processor
 #   tidy    clang-tidy on the sources that changed since the previous commit, three minutes too
-# Both read with clang, which takes half of GCC's time.
+# Both read with clang, which takes some 60 % of GCC's time.
 # By default format, alone and tidy.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

@@ -39,6 +39,8 @@ std::string option_name(const char* field) {
   return name;
 }
 
+std::string model_option(const std::string& model) { return model == "full" ? "" : " --model " + model; }
+
 std::string command_text(const std::string& verb, const std::vector<Over>& over, const std::string& options) {
   std::string text = "slipmode " + verb;
   for (const Over& one : over) text += " --over " + over_text(one);

@@ -32,6 +32,9 @@ template <class S>
   return text;
 }
 
+/// " --model pomf:3"; nothing for the full model.
+[[nodiscard]] std::string model_option(const std::string& model);
+
 /// "drive.speed=0.5:0.001:0.001". Values that no such range gives are named by their number, ends and a fingerprint.
 [[nodiscard]] std::string over_text(const Over& over);
 

@@ -152,7 +152,7 @@ std::string command_of(const std::string& key, const std::string& model, const O
   if (search.guess)
     start = fmt::format(" --start {},{}", fmt::join(search.guess->q, ","), fmt::join(search.guess->v, ","));
   return fmt::format("slipmode orbit continue --over {}={}:{}{}{}{}{}", key, request.from, request.to,
-                     model == "full" ? "" : " --model " + model, options_text(search), start, options_text(request));
+                     model_option(model), options_text(search), start, options_text(request));
 }
 
 Continuation continue_orbit(const scene::Scene& scene, const std::string& key,

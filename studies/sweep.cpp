@@ -64,7 +64,7 @@ Pieces pieces(const std::vector<double>& values, const SweepOptions& options) {
 std::string command_of(const Over& over, const std::string& model, const SweepOptions& options) {
   SweepOptions said = options;
   if (!said.follow) said.segments = SweepOptions().segments;  // they decide nothing then
-  return command_text("sweep", {over}, (model == "full" ? "" : " --model " + model) + options_text(said));
+  return command_text("sweep", {over}, model_option(model) + options_text(said));
 }
 
 Sweep sweep(const Family& family, const std::vector<double>& values, const SweepOptions& options,

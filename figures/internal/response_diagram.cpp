@@ -75,7 +75,7 @@ std::vector<std::string> kinds_of(const std::vector<ResponseMark>& marks) {
 }
 
 void add_marks(Figure& figure, const std::vector<ResponseMark>& marks, std::vector<std::string>& plots,
-               std::vector<Series>& drawn) {
+               std::vector<Series>& out_drawn) {
   constexpr std::array kSymbols = {7, 5, 9, 13, 6, 4, 8, 12, 2};  // filled, then open ones
   constexpr std::array<std::string_view, 4> kColours = {kLnmColour, kSecondColour, "#CC79A7", "#E69F00"};
   std::vector<std::string> kinds = kinds_of(marks);
@@ -85,7 +85,7 @@ void add_marks(Figure& figure, const std::vector<ResponseMark>& marks, std::vect
     for (const ResponseMark& mark : marks) {
       if (mark.kind == kinds[k]) points.add(mark.parameter, mark.value);
     }
-    drawn.push_back(
+    out_drawn.push_back(
         {kinds[k], to_vector(points.x), to_vector(points.y), Series::Look::kPoints, kColours[k % kColours.size()]});
     plots.push_back(fmt::format("{} using 1:2 with points pointtype {} pointsize 1.1 linecolor rgb '{}' title \"{}\"",
                                 points.data(figure), kSymbols[k % kSymbols.size()], kColours[k % kColours.size()],

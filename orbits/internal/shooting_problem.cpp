@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace slipmode::orbits {
 namespace {
@@ -17,22 +18,14 @@ double largest(const Eigen::VectorXd& x) { return x.size() > 0 ? x.cwiseAbs().ma
 
 /// What a contact does in the mirror image of a motion.
 ContactMode mirrored(ContactMode mode) {
-  switch (mode) {
-    case ContactMode::kSlipNegative:
-      return ContactMode::kSlipPositive;
-    case ContactMode::kSlipPositive:
-      return ContactMode::kSlipNegative;
-    case ContactMode::kLeftStop:
-      return ContactMode::kRightStop;
-    case ContactMode::kRightStop:
-      return ContactMode::kLeftStop;
-    case ContactMode::kLeftFlight:
-      return ContactMode::kRightFlight;
-    case ContactMode::kRightFlight:
-      return ContactMode::kLeftFlight;
-    default:
-      return mode;
+  using enum ContactMode;
+  constexpr std::pair<ContactMode, ContactMode> kPairs[] = {
+      {kSlipNegative, kSlipPositive}, {kLeftStop, kRightStop}, {kLeftFlight, kRightFlight}};
+  for (const auto& [one, other] : kPairs) {
+    if (mode == one) return other;
+    if (mode == other) return one;
   }
+  return mode;
 }
 
 }  // namespace

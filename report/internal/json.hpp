@@ -20,4 +20,7 @@ enum class Grain { kFine, kCoarse };
 /// number. @param logarithmic  of the logarithms, with "log": true, where the axis is
 [[nodiscard]] Json list_json(const Eigen::VectorXd& values, Grain grain = Grain::kFine, bool logarithmic = false);
 
+/// The same with low and step given. @param step  > 0
+[[nodiscard]] Json stepped_json(const Eigen::VectorXd& values, double low, double step);
+
 }  // namespace slipmode::report
