@@ -1,6 +1,7 @@
 #include "dynamics/internal/audit_forms.hpp"
 
 #include <slipmode/dynamics/kernels/kernels.hpp>
+#include "dynamics/internal/quadratic_forms.hpp"
 
 #include <Eigen/Dense>
 #include <cmath>
@@ -9,105 +10,6 @@
 
 namespace slipmode::dynamics {
 namespace {
-
-/// Sums of two decay rates below this share of the drive's frequency leave too few digits in a form.
-constexpr double kSlowest = 1e-5;
-/// To this share the viscous form and minus the energy are the same form.
-constexpr double kSameForm = 1e-10;
-/// From this many pairs on. With fewer the form costs little more, and takes x_f from the pairs as the other sums do:
-/// where x_f and what the inputs hold are each far larger than their sum, that is a few digits better.
-constexpr Eigen::Index kManyPairs = 32;
-
-Eigen::Matrix2d block(const ModalModel& pairs, Eigen::Index i) {
-  return (Eigen::Matrix2d() << pairs.g11(i), pairs.g12(i), pairs.g21(i), pairs.g22(i)).finished();
-}
-
-/// Factors of a pair's components that make its block's entries of one size.
-Eigen::Vector2d scales(const ModalModel& pairs, Eigen::Index i) {
-  const double up = std::abs(pairs.g12(i)), down = std::abs(pairs.g21(i));
-  return {up > 0.0 && down > 0.0 ? std::sqrt(down / up) : 1.0, 1.0};
-}
-
-/// Slowest decay of a pair: the smallest −Re of its eigenvalues.
-double decay(const Eigen::Matrix2d& G) {
-  const double half = G.trace() / 2.0, gap = half * half - G.determinant();
-  return gap <= 0.0 ? -half : -half > 0.0 ? G.determinant() / (-half + std::sqrt(gap)) : -half - std::sqrt(gap);
-}
-
-/// q̇ᵀCq̇ = xᵀ(this)x.
-Eigen::MatrixXd viscous_square(const ModalModel& pairs) {
-  const Eigen::MatrixXd& L = pairs.dissipation_root;
-  if (L.size() > 0) return L.transpose() * L;
-  Eigen::MatrixXd square = Eigen::MatrixXd::Zero(2 * pairs.np, 2 * pairs.np);
-  if (pairs.n > 0) square.bottomRightCorner(pairs.np, pairs.np).diagonal() = pairs.damping;
-  return square;
-}
-
-/// GᵀY + YG = Q, as RegimeForms keeps Y; left as it is where Q is zero. False without a finite solution.
-bool solve_quadratic(const ModalModel& pairs, const Eigen::MatrixXd& Q, Eigen::MatrixXd& out_Y) {
-  if (Q.isZero(0.0)) return true;
-  const auto np = pairs.np;
-  out_Y = Eigen::MatrixXd::Zero(2 * np, 2 * np);
-  for (Eigen::Index i = 0; i < pairs.n; ++i)
-    for (Eigen::Index j = i; j < pairs.n; ++j) {
-      // In scaled displacements, ω η, the blocks' entries are of one size, so that a slow decay is not lost beside ω².
-      const Eigen::Vector2d si = scales(pairs, i), sj = scales(pairs, j);
-      Eigen::Matrix2d q;
-      q << Q(i, j), Q(i, np + j), Q(np + i, j), Q(np + i, np + j);
-      if (q.isZero(0.0)) continue;
-      q = (si.cwiseInverse().asDiagonal() * q * sj.cwiseInverse().asDiagonal()).eval();
-      // (I ⊗ G_iᵀ + G_jᵀ ⊗ I) vec Y = vec Q, columns stacked.
-      const Eigen::Matrix2d Gi = si.asDiagonal() * block(pairs, i) * si.cwiseInverse().asDiagonal();
-      const Eigen::Matrix2d Gj = sj.asDiagonal() * block(pairs, j) * sj.cwiseInverse().asDiagonal();
-      Eigen::Matrix4d A = Eigen::Matrix4d::Zero();
-      A.topLeftCorner<2, 2>() = A.bottomRightCorner<2, 2>() = Gi.transpose();
-      A.topLeftCorner<2, 2>().diagonal().array() += Gj(0, 0);
-      A.bottomRightCorner<2, 2>().diagonal().array() += Gj(1, 1);
-      A.topRightCorner<2, 2>().diagonal().array() += Gj(1, 0);
-      A.bottomLeftCorner<2, 2>().diagonal().array() += Gj(0, 1);
-      const Eigen::Vector4d y = A.partialPivLu().solve(Eigen::Map<const Eigen::Vector4d>(q.data()));
-      if (!y.allFinite()) return false;
-      const Eigen::Matrix2d Y = si.asDiagonal() * Eigen::Map<const Eigen::Matrix2d>(y.data()) * sj.asDiagonal();
-      const double both = i == j ? 1.0 : 2.0;
-      out_Y(j, i) = both * Y(0, 0);
-      out_Y(np + j, np + i) = both * Y(1, 1);
-      out_Y(np + i, j) += both * Y(1, 0);
-      out_Y(np + j, i) += both * Y(0, 1);
-    }
-  return true;
-}
-
-/// Whether Y is minus the energy of free motion, contact springs included, each entry by the energies of its two
-/// coordinates.
-bool is_energy(const Regime& r, const ModalModel& slipping, const Eigen::MatrixXd& Y) {
-  if (r.pairs.n < kManyPairs || Y.size() == 0 || !slipping.proportional || r.to_oscillators.rows() > 0) return false;
-  const auto n = slipping.np;
-  Eigen::MatrixXd energy = r.to_slipping.bottomRows(n).transpose() * r.to_slipping.bottomRows(n);
-  const Eigen::MatrixXd stretched = slipping.omega.asDiagonal() * r.to_slipping.topRows(n);
-  energy += stretched.transpose() * stretched;
-  for (Eigen::Index c = 0; c < r.speed_input(); ++c)
-    energy += r.answers[static_cast<std::size_t>(c)].stiffness * r.displacement_row.col(c) *
-              r.displacement_row.col(c).transpose();
-  // Half of it, and half of the doubled triangle with its mirror image.
-  const Eigen::MatrixXd gap = (Y + Y.transpose() + energy).cwiseAbs() / 2.0;
-  const Eigen::VectorXd size = energy.diagonal().cwiseMax(0.0).cwiseSqrt();
-  return (gap.array() <= kSameForm * (size * size.transpose()).array()).all();
-}
-
-/// The forms that no drive enters.
-void make_forms(const Regime& r, const ModalModel& slipping, RegimeForms& out) {
-  const ModalModel& pairs = r.pairs;
-  const auto np = pairs.np;
-  Eigen::MatrixXd contact = Eigen::MatrixXd::Zero(2 * np, 2 * np);
-  for (Eigen::Index c = 0; c < r.speed_input(); ++c) {
-    if (r.spring(c) > 0.0 || r.slope(c) != 0.0) continue;
-    const Eigen::VectorXd f = r.force_row.col(c), v = r.velocity_row.col(c);
-    contact += (f * v.transpose() + v * f.transpose()) / 2.0;
-  }
-  out.found =
-      solve_quadratic(pairs, contact, out.contact) && solve_quadratic(pairs, viscous_square(pairs), out.viscous);
-  out.viscous_is_energy = out.found && is_energy(r, slipping, out.viscous);
-}
 
 /// q̇ᵀCq̇ of the steady motion as a form of its cosines and sines, the last two of nu. Constant inputs move nothing.
 Eigen::MatrixXd viscous_powers(const ModalModel& slipping, const DriveOverlay& overlay, Eigen::Index nu) {
@@ -136,12 +38,10 @@ std::unique_ptr<AuditForms> AuditForms::make(const RegimeTables& tables, const M
   const ModalModel& pairs = r.pairs;
   const auto np = pairs.np, ni = r.inputs(), nu = ni + 2, nc = r.speed_input();
   if (overlay.orders() > 1) return nullptr;
-  for (Eigen::Index i = 0; i < pairs.n; ++i)
-    if (!(2.0 * decay(block(pairs, i)) > kSlowest * overlay.omega())) return nullptr;
-  const RegimeForms& quadratic_forms =
-      tables.forms([&](const Regime& regime, RegimeForms& out) { make_forms(regime, slipping, out); });
-  if (!quadratic_forms.found) return nullptr;
-  std::unique_ptr<AuditForms> forms(new AuditForms(r, quadratic_forms, slipping, overlay));
+  if (!decays(pairs, overlay.omega())) return nullptr;
+  const RegimeForms& squares = quadratic_forms(tables, slipping);
+  if (!squares.found) return nullptr;
+  std::unique_ptr<AuditForms> forms(new AuditForms(r, squares, slipping, overlay));
 
   // x = x_f + S u, ι = E u.
   Eigen::MatrixXd S(2 * np, nu), E = Eigen::MatrixXd::Zero(ni, nu);
@@ -224,17 +124,6 @@ bool AuditForms::integrate(Kind kind, const Power& power) {
   return finite;
 }
 
-double AuditForms::quadratic(const Eigen::MatrixXd& Y, const Eigen::VectorXd& free) {
-  double sum = 0.0;
-  for (Eigen::Index j = 0; j < Y.cols(); j += kLanes) {
-    const Eigen::Index below = free.size() - j;
-    const Eigen::Matrix<double, kLanes, 1> columns =
-        Y.block<Eigen::Dynamic, kLanes>(j, j, below, kLanes).transpose() * free.tail(below);
-    sum += columns.dot(free.segment<kLanes>(j));
-  }
-  return sum;
-}
-
 double AuditForms::Stay::steady(std::size_t kind, double stay, DrivePhase p) const {
   // With the integrals of cos θ, sin θ, cos² θ, cos θ sin θ and sin² θ over the stay.
   const Steady& s = forms_->steady_[kind];
@@ -243,20 +132,11 @@ double AuditForms::Stay::steady(std::size_t kind, double stay, DrivePhase p) con
          s.sine * (stay / 2.0 - both) + s.both * p.sine * p.sine / (2.0 * w);
 }
 
-double AuditForms::Stay::free_energy(const Place& at, DrivePhase p) {
-  const Regime& r = forms_->regime_;
-  const auto n = forms_->slipping_.np;
+double AuditForms::Stay::free_loss(const StayPlace& at, DrivePhase p) {
+  if (!forms_->forms_.viscous_is_energy) return quadratic(forms_->forms_.viscous, at.free);
   lifted_ = at.slipping - resting_;
   forms_->overlay_.slipping.add(p, -1.0, lifted_);
-  double twice = lifted_.tail(n).squaredNorm() + forms_->slipping_.omega.cwiseProduct(lifted_.head(n)).squaredNorm();
-  for (Eigen::Index c = 0; c < r.speed_input(); ++c) {
-    const double stiffness = r.answers[static_cast<std::size_t>(c)].stiffness;
-    if (stiffness == 0.0) continue;
-    const double force =
-        r.spring(c) > 0.0 ? r.force_row.col(c).dot(at.free) : stiffness * r.displacement_row.col(c).dot(at.free);
-    twice += force * force / stiffness;
-  }
-  return twice / 2.0;
+  return -free_energy(forms_->regime_, forms_->slipping_, lifted_, at.free);
 }
 
 double AuditForms::Stay::contact_potential(DrivePhase p, const Eigen::VectorXd& x) const {
@@ -276,7 +156,7 @@ double AuditForms::Stay::contact_potential(DrivePhase p, const Eigen::VectorXd& 
   return sum;
 }
 
-AuditForms::Stay::Values AuditForms::Stay::values(const Place& at) {
+AuditForms::Stay::Values AuditForms::Stay::values(const StayPlace& at) {
   const DrivePhase p = forms_->overlay_.phase(at.time);
   const auto& vector = kernels::kernels();
   alignas(64) std::array<double, 2 * kKinds> sums{};
@@ -292,12 +172,11 @@ AuditForms::Stay::Values AuditForms::Stay::values(const Place& at) {
   for (const Kind kind : {kContact, kDrive, kViscous, kForce}) out.add(kind, steady(kind, at.time - begin_, p));
   out.add(kContact, quadratic(forms_->forms_.contact, at.free));
   out.add(kContact, contact_potential(p, at.x));
-  out.add(kViscous,
-          forms_->forms_.viscous_is_energy ? -free_energy(at, p) : quadratic(forms_->forms_.viscous, at.free));
+  out.add(kViscous, free_loss(at, p));
   return out;
 }
 
-void AuditForms::Stay::begin(const AuditForms& forms, const Place& at, const Eigen::VectorXd& inputs) {
+void AuditForms::Stay::begin(const AuditForms& forms, const StayPlace& at, const Eigen::VectorXd& inputs) {
   forms_ = &forms;
   begin_ = at.time;
   inputs_ = inputs;
@@ -313,7 +192,7 @@ void AuditForms::Stay::begin(const AuditForms& forms, const Place& at, const Eig
   at_begin_ = values(at);
 }
 
-StayWork AuditForms::Stay::until(const Place& at) {
+StayWork AuditForms::Stay::until(const StayPlace& at) {
   const Values now = values(at);
   const auto change = [&](Kind kind) { return now.of[kind] - at_begin_.of[kind]; };
   const StayWork work{change(kContact), change(kDrive), change(kViscous), change(kForce),

@@ -20,6 +20,14 @@ struct StayWork {
   double rounding = 0.0;  ///< what these may be off by, differences of larger sums
 };
 
+/// Where a stay is.
+struct StayPlace {
+  double time = 0.0;
+  const Eigen::VectorXd& x;         ///< of the regime, less the steady response to a periodic drive
+  const Eigen::VectorXd& free;      ///< x_f: less what follows the inputs too
+  const Eigen::VectorXd& slipping;  ///< the state in the slipping model
+};
+
 /// The energy audit under a harmonic drive without quadrature: with x = x_f + S u, ẋ_f = G x_f, u = (ι, cos θ, sin θ),
 /// every power is a quadratic form of (x_f, u), and
 ///
@@ -37,20 +45,13 @@ class AuditForms {
   [[nodiscard]] static std::unique_ptr<AuditForms> make(const RegimeTables& tables, const ModalModel& slipping,
                                                         const DriveOverlay& overlay);
 
-  /// Where a stay is.
-  struct Place {
-    double time = 0.0;
-    const Eigen::VectorXd& x;         ///< of the regime, less the steady response to the drive
-    const Eigen::VectorXd& free;      ///< x_f
-    const Eigen::VectorXd& slipping;  ///< the state in the slipping model
-  };
   /// Stays, one after another.
   class Stay {
    public:
     /// @param forms  of the regime entered; they must stay @param inputs  constant over the stay
-    void begin(const AuditForms& forms, const Place& at, const Eigen::VectorXd& inputs);
+    void begin(const AuditForms& forms, const StayPlace& at, const Eigen::VectorXd& inputs);
     /// Work since `begin` or the last `until`.
-    [[nodiscard]] StayWork until(const Place& at);
+    [[nodiscard]] StayWork until(const StayPlace& at);
 
    private:
     /// Of each Kind, and the sum of all sizes they are made of.
@@ -64,11 +65,11 @@ class AuditForms {
     };
 
     [[nodiscard]] double steady(std::size_t kind, double stay, DrivePhase p) const;
-    /// Energy of x_f with the contacts' springs.
-    [[nodiscard]] double free_energy(const Place& at, DrivePhase p);
+    /// The antiderivative of what x_f alone loses.
+    [[nodiscard]] double free_loss(const StayPlace& at, DrivePhase p);
     /// Contact work that is a function of the state: −½λ²/K_c of contact springs, ∫λ d(wᵀq) under a load of wᵀq.
     [[nodiscard]] double contact_potential(DrivePhase p, const Eigen::VectorXd& x) const;
-    [[nodiscard]] Values values(const Place& at);
+    [[nodiscard]] Values values(const StayPlace& at);
 
     const AuditForms* forms_ = nullptr;
     double begin_ = 0.0;
@@ -94,9 +95,6 @@ class AuditForms {
 
   AuditForms(const Regime& regime, const RegimeForms& forms, const ModalModel& slipping, const DriveOverlay& overlay);
   [[nodiscard]] bool integrate(Kind kind, const Power& power);
-  /// x_fᵀY x_f, off-diagonal entries doubled in Y's lower triangle.
-  [[nodiscard]] static double quadratic(const Eigen::MatrixXd& Y, const Eigen::VectorXd& free);
-
   const Regime& regime_;
   const RegimeForms& forms_;
   const ModalModel& slipping_;

@@ -5,46 +5,62 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <vector>
 
 namespace slipmode::dynamics {
 
-/// The energy audit under a belt of constant speed without quadrature, for real modes x = (η, η̇). What follows the
-/// inputs moves at constant velocity; beside it η_f'' + d η_f' + ω² η_f = 0, so that with [·] the change over a stay
+/// The energy audit under a belt of constant speed without quadrature. What follows the inputs, x_p, moves at constant
+/// velocity; beside it ẋ_f = G x_f, so that with [·] the change over a stay
 ///
-///     ∫ d η_f'² = −[½ (η_f'² + ω² η_f²)],     ∫ η_f = −[η_f' + d η_f]/ω²,     ∫ λ wᵀq̇ = λ [wᵀq] in slip,
+///     ∫ rᵀx_f = [yᵀx_f],  Gᵀy = r;     ∫ x_fᵀQ x_f = [x_fᵀY x_f],  GᵀY + YG = Q,
 ///
-/// and ∫ λ wᵀq̇ = V ∫ λ in stick, less [½ λ²/K_c] behind a contact spring. Costs O(n) per stay.
-/// Source: docs/theory/flow.md, section 6.
+/// the second minus the energy of the damped modes, −[½ (η_f'² + ω² η_f²)], where modes are real. The contacts' work is
+/// λ [wᵀq] under a constant force, V ∫ λ in stick, less [½ λ²/K_c] behind a contact spring. Costs O(n) per stay in real
+/// modes, else O(n²) of few pairs and one lift of many. Source: docs/theory/flow.md, section 6.
 class BeltWork {
  public:
-  /// Null where the integrals have no such form: complex modes, rigid-body motion, forces in slip that vary.
-  [[nodiscard]] static std::unique_ptr<BeltWork> make(const Regime& regime);
+  /// Null where the integrals have no such form: rigid-body motion, or pairs that hardly decay and are not real modes.
+  [[nodiscard]] static std::unique_ptr<BeltWork> make(const RegimeTables& tables, const ModalModel& slipping);
 
   /// Starts a stay.
-  void begin(double t, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs);
+  void begin(const StayPlace& at, const Eigen::VectorXd& inputs);
   /// Work since `begin` or the last `until`.
-  [[nodiscard]] StayWork until(double t, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs);
+  [[nodiscard]] StayWork until(const StayPlace& at, const Eigen::VectorXd& inputs);
 
  private:
-  /// What has an antiderivative, at one end of a stay.
+  /// How a contact's work is found.
+  enum class Exchange : std::uint8_t {
+    kFollows,    ///< its velocity is the belt's, but for what a spring stores
+    kPotential,  ///< its force is constant, or a function of wᵀq
+    kForms,      ///< neither: a square of x_f, and more
+  };
+  /// What has an antiderivative, at one end of a stay; of the contacts, [nc] each.
   struct End {
     double time = 0.0;
-    double energy = 0.0;       ///< ½ (η_f'² + ω² η_f²) of the damped modes
-    double dragged = 0.0;      ///< 2 d η_p'·η_f + 2 V viscous_cross·η
-    Eigen::VectorXd by_force;  ///< of each contact: wᵀq in slip, ∫ of λ by x_f in stick [nc]
-    Eigen::VectorXd resting;   ///< λ by the inputs, in stick [nc]
-    double stored = 0.0;       ///< Σ ½ λ²/K_c
+    double loss = 0.0;         ///< of squares of x_f
+    double dragged = 0.0;      ///< of x_f with what x_p moves at
+    double squares = 0.0;      ///< of contacts' forces by x_f with velocities by x_f
+    Eigen::VectorXd impulse;   ///< ∫ of λ by x_f
+    Eigen::VectorXd steady;    ///< λ by x_p
+    Eigen::VectorXd exchange;  ///< by kind: −½ λ²/K_c; ∫ λ d(wᵀq); wᵀq by x_f
+    Eigen::VectorXd way;       ///< ∫ of wᵀq by x_f
   };
 
-  explicit BeltWork(const Regime& regime);
-  void measure(double t, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs, End& out);
+  BeltWork(const Regime& regime, const ModalModel& slipping);
+  void measure(const StayPlace& at, const Eigen::VectorXd& inputs, End& out);
+  [[nodiscard]] double loss_of_squares(const StayPlace& at, const Eigen::VectorXd& inputs);
 
   const Regime& regime_;
-  Eigen::MatrixXd impulse_;         ///< y of each sticking contact: ∫ λ dt by x_f = [yᵀx_f] [2np x nc]
-  Eigen::MatrixXd resting_;         ///< ι → λ that follows the inputs [ni x nc]
-  Eigen::VectorXd stiffness_;       ///< ω² of damped modes, else 0 [np]
-  Eigen::VectorXd mass_;            ///< 1 of damped modes, else 0 [np]
-  Eigen::VectorXd free_, carried_;  ///< x_f [2np], η_p' [np]
+  const ModalModel& slipping_;
+  const RegimeForms* forms_ = nullptr;  ///< null: real modes, no squares in contacts' work
+  std::vector<Exchange> exchange_;      ///< [nc]
+  Eigen::MatrixXd impulse_, way_;       ///< y of λ and of wᵀq [2np x nc]
+  Eigen::MatrixXd steady_;              ///< ι → λ by x_p [ni x nc]
+  Eigen::VectorXd dragging_;            ///< y of 2 (loss of x_f with x_p at V = 1) [2np]
+  double dragged_loss_ = 0.0;           ///< q̇ᵀCq̇ of x_p at V = 1
+  Eigen::VectorXd stiffness_, mass_;    ///< ω² and 1 of damped real modes, else 0 [np]
+  Eigen::MatrixXd held_;  ///< ι → state in the slipping model that x_p is; empty if not needed [2np_s x ni]
+  Eigen::VectorXd lifted_;
   End begin_, end_;
 };
 

@@ -21,14 +21,13 @@ void ClosedFormFlow::account(double tau, bool ends) {
   const auto add = [this](const StayWork& work) { work_.add(work.contact, work.drive, work.viscous, work.force); };
   if (!regime_->forms && !regime_->belt) return add(integrate(begin_, x_begin_, inputs_begin_, tau));
   if (!ends) return;
-  if (regime_->belt) return add(regime_->belt->until(point_.time, x_, inputs_));
   if (!measured_) measure_amplitudes();
-  StayWork work = stay_.until({point_.time, x_, free_, point_.x});
+  const StayPlace now{point_.time, x_, free_, point_.x};
+  StayWork work = regime_->belt ? regime_->belt->until(now, inputs_) : stay_.until(now);
   if (work.rounding > kLostInForms * (work_.exchanged + std::abs(work.contact) + std::abs(work.force) + work.viscous))
-    work = integrate(accounted_, x_accounted_, inputs_, point_.time - accounted_);
+    work = integrate(accounted_, x_accounted_, inputs_accounted_, point_.time - accounted_);
   add(work);
-  accounted_ = point_.time;
-  x_accounted_ = x_;
+  mark_accounted();
 }
 
 StayWork ClosedFormFlow::integrate(double t, Eigen::VectorXd x, Eigen::VectorXd inputs, double tau) const {

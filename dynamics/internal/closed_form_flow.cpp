@@ -67,7 +67,7 @@ void ClosedFormFlow::enter_regime() {
       now.overlay = &driven.overlay;
       if (options_.audit) now.forms = driven.forms();
     } else if (options_.audit && resolver_.drive().is_constant()) {
-      now.belt = BeltWork::make(tables.regime());
+      now.belt = BeltWork::make(tables, slipping_);
     }
     regime_ = &now;
     ++statistics_.regimes_built;
@@ -104,15 +104,20 @@ void ClosedFormFlow::enter_regime() {
     vector.product(r.particular.data(), x_.size(), inputs_.size(), inputs_.data(), resting_.data());
   }
   measure_amplitudes();
-  if (regime_->forms) {
-    stay_.begin(*regime_->forms, {point_.time, x_, free_, point_.x}, inputs_);
-    accounted_ = point_.time;
-    x_accounted_ = x_;
-  }
-  if (regime_->belt) regime_->belt->begin(point_.time, x_, inputs_);
+  const StayPlace entered{point_.time, x_, free_, point_.x};
+  if (regime_->forms) stay_.begin(*regime_->forms, entered, inputs_);
+  if (regime_->belt) regime_->belt->begin(entered, inputs_);
+  mark_accounted();
   set_guards();
   drop_idle_guards();
   foresee_starts();
+}
+
+void ClosedFormFlow::mark_accounted() {
+  if (!regime_->forms && !regime_->belt) return;
+  accounted_ = point_.time;
+  x_accounted_ = x_;
+  inputs_accounted_ = inputs_;
 }
 
 double ClosedFormFlow::drive_velocity(double t, const Eigen::VectorXd& inputs) const {

@@ -122,6 +122,8 @@ class ClosedFormFlow {
   [[nodiscard]] double curvature(Eigen::Index output) const;
   /// Adds the work of a step of this length; where forms integrate whole stays, once a stay or the run `ends`.
   void account(double tau, bool ends);
+  /// Up to the point and its state.
+  void mark_accounted();
   /// Work of a time tau from a state on, by quadrature.
   [[nodiscard]] StayWork integrate(double t, Eigen::VectorXd x, Eigen::VectorXd inputs, double tau) const;
   /// Under an overlay: whether x and the steady response at t, each far larger than their sum, leave it few digits. The
@@ -189,8 +191,8 @@ class ClosedFormFlow {
   double tangent_time_ = 0.0;
 
   AuditForms::Stay stay_;
-  double accounted_ = 0.0;       ///< where forms integrate: up to here,
-  Eigen::VectorXd x_accounted_;  ///< and from there
+  double accounted_ = 0.0;                          ///< where forms integrate: up to here,
+  Eigen::VectorXd x_accounted_, inputs_accounted_;  ///< and from there
   WorkSums work_;
   bool blind_start_ = false;  ///< a guard starts at zero, and no bound says that it rises
   FlowStatistics statistics_;

@@ -270,12 +270,12 @@ TEST(Tilt, MakesFrictionDifferBothWays) {
 }
 
 TEST(AuditForms, AgreeWithQuadrature) {
-  // A shaker of no amplitude is a belt at rest: one is audited by forms, the other by quadrature.
+  // A shaker of no amplitude is a belt at rest; a belt whose ramp lies in the future is audited by quadrature.
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
     SCOPED_TRACE(seed);
     const HybridSystem shaken =
         random_piecewise_linear(seed, 6).with_drive(friction::Shaker{.amplitude = 0.0, .frequency_hz = 0.3});
-    const HybridSystem still = shaken.with_drive(friction::Belt::constant(0.0));
+    const HybridSystem still = shaken.with_drive(friction::Belt::ramp(0.0, 1.0, 100.0, 101.0));
     const State start = fixtures::swinging(static_cast<int>(shaken.size()), seed, 2.0);
     const EnergyAudit a = simulate(shaken, start, {.duration = 15.0}).audit,
                       b = simulate(still, start, {.duration = 15.0}).audit;
@@ -283,6 +283,24 @@ TEST(AuditForms, AgreeWithQuadrature) {
     EXPECT_NEAR(a.contact_work, b.contact_work, 1e-11 * scale);
     EXPECT_NEAR(a.viscous_loss, b.viscous_loss, 1e-11 * scale);
     EXPECT_NEAR(a.drive_work, 0.0, 1e-11 * scale);
+  }
+}
+
+TEST(BeltWork, AgreesWithQuadratureWhateverTheContacts) {
+  // Springs, stops with dampers, loads that vary, normal oscillators, damping of any kind, one to 40 degrees of
+  // freedom.
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE(seed);
+    const HybridSystem moved =
+        random_piecewise_linear(seed, seed < 50 ? 6 : 40).with_drive(friction::Belt::constant(0.3));
+    const HybridSystem later = moved.with_drive(friction::Belt::ramp(0.3, 1.0, 100.0, 101.0));
+    const State start = fixtures::swinging(static_cast<int>(moved.size()), seed, 2.0);
+    const EnergyAudit a = simulate(moved, start, {.duration = 15.0}).audit,
+                      b = simulate(later, start, {.duration = 15.0}).audit;
+    EXPECT_NEAR(a.contact_work, b.contact_work, 1e-11 * b.exchanged);
+    EXPECT_NEAR(a.viscous_loss, b.viscous_loss, 1e-11 * b.exchanged);
+    EXPECT_NEAR(a.drive_work, b.drive_work, 1e-11 * b.exchanged);
+    EXPECT_LT(std::abs(a.residual()), 1e-11);
   }
 }
 
