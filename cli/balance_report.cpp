@@ -1,22 +1,15 @@
 #include "cli/balance_report.hpp"
 
+#include "cli/field_options.hpp"
 #include "cli/json_values.hpp"
 #include "cli/orbit_report.hpp"
 #include "cli/text_table.hpp"
-
-#include <slipmode/core/numbers.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>
 
 namespace slipmode::cli {
 namespace {
-
-int whole_number(const char* option, const std::string& text, const char* word) {
-  const int value = number_in<int>(text).value_or(0);
-  if (value < 1) throw InvalidInput(fmt::format("{} {}: valid: a whole number from 1 on, or {}", option, text, word));
-  return value;
-}
 
 std::string coefficient_table(const orbits::Balance& balance) {
   constexpr int kShown = 15;
@@ -43,42 +36,12 @@ void add_balance_options(CLI::App& command, BalanceArguments& out_arguments) {
   command
       .add_option("--by", out_arguments.by, "shooting (exact), or balance: truncated Fourier series of the contacts")
       ->check(CLI::IsMember({"shooting", "balance"}));
-  command.add_option("--harmonics", out_arguments.harmonics,
-                     "of a balance: highest order, or auto: the order that --error needs");
-  command.add_option("--error", out_arguments.error,
-                     "of --harmonics auto: true error, a share of the half range of the displacement");
-  command.add_option("--samples", out_arguments.samples,
-                     "of a balance: exact force integrals, or the alternating scheme with so many samples");
-  command.add_flag("--certify", out_arguments.certify,
-                   "shoot from the balance to the exact orbit: true error, multipliers");
+  add_fields(command, out_arguments.words);
 }
 
 void require_no_balance_options(const BalanceArguments& arguments) {
-  if (arguments != BalanceArguments{})
+  if (arguments.words != studies::BalanceWords{})
     throw InvalidInput("--harmonics, --error, --samples, --certify: of a balance; add --by balance");
-}
-
-studies::BalanceSearch balance_search_of(const BalanceArguments& arguments, const std::string& start,
-                                         const studies::OrbitSearch& search) {
-  studies::BalanceSearch out;
-  out.options.order = search.order;
-  out.certify = arguments.certify;
-  if (start != "settle" && start != "contact" && start != "gap") {
-    throw InvalidInput(fmt::format("--start {}: a balance begins at contact (all stops pressing) or gap", start));
-  }
-  out.options.start = start == "gap" ? orbits::BalanceStart::kGap : orbits::BalanceStart::kContact;
-  const std::string harmonics = arguments.harmonics.value_or("9"), samples = arguments.samples.value_or("exact");
-  if ((harmonics == "auto") != arguments.error.has_value()) {
-    throw InvalidInput("--harmonics auto and --error, a true error > 0, go together");
-  }
-  if (arguments.error) {
-    if (!(*arguments.error > 0.0)) throw InvalidInput(fmt::format("--error {}: valid: > 0", *arguments.error));
-    out.error = *arguments.error;
-  } else {
-    out.options.harmonics = whole_number("--harmonics", harmonics, "auto");
-  }
-  if (samples != "exact") out.options.samples = whole_number("--samples", samples, "exact");
-  return out;
 }
 
 Report balance_report(const std::string& verb, const studies::Family& model, const studies::BalanceFound& found) {

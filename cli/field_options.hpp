@@ -4,6 +4,7 @@
 #include <slipmode/studies/command.hpp>
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <type_traits>
 
@@ -21,6 +22,8 @@ void add_fields(CLI::App& command, S& out_values, const std::string& group = "")
     CLI::Option* option = nullptr;
     if constexpr (std::is_same_v<T, bool>) {
       option = command.add_flag(name, out_values.*field.member, field.meaning);
+    } else if constexpr (std::is_same_v<T, std::optional<std::string>>) {
+      option = command.add_option(name, out_values.*field.member, field.meaning);
     } else {
       option = command.add_option(name, out_values.*field.member, field.meaning)
                    ->check(within(field.limits, std::is_integral_v<T>));

@@ -14,6 +14,8 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 
 namespace slipmode::cli {
 namespace {
@@ -110,14 +112,13 @@ struct Followed {
 
 /// The branches stored and told; exit 3 where the main one was lost on its way.
 Report store_and_tell(const OrbitContinueArguments& arguments, const Followed& followed, const std::string& command,
-                      double start, const std::vector<results::NamedBranch>& branches) {
+                      double start, const std::shared_ptr<const std::vector<results::NamedBranch>>& branches) {
   const studies::Family model(followed.scene, {followed.key}, followed.basis);
-  studies::content_of(model, start, std::make_shared<const std::vector<results::NamedBranch>>(branches), command)
-      .save(arguments.output);
+  studies::content_of(model, start, branches, command).save(arguments.output);
 
   Report report;
   Json list = Json::array();
-  for (const results::NamedBranch& branch : branches) {
+  for (const results::NamedBranch& branch : *branches) {
     list.push_back(branch_json(branch));
     report.text += branch_text(branch);
   }
@@ -125,7 +126,7 @@ Report store_and_tell(const OrbitContinueArguments& arguments, const Followed& f
       {"verb", "orbit continue"},      {"model", model.title()},    {"file", arguments.output}, {"key", followed.key},
       {"from", followed.request.from}, {"to", followed.request.to}, {"start", start},           {"branches", list}};
   report.text += fmt::format("Branches: {}\n", arguments.output);
-  if (branches.front().branch.end == orbits::BranchEnd::kLost) {
+  if (branches->front().branch.end == orbits::BranchEnd::kLost) {
     report.exit_code = kNumericalFailure;
     report.text = "the branch was lost before the end of its range; what was found is kept\n" + report.text;
     report.data["message"] = report.text;
@@ -135,28 +136,21 @@ Report store_and_tell(const OrbitContinueArguments& arguments, const Followed& f
 }
 
 Report run_balance(const Session& session, const OrbitContinueArguments& arguments, const Followed& followed) {
-  if (followed.request.switches)
-    throw InvalidInput("--switch: not along balances; follow the branch that leaves by shooting (--by shooting)");
-  if (arguments.balance.samples.value_or("exact") != "exact")
-    throw InvalidInput(fmt::format("--samples {}: a balance is followed by exact forces alone; leave it out",
-                                   *arguments.balance.samples));
-  if (arguments.every && !arguments.balance.certify && !arguments.balance.error)
+  if (arguments.every && !arguments.balance.words.certify && !arguments.balance.words.error)
     throw InvalidInput(fmt::format("--every {}: which points to certify; add --certify", *arguments.every));
   const studies::OrbitSearch& search = arguments.search.search;
   const studies::BalanceContinuation found = studies::continue_balance(
       followed.scene, followed.key, followed.basis,
-      balance_search_of(arguments.balance, arguments.search.start, search), followed.request,
+      studies::balance_search(arguments.balance.words, arguments.search.start, search.order), followed.request,
       arguments.every.value_or(1), {.segments = search.segments, .tolerance = search.tolerance}, session.run_options());
   if (found.branch.points.empty()) {
     const studies::Family at_start(scene::set_key(followed.scene, followed.key, found.start), {}, followed.basis);
     return balance_report("orbit continue", at_start, found.found);
   }
   const int harmonics = found.found.balance.harmonics;
-  Report report = store_and_tell(
-      arguments, followed,
-      fmt::format("slipmode orbit continue --over {} --model {} --by balance --harmonics {}", arguments.over,
-                  arguments.search.model, harmonics),
-      found.start, {{.title = fmt::format("balance of {} harmonics", harmonics), .branch = found.branch}});
+  Report report = store_and_tell(arguments, followed,
+                                 studies::command_of(followed.key, arguments.search.model, found, followed.request),
+                                 found.start, studies::branches_of(found));
   report.data["by"] = "balance";
   report.data["harmonics"] = harmonics;
   if (!found.certificate) return report;
@@ -192,12 +186,12 @@ Report run(const Session& session, const OrbitContinueArguments& arguments) {
   require_no_balance_options(arguments.balance);
   if (arguments.every) throw InvalidInput("--every: of a balance's certificates; add --by balance --certify");
   const studies::OrbitSearch search = search_of(arguments.search, scene);
-  const studies::Continuation found =
+  studies::Continuation found =
       studies::continue_orbit(scene, range.key, followed.basis, search, followed.request, run_options);
   if (!found.found.converged()) return not_found("orbit continue", found.found);
   return store_and_tell(arguments, followed,
                         studies::command_of(range.key, arguments.search.model, search, followed.request), found.start,
-                        found.branches);
+                        std::make_shared<const std::vector<results::NamedBranch>>(std::move(found.branches)));
 }
 
 }  // namespace

@@ -1,4 +1,3 @@
-#include <slipmode/results/balance_store.hpp>
 #include <slipmode/studies/bases.hpp>
 #include "cli/balance_report.hpp"
 #include "cli/orbit_report.hpp"
@@ -6,6 +5,7 @@
 #include "cli/verbs.hpp"
 
 #include <fmt/format.h>
+#include <memory>
 
 namespace slipmode::cli {
 namespace {
@@ -17,18 +17,13 @@ struct OrbitFindArguments {
 };
 
 Report run_balance(const OrbitFindArguments& arguments, const studies::Family& model) {
-  const studies::BalanceSearch search =
-      balance_search_of(arguments.balance, arguments.search.start, arguments.search.search);
-  const studies::BalanceFound found = studies::find_balance(
-      model, search, {.segments = arguments.search.search.segments, .tolerance = arguments.search.search.tolerance});
-  Report report = balance_report("orbit find", model, found);
-  if (arguments.output.empty() || !found.balance.converged) return report;
-  const scene::Scene& scene = model.scene();
-  const orbits::Certificate* certificate = found.certificate ? &*found.certificate : nullptr;
-  results::StoreWriter writer(arguments.output, results::FileKind::kBalance, scene.units);
-  studies::store(writer, model, certificate != nullptr && certificate->behind ? &certificate->found.orbit : nullptr);
-  results::store_balance(writer, found.balance, certificate, found.trials, results::Units::of(scene.units));
-  writer.commit();
+  const studies::OrbitSearch& search = arguments.search.search;
+  const auto found = std::make_shared<const studies::BalanceFound>(studies::find_balance(
+      model, studies::balance_search(arguments.balance.words, arguments.search.start, search.order),
+      {.segments = search.segments, .tolerance = search.tolerance}));
+  Report report = balance_report("orbit find", model, *found);
+  if (arguments.output.empty() || !found->balance.converged) return report;
+  studies::content_of(model, found).save(arguments.output);
   report.data["file"] = arguments.output;
   report.text += fmt::format("Balance: {}\n", arguments.output);
   return report;

@@ -1,12 +1,12 @@
-#include <slipmode/results/provenance.hpp>
 #include <slipmode/results/reduced_file.hpp>
-#include <slipmode/results/skeleton_store.hpp>
 #include <slipmode/studies/bases.hpp>
 #include <slipmode/studies/skeletons.hpp>
+#include "cli/field_options.hpp"
 #include "cli/skeleton_report.hpp"
 #include "cli/verbs.hpp"
 
 #include <fmt/format.h>
+#include <memory>
 
 namespace slipmode::cli {
 namespace {
@@ -16,46 +16,30 @@ struct OrbitSkeletonArguments {
   studies::SkeletonRequest request;
 };
 
-results::StoreWriter begin_store(const OrbitSkeletonArguments& arguments, const scene::Scene& scene) {
-  results::StoreWriter writer(arguments.output, results::FileKind::kSkeleton, scene.units);
-  results::save(
-      writer,
-      results::provenance_of(
-          scene, fmt::format("slipmode orbit skeleton --model {}{}", arguments.model,
-                             arguments.compare_with.empty() ? "" : " --compare-with " + arguments.compare_with)));
-  return writer;
-}
-
 Report run_one(const Session& session, const OrbitSkeletonArguments& arguments, const studies::Family& model) {
-  const results::ModelSkeleton found = studies::skeleton(model, arguments.request, session.run_options());
-  const std::string role = model.basis() ? "reduced" : "full";
-  results::StoreWriter writer = begin_store(arguments, model.scene());
-  results::store_skeleton(writer, role, found, results::Units::of(model.scene().units));
-  writer.commit();
+  const auto found = std::make_shared<const results::ModelSkeleton>(
+      studies::skeleton(model, arguments.request, session.run_options()));
+  studies::content_of(model, found, arguments.model, arguments.request).save(arguments.output);
   Report report;
-  report.data = {{"verb", "orbit skeleton"}, {"file", arguments.output}, {role, skeleton_json(found)}};
-  report.text = skeleton_text(found) + fmt::format("Skeleton: {}\n", arguments.output);
+  report.data = {{"verb", "orbit skeleton"},
+                 {"file", arguments.output},
+                 {model.basis() ? "reduced" : "full", skeleton_json(*found)}};
+  report.text = skeleton_text(*found) + fmt::format("Skeleton: {}\n", arguments.output);
   return report;
 }
 
 Report run_pair(const Session& session, const OrbitSkeletonArguments& arguments, const studies::Family& reduced) {
-  const scene::Scene& scene = reduced.scene();
-  const auto [of_full, of_reduced, comparison] =
-      studies::skeletons(studies::Family(scene), reduced, arguments.request, session.run_options());
-  const results::Units units = results::Units::of(scene.units);
-  results::StoreWriter writer = begin_store(arguments, scene);
-  results::store_skeleton(writer, "full", of_full, units);
-  results::store_skeleton(writer, "reduced", of_reduced, units);
-  results::store_comparison(writer, comparison);
-  writer.commit();
+  const auto pair = std::make_shared<const studies::SkeletonPair>(
+      studies::skeletons(studies::Family(reduced.scene()), reduced, arguments.request, session.run_options()));
+  studies::content_of(reduced, pair, arguments.compare_with, arguments.request).save(arguments.output);
   Report report;
   report.data = {{"verb", "orbit skeleton"},
                  {"file", arguments.output},
-                 {"full", skeleton_json(of_full)},
-                 {"reduced", skeleton_json(of_reduced)},
-                 {"comparison", comparison_json(comparison)}};
-  report.text = skeleton_text(of_full) + '\n' + skeleton_text(of_reduced) + '\n' +
-                comparison_text(comparison, of_full.skeleton, of_reduced.skeleton) +
+                 {"full", skeleton_json(pair->full)},
+                 {"reduced", skeleton_json(pair->reduced)},
+                 {"comparison", comparison_json(pair->comparison)}};
+  report.text = skeleton_text(pair->full) + '\n' + skeleton_text(pair->reduced) + '\n' +
+                comparison_text(pair->comparison, pair->full.skeleton, pair->reduced.skeleton) +
                 fmt::format("Skeletons: {}\n", arguments.output);
   return report;
 }
@@ -84,29 +68,12 @@ Report run(const Session& session, const OrbitSkeletonArguments& arguments) {
 Verb add_orbit_skeleton(CLI::App& orbit) {
   CLI::App* command = orbit.add_subcommand("skeleton", "the unstable periodic orbits of a chaotic motion");
   const auto arguments = std::make_shared<OrbitSkeletonArguments>();
-  orbits::SkeletonOptions& search = arguments->request.search;
   command->add_option("SCENE", arguments->scene, "scene file (TOML)")->required();
   command->add_option("-o,--output", arguments->output, "result file (HDF5)")->required();
   command->add_option("--model", arguments->model, "full, or rom:FILE with a result of 'slipmode reduce'");
   command->add_option("--compare-with", arguments->compare_with,
                       "rom:FILE: the skeleton of that reduced model too, and both compared");
-  command->add_option("--duration", arguments->request.duration, "time recorded; 0: 200 times what [time] keeps")
-      ->check(CLI::NonNegativeNumber);
-  command->add_option("--transient", arguments->request.transient, "time left out before it; default: as [time] says")
-      ->check(CLI::NonNegativeNumber);
-  command
-      ->add_option("--max-length", search.returns.max_length, "longest orbits looked for, in passages of the section")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--per-length", search.returns.per_length, "candidates of each length")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--threshold", search.returns.threshold, "largest distance of a close return")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--apart", search.returns.apart, "candidates of one length differ by this at least")
-      ->check(CLI::NonNegativeNumber);
-  command->add_option("--radius", search.radius, "distance within which the attractor counts as near an orbit")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--tolerance", search.shooting.tolerance, "bound on an orbit's relative mismatch after a period")
-      ->check(CLI::PositiveNumber);
+  add_fields(*command, arguments->request);
   command->footer(
       "Distances are in the attractor's metric: two independent points of it are about 1.4 apart. Sections: onsets of\n"
       "stick of the first contact on a belt, periods of the drive otherwise.\n"

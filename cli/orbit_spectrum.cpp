@@ -1,9 +1,7 @@
-#include <slipmode/orbits/spectrum.hpp>
-#include <slipmode/results/orbit_records.hpp>
 #include <slipmode/results/provenance.hpp>
-#include <slipmode/results/spectrum_store.hpp>
 #include <slipmode/studies/bases.hpp>
-#include <slipmode/studies/family.hpp>
+#include <slipmode/studies/orbit_spectra.hpp>
+#include "cli/field_options.hpp"
 #include "cli/json_values.hpp"
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
@@ -17,55 +15,32 @@ namespace {
 struct OrbitSpectrumArguments {
   std::string orbit, output;
   std::string model = "full";
-  int harmonics = 20;
-  std::vector<int> dofs;
+  studies::SpectrumRequest request;
 };
-
-Eigen::MatrixXd rows_of(const std::vector<int>& dofs, Eigen::Index n) {
-  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(dofs.size()));
-  for (std::size_t r = 0; r < dofs.size(); ++r) {
-    if (dofs[r] < 1 || dofs[r] > n) {
-      throw InvalidInput(fmt::format("--dof {}: the model has degrees of freedom 1 to {}", dofs[r], n));
-    }
-    rows(dofs[r] - 1, static_cast<Eigen::Index>(r)) = 1.0;
-  }
-  return rows;
-}
 
 Report run(const Session& session, const OrbitSpectrumArguments& arguments) {
   if (!arguments.output.empty()) require_writable(arguments.output);
   const results::StoreReader store(arguments.orbit);
   require_kind(store, std::array{results::FileKind::kOrbit});
-  const orbits::PeriodicOrbit orbit = results::load_orbit(store);
   const scene::Scene scene = results::load_scene_of(store);
   const studies::Family model(scene, {}, studies::model_basis(scene, arguments.model, session.run_options()));
-  const Eigen::Index n = model.own().size();
-  if (orbit.start.q.size() != n) {
-    throw InvalidInput(fmt::format(
-        "'{}' holds an orbit of {} degrees of freedom and the {} has {}; say with --model what it was found with",
-        arguments.orbit, orbit.start.q.size(), model.title(), n));
-  }
   session.check_interrupt();
-  const orbits::Spectrum spectrum =
-      orbits::orbit_spectrum(model.own(), orbit, arguments.harmonics, rows_of(arguments.dofs, n));
-
-  std::vector<std::string> names;
-  for (const int dof : arguments.dofs) names.push_back(std::to_string(dof));
-  const std::vector<results::NamedHarmonics> all = results::named(spectrum, names, results::Units::of(scene.units));
+  const auto found = studies::orbit_spectrum(model, store, arguments.request);
+  const orbits::Spectrum& spectrum = found->spectrum;
   Report report;
   report.data =
       merged({{"verb", "orbit spectrum"}, {"title", scene.title}, {"model", model.title()}}, fields_json(spectrum));
   std::vector<std::string> header = {"order"};
   std::vector<Eigen::VectorXd> amplitudes;
   Json quantities = Json::array();
-  for (const results::NamedHarmonics& own : all) {
+  for (const results::NamedHarmonics& own : found->quantities) {
     header.push_back(own.name);
     quantities.push_back(merged({{"name", own.name}}, harmonics_json(*own.harmonics)));
     amplitudes.push_back(own.harmonics->amplitude());
   }
   report.data["quantities"] = quantities;
   TextTable table(header);
-  for (Eigen::Index k = 0; k <= arguments.harmonics; ++k) {
+  for (Eigen::Index k = 0; k <= arguments.request.harmonics; ++k) {
     std::vector<std::string> row = {std::to_string(k)};
     for (const Eigen::VectorXd& own : amplitudes) row.push_back(fmt::format("{:.6e}", own[k]));
     table.add(std::move(row));
@@ -75,10 +50,7 @@ Report run(const Session& session, const OrbitSpectrumArguments& arguments) {
       "of each quantity\n{}",
       scene.title, model.title(), spectrum.omega, std::max(spectrum.defect, 1e-15), table.str());
   if (!arguments.output.empty()) {
-    results::StoreWriter writer(arguments.output, results::FileKind::kSpectrum, scene.units);
-    results::save(writer, results::provenance_of(scene, "slipmode orbit spectrum"));
-    results::store_spectrum(writer, spectrum, all);
-    writer.commit();
+    studies::content_of(model, found, arguments.request).save(arguments.output);
     report.data["file"] = arguments.output;
     report.text += fmt::format("Spectrum: {}\n", arguments.output);
   }
@@ -91,8 +63,10 @@ Verb add_orbit_spectrum(CLI::App& orbit) {
   CLI::App* command = orbit.add_subcommand("spectrum", "Fourier coefficients of an orbit that was found");
   const auto arguments = std::make_shared<OrbitSpectrumArguments>();
   command->add_option("ORBIT", arguments->orbit, "result of 'slipmode orbit find -o' (HDF5)")->required();
-  command->add_option("--harmonics", arguments->harmonics, "highest order")->check(CLI::Range(0, 1000000));
-  command->add_option("--dof", arguments->dofs, "also displacement and velocity of these degrees of freedom, from 1")
+  add_fields(*command, arguments->request);
+  command
+      ->add_option("--dof", arguments->request.dofs,
+                   "also displacement and velocity of these degrees of freedom, from 1")
       ->delimiter(',');
   command->add_option("--model", arguments->model, "the model the orbit was found with, as 'orbit find' has it");
   command->add_option("-o,--output", arguments->output, "also store the coefficients (HDF5)");

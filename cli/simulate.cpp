@@ -1,3 +1,4 @@
+#include <slipmode/studies/bases.hpp>
 #include <slipmode/studies/ensemble.hpp>
 #include <slipmode/studies/simulation.hpp>
 #include "cli/text_table.hpp"
@@ -9,13 +10,14 @@ namespace slipmode::cli {
 namespace {
 
 struct SimulateArguments {
-  std::string scene, output;
+  std::string scene, output, model = "full";
   bool single = false;
 };
 
 Report run_trajectory(const Session& session, const SimulateArguments& arguments, const scene::Scene& scene) {
-  const auto run = std::make_shared<const studies::Simulation>(studies::simulate(scene, session.run_options()));
-  studies::content_of(scene, run).save(arguments.output);
+  const studies::Family model(scene, {}, studies::model_basis(scene, arguments.model, session.run_options()));
+  const auto run = std::make_shared<const studies::Simulation>(studies::simulate(model, session.run_options()));
+  studies::content_of(scene, run, arguments.model).save(arguments.output);
   const dynamics::Trajectory& trajectory = run->trajectory;
 
   const auto& statistics = trajectory.statistics;
@@ -84,14 +86,20 @@ Verb add_simulate(CLI::App& app) {
   command->add_option("SCENE", arguments->scene, "scene file (TOML)")->required();
   command->add_option("-o,--output", arguments->output, "result file (HDF5)")->required();
   command->add_flag("--single", arguments->single, "one trajectory from [initial], even if the scene has [ensemble]");
+  command->add_option("--model", arguments->model,
+                      "of one trajectory: full, or rom:FILE with a result of 'slipmode reduce'; under a shaker also "
+                      "BASIS:L, e.g. pomf:3");
   command->footer(
       "Example:\n  slipmode simulate datasets/chain10/scene.toml -o ensemble.h5\n"
       "  slipmode simulate datasets/chain10/scene.toml --single --set time.duration=500.0 "
-      "--set time.transient=0.0 -o run.h5");
+      "--set time.transient=0.0 -o run.h5\n"
+      "  slipmode simulate datasets/chain10/scene.toml --single --model rom:rom6.h5 -o reduced.h5");
   return {command, [arguments](const Session& session) {
             require_writable(arguments->output);
             const scene::Scene scene = session.load(arguments->scene);
             const bool ensemble = !arguments->single && has_section(scene, "ensemble");
+            if (ensemble && arguments->model != "full")
+              throw InvalidInput(fmt::format("--model {}: of one trajectory; add --single", arguments->model));
             return ensemble ? run_ensemble(session, *arguments, scene) : run_trajectory(session, *arguments, scene);
           }};
 }

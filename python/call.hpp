@@ -66,6 +66,10 @@ class Keywords {
       if (!whole || static_cast<double>(number) < field.limits.low || static_cast<double>(number) > high)
         refuse(field.name, value, integer_text(field.limits));
       return static_cast<T>(number);
+    } else if constexpr (std::is_same_v<T, std::optional<std::string>>) {
+      if (!py::isinstance<py::str>(value) && PyIndex_Check(value.ptr()) == 0)
+        refuse(field.name, value, "a number or a word");
+      return py::str(value).cast<std::string>();
     } else {
       static_assert(std::is_same_v<T, double> || std::is_same_v<T, std::optional<double>>);
       py::detail::make_caster<double> number;

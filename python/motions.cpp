@@ -7,6 +7,7 @@
 #include <slipmode/studies/validation.hpp>
 #include "python/call.hpp"
 #include "python/errors.hpp"
+#include "python/model.hpp"
 #include "python/module.hpp"
 #include "python/result.hpp"
 
@@ -21,10 +22,12 @@ using scene::Scene;
 
 Result simulate(const Scene& scene, const py::kwargs& given) {
   Keywords keywords("simulate", given);
+  const ModelChoice choice(keywords);
   Call call(keywords);
   auto [failure, result] = call([&] {
-    const auto run = std::make_shared<const studies::Simulation>(studies::simulate(scene, call.options()));
-    return std::pair(run->failure, Result(studies::content_of(scene, run)));
+    const studies::Family model(scene, {}, choice.basis(scene, call.options()));
+    const auto run = std::make_shared<const studies::Simulation>(studies::simulate(model, call.options()));
+    return std::pair(run->failure, Result(studies::content_of(scene, run, choice.word())));
   });
   if (failure) raise(*failure, py::cast(std::move(result)));
   return std::move(result);
@@ -79,7 +82,9 @@ Result validate(const Scene& scene, const Result& basis, const py::kwargs& given
 
 void add_motions(py::module_& module) {
   module.def("simulate", &simulate, py::arg("scene"),
-             ("One run of the full model, from [initial] as [time] says.\n\n" + call_text()).c_str());
+             ("One run, from [initial] as [time] says; of a reduced model lifted to all degrees of freedom.\n\n" +
+              model_text() + call_text())
+                 .c_str());
   module.def("ensemble", &ensemble, py::arg("scene"), ("The runs that [ensemble] asks for.\n\n" + call_text()).c_str());
   module.def("modes", &modes, py::arg("scene"), py::arg("count") = 0,
              "Natural modes, contacts slipping, sticking and held by their springs.\n\n"

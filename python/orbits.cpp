@@ -1,6 +1,10 @@
 #include <slipmode/orbits/shooting.hpp>
+#include <slipmode/results/provenance.hpp>
+#include <slipmode/studies/balance_search.hpp>
 #include <slipmode/studies/family.hpp>
 #include <slipmode/studies/orbit_search.hpp>
+#include <slipmode/studies/orbit_spectra.hpp>
+#include <slipmode/studies/skeletons.hpp>
 #include "python/call.hpp"
 #include "python/errors.hpp"
 #include "python/model.hpp"
@@ -10,8 +14,13 @@
 #include <fmt/format.h>
 #include <pybind11/eigen.h>
 
+#include <array>
+#include <memory>
 #include <optional>
+#include <string>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 namespace slipmode::python {
 namespace {
@@ -36,13 +45,6 @@ void read_start(Keywords& keywords, Eigen::Index n, studies::OrbitSearch& out_se
   out_search.guess = dynamics::State{.q = x.head(n), .v = x.tail(n)};
 }
 
-studies::OrbitSearch search_of(Keywords& keywords, const Scene& scene) {
-  studies::OrbitSearch search;
-  keywords.read(search);
-  read_start(keywords, scene.size(), search);
-  return search;
-}
-
 /// Newton's method did not arrive: how far it came is the failure's state.
 [[noreturn]] void raise_not_found(const orbits::ShootingResult& result) {
   const dynamics::State& best = result.orbit.start;
@@ -53,11 +55,74 @@ studies::OrbitSearch search_of(Keywords& keywords, const Scene& scene) {
       state, result.orbit.residual));
 }
 
+struct BranchCertificates {
+  int every = 1;
+  static constexpr auto fields() {
+    return std::tuple{
+        optional("every", &BranchCertificates::every, "", "with certify: every so many points, and the last", kCount)};
+  }
+};
+
+/// How an orbit is looked for.
+struct Method {
+  bool balances = false;
+  studies::OrbitSearch search;
+  studies::BalanceSearch balance;  ///< if so
+};
+
+Method method_of(Keywords& keywords, const Scene& scene) {
+  Method method;
+  const std::string by = keywords.text("by", "shooting");
+  if (by != "shooting" && by != "balance") keywords.refuse("by", py::str(by), "\"shooting\" or \"balance\"");
+  method.balances = by == "balance";
+  keywords.read(method.search);
+  if (!method.balances) {
+    read_start(keywords, scene.size(), method.search);
+    return method;
+  }
+  studies::BalanceWords words;
+  keywords.read(words);
+  if (words.error && !words.harmonics) words.harmonics = "auto";
+  const py::object start = keywords.take("start");
+  if (start && !py::isinstance<py::str>(start)) keywords.refuse("start", start, "\"contact\" or \"gap\"");
+  method.balance = studies::balance_search(words, start ? start.cast<std::string>() : "settle", method.search.order);
+  return method;
+}
+
+orbits::ShootingOptions certifying(const studies::OrbitSearch& search) {
+  return {.segments = search.segments, .tolerance = search.tolerance};
+}
+
+/// Newton's method found no balance, or none that meets the error.
+void require_balance(const studies::BalanceFound& found, const std::optional<Result>& kept) {
+  if (found.balance.converged && found.met) return;
+  const std::string why = found.balance.converged
+                              ? fmt::format("the error asked is not met up to {} harmonics", found.balance.harmonics)
+                              : found.balance.message;
+  raise(NumericalFailure(why, 0.0, {}, found.balance.residual), kept ? py::cast(*kept) : py::none());
+}
+
+Result find_balance(const Scene& scene, const Method& method, const ModelChoice& choice, Call& call) {
+  const auto [found, result] = call([&] {
+    const studies::Family family(scene, {}, choice.basis(scene, call.options()));
+    call.options().check_interrupt();
+    const auto own = std::make_shared<const studies::BalanceFound>(
+        studies::find_balance(family, method.balance, certifying(method.search)));
+    std::optional<Result> kept;
+    if (own->balance.converged) kept.emplace(studies::content_of(family, own));
+    return std::pair(own, std::move(kept));
+  });
+  require_balance(*found, result);
+  return *result;
+}
+
 Result find_orbit(const Scene& scene, const py::kwargs& given) {
   Keywords keywords("find_orbit", given);
-  const studies::OrbitSearch search = search_of(keywords, scene);
+  const Method method = method_of(keywords, scene);
+  const studies::OrbitSearch& search = method.search;
   const ModelChoice choice(keywords);
   Call call(keywords);
+  if (method.balances) return find_balance(scene, method, choice, call);
   const auto [found, result] = call([&] {
     const studies::Family family(scene, {}, choice.basis(scene, call.options()));
     call.options().check_interrupt();
@@ -71,18 +136,38 @@ Result find_orbit(const Scene& scene, const py::kwargs& given) {
   return *result;
 }
 
+Result continue_balance(const Scene& scene, const std::string& over, const Method& method,
+                        const studies::ContinuationRequest& request, int every, const ModelChoice& choice, Call& call) {
+  const auto [found, result] = call([&] {
+    const auto basis = choice.basis(scene, call.options());
+    studies::BalanceContinuation own = studies::continue_balance(scene, over, basis, method.balance, request, every,
+                                                                 certifying(method.search), call.options());
+    std::optional<Result> kept;
+    if (!own.branch.points.empty())
+      kept.emplace(studies::content_of(studies::Family(scene, {over}, basis), own.start, studies::branches_of(own),
+                                       studies::command_of(over, choice.word(), own, request), call.options()));
+    return std::pair(std::move(own), std::move(kept));
+  });
+  require_balance(found.found, result);
+  return *result;
+}
+
 Result continue_orbit(const Scene& scene, const std::string& over, double to, const std::optional<double>& from,
                       const py::kwargs& given) {
   Keywords keywords("continue_orbit", given);
-  const studies::OrbitSearch search = search_of(keywords, scene);
+  const Method method = method_of(keywords, scene);
+  const studies::OrbitSearch& search = method.search;
   studies::ContinuationRequest request;
   keywords.read(request);
   request.to = to;
   request.from = from ? *from : scene::get_continuous_key(scene, over);
   if (request.from == request.to)
     throw InvalidInput(fmt::format("continue_orbit: to = {}: the range has no length", to));
+  BranchCertificates own;
+  if (method.balances) keywords.read(own);
   const ModelChoice choice(keywords);
   Call call(keywords);
+  if (method.balances) return continue_balance(scene, over, method, request, own.every, choice, call);
   const auto [found, result] = call([&] {
     const auto basis = choice.basis(scene, call.options());
     studies::Continuation continuation = studies::continue_orbit(scene, over, basis, search, request, call.options());
@@ -105,21 +190,79 @@ Result continue_orbit(const Scene& scene, const std::string& over, double to, co
   return *result;
 }
 
+Result spectrum(const Result& orbit, const std::vector<int>& dofs, const py::kwargs& given) {
+  Keywords keywords("spectrum", given);
+  studies::SpectrumRequest request;
+  keywords.read(request);
+  request.dofs = dofs;
+  const ModelChoice choice(keywords);
+  Call call(keywords);
+  const results::StoreReader reader = orbit.reader();
+  return call([&] {
+    require_kind(reader, std::array{results::FileKind::kOrbit});
+    const Scene scene = results::load_scene_of(reader);
+    const studies::Family model(scene, {}, choice.basis(scene, call.options()));
+    return Result(studies::content_of(model, studies::orbit_spectrum(model, reader, request), request));
+  });
+}
+
+struct Comparison {
+  bool compare = false;
+  static constexpr auto fields() {
+    return std::tuple{
+        optional("compare", &Comparison::compare, "", "with a reduced model: the full one's too, and both compared")};
+  }
+};
+
+Result skeleton(const Scene& scene, const py::kwargs& given) {
+  Keywords keywords("skeleton", given);
+  studies::SkeletonRequest request;
+  keywords.read(request);
+  Comparison own;
+  keywords.read(own);
+  const ModelChoice choice(keywords);
+  Call call(keywords);
+  return call([&] {
+    const studies::Family model(scene, {}, choice.basis(scene, call.options()));
+    if (!own.compare)
+      return Result(studies::content_of(
+          model, std::make_shared<const results::ModelSkeleton>(studies::skeleton(model, request, call.options())),
+          choice.word(), request));
+    if (!model.basis()) throw InvalidInput("skeleton: compare = True: a reduced model with the full one; add model");
+    return Result(studies::content_of(model,
+                                      std::make_shared<const studies::SkeletonPair>(
+                                          studies::skeletons(studies::Family(scene), model, request, call.options())),
+                                      choice.word(), request));
+  });
+}
+
 }  // namespace
 
 void add_orbits(py::module_& module) {
   const std::string search =
       "    start: \"settle\" (a run from [initial]), \"initial\", or displacements and velocities\n" + model_text() +
-      options_text<studies::OrbitSearch>();
-  module.def("find_orbit", &find_orbit, py::arg("scene"),
-             ("A periodic orbit, its multipliers and one period of it.\n\n" + search + call_text()).c_str());
+      options_text<studies::OrbitSearch>() +
+      "    by: \"shooting\" (exact), or \"balance\": truncated Fourier series of the contacts\n" +
+      options_text<studies::BalanceWords>() + "    start of a balance: \"contact\" (all stops pressing), or \"gap\"\n";
+  module.def(
+      "find_orbit", &find_orbit, py::arg("scene"),
+      ("A periodic orbit, its multipliers and one period of it; or a balance.\n\n" + search + call_text()).c_str());
   module.def("continue_orbit", &continue_orbit, py::arg("scene"), py::arg("over"), py::arg("to"),
              py::arg("from_") = py::none(),
              ("Branches of periodic orbits over a key. They begin at the scene's own value of the key where the range\n"
               "holds it, and go both ways; else at `from_`.\n\n"
               "    over: key of the scene, e.g. \"drive.omega\"\n    to: end of the range\n"
               "    from_: its beginning; by default the scene's own value\n" +
-              search + options_text<studies::ContinuationRequest>() + call_text())
+              search + options_text<BranchCertificates>() + options_text<studies::ContinuationRequest>() + call_text())
+                 .c_str());
+  module.def("spectrum", &spectrum, py::arg("orbit"), py::arg("dofs") = std::vector<int>{},
+             ("Fourier coefficients of an exact orbit: displacement, velocity and force of each contact.\n\n"
+              "    orbit: of find_orbit\n    dofs: degrees of freedom, from 1, whose motion is given too\n" +
+              model_text() + options_text<studies::SpectrumRequest>() + call_text())
+                 .c_str());
+  module.def("skeleton", &skeleton, py::arg("scene"),
+             ("The unstable periodic orbits of a chaotic motion.\n\n" + model_text() + options_text<Comparison>() +
+              options_text<studies::SkeletonRequest>() + call_text())
                  .c_str());
 }
 

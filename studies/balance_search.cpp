@@ -1,7 +1,12 @@
 #include <slipmode/studies/balance_search.hpp>
 
+#include <slipmode/core/errors.hpp>
+#include <slipmode/core/numbers.hpp>
 #include <slipmode/orbits/balance/hill.hpp>
+#include <slipmode/results/balance_store.hpp>
+#include <slipmode/studies/command.hpp>
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 
@@ -16,7 +21,35 @@ void add_exponents(const Family& model, BalanceFound& out_found) {
   out_found.hill_without_jumps = orbits::hill_multipliers(model.own(), balance, {.jumps = false});
 }
 
+int whole_number(const char* option, const std::string& text, const char* word) {
+  const int value = number_in<int>(text).value_or(0);
+  if (value < 1) throw InvalidInput(fmt::format("{} {}: valid: a whole number from 1 on, or {}", option, text, word));
+  return value;
+}
+
 }  // namespace
+
+BalanceSearch balance_search(const BalanceWords& words, const std::string& start, int period_order) {
+  BalanceSearch out;
+  out.options.order = period_order;
+  out.certify = words.certify;
+  if (start != "settle" && start != "contact" && start != "gap") {
+    throw InvalidInput(fmt::format("--start {}: a balance begins at contact (all stops pressing) or gap", start));
+  }
+  out.options.start = start == "gap" ? orbits::BalanceStart::kGap : orbits::BalanceStart::kContact;
+  const std::string harmonics = words.harmonics.value_or("9"), samples = words.samples.value_or("exact");
+  if ((harmonics == "auto") != words.error.has_value()) {
+    throw InvalidInput("--harmonics auto and --error, a true error > 0, go together");
+  }
+  if (words.error) {
+    if (!(*words.error > 0.0)) throw InvalidInput(fmt::format("--error {}: valid: > 0", *words.error));
+    out.error = *words.error;
+  } else {
+    out.options.harmonics = whole_number("--harmonics", harmonics, "auto");
+  }
+  if (samples != "exact") out.options.samples = whole_number("--samples", samples, "exact");
+  return out;
+}
 
 BalanceFound find_balance(const Family& model, const BalanceSearch& search, const orbits::ShootingOptions& shooting) {
   BalanceFound out;
@@ -32,12 +65,28 @@ BalanceFound find_balance(const Family& model, const BalanceSearch& search, cons
   return out;
 }
 
+results::Content content_of(const Family& model, std::shared_ptr<const BalanceFound> found) {
+  return {.kind = results::FileKind::kBalance,
+          .unit_system = model.scene().units,
+          .write = [model, found = std::move(found)](results::StoreWriter& writer) {
+            const orbits::Certificate* certificate = found->certificate ? &*found->certificate : nullptr;
+            store(writer, model, certificate != nullptr && certificate->behind ? &certificate->found.orbit : nullptr);
+            results::store_balance(writer, found->balance, certificate, found->trials,
+                                   results::Units::of(model.scene().units));
+          }};
+}
+
 BalanceContinuation continue_balance(const scene::Scene& scene, const std::string& key,
                                      const std::optional<pod::NamedBasis>& basis, BalanceSearch search,
                                      const ContinuationRequest& request, int every,
                                      const orbits::ShootingOptions& shooting, const RunOptions& run) {
   constexpr int kMostHarmonics = 500;  // exponents of a point take (n H)³
   constexpr double kGrowth = 1.3;
+  if (request.switches)
+    throw InvalidInput("--switch: not along balances; follow the branch that leaves by shooting (--by shooting)");
+  if (search.options.samples != 0)
+    throw InvalidInput(
+        fmt::format("--samples {}: a balance is followed by exact forces alone; leave it out", search.options.samples));
   KeyFamily over = family_over(scene, key, basis, request, run);
   over.options.shooting = shooting;
   BalanceContinuation out{.found = find_balance(over.family, search, shooting), .start = over.start};
@@ -58,6 +107,18 @@ BalanceContinuation continue_balance(const scene::Scene& scene, const std::strin
     if (out.found.met) out.found = std::move(next);
   }
   return out;
+}
+
+std::string command_of(const std::string& key, const std::string& model, const BalanceContinuation& found,
+                       const ContinuationRequest& request) {
+  return fmt::format("slipmode orbit continue --over {}={}:{}{} --by balance --harmonics {}{}", key, request.from,
+                     request.to, model_option(model), found.found.balance.harmonics, options_text(request));
+}
+
+std::shared_ptr<const std::vector<results::NamedBranch>> branches_of(const BalanceContinuation& found) {
+  return std::make_shared<const std::vector<results::NamedBranch>>(
+      1, results::NamedBranch{.title = fmt::format("balance of {} harmonics", found.found.balance.harmonics),
+                              .branch = found.branch});
 }
 
 }  // namespace slipmode::studies

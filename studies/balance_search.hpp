@@ -3,7 +3,10 @@
 #include <slipmode/orbits/balance/balance_branch.hpp>
 #include <slipmode/studies/orbit_search.hpp>
 
+#include <memory>
 #include <optional>
+#include <string>
+#include <tuple>
 #include <vector>
 
 namespace slipmode::studies {
@@ -15,6 +18,28 @@ struct BalanceSearch {
   std::optional<double> error = {};
   bool certify = false;  ///< an order that is chosen is certified anyway
 };
+
+/// The same as a user says it.
+struct BalanceWords {
+  std::optional<std::string> harmonics = {}, samples = {};  ///< else 9, exact
+  std::optional<double> error = {};
+  bool certify = false;
+
+  static constexpr auto fields() {
+    using Own = BalanceWords;
+    return std::tuple{
+        optional("harmonics", &Own::harmonics, "", "of a balance: highest order, or auto: the order that error needs"),
+        optional("error", &Own::error, "1",
+                 "of harmonics auto: true error, a share of the half range of the displacement", kPositive),
+        optional("samples", &Own::samples, "",
+                 "of a balance: exact force integrals, or the alternating scheme with so many samples"),
+        optional("certify", &Own::certify, "", "shoot from the balance to the exact orbit: true error, multipliers")};
+  }
+  bool operator==(const BalanceWords&) const = default;
+};
+/// @param start  "settle" (the default), "contact" or "gap" @param period_order  period in periods of the drive
+/// @throws InvalidInput  for words that are no numbers, auto without an error
+[[nodiscard]] BalanceSearch balance_search(const BalanceWords& words, const std::string& start, int period_order);
 
 struct BalanceFound {
   orbits::Balance balance;
@@ -34,6 +59,9 @@ inline constexpr int kMostForHill = 400;
 [[nodiscard]] BalanceFound find_balance(const Family& model, const BalanceSearch& search,
                                         const orbits::ShootingOptions& shooting = {});
 
+/// What is kept of one that converged: the balance and, where it is certified, the orbit behind.
+[[nodiscard]] results::Content content_of(const Family& model, std::shared_ptr<const BalanceFound> found);
+
 /// A branch of balances over a key, of one order throughout.
 struct BalanceContinuation {
   BalanceFound found;          ///< the balance it begins with
@@ -52,5 +80,11 @@ struct BalanceContinuation {
                                                    const std::optional<pod::NamedBasis>& basis, BalanceSearch search,
                                                    const ContinuationRequest& request, int every,
                                                    const orbits::ShootingOptions& shooting, const RunOptions& run = {});
+
+/// As studies::command_of, with the order that was chosen.
+[[nodiscard]] std::string command_of(const std::string& key, const std::string& model, const BalanceContinuation& found,
+                                     const ContinuationRequest& request);
+/// Its one branch, to be kept as branches of orbits are.
+[[nodiscard]] std::shared_ptr<const std::vector<results::NamedBranch>> branches_of(const BalanceContinuation& found);
 
 }  // namespace slipmode::studies

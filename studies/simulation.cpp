@@ -4,6 +4,8 @@
 #include <slipmode/results/ensemble_store.hpp>
 #include <slipmode/results/provenance.hpp>
 #include <slipmode/results/records.hpp>
+#include <slipmode/rom/reduce.hpp>
+#include <slipmode/studies/command.hpp>
 
 #include <utility>
 
@@ -11,8 +13,8 @@ namespace slipmode::studies {
 namespace {
 
 /// Progress by simulated time.
-dynamics::Trajectory watched(const dynamics::HybridSystem& system, const dynamics::State& start,
-                             dynamics::SimulateOptions options, const RunOptions& run) {
+dynamics::Trajectory watched(const Family& model, const dynamics::State& start, dynamics::SimulateOptions options,
+                             const RunOptions& run) {
   const ProgressCallback progress = run.parallel("simulate").progress;
   const double duration = options.duration;
   options.on_event = [&](const dynamics::Event& event, const dynamics::State&) {
@@ -23,37 +25,44 @@ dynamics::Trajectory watched(const dynamics::HybridSystem& system, const dynamic
     }
     return run.stop == nullptr || !run.stop->load();
   };
-  dynamics::Trajectory trajectory = dynamics::simulate(system, start, options);
+  dynamics::Trajectory trajectory = dynamics::simulate(model.own(), start, options);
   run.check_interrupt();
+  if (!model.basis()) return trajectory;
+  const pod::Basis& basis = model.basis()->basis;
+  trajectory.final_state = rom::lift(basis, trajectory.final_state);
+  trajectory.q = basis.vectors * trajectory.q;
+  if (basis.mean.size() > 0) trajectory.q.colwise() += basis.mean;
+  trajectory.v = basis.vectors * trajectory.v;
   return trajectory;
 }
 
 }  // namespace
 
-Simulation simulate(const scene::Scene& scene, const RunOptions& run) {
-  const dynamics::HybridSystem system = scene::build_system(scene);
-  const dynamics::State start = scene::initial_state(scene, system);
-  dynamics::SimulateOptions options = scene::simulate_options(scene);
+Simulation simulate(const Family& model, const RunOptions& run) {
+  const dynamics::State start = model.start();
+  dynamics::SimulateOptions options = scene::simulate_options(model.scene());
   try {
-    return {watched(system, start, options, run), std::nullopt};
+    return {watched(model, start, options, run), std::nullopt};
   } catch (const NumericalFailure& failure) {
     // What came before is not lost: the run is done again up to there.
     const double reached = failure.time - start.time - options.sample;
     if (!(reached > options.transient + options.sample)) throw;
     options.duration = reached;
-    return {watched(system, start, options, run), failure};
+    return {watched(model, start, options, run), failure};
   }
 }
 
-results::Content content_of(const scene::Scene& scene, std::shared_ptr<const Simulation> simulation) {
+results::Content content_of(const scene::Scene& scene, std::shared_ptr<const Simulation> simulation,
+                            const std::string& model_word) {
   const dynamics::Trajectory& run = simulation->trajectory;
   results::Content content{.kind = results::FileKind::kTrajectory, .unit_system = scene.units, .write = {}};
   for (const Eigen::MatrixXd* samples : {&run.q, &run.v, &run.contact_q, &run.contact_v, &run.lambda})
     content.shared.push_back({simulation, {samples->data(), static_cast<std::size_t>(samples->size())}});
   content.shared.push_back({simulation, {run.times.data(), static_cast<std::size_t>(run.times.size())}});
-  content.write = [scene, simulation = std::move(simulation)](results::StoreWriter& writer) {
+  content.write = [scene, command = "slipmode simulate" + model_option(model_word),
+                   simulation = std::move(simulation)](results::StoreWriter& writer) {
     const dynamics::Trajectory& trajectory = simulation->trajectory;
-    results::Provenance provenance = results::provenance_of(scene, "slipmode simulate");
+    results::Provenance provenance = results::provenance_of(scene, command);
     provenance.audit = trajectory.audit;
     results::save(writer, provenance);
     results::save(writer, results::kTrajectoryGroup, trajectory);

@@ -1,7 +1,9 @@
 #include <slipmode/studies/skeletons.hpp>
 
 #include <slipmode/dynamics/simulate.hpp>
+#include <slipmode/results/provenance.hpp>
 #include <slipmode/rom/reduce.hpp>
+#include <slipmode/studies/command.hpp>
 
 #include <optional>
 #include <string>
@@ -24,7 +26,7 @@ orbits::AttractorOptions record_options(const scene::Scene& scene, const Skeleto
   constexpr double kRecords = 200.0;
   constexpr double kSamples = 5000.0;
   orbits::AttractorOptions options;
-  options.transient = request.transient >= 0.0 ? request.transient : scene.time.transient;
+  options.transient = request.transient.value_or(scene.time.transient);
   options.duration =
       request.duration > 0.0 ? request.duration : kRecords * (scene.time.duration - scene.time.transient);
   options.sample = options.duration / kSamples;
@@ -61,7 +63,11 @@ Recorded record(const Family& family, const SkeletonRequest& request, const std:
 template <class Search>
 orbits::Skeleton with_progress(const SkeletonRequest& request, const RunOptions& run, const std::string& what,
                                const Search& search) {
-  orbits::SkeletonOptions options = request.search;
+  orbits::SkeletonOptions options{.shooting = {.tolerance = request.tolerance}, .radius = request.radius};
+  options.returns.max_length = request.max_length;
+  options.returns.per_length = request.per_length;
+  options.returns.threshold = request.threshold;
+  options.returns.apart = request.apart;
   options.parallel = run.parallel(what);
   orbits::Skeleton skeleton = search(options);
   if (skeleton.interrupted) throw Interrupted();
@@ -82,7 +88,7 @@ struct SkeletonsOfBoth {
 
 SkeletonsOfBoth found_in_both(const SkeletonRequest& request, const RunOptions& run, const Recorded& full,
                               const Recorded& reduced) {
-  const Eigen::Index segment = request.search.passages_per_segment;
+  const Eigen::Index segment = orbits::SkeletonOptions{}.passages_per_segment;
   const pod::Basis& basis = reduced.family.basis()->basis;
   const SkeletonsOfBoth own{found_in(request, run, full, "skeleton, full"),
                             found_in(request, run, reduced, "skeleton, reduced")};
@@ -98,6 +104,17 @@ SkeletonsOfBoth found_in_both(const SkeletonRequest& request, const RunOptions& 
   };
   return {extended(full, own.full, to_full, "full, from the reduced model's orbits"),
           extended(reduced, own.reduced, to_reduced, "reduced, from the full model's orbits")};
+}
+
+template <class Write>
+results::Content content(const scene::Scene& scene, const std::string& options, Write write) {
+  return {.kind = results::FileKind::kSkeleton,
+          .unit_system = scene.units,
+          .write = [provenance = results::provenance_of(scene, "slipmode orbit skeleton" + options),
+                    write = std::move(write)](results::StoreWriter& writer) {
+            results::save(writer, provenance);
+            write(writer);
+          }};
 }
 
 results::ModelSkeleton shown(const Recorded& model, orbits::Skeleton skeleton) {
@@ -118,6 +135,26 @@ SkeletonPair skeletons(const Family& full, const Family& reduced, const Skeleton
   SkeletonsOfBoth both = found_in_both(request, run, of_full, of_reduced);
   orbits::SkeletonComparison comparison = orbits::compare_skeletons(both.full, both.reduced, of_full.attractor.metric);
   return {shown(of_full, std::move(both.full)), shown(of_reduced, std::move(both.reduced)), std::move(comparison)};
+}
+
+results::Content content_of(const Family& model, std::shared_ptr<const results::ModelSkeleton> skeleton,
+                            const std::string& model_word, const SkeletonRequest& request) {
+  return content(model.scene(), model_option(model_word) + options_text(request),
+                 [role = model.basis() ? "reduced" : "full", skeleton = std::move(skeleton),
+                  units = results::Units::of(model.scene().units)](results::StoreWriter& writer) {
+                   results::store_skeleton(writer, role, *skeleton, units);
+                 });
+}
+
+results::Content content_of(const Family& reduced, std::shared_ptr<const SkeletonPair> pair,
+                            const std::string& model_word, const SkeletonRequest& request) {
+  return content(
+      reduced.scene(), " --compare-with " + model_word + options_text(request),
+      [pair = std::move(pair), units = results::Units::of(reduced.scene().units)](results::StoreWriter& writer) {
+        results::store_skeleton(writer, "full", pair->full, units);
+        results::store_skeleton(writer, "reduced", pair->reduced, units);
+        results::store_comparison(writer, pair->comparison);
+      });
 }
 
 }  // namespace slipmode::studies

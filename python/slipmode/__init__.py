@@ -404,6 +404,7 @@ ensemble = _study("ensemble")
 validate = _study("validate")
 find_orbit = _study("find_orbit", Run)
 continue_orbit = _study("continue_orbit")
+skeleton = _study("skeleton")
 sweep = _study("sweep")
 orbit_map = _study("orbit_map")
 basins = _study("basins")
@@ -424,5 +425,11 @@ def reduce(scene, basis, modes=0):
     return Result(_slipmode.reduce(_load(scene), _native(basis), modes))
 
 
-for _function in (modes, pod, reduce):
+def spectrum(orbit, dofs=(), **options):
+    if "model" in options:
+        options["model"] = _native(options["model"])
+    return Result(_slipmode.spectrum(_native(orbit), list(dofs), **options))
+
+
+for _function in (modes, pod, reduce, spectrum):
     _named(_function, _function.__name__)

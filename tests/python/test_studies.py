@@ -93,6 +93,47 @@ class BesideTheExecutable(unittest.TestCase):
         self.assert_same(branch, self.folder / "branch.h5")
         np.testing.assert_array_equal(branch["branches/0/points"]["period"], branch["branches/0/points/period"])
 
+    def test_a_run_of_a_reduced_model(self):
+        scene = sm.Scene.load(CHAIN, set=SHORT)
+        rom = sm.reduce(scene, sm.pod(sm.ensemble(scene)), modes=3)
+        rom.save(self.folder / "rom.h5")
+        self.executable("simulate", CHAIN, "--single", "--model", f"rom:{self.folder / 'rom.h5'}", "-o",
+                        self.folder / "run.h5", set=SHORT)
+        ours = sm.simulate(scene, model=rom)
+        self.assert_same(ours, self.folder / "run.h5", apart={"provenance/command"})
+        self.assertEqual(ours.q.shape[1], 4)  # lifted
+        self.assertLess(np.linalg.matrix_rank(ours.v, tol=1e-9), 4)
+
+    def test_spectrum_and_skeleton(self):
+        orbit = sm.find_orbit(BACKLASH, start=[2.5, 0.0])
+        orbit.save(self.folder / "orbit.h5")
+        self.executable("orbit", "spectrum", self.folder / "orbit.h5", "--harmonics", 9, "--dof", 1,
+                        "-o", self.folder / "spectrum.h5")
+        self.assert_same(sm.spectrum(orbit, dofs=[1], harmonics=9), self.folder / "spectrum.h5")
+        scene = sm.Scene.load(CHAIN, set=SHORT)
+        rom = sm.reduce(scene, sm.pod(sm.ensemble(scene)), modes=3)
+        rom.save(self.folder / "rom.h5")
+        quick, words = {"duration": 3000.0, "max_length": 2}, ("--duration", 3000, "--max-length", 2)
+        self.executable("orbit", "skeleton", CHAIN, *words, "-o", self.folder / "skeleton.h5", set=SHORT)
+        self.assert_same(sm.skeleton(scene, **quick), self.folder / "skeleton.h5")
+        self.executable("orbit", "skeleton", CHAIN, *words, "--compare-with", f"rom:{self.folder / 'rom.h5'}",
+                        "-o", self.folder / "skeletons.h5", set=SHORT)
+        self.assert_same(sm.skeleton(scene, model=rom, compare=True, **quick), self.folder / "skeletons.h5",
+                         apart={"provenance/command"})
+
+    def test_balances(self):
+        for flags, options in (((), {}), (("--harmonics", 21, "--certify"), {"harmonics": 21, "certify": True}),
+                               (("--harmonics", "auto", "--error", 1e-3), {"error": 1e-3}),
+                               (("--samples", 256, "--start", "gap"), {"samples": 256, "start": "gap"})):
+            with self.subTest(options):
+                self.executable("orbit", "find", PLAY, "--by", "balance", *flags, "-o", self.folder / "balance.h5")
+                self.assert_same(sm.find_orbit(PLAY, by="balance", **options), self.folder / "balance.h5")
+        self.executable("orbit", "continue", PLAY, "--over", "drive.omega=1:1.1", "--by", "balance", "--certify",
+                        "--every", 5, "-o", self.folder / "branch.h5")
+        omega = sm.Scene.load(PLAY, set={"drive.omega": 1.0})
+        self.assert_same(sm.continue_orbit(omega, over="drive.omega", from_=1.0, to=1.1, by="balance", certify=True,
+                                           every=5), self.folder / "branch.h5", apart={"provenance/overrides"})
+
     def test_sweep_of_full_and_reduced(self):
         scene = sm.Scene.load(CHAIN, set=QUICK)
         rom = sm.reduce(scene, sm.pod(sm.ensemble(scene)), modes=3)
@@ -165,12 +206,26 @@ class KnownValues(unittest.TestCase):
         self.assertEqual(caught.exception.state.shape, (2,))
         self.assertGreater(caught.exception.residual, 0.0)
 
+    def test_a_balance_has_its_orbits_coefficients(self):
+        # What a series of order 9, 21, 49 leaves out: 2e-5, 5e-7, 5e-9 of the orbit's own first cosine.
+        exact = sm.spectrum(sm.find_orbit(PLAY, start=[2.5, 0.0]), harmonics=1)["spectrum/coefficients"]
+        for order, apart in ((9, 3e-5), (21, 1e-6), (49, 1e-8)):
+            balance = sm.find_orbit(PLAY, by="balance", harmonics=order, certify=True)
+            self.assertAlmostEqual(balance["balance/coefficients"]["displacement_1_cosine"][1],
+                                   exact["displacement_1_cosine"][1], delta=apart)
+
+    def test_a_balance_that_is_not_found(self):
+        with self.assertRaisesRegex(sm.NumericalFailure, "not met"):
+            sm.find_orbit(PLAY, by="balance", error=1e-300)
+
     def test_all_modes_of_a_basis_move_as_the_full_model(self):
         scene = sm.Scene.load(CHAIN, set=SHORT)
         rom = sm.reduce(scene, "lnm", modes=4)
         full = sm.find_orbit(sm.Scene.load(scene, set={"drive.speed": 0.5}))
         same = sm.find_orbit(sm.Scene.load(scene, set={"drive.speed": 0.5}), model=rom)
         self.assertAlmostEqual(full.period, same.period, delta=1e-9 * full.period)
+        brief = sm.Scene.load(scene, set={"time.duration": 20.0, "time.transient": 0.0})
+        np.testing.assert_allclose(sm.simulate(brief, model=rom).q, sm.simulate(brief).q, atol=1e-9)
 
 
 class Elsewhere(unittest.TestCase):
@@ -249,6 +304,17 @@ class Refused(unittest.TestCase):
                 (lambda: sm.exponents(scene, scene), "results of pod"),
                 (lambda: sm.find_orbit(scene, model=3), "reduce"),
                 (lambda: sm.continue_orbit(BACKLASH, over="drive.omega", to=1.4), "no length"),
+                (lambda: sm.find_orbit(BACKLASH, by="guess"), "shooting"),
+                (lambda: sm.find_orbit(BACKLASH, harmonics=9), "valid:"),
+                (lambda: sm.find_orbit(BACKLASH, by="balance", harmonics=0), "from 1 on, or auto"),
+                (lambda: sm.find_orbit(BACKLASH, by="balance", samples=3, harmonics=9), "more than 18"),
+                (lambda: sm.find_orbit(BACKLASH, by="balance", start=[1.0, 0.0]), "contact"),
+                (lambda: sm.find_orbit(scene, by="balance"), "balance"),
+                (lambda: sm.continue_orbit(BACKLASH, over="drive.omega", to=1.1, by="balance", switch=True), "shooting"),
+                (lambda: sm.spectrum(sm.modes(scene)), "orbit"),
+                (lambda: sm.spectrum(sm.find_orbit(BACKLASH), dofs=[2]), "1 to 1"),
+                (lambda: sm.skeleton(scene, compare=True), "add model"),
+                (lambda: sm.skeleton(scene, radius=0), "> 0"),
                 (lambda: sm.sweep(scene, "drive.sped", [0.1]), "drive"),
                 (lambda: sm.sweep(scene, "structure.masses", [4, 5]), "degrees of freedom"),
                 (lambda: sm.sweep(scene, "drive.speed", [0.1], folow=True), "valid: .*follow"),

@@ -20,7 +20,7 @@ TEST(Simulation, EndsAndTellsItsProgressWithinTheTransientToo) {
                            if (done > 0) stop = true;
                          };
                        }};
-  EXPECT_THROW((void)simulate(scene, run), Interrupted);
+  EXPECT_THROW((void)simulate(Family(scene), run), Interrupted);
   EXPECT_EQ(furthest, 1U);
 }
 
