@@ -1,5 +1,6 @@
 #include <slipmode/results/info.hpp>
 
+#include <slipmode/results/memory_store.hpp>
 #include <slipmode/results/store.hpp>
 
 #include <fmt/format.h>
@@ -7,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <ranges>
+#include <span>
 
 namespace slipmode::results {
 
@@ -94,6 +97,37 @@ nlohmann::json entry_json(const StoreReader& store, const StoreEntry& entry) {
   return out;
 }
 
+/// An array as lists of rows. @param next  gives its values, one after another
+template <class Next>
+nlohmann::json rows_json(std::span<const std::int64_t> shape, const Next& next) {
+  if (shape.empty()) return next();
+  nlohmann::json rows = nlohmann::json::array();
+  for (std::int64_t k = 0; k < shape.front(); ++k) rows.push_back(rows_json(shape.subspan(1), next));
+  return rows;
+}
+
+nlohmann::json values_json(const Dataset& data) {
+  std::size_t at = 0;
+  return rows_json(data.shape, [&]() -> nlohmann::json {
+    const std::size_t k = at++;
+    if (data.integers) return data.integers.get()[k];
+    if (!data.numbers) return data.texts[k];
+    const double value = data.numbers.get()[k];
+    return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
+  });
+}
+
+nlohmann::json values_json(const StoreReader& store) {
+  nlohmann::json out = nlohmann::json::object();
+  for (const StoreEntry& entry : store.entries()) {
+    if (entry.kind == Kind::kGroup || entry.kind == Kind::kOther) continue;
+    nlohmann::json* place = &out;
+    for (const auto part : std::views::split(entry.name, '/')) place = &(*place)[std::string(part.begin(), part.end())];
+    *place = values_json(store.dataset(entry.name));
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string info(const std::filesystem::path& path, InfoFormat format) {
@@ -106,6 +140,8 @@ std::string info(const std::filesystem::path& path, InfoFormat format) {
     for (const StoreEntry& entry : store.entries()) text += entry_line(store, entry);
     return text;
   }
+  if (format == InfoFormat::kValues)
+    return values_json(store).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   nlohmann::json out = {{"file", path.string()}, {"kind", nullptr}, {"contents", nlohmann::json::array()}};
   if (kind) out["kind"] = words_of(*kind).word;
   for (const StoreEntry& entry : store.entries()) out["contents"].push_back(entry_json(store, entry));
