@@ -202,9 +202,12 @@ double EventResolver::contact_velocity(int c, const double* x) const {
 bool EventResolver::at_belt_speed(double time, int c, const double* x) const {
   const double V = drive_.velocity(time);
   const Eigen::Map<const Eigen::VectorXd> state(x, 2 * model_.np);
+  const auto row = model_.velocity_row.col(c).cwiseAbs();
   // V as computed errs by the rounding of its phase, and of the time.
-  const double scale = model_.velocity_row.col(c).cwiseAbs().dot(state.cwiseAbs()) + drive_.velocity_scale(time) +
-                       std::abs(drive_.acceleration(time) * time);
+  double scale = row.dot(state.cwiseAbs()) + drive_.velocity_scale(time) + std::abs(drive_.acceleration(time) * time);
+  // Where all is at rest, speeds round by what the displacements would become.
+  if (model_.proportional)
+    scale += row.tail(model_.np).dot(model_.omega.cwiseProduct(state.head(model_.np).cwiseAbs()));
   return std::abs(V - contact_velocity(c, x)) <= kAtRest * scale;
 }
 

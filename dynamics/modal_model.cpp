@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace slipmode::dynamics {
@@ -144,13 +145,23 @@ void separate_rigid_modes(const Eigen::VectorXd& omega, Eigen::MatrixXd& shapes,
   if (rigid.empty()) return;
   Eigen::MatrixXd own = damping(rigid, rigid);
   own = (own + own.transpose()).eval() / 2.0;
-  if (coupled != nullptr) {  // sizes do not matter, only what is zero
-    own /= std::max(damping_size, 1e-300);
-    for (const auto& w : coupled->colwise())
-      if (w.norm() > 0.0) own += w(rigid) * w(rigid).transpose() / w.squaredNorm();
+  const auto m = own.rows();
+  Eigen::MatrixXd Q = Eigen::MatrixXd::Identity(m, m);
+  Eigen::Index reached = 0;
+  if (coupled != nullptr && coupled->cols() > 0) {
+    // What the terms do not reach comes last, apart: its displacements then change nothing, and stay exact zeros of A.
+    const Eigen::VectorXd size = coupled->colwise().norm().transpose().cwiseMax(1e-300);
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd((*coupled)(rigid, Eigen::all) * size.cwiseInverse().asDiagonal(),
+                                                Eigen::ComputeFullU);
+    reached = (svd.singularValues().array() > kProportionalTolerance).count();
+    Q = svd.matrixU();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> turn(own);
-  const Eigen::MatrixXd& Q = turn.eigenvectors();
+  for (const auto& [begin, count] : {std::pair{Eigen::Index{0}, reached}, std::pair{reached, m - reached}}) {
+    if (count == 0) continue;
+    auto part = Q.middleCols(begin, count);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> turn(Eigen::MatrixXd(part.transpose() * own * part));
+    part = (part * turn.eigenvectors()).eval();
+  }
   shapes(Eigen::all, rigid) = (shapes(Eigen::all, rigid) * Q).eval();
   damping(rigid, Eigen::all) = (Q.transpose() * damping(rigid, Eigen::all)).eval();
   damping(Eigen::all, rigid) = (damping(Eigen::all, rigid) * Q).eval();

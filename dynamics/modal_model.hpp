@@ -82,7 +82,7 @@ struct ModalModel {
 /// @param damping  in these modes [m x m]; turned with them
 /// @param damping_size  norm of the whole structure's: what rounding is a share of, however little of it is left here
 /// @param coupled  directions in these modes along which further terms will act, columns, or null; turned with them:
-///                 modes that neither damping nor these reach are separated from those that they do
+///                 modes that these reach are separated from those that they do not, and each by itself as above
 void separate_rigid_modes(const Eigen::VectorXd& omega, Eigen::MatrixXd& shapes, Eigen::MatrixXd& damping,
                           double damping_size, Eigen::MatrixXd* coupled = nullptr);
 

@@ -14,8 +14,8 @@ namespace {
 constexpr double kTouching = 1e-12;
 /// A guard below this share of its scale when a regime begins starts at zero …
 constexpr double kStarting = 1e-9;
-/// … and with zero slope, if that is below this share of its scale times the fastest rate.
-constexpr double kSimpleStart = 1e-9;
+/// … its slope is known to rise above this share of its scale times the fastest rate, and may be zero below that one.
+constexpr double kRising = 1e-13, kSimpleStart = 1e-9;
 constexpr int kNewtonSteps = 20;
 /// Newton steps of less than this phase of the fastest pair go on from where the last one led.
 constexpr double kClose = 0.25;
@@ -163,11 +163,12 @@ void ClosedFormFlow::foresee_starts() {
     const double m3 = room * r.weight3.col(guard.output).dot(amplitude_) + third + harmonic3;
     const double m2 = room * r.weight2.col(guard.output).dot(amplitude_) +
                       std::abs(r.polynomial2.col(guard.output).dot(inputs_)) + third / r.rate + harmonic2;
-    const bool simple = rigid_speed ? point_.multiplicity[i] == 1 : g1 > kSimpleStart * r.rate * size;
+    const bool simple = rigid_speed ? point_.multiplicity[i] == 1 : g1 > kRising * r.rate * size;
     const bool flat = rigid_speed ? point_.multiplicity[i] == 2 : std::abs(g1) <= kSimpleStart * r.rate * size;
     double clear = 0.0;
-    if (simple && g1 > 0) clear = std::min(g1 / m2, 1.0 / r.rate);
-    if (flat && g2 > 0) clear = std::min(1.5 * g2 / m3, 1.0 / r.rate);
+    if (simple && g1 > 0) clear = g1 / m2;
+    if (flat && g2 > 0) clear = std::max(clear, 1.5 * g2 / m3);
+    clear = std::min(clear, 1.0 / r.rate);
     if (!rigid_speed && clear == 0.0) continue;  // falling through zero: an event at once
     blind_start_ |= clear < tiny;
     clear = std::max(clear, tiny);

@@ -10,6 +10,8 @@
 namespace slipmode::dynamics {
 namespace {
 
+/// Share of a step that is not left for a step of its own.
+constexpr double kSliver = 1e-6;
 /// A step that ends at its last node gains from the Radau nodes' superconvergence; one that ends inside does not.
 constexpr double kEndNodeGain = 3e-2;
 /// The step is doubled when the error of the doubled one, eighth order, is foreseen to pass with this margin.
@@ -140,7 +142,9 @@ bool CollocationFlow::step(double t_limit) {
     }
     guard = first_guard();
     if (guard.contact >= 0 && bristled(guard.contact)) error = std::max(error, reversal_error(guard));
-    tau = std::min(guard.contact >= 0 ? guard.theta * h : h, remaining);
+    // A sliver that a whole step would leave is as short as the clock's rounding, and forces in it are noise.
+    const double whole = remaining > h && remaining - h < kSliver * h ? remaining / 2.0 : h;
+    tau = std::min(guard.contact >= 0 ? guard.theta * h : whole, remaining);
     tolerance = options_.tolerance * (tau < h ? 1.0 : 1.0 / kEndNodeGain);
     if (!(error <= tolerance) && !smallest) {
       level += halvings(error / tolerance);
