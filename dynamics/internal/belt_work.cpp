@@ -135,9 +135,8 @@ StayWork BeltWork::until(const StayPlace& at, const Eigen::VectorXd& inputs) {
   }
   work.contact += end_.squares - begin_.squares;
   work.viscous = end_.loss - begin_.loss + (end_.dragged - begin_.dragged) + V * V * dragged_loss_ * stay;
-  if (forms_ != nullptr)
-    work.rounding = std::numeric_limits<double>::epsilon() *
-                    (std::abs(begin_.loss) + std::abs(end_.loss) + std::abs(begin_.squares) + std::abs(end_.squares));
+  work.rounding = std::numeric_limits<double>::epsilon() *
+                  (std::abs(begin_.loss) + std::abs(end_.loss) + std::abs(begin_.squares) + std::abs(end_.squares));
   std::swap(begin_, end_);
   return work;
 }

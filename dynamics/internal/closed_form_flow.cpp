@@ -18,6 +18,8 @@ constexpr double kUsed = 1.0 - 1e-5;
 /// The next window is longer when the least value of every guard is this many times what was left out.
 constexpr double kSpareToGrow = 32.0;
 constexpr int kLargestGrowth = 4;
+/// Events this share of a window apart may be one, and come in either order.
+constexpr double kSameInstant = 1e-6;
 /// A sum of which no more than this share of its terms is left is made anew.
 constexpr double kLittleLeft = 1e-3;
 
@@ -208,8 +210,16 @@ bool ClosedFormFlow::step(double t_limit) {
     // Up to the part that is proved clear; beyond it Newton, which may prove itself.
     if (!found.resolved) tau *= kUsed;
     double root = (found.guess > 0.0 ? found.guess : found.at) * h;
-    const bool proved =
+    bool proved =
         (found.resolved || found.guess > 0.0) && approach(guards_[static_cast<std::size_t>(found.guard)], tau, root);
+    if (found.resolved && root > (found.others + kSameInstant) * h) {
+      // A guard that is all rounding led past another's event: it is taken where the window has it.
+      proved = false;
+      root = found.at * h;
+      x_ = x_begin_;
+      inputs_ = inputs_begin_;
+      move(root);
+    }
     const bool first = found.resolved || root <= found.others * h;
     // Where windows are finer than the clock, a root beyond the window is now, or the guard is clear until shortly
     // before.

@@ -26,12 +26,15 @@ constexpr int kProofHalvings = 3;
 /// A step spans at most this phase of a shaker, so that all quadratures resolve it.
 constexpr double kLargestDrivePhase = 2.0;
 
+/// Of a step at once.
+constexpr int kMostHalvings = 4;
+
 /// How many times to halve a step whose eighth-order error is too large by this factor: at least once.
 int halvings(double excess) {
   int exponent = 0;
   std::frexp(excess, &exponent);
   constexpr int order = kNodes;
-  return std::clamp(1 + exponent / order, 1, 4);
+  return std::clamp(1 + exponent / order, 1, kMostHalvings);
 }
 
 /// The largest ωh for which the polynomial of degree 7 through a step's nodes follows e^{iωt} to within `tolerance`:
@@ -159,8 +162,10 @@ bool CollocationFlow::step(double t_limit) {
       continue;
     }
     if (guard.contact >= 0 && deepest_overshoot() > kLargestOvershoot) {
+      // Of forces so far beyond their law the guard says when, or nothing at all: a few halvings at a time.
+      const int most = std::min(level + kMostHalvings, StepTables::kLevels - 1);
       do ++level;
-      while (tables_.step(level + 1) > guard.theta * h);
+      while (level < most && tables_.step(level + 1) > guard.theta * h);
       continue;
     }
     proved = proves(guard, tau / h);
