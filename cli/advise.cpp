@@ -74,7 +74,7 @@ Report run(const Session& session, const AdviseArguments& arguments) {
   if (file) results::keep_in(*file->journal(), options);
   const trade::Study done = trade::study(scene, trade::as_it_stands(scene), variants, {}, options);
   if (file) file->finish([&](results::StoreWriter& writer) { results::store_study(writer, done, scene); });
-  if (session.shard) return part_made(session, *file, arguments.output, "configurations");
+  if (session.has_a_share()) return part_made(session, *file, arguments.output, "configurations");
 
   Report report;
   std::vector<trade::EffectAdvice> advice;

@@ -229,7 +229,8 @@ Verb add_diagnose(CLI::App& app) {
       return diagnose_model(session, arguments->request);
     }
     refuse_model_options(*command, of_models);
-    if (session.shard) throw InvalidInput("--shard: for a scene with --over; a record is one piece");
+    if (session.is_divided())
+      throw InvalidInput(session.divided_by() + ": for a scene with --over; a record is one piece");
     return diagnose_series(session, *arguments);
   };
   return {.command = command, .run = run, .divides = true};

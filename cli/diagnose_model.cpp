@@ -46,7 +46,8 @@ Report diagnose_scene(const Session& session, const DiagnoseRequest& request, co
     if (!session.shard) draw_diagnosis(request, with_file.output, report);
     return report;
   }
-  if (session.shard) throw InvalidInput("--shard: values of a key are divided; give one with --over");
+  if (session.is_divided())
+    throw InvalidInput(session.divided_by() + ": values of a key are divided; give one with --over");
   const studies::Subjects subjects = studies::subjects_of(scene, models.stores(), models.modes);
   const auto found = std::make_shared<const studies::ModelDiagnosis>(
       studies::diagnose_models(scene, subjects, models.exponents, models.verdict, session.run_options()));

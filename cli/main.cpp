@@ -1,7 +1,9 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/dynamics/kernels/kernels.hpp>
+#include <slipmode/results/crew.hpp>
 #include <slipmode/results/provenance.hpp>
 #include "cli/interrupt.hpp"
+#include "cli/launched.hpp"
 #include "cli/slurm.hpp"
 #include "cli/verbs.hpp"
 
@@ -25,25 +27,33 @@ std::string status_of(int exit_code) {
   return exit_code == kInterrupted ? "interrupted" : "failed";
 }
 
+/// How this process ends, and why where it does not end well.
+struct End {
+  int code = kDone;
+  std::string message = {};
+};
+
 /// Ends the program with a message: on standard error for people, as the one JSON object for programs.
-int fail(const Session& session, ExitCode code, const std::string& message, const Json& details = Json::object()) {
+End fail(const Session& session, ExitCode code, const std::string& message, const Json& details = Json::object()) {
+  if (!session.speaks()) return {code, message};
   print_line(stderr, "slipmode: " + message);
   if (session.json) {
     Json object = {{"status", status_of(code)}, {"exit_code", static_cast<int>(code)}, {"message", message}};
     object.update(details);
     print_line(stdout, object.dump(2, ' ', false, Json::error_handler_t::replace));
   }
-  return code;
+  return {code, message};
 }
 
-int fail_numerically(const Session& session, const NumericalFailure& failure) {
+End fail_numerically(const Session& session, const NumericalFailure& failure) {
   const std::vector<double> state(failure.state.begin(), failure.state.end());
   return fail(session, kNumericalFailure, describe(failure),
               {{"time", failure.time}, {"residual", failure.residual}, {"state", state}});
 }
 
 /// The text of a verb that did not end well goes to standard error, whatever was asked for.
-int report(const Session& session, const Report& result) {
+End report(const Session& session, const Report& result) {
+  if (!session.speaks()) return {result.exit_code, result.text};
   if (session.json) {
     Json object = {{"status", status_of(result.exit_code)}, {"exit_code", result.exit_code}};
     object.update(result.data);
@@ -54,7 +64,7 @@ int report(const Session& session, const Report& result) {
   } else if (!session.json && !session.quiet) {
     print_line(stdout, result.text);
   }
-  return result.exit_code;
+  return {result.exit_code, result.text};
 }
 
 /// Of a verb whose result has to have a name.
@@ -65,7 +75,24 @@ std::string output_of(const Verb& verb, const std::string& option) {
   return output->as<std::string>();
 }
 
-int run_verb(Session& session, const Verb& verb) {
+/// What ranks compute together is what shards divide.
+void check_ranks(const Session& session, const Verb& verb) {
+  const std::string name = verb.command->get_name();
+  if (!verb.divides) {
+    throw InvalidInput(
+        fmt::format("{}: is computed by one process; start it without mpirun, which is for sweep, orbit map, orbit "
+                    "basins, diagnose "
+                    "--over, trade and advise",
+                    name));
+  }
+  if (session.shard || !session.slurm.empty()) {
+    throw InvalidInput(fmt::format("{}: {} divides the study, and so does mpirun; expected one of them", name,
+                                   session.shard ? "--shard" : "--slurm"));
+  }
+  (void)output_of(verb, "mpirun");
+}
+
+End run_verb(Session& session, const Verb& verb) {
   try {
     if (!session.shard_text.empty()) {
       session.shard = results::parse_shard(session.shard_text);
@@ -74,6 +101,7 @@ int run_verb(Session& session, const Verb& verb) {
     if (session.shards && session.slurm.empty())
       throw InvalidInput(
           fmt::format("--shards {}: goes with --slurm; one of them is --shard I/{}", *session.shards, *session.shards));
+    if (session.ranks != nullptr) check_ranks(session, verb);
     if (session.slurm.empty()) return report(session, verb.run(session));
     return report(session, write_slurm(session, output_of(verb, "--slurm")));
   } catch (const InvalidInput& error) {
@@ -111,8 +139,9 @@ std::string unknown_verb(const CLI::App& app, int argc, char** argv) {
   return "";
 }
 
-int run_main(int argc, char** argv) {
+End run_main(int argc, char** argv, const Ranks* ranks) {
   Session session;
+  session.ranks = ranks;
   session.stop = &watch_for_interrupt();
   CLI::App app{
       "slipmode: structures with friction contacts, their proper orthogonal modes, and reduced models that are checked "
@@ -132,7 +161,7 @@ int run_main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);
+    if (error.get_exit_code() == 0) return {session.speaks() ? app.exit(error) : kDone};
     for (int i = 1; i < argc; ++i) session.json = session.json || std::string_view(argv[i]) == "--json";
     const std::string unknown = unknown_verb(app, argc, argv);
     if (!unknown.empty()) return fail(session, kBadInput, unknown);
@@ -141,9 +170,25 @@ int run_main(int argc, char** argv) {
   for (const Verb& verb : verbs) {
     if (!verb.command->parsed()) continue;
     session.words = words_of(*verb.command);
+    if (ranks != nullptr && session.threads == 0) session.threads = threads_of(*ranks);
     return run_verb(session, verb);
   }
-  return kBadInput;
+  return {kBadInput};
+}
+
+/// As one process, or as one of the ranks that a launcher started.
+int run_launched(int argc, char** argv) {
+  const Launch launch = launch_in_environment();
+  std::optional<Ranks> ranks;
+  try {
+    ranks = join_ranks(launch);
+  } catch (const InvalidInput&) {
+    if (launch.own == 0) throw;
+    return kDone;  // rank 0 says it
+  }
+  const End end = run_main(argc, argv, ranks ? &*ranks : nullptr);
+  std::fflush(nullptr);  // ranks may end abruptly
+  return ranks ? results::end_ranks(*ranks, end.code, end.message) : end.code;
 }
 
 }  // namespace
@@ -152,7 +197,7 @@ int run_main(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return slipmode::cli::run_main(argc, argv);
+    return slipmode::cli::run_launched(argc, argv);
   } catch (const slipmode::InvalidInput& error) {  // in the environment: --version reads it
     std::fprintf(stderr, "slipmode: %s\n", error.what());
     return slipmode::cli::kBadInput;

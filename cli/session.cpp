@@ -45,7 +45,9 @@ studies::RunOptions Session::run_options() const {
       }};
 }
 
-studies::Division Session::division() const { return {.shard = shard, .joined = joined, .words = words}; }
+studies::Division Session::division() const {
+  return {.shard = shard, .joined = joined, .words = words, .ranks = ranks};
+}
 
 scene::Scene Session::load(const fs::path& path) const {
   if (!joined.empty()) {
@@ -79,6 +81,7 @@ void tell_resumed(const Session& session, std::size_t resumed, const std::string
 Report part_made(const Session& session, const studies::ResultFile& file, const std::string& output,
                  const std::string& what) {
   Report report;
+  if (!session.shard) return report;
   report.text = fmt::format("Shard {}: {} {}\n", results::to_string(session.shard.value()), file.finished(), what);
   report.data = {{"shard", results::to_string(session.shard.value())}, {"file", output}, {what, file.finished()}};
   tell_resumed(session, file.resumed(), what, report);

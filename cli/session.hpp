@@ -4,6 +4,7 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/core/parallel.hpp>
 #include <slipmode/core/progress.hpp>
+#include <slipmode/core/ranks.hpp>
 #include <slipmode/results/store.hpp>
 #include <slipmode/scene/scene.hpp>
 #include <slipmode/studies/result_file.hpp>
@@ -43,10 +44,21 @@ struct Session {
   std::optional<std::size_t> shards = {};  ///< --shards, with --slurm
   std::vector<results::Part> joined = {};  ///< what `slipmode merge` joins: they hold the scene, and values
   std::vector<std::string> words = {};     ///< of the command line, as a part keeps them
+  const Ranks* ranks = nullptr;            ///< processes that mpirun started together; null: this one is on its own
 
+  /// True but on ranks other than 0, which neither print nor write.
+  [[nodiscard]] bool speaks() const { return ranks == nullptr || ranks->own == 0; }
+  /// True when this process computes a share of the values, and others make the result.
+  [[nodiscard]] bool has_a_share() const { return shard || !speaks(); }
+
+  /// Whether several processes compute the study, and what says so.
+  [[nodiscard]] bool is_divided() const { return shard || ranks != nullptr; }
+  [[nodiscard]] std::string divided_by() const { return shard ? "--shard" : "mpirun"; }
   /// For studies, with progress on standard error.
   [[nodiscard]] studies::RunOptions run_options() const;
-  [[nodiscard]] ProgressMode progress_mode() const { return quiet ? ProgressMode::kQuiet : ProgressMode::kAutomatic; }
+  [[nodiscard]] ProgressMode progress_mode() const {
+    return quiet || !speaks() ? ProgressMode::kQuiet : ProgressMode::kAutomatic;
+  }
   /// How a study's values are divided among processes.
   [[nodiscard]] studies::Division division() const;
   /// Reads a scene, or the one of joined parts, with --set and --seed applied (--seed is an override of ensemble.seed,
@@ -71,7 +83,7 @@ using results::require_writable;
 /// Says what an interrupted run, or the parts, had finished. @param what  is counted: "values", "rows"
 void tell_resumed(const Session& session, std::size_t resumed, const std::string& what, Report& out_report);
 
-/// What to say when a shard is done. @param what  is counted: "values", "rows"
+/// What to say when a share of the values is done: of a rank nothing. @param what  is counted: "values", "rows"
 [[nodiscard]] Report part_made(const Session& session, const studies::ResultFile& file, const std::string& output,
                                const std::string& what);
 

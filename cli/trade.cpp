@@ -86,7 +86,7 @@ Report run(const Session& session, const TradeArguments& arguments) {
   }
   const trade::Study done = trade::study(scene, trade::reference_of(scene), variants, bases, options);
   if (file) file->finish([&](results::StoreWriter& writer) { results::store_study(writer, done, scene); });
-  if (session.shard) return part_made(session, *file, arguments.output, "configurations");
+  if (session.has_a_share()) return part_made(session, *file, arguments.output, "configurations");
 
   Report report;
   const std::vector<std::string> advice = recommendations(done, limit);

@@ -19,7 +19,9 @@ void add_common_options(const Verb& verb, Session& session) {
       .add_option("--set", session.overrides, "override a scene's key: KEY=VALUE, e.g. drive.speed=0.25 (repeatable)")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
-  command.add_option("--threads", session.threads, "threads to use; 0: as many as the machine runs at once")
+  command
+      .add_option("--threads", session.threads,
+                  "threads to use, of each rank under mpirun; 0: as many as the machine runs at once")
       ->check(CLI::Range(0, 4096));
   command.add_option("--seed", session.seed, "seed of the random initial states (overrides ensemble.seed)");
   command.add_flag("--quiet", session.quiet, "no progress, no summary");

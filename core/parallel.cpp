@@ -29,24 +29,34 @@ void run_threads(int threads, const std::function<void()>& work) {
 class TaskPool {
  public:
   TaskPool(std::vector<std::size_t> ready, std::size_t total, const ParallelOptions& options,
-           const std::function<std::vector<std::size_t>(std::size_t)>& run)
-      : ready_(std::greater<>{}, std::move(ready)), total_(total), options_(options), run_(run) {}
+           const std::function<std::vector<std::size_t>(std::size_t)>& run,
+           const std::function<std::vector<std::size_t>()>& more)
+      : ready_(std::greater<>{}, std::move(ready)),
+        total_(total),
+        more_to_come_(static_cast<bool>(more)),
+        options_(options),
+        run_(run),
+        more_(more) {}
 
   void work() {
     std::unique_lock lock(mutex_);
     while (true) {
-      changed_.wait(lock, [&] { return !ready_.empty() || running_ == 0 || ended_; });
-      if (ended_ || ready_.empty()) break;
+      changed_.wait(lock, [&] { return !ready_.empty() || may_ask() || (running_ == 0 && !asking_) || ended_; });
+      if (ended_ || (ready_.empty() && !may_ask())) break;
       if (stopped(options_)) {
         interrupted_ = true;
         ended_ = true;
         break;
       }
-      const std::size_t id = ready_.top();
-      ready_.pop();
-      ++running_;
-      run_one(lock, id);
-      --running_;
+      if (ready_.empty()) {
+        ask(lock);
+      } else {
+        const std::size_t id = ready_.top();
+        ready_.pop();
+        ++running_;
+        run_one(lock, id);
+        --running_;
+      }
       changed_.notify_all();
     }
     changed_.notify_all();
@@ -59,21 +69,41 @@ class TaskPool {
   }
 
  private:
+  [[nodiscard]] bool may_ask() const { return more_to_come_ && !asking_; }
+
+  void ask(std::unique_lock<std::mutex>& lock) {
+    asking_ = true;
+    more_to_come_ = add(lock, more_) > 0;
+    asking_ = false;
+  }
+
   void run_one(std::unique_lock<std::mutex>& lock, std::size_t id) {
-    std::vector<std::size_t> next;
+    add(lock, [&] { return run_(id); });
+    ++done_;
+    end_with(report());
+  }
+
+  /// Makes ready what `find` gives, which is called without the lock. @return how many
+  template <class Find>
+  std::size_t add(std::unique_lock<std::mutex>& lock, const Find& find) {
+    std::vector<std::size_t> found;
     std::exception_ptr error;
     lock.unlock();
     try {
-      next = run_(id);
+      found = find();
     } catch (...) {
       error = std::current_exception();
     }
     lock.lock();
-    for (const std::size_t task : next) ready_.push(task);
-    ++done_;
-    if (!error) error = report();
-    if (error && !error_) error_ = error;
-    if (error) ended_ = true;
+    for (const std::size_t task : found) ready_.push(task);
+    end_with(error);
+    return found.size();
+  }
+
+  void end_with(const std::exception_ptr& error) {
+    if (!error) return;
+    if (!error_) error_ = error;
+    ended_ = true;
   }
 
   std::exception_ptr report() {
@@ -92,11 +122,14 @@ class TaskPool {
   std::size_t total_;
   std::size_t done_ = 0;
   std::size_t running_ = 0;
+  bool more_to_come_;
+  bool asking_ = false;
   bool ended_ = false;
   bool interrupted_ = false;
   std::exception_ptr error_;
   const ParallelOptions& options_;
   const std::function<std::vector<std::size_t>(std::size_t)>& run_;
+  const std::function<std::vector<std::size_t>()>& more_;
 };
 
 }  // namespace
@@ -154,9 +187,10 @@ void rethrow_first(const BatchResult& batch) {
 }
 
 bool run_tasks(std::vector<std::size_t> ready, std::size_t total, const ParallelOptions& options,
-               const std::function<std::vector<std::size_t>(std::size_t)>& run) {
+               const std::function<std::vector<std::size_t>(std::size_t)>& run,
+               const std::function<std::vector<std::size_t>()>& more) {
   const int threads = thread_count(options);
-  TaskPool pool(std::move(ready), total, options, run);
+  TaskPool pool(std::move(ready), total, options, run, more);
   run_threads(threads, [&] { pool.work(); });
   return pool.finish();
 }

@@ -53,10 +53,14 @@ void rethrow_first(const BatchResult& batch);
 /// read only by tasks that were made ready by the writer, the bytes are the same for any number of threads.
 /// The first exception ends the batch (running tasks finish) and is thrown again here.
 /// @param total  number of tasks in all, for the progress callback only
+/// @param more   asked for further ids whenever a thread finds none ready, by one thread at a time; may wait. Gives
+/// none
+///               when there will be none. Empty function: `ready` and what follows from it is all
 /// @return false when the stop flag ended it before every task was run
 /// @throws InvalidInput  if threads < 0
 bool run_tasks(std::vector<std::size_t> ready, std::size_t total, const ParallelOptions& options,
-               const std::function<std::vector<std::size_t>(std::size_t)>& run);
+               const std::function<std::vector<std::size_t>(std::size_t)>& run,
+               const std::function<std::vector<std::size_t>()>& more = {});
 
 /// The number of threads `options` asks for, at least 1. @throws InvalidInput  if threads < 0
 [[nodiscard]] int thread_count(const ParallelOptions& options);

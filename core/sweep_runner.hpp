@@ -2,6 +2,7 @@
 
 #include <slipmode/core/errors.hpp>
 #include <slipmode/core/parallel.hpp>
+#include <slipmode/core/sharing.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -47,6 +48,10 @@ struct SinkOf {
   /// of those that follow each other. Asked once per value not recalled, before anything runs. Empty: none is left.
   std::function<bool(std::size_t piece, std::size_t index, int model, double parameter)> leave = {};
   std::size_t first_piece = 0;  ///< of this sweep, among the pieces of the study that it is part of
+  /// Of pieces that are not left, with processes that run beside this one. Afterwards recall gives what the others
+  /// found: to the one that leads, and to all where `for_all` says that all go on from it.
+  Sharing sharing = {};
+  bool for_all = false;
 };
 /// A sweep, finished or not.
 template <class Result>
@@ -106,12 +111,9 @@ class SweepRunner {
 
   /// False when interrupted.
   bool run() {
-    try {
-      const auto mine = static_cast<std::size_t>(std::ranges::count(left_, 0));
-      return run_tasks(first_tasks(), mine, parallel_, [this](std::size_t id) { return task(id); });
-    } catch (const Interrupted&) {
-      return false;
-    }
+    if (sink_.sharing.begin) return run_shared();
+    const auto mine = static_cast<std::size_t>(std::ranges::count(left_, 0));
+    return run_tasks_of(first_tasks(), mine, parallel_);
   }
 
   SweepOf<Result> run_alone() {
@@ -123,6 +125,49 @@ class SweepRunner {
   std::vector<Point> take_follower() { return take(values_.size()); }
 
  private:
+  bool run_tasks_of(std::vector<std::size_t> ready, std::size_t total, const ParallelOptions& parallel,
+                    const std::function<std::vector<std::size_t>()>& more = {}) {
+    try {
+      return run_tasks(
+          std::move(ready), total, parallel, [this](std::size_t id) { return task(id); }, more);
+    } catch (const Interrupted&) {
+      return false;
+    }
+  }
+
+  bool run_shared() {
+    const auto open = static_cast<std::size_t>(
+        std::ranges::count_if(points_, [](const std::optional<Point>& point) { return !point; }));
+    sink_.sharing.begin(open_pieces(), points_.size() - open, points_.size(), parallel_.progress);
+    ParallelOptions own = parallel_;
+    own.progress = {};  // of all processes, which the sharing tells
+    const bool finished = sink_.sharing.end(run_tasks_of({}, 0, own, [this] { return tasks_taken(); }), sink_.for_all);
+    recall();
+    return finished;
+  }
+
+  [[nodiscard]] std::size_t piece_of(std::size_t i) const {
+    return mode_ == SweepMode::kIndependent ? i : segment_of(i);
+  }
+
+  /// Pieces of which a value is neither known nor left.
+  [[nodiscard]] std::vector<std::size_t> open_pieces() const {
+    std::vector<char> open(sweep_pieces(values_.size(), mode_, segments_), 0);
+    for (std::size_t id = 0; id < points_.size(); ++id)
+      if (!points_[id] && left_[id] == 0) open[piece_of(id % values_.size())] = 1;
+    std::vector<std::size_t> pieces;
+    for (std::size_t piece = 0; piece < open.size(); ++piece)
+      if (open[piece] != 0) pieces.push_back(piece);
+    return pieces;
+  }
+
+  std::vector<std::size_t> tasks_taken() const {
+    std::vector<std::size_t> ready;
+    for (const std::size_t piece : sink_.sharing.take())
+      make_ready(mode_ == SweepMode::kIndependent ? piece : piece * values_.size() / segments_, ready);
+    return ready;
+  }
+
   [[nodiscard]] bool is_segment_begin(std::size_t i) const {
     return mode_ == SweepMode::kIndependent || segment_of(i) * values_.size() / segments_ == i;
   }
@@ -146,6 +191,7 @@ class SweepRunner {
   void recall() {
     if (!sink_.recall) return;
     for (std::size_t id = 0; id < points_.size(); ++id) {
+      if (points_[id]) continue;
       const std::size_t i = id % values_.size();
       std::optional<Point> point = sink_.recall(i, model(id));
       if (!point) continue;
@@ -160,8 +206,7 @@ class SweepRunner {
     if (!sink_.leave) return;
     for (std::size_t id = 0; id < points_.size(); ++id) {
       const std::size_t i = id % values_.size();
-      const std::size_t piece = mode_ == SweepMode::kIndependent ? i : segment_of(i);
-      left_[id] = !points_[id] && sink_.leave(sink_.first_piece + piece, i, model(id), values_[i]) ? 1 : 0;
+      left_[id] = !points_[id] && sink_.leave(sink_.first_piece + piece_of(i), i, model(id), values_[i]) ? 1 : 0;
     }
   }
 

@@ -56,19 +56,6 @@ std::string unescape(std::string_view text) {
   return out;
 }
 
-/// "crc table index count v1 .. vcount note\n"; numbers are the shortest text that reads back to the same bits.
-std::string to_line(const JournalRecord& record) {
-  std::string body = fmt::format("{} {} {}", record.table, record.index, record.values.size());
-  std::array<char, 32> digits{};
-  for (const double value : record.values) {
-    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
-    body += ' ';
-    body.append(digits.data(), end);
-  }
-  body += ' ' + escape(record.note);
-  return fmt::format("{:08x} {}\n", crc_of(body), body);
-}
-
 std::string_view take_word(std::string_view& rest) {
   const std::size_t space = rest.find(' ');
   const std::string_view word = rest.substr(0, space);
@@ -83,7 +70,21 @@ bool parse(std::string_view word, Number& out_value) {
   return value.has_value();
 }
 
-/// Nothing if the line is torn or altered.
+}  // namespace
+
+// "crc table index count v1 .. vcount note\n"; numbers are the shortest text that reads back to the same bits.
+std::string to_line(const JournalRecord& record) {
+  std::string body = fmt::format("{} {} {}", record.table, record.index, record.values.size());
+  std::array<char, 32> digits{};
+  for (const double value : record.values) {
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+    body += ' ';
+    body.append(digits.data(), end);
+  }
+  body += ' ' + escape(record.note);
+  return fmt::format("{:08x} {}\n", crc_of(body), body);
+}
+
 std::optional<JournalRecord> from_line(std::string_view line) {
   std::uint32_t expected = 0;
   const std::string_view word = take_word(line);
@@ -100,6 +101,8 @@ std::optional<JournalRecord> from_line(std::string_view line) {
   record.note = unescape(line);
   return record;
 }
+
+namespace {
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
@@ -208,6 +211,12 @@ Journal::~Journal() {
 }
 
 void Journal::append(JournalRecord record) {
+  if (appended_) appended_(record);
+  take_over(std::move(record));
+}
+
+void Journal::take_over(JournalRecord record) {
+  const std::scoped_lock lock(keeping_);
   if (path_.empty()) {
     records_.push_back(std::move(record));
     return;

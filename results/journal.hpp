@@ -1,9 +1,14 @@
 #pragma once
 
+#include <slipmode/core/sharing.hpp>
+
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <mutex>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -16,6 +21,11 @@ struct JournalRecord {
   std::vector<double> values;  ///< any number of values; NaN and infinities survive
   std::string note;            ///< free text, for example why the value could not be computed
 };
+
+/// A record as a line that ends in '\n' and holds a checksum, and back from a line without its end; nothing if it is
+/// torn or altered. Numbers keep their bits.
+[[nodiscard]] std::string to_line(const JournalRecord& record);
+[[nodiscard]] std::optional<JournalRecord> from_line(std::string_view line);
 
 /// What a file of records holds.
 struct JournalText {
@@ -39,7 +49,7 @@ struct JournalText {
 ///     ... write and commit out/sweep.h5 from journal.records() ...
 ///     journal.remove();
 ///
-/// Use from one thread at a time.
+/// Records may be appended and taken over from several threads; all else from one, when none does.
 class Journal {
  public:
   /// Opens or creates.
@@ -58,8 +68,10 @@ class Journal {
   /// True when records were found on opening.
   [[nodiscard]] bool resumed() const { return resumed_; }
 
-  /// @throws InvalidInput  when the disc is full
+  /// Keeps what this process found. @throws InvalidInput  when the disc is full
   void append(JournalRecord record);
+  /// Keeps what another process found. @throws InvalidInput  as append
+  void take_over(JournalRecord record);
 
   /// Deletes the file: the result is safe elsewhere.
   void remove();
@@ -77,6 +89,13 @@ class Journal {
     return leave_ && leave_(piece, value);
   }
 
+  /// How the study is shared with processes that run beside this one, and who is told of each record appended.
+  void share(Sharing sharing, std::function<void(const JournalRecord&)> appended) {
+    sharing_ = std::move(sharing);
+    appended_ = std::move(appended);
+  }
+  [[nodiscard]] const Sharing& sharing() const { return sharing_; }
+
   /// Records of any journal, for reading; one that is being written may end in a torn line.
   /// @throws InvalidInput  when it cannot be opened or is not a journal
   [[nodiscard]] static JournalText read(const std::filesystem::path& path);
@@ -92,6 +111,9 @@ class Journal {
   bool resumed_ = false;
   double last_sync_ = 0.0;
   Leave leave_;
+  Sharing sharing_;
+  std::function<void(const JournalRecord&)> appended_;
+  std::mutex keeping_;
 };
 
 /// A short name of a text (FNV-1a, 64 bit, hexadecimal).

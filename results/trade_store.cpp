@@ -105,6 +105,7 @@ void keep_in(Journal& journal, trade::StudyOptions& out_options) {
   out_options.leave = [&journal](std::size_t number, const std::string& name) {
     return journal.leaves(number, {.table = kTable, .values = {}, .note = name});
   };
+  out_options.sharing = journal.sharing();
 }
 
 void store_study(StoreWriter& writer, const trade::Study& study, const scene::Scene& scene) {

@@ -15,6 +15,8 @@ packages=(
   # the Python package, its tests and examples
   pybind11-dev python3-dev python3-numpy python3-scipy python3-h5py python3-matplotlib
   python3-xarray python3-tqdm
+  # studies under mpirun
+  libopenmpi-dev openmpi-bin
   "$@"
 )
 

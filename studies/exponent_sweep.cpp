@@ -22,6 +22,7 @@ std::vector<diagnostics::SweepPoint> diagram_of(const Family& family, int number
                                      .settle = scene::sweep_settle_options(family.scene()),
                                      .parallel = run.parallel("diagram")};
   if (options.journal != nullptr) sweeping.sink = results::journal_sink(*options.journal);
+  sweeping.sink.for_all = true;  // exponents are measured where the motion has settled
   diagnostics::SweepResult result = diagnostics::sweep(family.model(), values, family.start(), sweeping);
   if (result.interrupted) throw Interrupted();
   return std::move(result.points);

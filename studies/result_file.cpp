@@ -37,6 +37,9 @@ std::optional<results::Shard> checked(std::optional<results::Shard> shard, const
   return shard;
 }
 
+/// Of ranks that compute together, one that gives its values to the first.
+bool is_hand(const Division& division) { return division.ranks != nullptr && division.ranks->own != 0; }
+
 std::vector<results::JournalRecord> all_records(const std::vector<results::Part>& parts) {
   std::vector<results::JournalRecord> all;
   for (const results::Part& part : parts) all.insert(all.end(), part.records.begin(), part.records.end());
@@ -55,12 +58,13 @@ ResultFile::ResultFile(std::filesystem::path path, scene::Scene scene, results::
                                                     command_, identity, scene::scene_to_toml(scene_)))),
       shard_(checked(division.shard, pieces, path_, fingerprint_)) {
   if (path_.empty()) return;
-  if (division.joined.empty()) {
+  if (division.joined.empty() && !is_hand(division)) {
     journal_.emplace(results::Journal::path_for(path_),
                      shard_ ? results::shard_fingerprint(fingerprint_, *shard_) : fingerprint_);
   } else {
     journal_.emplace(all_records(division.joined));
   }
+  if (division.ranks != nullptr) crew_.emplace(*division.ranks, *journal_, fingerprint_);
   if (shard_) begin_part(division.words);
   if (!division.joined.empty()) join(division.joined);
   resumed_ = finished();
@@ -124,7 +128,7 @@ results::Content ResultFile::finish(std::function<void(results::StoreWriter&)> w
                              results::save(writer, provenance);
                              write(writer);
                            }};
-  if (!journal_) return content;
+  if (!journal_ || !journal_->sharing().leads) return content;
   if (shard_) {
     journal_->publish(path_);
     return content;

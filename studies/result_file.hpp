@@ -1,6 +1,7 @@
 #pragma once
 
 #include <slipmode/pod/basis.hpp>
+#include <slipmode/results/crew.hpp>
 #include <slipmode/results/journal.hpp>
 #include <slipmode/results/memory_store.hpp>
 #include <slipmode/results/part.hpp>
@@ -31,11 +32,14 @@ struct Division {
   std::optional<results::Shard> shard;
   std::vector<results::Part> joined;  ///< this process computes nothing that the parts of others should hold
   std::vector<std::string> words;     ///< of the command line, for the head of a part
+  /// This process is one of several that compute the study together; the result is rank 0's. Must outlive the study.
+  const Ranks* ranks = nullptr;
 };
 
 /// A result in the making, for a file or for memory. Values that a long study finishes are kept in a journal beside its
 /// file until that is whole; the same study, asked again after an interruption, goes on from there. A shard's file is a
-/// part: its journal, complete. Joined parts stand in for the journal of a study whose values are all there.
+/// part: its journal, complete. Joined parts stand in for the journal of a study whose values are all there. Of ranks
+/// that compute together, the first has file and journal.
 class ResultFile {
  public:
   /// @param path      empty: in memory only, without a journal
@@ -57,6 +61,7 @@ class ResultFile {
   /// Provenance and what `write` adds: written under a temporary name, which is renamed, when there is a file, whose
   /// journal is then dropped. A shard's journal becomes the part instead.
   /// @throws InvalidInput  when values are missing in the parts: says which, and what finishes them
+  /// Does nothing on a rank other than 0.
   results::Content finish(std::function<void(results::StoreWriter&)> write);
 
  private:
@@ -70,6 +75,7 @@ class ResultFile {
   std::string command_, fingerprint_;
   std::optional<results::Shard> shard_;
   std::optional<results::Journal> journal_;
+  std::optional<results::Crew> crew_;
   std::size_t resumed_ = 0;
   /// Of joined parts: what each lacks, and the command that finishes it.
   struct Lack {

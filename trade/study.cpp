@@ -2,6 +2,7 @@
 
 #include <slipmode/core/errors.hpp>
 #include <slipmode/core/none.hpp>
+#include <slipmode/core/sweep_runner.hpp>
 #include <slipmode/diagnostics/attractors/driven.hpp>
 #include <slipmode/trade/variants.hpp>
 #include "trade/internal/horizon.hpp"
@@ -9,7 +10,8 @@
 
 #include <algorithm>
 #include <iterator>
-#include <mutex>
+#include <numeric>
+#include <variant>
 
 namespace slipmode::trade {
 
@@ -47,11 +49,9 @@ class Work {
 
   Study run(const std::vector<Variant>& variants) {
     run_reference();
-    const std::vector<char> left = left_of(variants);
-    measure(variants, left);
-    if (std::ranges::find(left, 1) != left.end()) return std::move(out_);
+    if (!measure(variants, options_.leave)) return std::move(out_);
     if (options_.more) measure(options_.more(out_.rows));
-    take_times();
+    if (options_.sharing.leads) take_times();
     return std::move(out_);
   }
 
@@ -73,49 +73,55 @@ class Work {
     out_.reference.noise = scatter_ = motion_scatter(motions_);
   }
 
-  /// By variant: 1 where another process measures it.
-  [[nodiscard]] std::vector<char> left_of(const std::vector<Variant>& variants) const {
-    std::vector<char> left(variants.size(), 0);
-    if (!options_.leave) return left;
-    for (std::size_t i = 0; i < variants.size(); ++i) {
-      const bool known = options_.recall && options_.recall(variants[i].name);
-      left[i] = !known && options_.leave(i, variants[i].name) ? 1 : 0;
-    }
-    return left;
-  }
-
-  void measure(const std::vector<Variant>& variants, const std::vector<char>& left = {}) {
+  /// False when some were left to others.
+  bool measure(const std::vector<Variant>& variants, const decltype(StudyOptions::leave)& leave = {}) {
+    if (variants.empty()) return true;
     const std::size_t first = out_.rows.size();
     for (const Variant& variant : variants) {
       out_.rows.push_back({.variant = variant, .basis_seconds = basis_seconds(variant)});
     }
-    rethrow_first(parallel_for(variants.size(), options_.parallel, [&](std::size_t i) {
-      if (!left.empty() && left[i] != 0) return;
-      Row& row = out_.rows[first + i];
-      const Finished found = finished(row.variant);
-      row.error = found.error;
-      row.noise = found.noise;
-      row.failure = found.failure;
-    }));
+    std::vector<double> numbers(variants.size());
+    std::iota(numbers.begin(), numbers.end(), 0.0);
+    const auto settle = [&](std::size_t i, int, const std::monostate&) { return errors_of(variants[i]); };
+    auto found = SweepRunner<Finished, std::monostate>(
+                     {.settle = settle, .carry = [](const Finished&) { return std::monostate(); }}, numbers, {},
+                     SweepMode::kIndependent, 1, options_.parallel, sink_of(variants, leave))
+                     .run_alone();
+    if (found.interrupted) throw Interrupted();
+    for (const auto& point : found.points) {
+      Row& row = out_.rows[first + point.index];
+      row.error = point.settled.error;
+      row.noise = point.settled.noise;
+      row.failure = point.settled.failure;
+    }
+    return found.points.size() == variants.size();
+  }
+
+  /// What is kept of configurations, by their names.
+  [[nodiscard]] SinkOf<Finished> sink_of(const std::vector<Variant>& variants,
+                                         const decltype(StudyOptions::leave)& leave) const {
+    SinkOf<Finished> sink{.sharing = options_.sharing, .for_all = true};
+    if (options_.recall) {
+      sink.recall = [&](std::size_t i, int) -> std::optional<SweptValue<Finished>> {
+        auto known = options_.recall(variants[i].name);
+        if (!known) return std::nullopt;
+        return SweptValue<Finished>{.index = i, .parameter = static_cast<double>(i), .settled = std::move(*known)};
+      };
+    }
+    if (options_.store) {
+      sink.store = [&](const SweptValue<Finished>& value) {
+        options_.store(variants[value.index].name, value.settled);
+      };
+    }
+    if (leave)
+      sink.leave = [&](std::size_t piece, std::size_t i, int, double) { return leave(piece, variants[i].name); };
+    return sink;
   }
 
   [[nodiscard]] double basis_seconds(const Variant& variant) const {
     if (!variant.reduction) return 0.0;
     const auto found = std::ranges::find(bases_, variant.reduction->basis, &OfferedBasis::choice);
     return found == bases_.end() ? 0.0 : found->seconds;
-  }
-
-  Finished finished(const Variant& variant) {
-    if (options_.recall) {
-      const std::scoped_lock lock(keeping_);
-      if (const auto known = options_.recall(variant.name)) return *known;
-    }
-    const Finished found = errors_of(variant);
-    if (options_.store) {
-      const std::scoped_lock lock(keeping_);
-      options_.store(variant.name, found);
-    }
-    return found;
   }
 
   [[nodiscard]] Finished errors_of(const Variant& variant) const {
@@ -165,7 +171,6 @@ class Work {
   std::vector<Motion> motions_;
   std::vector<dynamics::State> shared_;
   Values scatter_ = {};
-  std::mutex keeping_;
   Study out_;
 };
 

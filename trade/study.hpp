@@ -1,6 +1,7 @@
 #pragma once
 
 #include <slipmode/core/parallel.hpp>
+#include <slipmode/core/sharing.hpp>
 #include <slipmode/trade/clock.hpp>
 #include <slipmode/trade/measures.hpp>
 #include <slipmode/trade/pareto.hpp>
@@ -48,6 +49,8 @@ struct StudyOptions {
   /// True for one of the first configurations that is left to another process: then nothing more is measured than the
   /// other ones' errors, and rows left have none. Empty function: none is left.
   std::function<bool(std::size_t number, const std::string& name)> leave = {};
+  /// Configurations' errors, with processes that run beside this one. The one that leads measures the times.
+  Sharing sharing = {};
 };
 
 struct Study {

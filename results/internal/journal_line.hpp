@@ -99,21 +99,29 @@ class Line {
 ///               failure
 template <class Result, class List>
 SinkOf<Result> table_sink(Journal& journal, const std::string& table, const List& list) {
-  auto kept = std::make_shared<std::map<std::pair<std::size_t, int>, SweptValue<Result>>>();
-  for (const JournalRecord& record : journal.records()) {
-    const std::size_t dash = record.table.rfind('-');
-    if (dash == std::string::npos || record.table.substr(0, dash) != table) continue;
-    SweptValue<Result> value{.index = static_cast<std::size_t>(record.index),
-                             .model = std::stoi(record.table.substr(dash + 1)),
-                             .failure = record.note};
-    Line line(record);
-    line(value.parameter);
-    list(line, value);
-    kept->insert_or_assign({value.index, value.model}, std::move(value));
-  }
-  return {.recall = [kept](std::size_t index, int model) -> std::optional<SweptValue<Result>> {
-            const auto found = kept->find({index, model});
-            return found == kept->end() ? std::nullopt : std::optional(found->second);
+  struct Kept {
+    std::map<std::pair<std::size_t, int>, SweptValue<Result>> values;
+    std::size_t read = 0;  // records: others may come while a sweep is shared
+  };
+  const auto read = [&journal, table, list](Kept& kept) {
+    for (; kept.read < journal.records().size(); ++kept.read) {
+      const JournalRecord& record = journal.records()[kept.read];
+      const std::size_t dash = record.table.rfind('-');
+      if (dash == std::string::npos || record.table.substr(0, dash) != table) continue;
+      SweptValue<Result> value{.index = static_cast<std::size_t>(record.index),
+                               .model = std::stoi(record.table.substr(dash + 1)),
+                               .failure = record.note};
+      Line line(record);
+      line(value.parameter);
+      list(line, value);
+      kept.values.insert_or_assign({value.index, value.model}, std::move(value));
+    }
+  };
+  return {.recall = [read, kept = std::make_shared<Kept>()](std::size_t index,
+                                                            int model) -> std::optional<SweptValue<Result>> {
+            read(*kept);
+            const auto found = kept->values.find({index, model});
+            return found == kept->values.end() ? std::nullopt : std::optional(found->second);
           },
           .store =
               [&journal, table, list](SweptValue<Result> value) {
@@ -127,7 +135,8 @@ SinkOf<Result> table_sink(Journal& journal, const std::string& table, const List
               [&journal, table](std::size_t piece, std::size_t index, int model, double parameter) {
                 return journal.leaves(
                     piece, {fmt::format("{}-{}", table, model), static_cast<std::int64_t>(index), {parameter}, ""});
-              }};
+              },
+          .sharing = journal.sharing()};
 }
 
 }  // namespace slipmode::results::detail

@@ -1,6 +1,7 @@
 // Verbs on a small beam under a shaker, through the executable.
 #include <slipmode/results/table.hpp>
 #include "cli/slipmode_process.hpp"
+#include "cli/small_scenes.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,8 +16,6 @@ using namespace slipmode::tests;
 namespace fs = std::filesystem;
 using slipmode::results::StoreReader;
 using testing::HasSubstr;
-
-const std::string kShakenBeam = SLIPMODE_SOURCE_DIR "/datasets/beam_12hz/scene.toml";
 
 /// datasets/beam_12hz with few elements and cycles.
 std::vector<std::string> small(std::vector<std::string> arguments, const std::vector<std::string>& more = {}) {

@@ -1,7 +1,8 @@
-// A study divided among processes: the parts of any number of shards join to the bytes of one process, and what does
-// not belong together is named.
+// A study divided among processes: the parts of any number of shards join to the bytes of one process, as ranks give
+// them, and what does not belong together is named.
 
 #include <slipmode/results/table.hpp>
+#include "cli/mpirun.hpp"
 #include "cli/slipmode_process.hpp"
 #include "cli/small_scenes.hpp"
 
@@ -16,16 +17,9 @@ using namespace slipmode::tests;
 namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
-using Words = std::vector<std::string>;
 
-const std::string kShakenBeam = SLIPMODE_SOURCE_DIR "/datasets/beam_12hz/scene.toml";
 const Words kFewCycles = {"--set", "structure.elements=6", "--set", "validation.cycles=40.0",
                           "--set", "validation.kept=25.0"};
-
-Words operator+(Words words, const Words& more) {
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
-}
 
 struct Divided {
   std::string name;
@@ -81,6 +75,21 @@ TEST_P(Shards, OfAnyNumberGiveTheBytesOfOneProcess) {
   EXPECT_EQ(bytes("again.part") == bytes(fmt::format("2of{}.part", most)), true);
 }
 
+TEST_P(Shards, OfRanksGiveTheBytesOfOneProcess) {
+  SLIPMODE_NEEDS_MPIRUN();
+  const Words& study = GetParam().arguments;
+  for (const Words& before : GetParam().first) run(before);
+  run(study + Words{"-o", "one.h5", "--threads", "1", "--quiet"});
+  const std::string one = bytes("one.h5");
+  for (const auto& [ranks, threads] : {std::pair{2, "2"}, {3, "1"}}) {
+    SCOPED_TRACE(ranks);
+    const Outcome outcome = mpirun(ranks, study + Words{"-o", "ranks.h5", "--threads", threads}, folder.path()).wait();
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(bytes("ranks.h5") == one, true);
+    EXPECT_FALSE(fs::exists(folder.path() / "ranks.h5.journal"));
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Studies, Shards,
     testing::Values(
@@ -126,22 +135,42 @@ INSTANTIATE_TEST_SUITE_P(
                 {{"simulate", "free.toml", "-o", "ensemble.h5"}, {"pod", "ensemble.h5", "-o", "pod.h5"}}}),
     [](const auto& tested) { return tested.param.name; });
 
-// Times are measured where the parts are joined, all else is the same bytes.
-TEST_F(Shards, OfATradeGiveTheErrorsOfOneProcess) {
-  for (const Words& study : {Words{"trade", "free.toml", "--axes", "modes,flow"}, Words{"advise", "free.toml"}}) {
-    SCOPED_TRACE(study[0]);
-    run(study + Words{"-o", "one.h5", "--quiet"});
-    run(Words{"merge"} + parts(study, 3) + Words{"-o", "merged.h5", "--quiet"});
-    const slipmode::results::StoreReader one(folder.path() / "one.h5"), merged(folder.path() / "merged.h5");
-    const auto expected = load_table(one, "trade/candidates"), found = load_table(merged, "trade/candidates");
+// Times are measured where the result is made, all else is the same bytes.
+class DividedTrade : public Shards {
+ protected:
+  void same_but_times(const char* file) const {
+    const slipmode::results::StoreReader one(folder.path() / "one.h5"), other(folder.path() / file);
+    const auto expected = load_table(one, "trade/candidates"), found = load_table(other, "trade/candidates");
     EXPECT_EQ(found.texts("name"), expected.texts("name"));
     EXPECT_EQ(found.texts("failure"), expected.texts("failure"));
     for (const char* measure : {"dX", "dE", "points", "energy", "dX_noise", "energy_noise"})
       EXPECT_THAT(found.numbers(measure),
                   testing::Pointwise(testing::NanSensitiveDoubleEq(), expected.numbers(measure)))
           << measure;
+  }
+
+  const std::vector<Words> studies = {{"trade", "free.toml", "--axes", "modes,flow"}, {"advise", "free.toml"}};
+};
+
+TEST_F(DividedTrade, AmongShardsGivesTheErrorsOfOneProcess) {
+  for (const Words& study : studies) {
+    SCOPED_TRACE(study[0]);
+    run(study + Words{"-o", "one.h5", "--quiet"});
+    run(Words{"merge"} + parts(study, 3) + Words{"-o", "merged.h5", "--quiet"});
+    same_but_times("merged.h5");
     fs::remove(folder.path() / "merged.h5");
     for (const char* part : {"1of3.part", "2of3.part", "3of3.part"}) fs::remove(folder.path() / part);
+  }
+}
+
+TEST_F(DividedTrade, AmongRanksGivesTheErrorsOfOneProcess) {
+  SLIPMODE_NEEDS_MPIRUN();
+  for (const Words& study : studies) {
+    SCOPED_TRACE(study[0]);
+    run(study + Words{"-o", "one.h5", "--quiet"});
+    const Outcome outcome = mpirun(3, study + Words{"-o", "ranks.h5"}, folder.path()).wait();
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    same_but_times("ranks.h5");
   }
 }
 

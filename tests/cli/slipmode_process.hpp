@@ -25,6 +25,13 @@ inline void write_file(const std::filesystem::path& path, const std::string& tex
   std::ofstream(path, std::ios::binary) << text;
 }
 
+/// Of a command line, and more of them.
+using Words = std::vector<std::string>;
+inline Words operator+(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
 /// How a call of the executable ended, and what it said.
 struct Outcome {
   int exit_code = -1;  ///< -1 when a signal ended it
@@ -37,8 +44,11 @@ struct Outcome {
 /// The executable itself, started without a shell in a given folder; its output goes to files outside that folder.
 class SlipmodeProcess {
  public:
-  SlipmodeProcess(const std::vector<std::string>& arguments, const std::filesystem::path& folder) {
-    std::vector<std::string> words = {SLIPMODE_EXECUTABLE};
+  /// @param launcher  program and words before the executable: mpirun
+  SlipmodeProcess(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+                  std::vector<std::string> launcher = {}) {
+    std::vector<std::string> words = std::move(launcher);
+    words.emplace_back(SLIPMODE_EXECUTABLE);
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());
@@ -73,6 +83,8 @@ class SlipmodeProcess {
     }
     return kill(id_, signal) == 0;
   }
+
+  [[nodiscard]] pid_t id() const { return id_; }
 
   Outcome wait() {
     if (running_) waitpid(id_, &status_, 0);

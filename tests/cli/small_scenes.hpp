@@ -5,6 +5,7 @@
 namespace slipmode::tests {
 
 inline const std::string kBacklash = std::string(SLIPMODE_SOURCE_DIR) + "/datasets/backlash_sdof/scene.toml";
+inline const std::string kShakenBeam = std::string(SLIPMODE_SOURCE_DIR) + "/datasets/beam_12hz/scene.toml";
 
 /// Four masses between walls, two Coulomb contacts with μ_s > μ_k, in SI units. Runs of milliseconds.
 inline const std::string kTwoContacts = R"(

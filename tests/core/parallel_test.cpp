@@ -119,6 +119,36 @@ TEST(RunTasks, ThrowsWhatATaskThrew) {
   EXPECT_THROW(run_tasks({0}, 10, {.threads = 2}, run), InvalidInput);
 }
 
+// Ten times seven ids, each time when none is ready; whoever asks, one at a time.
+TEST(RunTasks, AsksForMoreUntilThereIsNone) {
+  for (const int threads : {1, 2, 5}) {
+    std::vector<std::atomic<int>> runs(80);
+    std::atomic<int> asking = 0, asked = 0;
+    const auto more = [&] {
+      EXPECT_EQ(++asking, 1);
+      std::vector<std::size_t> next;
+      for (std::size_t k = 0; asked < 10 && k < 7; ++k) next.push_back(10 + 7 * static_cast<std::size_t>(asked) + k);
+      ++asked;
+      --asking;
+      return next;
+    };
+    const auto run = [&](std::size_t id) -> std::vector<std::size_t> {
+      ++runs[id];
+      return id < 9 ? std::vector{id + 1} : std::vector<std::size_t>();
+    };
+    EXPECT_TRUE(run_tasks({0}, 80, {.threads = threads}, run, more));
+    for (const auto& one : runs) EXPECT_EQ(one, 1);
+    EXPECT_EQ(asked, 11) << "the last time in vain";
+  }
+}
+
+TEST(RunTasks, ThrowsWhatAskingThrew) {
+  const auto more = []() -> std::vector<std::size_t> { throw InvalidInput("no more"); };
+  EXPECT_THROW(run_tasks(
+                   {}, 0, {.threads = 3}, [](std::size_t) { return std::vector<std::size_t>(); }, more),
+               InvalidInput);
+}
+
 TEST(RunTasks, EndsEarlyWhenTheFlagIsSet) {
   StopFlag stop{false};
   int runs = 0;

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "cli/slipmode_process.hpp"
+
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+// Left out, saying so, where there is nothing to start ranks with.
+#ifdef SLIPMODE_MPIRUN
+#define SLIPMODE_NEEDS_MPIRUN()
+#else
+#define SLIPMODE_NEEDS_MPIRUN() GTEST_SKIP() << "no mpirun here, or a build without MPI"
+#define SLIPMODE_MPIRUN ""
+#endif
+
+namespace slipmode::tests {
+
+/// The executable as several ranks, more than there are cores if need be.
+/// @param through  program and words that each rank starts the executable with
+inline SlipmodeProcess mpirun(int ranks, const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+                              const std::vector<std::string>& through = {}) {
+  setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);  // as in a container
+  setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
+  setenv("OMPI_MCA_rmaps_base_oversubscribe", "1", 1);
+  std::vector<std::string> launcher = {SLIPMODE_MPIRUN, "-n", std::to_string(ranks)};
+  launcher.insert(launcher.end(), through.begin(), through.end());
+  return {arguments, folder, launcher};
+}
+
+}  // namespace slipmode::tests
