@@ -10,7 +10,7 @@ namespace slipmode::results {
 
 /// A study that ranks compute together: rank 0 keeps its journal and hands out pieces, all ranks compute them.
 ///
-/// Every rank runs the same study. A rank asks for as many pieces as keep it busy for a tenth of a second by what its
+/// Every rank runs the same study. A rank asks for as many pieces as keep it busy for a quarter of a second by what its
 /// values took so far, one at least; rank 0 gives no more than a fair half of what is left, so that all end together.
 /// What is found goes to rank 0's journal at once, value by value. A rank that is stopped stops all.
 class Crew {

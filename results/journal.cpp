@@ -16,6 +16,7 @@
 #include <chrono>
 #include <cstring>
 #include <optional>
+#include <stdexcept>
 #include <string_view>
 #include <tuple>
 
@@ -151,7 +152,7 @@ JournalText records_in(const std::string& text, std::size_t begin) {
   return found;
 }
 
-void write_whole(int descriptor, const std::string& line, const std::filesystem::path& path) {
+void write_whole(int descriptor, std::string_view line, const std::filesystem::path& path) {
   std::size_t done = 0;
   while (done < line.size()) {
     const ssize_t wrote = ::write(descriptor, line.data() + done, line.size() - done);
@@ -212,10 +213,17 @@ Journal::~Journal() {
 
 void Journal::append(JournalRecord record) {
   if (appended_) appended_(record);
-  take_over(std::move(record));
+  const std::string line = path_.empty() ? "" : to_line(record);
+  keep(std::move(record), line);
 }
 
-void Journal::take_over(JournalRecord record) {
+void Journal::take_over(std::string_view line) {
+  auto record = from_line(line.substr(0, line.size() - 1));
+  if (!record) throw std::runtime_error("a record of another process arrived torn or altered");
+  keep(std::move(*record), line);
+}
+
+void Journal::keep(JournalRecord record, std::string_view line) {
   const std::scoped_lock lock(keeping_);
   if (path_.empty()) {
     records_.push_back(std::move(record));
@@ -225,7 +233,7 @@ void Journal::take_over(JournalRecord record) {
   if (record.table.empty() || record.table.find_first_of(" \n") != std::string::npos) {
     throw InvalidInput(fmt::format("{}: table name '{}' must be one word", path_.string(), record.table));
   }
-  write_whole(descriptor_, to_line(record), path_);
+  write_whole(descriptor_, line, path_);
   records_.push_back(std::move(record));
   if (now() - last_sync_ < kSyncInterval) return;
   ::fdatasync(descriptor_);

@@ -70,8 +70,10 @@ class Journal {
 
   /// Keeps what this process found. @throws InvalidInput  when the disc is full
   void append(JournalRecord record);
-  /// Keeps what another process found. @throws InvalidInput  as append
-  void take_over(JournalRecord record);
+  /// Keeps what another process found, a line of to_line.
+  /// @throws InvalidInput        as append
+  /// @throws std::runtime_error  when the line is torn or altered
+  void take_over(std::string_view line);
 
   /// Deletes the file: the result is safe elsewhere.
   void remove();
@@ -104,6 +106,8 @@ class Journal {
   [[nodiscard]] static std::filesystem::path path_for(const std::filesystem::path& result);
 
  private:
+  void keep(JournalRecord record, std::string_view line);
+
   std::filesystem::path path_;  ///< empty: in memory
   std::string fingerprint_;
   int descriptor_ = -1;
