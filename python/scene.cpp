@@ -68,6 +68,12 @@ void add_scene(py::module_& module) {
       .def(
           "has", [](const Scene& own, const std::string& table) { return scene::has_section(own, table); },
           py::arg("table"), "True when the scene has that table (\"ensemble\", \"validation\", ...).")
+      .def(py::pickle(
+          [](const Scene& own) { return py::make_tuple(own.source.text, own.source.overrides, own.source.path); },
+          [](const py::tuple& kept) {
+            return scene::parse_scene(kept[0].cast<std::string>(), kept[1].cast<std::vector<std::string>>(),
+                                      kept[2].cast<std::string>());
+          }))
       .def("__repr__", [](const Scene& own) {
         return "<slipmode.Scene '" + own.title + "', " + std::to_string(own.size()) + " degrees of freedom, " +
                std::to_string(own.contacts.size()) + " contacts>";

@@ -3,6 +3,7 @@
 import copy
 import os
 import pathlib
+import pickle
 import signal
 import subprocess
 import sys
@@ -84,6 +85,13 @@ class Scenes(unittest.TestCase):
             with self.subTest(dataset.parent.name):
                 tables = tomllib.loads(dataset.read_text())
                 self.assertEqual(sm.Scene.load(tables).toml(), sm.Scene.load(dataset).toml())
+
+    def test_a_pickled_scene_is_the_same_from_the_same_file(self):
+        scene = sm.Scene.load(DATASETS / "chain10/scene.toml", set={"drive.speed": 0.25})
+        again = pickle.loads(pickle.dumps(scene))
+        self.assertEqual((again.toml(), again.path, again.overrides), (scene.toml(), scene.path, scene.overrides))
+        self.assertEqual(again.get("drive.speed"), 0.25)
+        self.assertEqual(pickle.loads(pickle.dumps(sm.Scene.load(BELT))).toml(), sm.Scene.load(BELT).toml())
 
     def test_keys_are_set_and_asked_for(self):
         scene = sm.Scene.load(DATASETS / "chain10/scene.toml", set={"drive.speed": 0.25})
