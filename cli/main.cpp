@@ -1,7 +1,6 @@
 #include <slipmode/core/errors.hpp>
-#include <slipmode/dynamics/kernels/kernels.hpp>
 #include <slipmode/results/crew.hpp>
-#include <slipmode/results/provenance.hpp>
+#include "cli/features.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/launched.hpp"
 #include "cli/slurm.hpp"
@@ -147,10 +146,7 @@ End run_main(int argc, char** argv, const Ranks* ranks) {
       "slipmode: structures with friction contacts, their proper orthogonal modes, and reduced models that are checked "
       "against the full one",
       "slipmode"};
-  app.set_version_flag("--version", [] {
-    return fmt::format("slipmode {} ({}, {}; kernels {})", results::version(), results::git_commit(),
-                       results::compiler(), dynamics::kernels::kernels().name);
-  });
+  app.set_version_flag("--version", version_text);
   app.require_subcommand(1);
   app.footer(
       "Exit codes: 0 done, 2 bad input, 3 numerical failure, 130 interrupted (the same command goes on).\n"

@@ -31,6 +31,7 @@ struct Verb {
 [[nodiscard]] Verb add_trade(CLI::App& app);
 [[nodiscard]] Verb add_advise(CLI::App& app);
 [[nodiscard]] Verb add_merge(CLI::App& app);
+[[nodiscard]] Verb add_doctor(CLI::App& app);
 
 /// All verbs with the options common to them, which go to `session`.
 [[nodiscard]] std::vector<Verb> add_verbs(CLI::App& app, Session& session);

@@ -171,7 +171,7 @@ void Figure::command(std::string_view line) {
   commands_ += '\n';
 }
 
-void require_gnuplot() { run_gnuplot(""); }
+void require_gnuplot() { run_gnuplot("set terminal svg\nset terminal pngcairo\nset terminal pdfcairo\n"); }
 
 void require_figure_extension(const fs::path& path) {
   const std::string extension = path.extension().string();

@@ -48,8 +48,10 @@ class Figure {
 /// @throws InvalidInput  naming the path and the three choices
 void require_figure_extension(const std::filesystem::path& path);
 
-/// Throws unless gnuplot can be started: to be called before any work that would be lost.
+/// Throws unless gnuplot can be started and has what draws SVG, PNG and PDF: to be called before any work that would be
+/// lost.
 /// @throws InvalidInput  saying how to install it
+/// @throws std::runtime_error  when it lacks one of the three; the message holds what it said
 void require_gnuplot();
 
 /// Draws the figure into each path; the extension picks the format. One gnuplot process, started without a shell, draws

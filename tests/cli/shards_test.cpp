@@ -18,6 +18,7 @@ namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
 
+const std::string kSharedBeam = SLIPMODE_SOURCE_DIR "/datasets/beam_12hz/scene.toml";
 const Words kFewCycles = {"--set", "structure.elements=6", "--set", "validation.cycles=40.0",
                           "--set", "validation.kept=25.0"};
 
@@ -107,11 +108,11 @@ INSTANTIATE_TEST_SUITE_P(
                  {"reduce", "free.toml", "pod.h5", "--modes", "2", "-o", "rom.h5"}}},
         Divided{
             "ShakenUpAndDown",
-            Words{"sweep", kShakenBeam, "--over", "drive.frequency=8:20:1", "--follow", "--both", "--segments", "4"} +
+            Words{"sweep", kSharedBeam, "--over", "drive.frequency=8:20:1", "--follow", "--both", "--segments", "4"} +
                 kFewCycles,
             {3, 7}},
         Divided{"ShakenUpAndDownEachOneChain",
-                Words{"sweep", kShakenBeam, "--over", "drive.frequency=8:20:1", "--follow", "--both"} + kFewCycles,
+                Words{"sweep", kSharedBeam, "--over", "drive.frequency=8:20:1", "--follow", "--both"} + kFewCycles,
                 {2}},
         Divided{"OrbitMap",
                 {"orbit", "map", kBacklash, "--over", "drive.omega=0.4:1.8:0.2", "--over",
