@@ -28,10 +28,10 @@ bool python_runs(const std::string& code) {
 
 void require_python() {
   if (python_runs(fmt::format("import slipmode; assert slipmode.__version__ == \"{}\"", results::version()))) return;
-  throw InvalidInput(fmt::format(
-      "the python3 in PATH finds no slipmode {}; for /usr/bin/python3: apt-get install python3-slipmode, or "
-      "after a build PYTHONPATH=build/release/python",
-      results::version()));
+  throw InvalidInput(
+      fmt::format("the python3 in PATH finds no slipmode {}; for /usr/bin/python3: apt-get install python3-slipmode; "
+                  "after a build: PYTHONPATH=build/release/python",
+                  results::version()));
 }
 
 Check python_module(const std::string& name, const std::string& serves) {
@@ -45,7 +45,7 @@ Check python_module(const std::string& name, const std::string& serves) {
 
 void require_datasets() {
   if (std::filesystem::is_directory(dataset_folder())) return;
-  throw InvalidInput(fmt::format("no {}; 'cmake --install' and the package slipmode bring it, a checkout has datasets/",
+  throw InvalidInput(fmt::format("no {}; 'cmake --install' and the package slipmode bring it; a checkout has datasets/",
                                  dataset_folder()));
 }
 
@@ -88,7 +88,8 @@ Report run(const std::string& folder) {
                          : check.needed ? "MISSING"
                                         : "without",
                          check.name, check.serves);
-    if (!ok) lines += fmt::format("           {}\n", problem);
+    // A line for what is wrong, one for each remedy: a command stays whole.
+    if (!ok) lines += fmt::format("           {}\n", CLI::detail::find_and_replace(problem, "; ", ";\n           "));
     if (!ok && check.needed) missing += (missing.empty() ? "" : ", ") + check.name;
   }
   report.exit_code = missing.empty() ? kDone : kBadInput;

@@ -1,6 +1,7 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/results/crew.hpp>
 #include "cli/features.hpp"
+#include "cli/help_layout.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/launched.hpp"
 #include "cli/slurm.hpp"
@@ -9,6 +10,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cstdio>
+#include <memory>
 #include <new>
 #include <string_view>
 
@@ -143,9 +145,11 @@ End run_main(int argc, char** argv, const Ranks* ranks) {
   session.ranks = ranks;
   session.stop = &watch_for_interrupt();
   CLI::App app{
-      "slipmode: structures with friction contacts, their proper orthogonal modes, and reduced models that are checked "
-      "against the full one",
+      "structures with friction contacts, their proper orthogonal modes, and reduced models that are checked against "
+      "the "
+      "full one",
       "slipmode"};
+  app.formatter(std::make_shared<HelpLayout>());
   app.set_version_flag("--version", version_text);
   app.require_subcommand(1);
   app.footer(

@@ -125,7 +125,7 @@ Verb add_selftest(CLI::App& app) {
   command->add_option("--first", request->first, "index of the first of them; --seed says which (default 1)");
   command->footer(
       "Exit code 3 if a case does not hold or a scene has a violation.\n"
-      "Examples:\n  slipmode selftest --extremes\n  slipmode selftest --scenes 100000 --seed 1");
+      "Example:\n  slipmode selftest --extremes\n  slipmode selftest --scenes 100000 --seed 1");
   return {command, [request](const Session& session) { return selftest(session, *request); }};
 }
 

@@ -45,6 +45,7 @@ std::vector<Verb> add_verbs(CLI::App& app, Session& session) {
   verbs.push_back(add_merge(app));
   verbs.push_back(add_report(app));
   verbs.push_back(add_doctor(app));
+  verbs.push_back(add_manual(app));
   verbs.push_back(add_selftest(app));
   std::ranges::move(add_orbit(app), std::back_inserter(verbs));
   for (const Verb& verb : verbs) add_common_options(verb, session);

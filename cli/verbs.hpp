@@ -32,6 +32,7 @@ struct Verb {
 [[nodiscard]] Verb add_advise(CLI::App& app);
 [[nodiscard]] Verb add_merge(CLI::App& app);
 [[nodiscard]] Verb add_doctor(CLI::App& app);
+[[nodiscard]] Verb add_manual(CLI::App& app);
 
 /// All verbs with the options common to them, which go to `session`.
 [[nodiscard]] std::vector<Verb> add_verbs(CLI::App& app, Session& session);

@@ -1,5 +1,6 @@
-# `cmake --install`: the library, its public headers under include/slipmode/<folder>/, the executable (from cli/), the
-# MATLAB package, and the package files behind find_package(slipmode).
+# `cmake --install`: the library, its public headers under include/slipmode/<folder>/, the package files behind
+# find_package(slipmode), the scenes that ship and the MATLAB package; from cli/ the executable with its manual pages and
+# shell completion, from python/ the Python package.
 
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
@@ -11,7 +12,7 @@ foreach(module ${SLIPMODE_MODULES})
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${module} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/slipmode
     FILES_MATCHING PATTERN "*.hpp" PATTERN internal EXCLUDE)
 endforeach()
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/matlab DESTINATION ${CMAKE_INSTALL_DATADIR}/slipmode)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/datasets ${PROJECT_SOURCE_DIR}/matlab DESTINATION ${CMAKE_INSTALL_DATADIR}/slipmode)
 install(EXPORT slipmodeTargets NAMESPACE slipmode:: DESTINATION ${package_dir})
 
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/slipmodeConfig.cmake.in

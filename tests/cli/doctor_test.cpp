@@ -7,6 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <cstdlib>
+#include <filesystem>
+#include <sstream>
 
 namespace {
 
@@ -67,6 +69,8 @@ TEST(Doctor, NamesTheProgramThatIsMissingWhatItServesAndItsPackage) {
   EXPECT_EQ(text.exit_code, 2);
   for (const char* part : {"missing: gnuplot", "figures", "apt-get install gnuplot-nox", "python3-slipmode"})
     EXPECT_THAT(text.err, HasSubstr(part));
+  std::istringstream lines(text.err);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80U) << line;
   const auto said = slipmode_in(folder, {"doctor", "--json"}).json();
   EXPECT_EQ(said["status"], "failed");
   EXPECT_EQ(said["message"], "missing: gnuplot");

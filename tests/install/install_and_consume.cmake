@@ -1,4 +1,5 @@
-# cmake -DBUILD_DIR=.. -DCONSUMER_DIR=.. -DSCRATCH_DIR=.. -DCXX=.. -DCXX_FLAGS=.. -P install_and_consume.cmake
+# cmake -DBUILD_DIR=.. -DCONSUMER_DIR=.. -DSCRATCH_DIR=.. -DCXX=.. -DCXX_FLAGS=..
+#   [-DPYTHON=.. -DPYTHON_DIR=..] -P install_and_consume.cmake
 # The consumer is compiled without the library's -march: arrays of both must still agree in alignment.
 
 function(run)
@@ -25,4 +26,18 @@ run(${CMAKE_COMMAND} -G Ninja -S ${CONSUMER_DIR} -B ${SCRATCH_DIR}/build -DCMAKE
   -DMORE_SOURCES=${SCRATCH_DIR}/headers.cpp)
 run(${CMAKE_COMMAND} --build ${SCRATCH_DIR}/build)
 run(${SCRATCH_DIR}/build/consumer)
+
+# The executable with its scenes, manual pages and completion, and the Python package, from the prefix alone.
+set(share ${SCRATCH_DIR}/prefix/share)
+run(${SCRATCH_DIR}/prefix/bin/slipmode modes ${share}/slipmode/datasets/chain10/scene.toml --quiet)
+foreach(file man/man1/slipmode.1 man/man1/slipmode-orbit-find.1 bash-completion/completions/slipmode
+    zsh/vendor-completions/_slipmode fish/vendor_completions.d/slipmode.fish)
+  if(NOT EXISTS ${share}/${file})
+    message(FATAL_ERROR "not installed: share/${file}")
+  endif()
+endforeach()
+if(PYTHON)
+  run(${CMAKE_COMMAND} -E env PYTHONPATH=${SCRATCH_DIR}/prefix/${PYTHON_DIR} PYTHONDONTWRITEBYTECODE=1 ${PYTHON} -c
+    "import slipmode; assert slipmode.__file__.startswith('${SCRATCH_DIR}'); slipmode.Scene.load('${share}/slipmode/datasets/chain10/scene.toml')")
+endif()
 file(REMOVE_RECURSE ${SCRATCH_DIR})
