@@ -10,7 +10,7 @@ set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/slipmode)
 install(TARGETS slipmode EXPORT slipmodeTargets ARCHIVE)
 foreach(module ${SLIPMODE_MODULES})
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${module} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/slipmode
-    FILES_MATCHING PATTERN "*.hpp" PATTERN internal EXCLUDE)
+    FILES_MATCHING PATTERN "*.hpp" PATTERN internal EXCLUDE PATTERN page EXCLUDE)
 endforeach()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/datasets ${PROJECT_SOURCE_DIR}/matlab DESTINATION ${CMAKE_INSTALL_DATADIR}/slipmode)
 install(EXPORT slipmodeTargets NAMESPACE slipmode:: DESTINATION ${package_dir})
