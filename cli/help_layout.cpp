@@ -1,6 +1,6 @@
 #include "cli/help_layout.hpp"
 
-#include "cli/text_table.hpp"
+#include <slipmode/core/terminal.hpp>
 
 #include <fmt/format.h>
 #include <sstream>
@@ -27,13 +27,7 @@ std::string HelpLayout::make_subcommand(const CLI::App* verb) const {
   return out.str();
 }
 
-std::string HelpLayout::make_footer(const CLI::App* app) const {
-  std::istringstream lines(app->get_footer());
-  std::string out;
-  for (std::string line; std::getline(lines, line);)
-    out += (line.starts_with("  ") ? line : wrapped(line, kColumns)) + "\n";
-  return out;
-}
+std::string HelpLayout::make_footer(const CLI::App* app) const { return wrapped_lines(app->get_footer(), kColumns); }
 
 std::vector<HelpPage> pages_of(const CLI::App& root) {
   std::vector<HelpPage> pages = {{&root, root.get_name()}};

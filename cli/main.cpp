@@ -1,4 +1,5 @@
 #include <slipmode/core/errors.hpp>
+#include <slipmode/core/terminal.hpp>
 #include <slipmode/results/crew.hpp>
 #include "cli/features.hpp"
 #include "cli/help_layout.hpp"
@@ -6,6 +7,8 @@
 #include "cli/launched.hpp"
 #include "cli/slurm.hpp"
 #include "cli/verbs.hpp"
+
+#include <unistd.h>
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -55,6 +58,7 @@ End fail_numerically(const Session& session, const NumericalFailure& failure) {
 /// The text of a verb that did not end well goes to standard error, whatever was asked for.
 End report(const Session& session, const Report& result) {
   if (!session.speaks()) return {result.exit_code, result.text};
+  const bool is_terminal = isatty(STDOUT_FILENO) == 1;
   if (session.json) {
     Json object = {{"status", status_of(result.exit_code)}, {"exit_code", result.exit_code}};
     object.update(result.data);
@@ -63,7 +67,7 @@ End report(const Session& session, const Report& result) {
   if (result.exit_code != kDone) {
     print_line(stderr, "slipmode: " + result.text);
   } else if (!session.json && !session.quiet) {
-    print_line(stdout, result.text);
+    print_line(stdout, is_terminal ? wrapped_lines(result.text, terminal_columns(STDOUT_FILENO)) : result.text);
   }
   return {result.exit_code, result.text};
 }

@@ -3,27 +3,8 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 namespace slipmode::cli {
-
-std::size_t shown_width(const std::string& text) {
-  const auto starts_character = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; };
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), starts_character));
-}
-
-std::string wrapped(const std::string& text, std::size_t width) {
-  std::istringstream words(text);
-  std::string out;
-  std::size_t column = 0;
-  for (std::string word; words >> word; column += shown_width(word)) {
-    const bool breaks = column > 0 && column + 1 + shown_width(word) > width;
-    if (column > 0) out += breaks ? '\n' : ' ';
-    column = breaks || column == 0 ? 0 : column + 1;
-    out += word;
-  }
-  return out;
-}
 
 std::string fixed(double value, int digits) { return std::isnan(value) ? "–" : fmt::format("{:.{}f}", value, digits); }
 

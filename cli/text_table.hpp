@@ -1,5 +1,7 @@
 #pragma once
 
+#include <slipmode/core/terminal.hpp>
+
 #include <string>
 #include <vector>
 
@@ -28,12 +30,6 @@ class TextTable {
   std::vector<Group> groups_;
   std::vector<std::vector<std::string>> rows_;
 };
-
-/// Number of characters shown for UTF-8 text.
-[[nodiscard]] std::size_t shown_width(const std::string& text);
-
-/// Text broken between words into lines of at most `width` characters, as far as its words allow; no break at the end.
-[[nodiscard]] std::string wrapped(const std::string& text, std::size_t width);
 
 /// A value with `digits` after the point, "–" for NaN.
 [[nodiscard]] std::string fixed(double value, int digits);

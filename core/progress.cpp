@@ -1,5 +1,7 @@
 #include <slipmode/core/progress.hpp>
 
+#include <slipmode/core/terminal.hpp>
+
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -49,8 +51,8 @@ void ProgressLine::update(std::size_t done, std::size_t total) {
   begun_ = true;
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   const std::string text = progress_text(label_, done, total, elapsed);
-  // ESC [K clears what a longer line left behind.
-  std::fputs(("\r" + text + "\x1b[K").c_str(), stderr);
+  std::fputc('\r', stderr);
+  std::fputs(row_of(text, terminal_columns(STDERR_FILENO)).c_str(), stderr);
   std::fflush(stderr);
 }
 
