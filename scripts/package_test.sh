@@ -24,8 +24,10 @@ as() {
   local user=$1 net=(--net)
   shift
   [[ $1 != --net ]] || { net=(); shift; }
-  unshare "${net[@]}" --mount --pid --fork --mount-proc="$root/proc" chroot "$root" \
-    su - "$user" -c "export LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive; set -e; $1" >"$log" 2>&1 </dev/null
+  unshare "${net[@]}" --mount --pid --fork --mount-proc="$root/proc" bash -c '
+    mount -t devpts -o newinstance,ptmxmode=666 devpts "$0/dev/pts"
+    exec chroot "$0" su - "$1" -c "export LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive; set -e; $2"' \
+    "$root" "$user" "$1" >"$log" 2>&1 </dev/null
 }
 check() { as "$2" "$3" || fails "$1"; holds "$1"; }
 # Ends with an exit code and says something.
@@ -75,7 +77,7 @@ as anna "slipmode simulate datasets/backlash_sdof/scene.toml -o run.h5" || fails
 cmp "$root/home/anna/run.h5" "$root/home/ben/run.h5" || fails "the same bytes for both users"
 check "a terminal of 80 columns without colours" anna "export TERM=dumb NO_COLOR=1
   script -qec 'stty cols 80; slipmode simulate datasets/chain10/scene.toml -o e.h5; slipmode --help' said >/dev/null
-  test -s e.h5; test -z "\$(grep \$'\\e' said)"
+  test -s e.h5; test -z \"\$(grep \$'\\e' said)\"
   tr '\\r' '\\n' <said | grep -v '^  slipmode \|^Script ' | awk 'length > 80 { print; bad = 1 } END { exit bad }'"
 refused "packages without root: apt says who may" anna "apt-get install -y /packages/slipmode_*.deb" 100 "are you root?"
 refused "a build without root says what is missing" anna "bash /packages/install_packages.sh" 1 "run this as root, or install sudo"
