@@ -2,6 +2,7 @@
 #include <slipmode/core/terminal.hpp>
 #include <slipmode/results/crew.hpp>
 #include "cli/features.hpp"
+#include "cli/folded_tables.hpp"
 #include "cli/help_layout.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/launched.hpp"
@@ -55,10 +56,16 @@ End fail_numerically(const Session& session, const NumericalFailure& failure) {
               {{"time", failure.time}, {"residual", failure.residual}, {"state", state}});
 }
 
+/// A text for people, in the columns of their terminal; elsewhere as it is.
+std::string shown(const std::string& text) {
+  if (isatty(STDOUT_FILENO) != 1) return text;
+  const std::size_t columns = terminal_columns(STDOUT_FILENO);
+  return wrapped_lines(folded_tables(text, columns), columns);
+}
+
 /// The text of a verb that did not end well goes to standard error, whatever was asked for.
 End report(const Session& session, const Report& result) {
   if (!session.speaks()) return {result.exit_code, result.text};
-  const bool is_terminal = isatty(STDOUT_FILENO) == 1;
   if (session.json) {
     Json object = {{"status", status_of(result.exit_code)}, {"exit_code", result.exit_code}};
     object.update(result.data);
@@ -67,7 +74,7 @@ End report(const Session& session, const Report& result) {
   if (result.exit_code != kDone) {
     print_line(stderr, "slipmode: " + result.text);
   } else if (!session.json && !session.quiet) {
-    print_line(stdout, is_terminal ? wrapped_lines(result.text, terminal_columns(STDOUT_FILENO)) : result.text);
+    print_line(stdout, shown(result.text));
   }
   return {result.exit_code, result.text};
 }
