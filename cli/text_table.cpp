@@ -45,8 +45,8 @@ std::string TextTable::str() const {
   const auto line = [&](const std::vector<std::string>& row) {
     for (std::size_t i = 0; i < column_widths.size(); ++i) {
       const std::string cell = i < row.size() ? row[i] : std::string();
-      const std::string padding(column_widths[i] - shown_width(cell), ' ');
-      out += i == 0 ? "  " + cell + padding : "  " + padding + cell;
+      const std::size_t padding = column_widths[i] - shown_width(cell);
+      out.append(i == 0 ? 2 : 2 + padding, ' ').append(cell).append(i == 0 ? padding : 0, ' ');
     }
     out.erase(out.find_last_not_of(' ') + 1);
     out += '\n';

@@ -151,7 +151,7 @@ void require_writable_folder(const fs::path& path) {
 }  // namespace
 
 std::string Figure::data(std::initializer_list<Eigen::Ref<const Eigen::VectorXd>> columns) {
-  const std::string name = fmt::format("$d{}", ++blocks_);
+  std::string name = fmt::format("$d{}", ++blocks_);
   auto out = std::back_inserter(data_);
   fmt::format_to(out, "{} << EOD\n", name);
   for (Eigen::Index row = 0; row < columns.begin()->size(); ++row) {
