@@ -5,6 +5,7 @@
 #include "cli/features.hpp"
 #include "cli/verbs.hpp"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
 #include <cstdlib>
 #include <filesystem>
@@ -43,6 +44,15 @@ Check python_module(const std::string& name, const std::string& serves) {
           }};
 }
 
+void require_mpi() {
+  void* library = dlopen("slipmode_mpi.so", RTLD_LAZY);  // found by the executable's run path, as under mpirun
+  if (library == nullptr)
+    throw InvalidInput(fmt::format("{}; apt-get install openmpi-bin; a build needs libopenmpi-dev too", dlerror()));
+  dlclose(library);
+  if (std::system("command -v mpirun >/dev/null") == 0) return;  // NOLINT(bugprone-command-processor)
+  throw InvalidInput("mpirun is not in PATH; apt-get install openmpi-bin");
+}
+
 void require_datasets() {
   if (std::filesystem::is_directory(dataset_folder())) return;
   throw InvalidInput(fmt::format("no {}; 'cmake --install' and the package slipmode bring it; a checkout has datasets/",
@@ -56,6 +66,7 @@ std::vector<Check> checks(const std::string& folder) {
       {"gnuplot", "figures: run, plot, --figures", true, figures::require_gnuplot},
       {"report", "one interactive page: report, run", false, report::require_available},
       {"datasets", "the scenes that examples and tutorials name", false, require_datasets},
+      {"mpi", "studies on several machines: mpirun", false, require_mpi},
       {"python", "import slipmode", false, require_python},
       python_module("matplotlib", "in Python: figures"),
       python_module("xarray", "in Python: to_xarray()"),

@@ -14,6 +14,7 @@ namespace {
 constexpr std::string_view kArch = SLIPMODE_BUILT_ARCH;
 constexpr std::string_view kPython = SLIPMODE_BUILT_PYTHON;
 constexpr bool kHasFftw = SLIPMODE_BUILT_FFTW;
+constexpr bool kHasMpi = SLIPMODE_BUILT_MPI;
 
 std::string processor() { return kArch.empty() ? "the compiler's default" : std::string(kArch); }
 
@@ -31,6 +32,7 @@ std::vector<Feature> features() {
       {"kernels", kernel_sets()},
       {"fourier", kHasFftw ? "FFTW" : "KISS FFT: built without FFTW"},
       {"report", report::is_available() ? "D3" : "none: built without D3"},
+      {"mpi", kHasMpi ? "studies under mpirun" : "none: built without MPI"},
       {"python", kPython.empty() ? "none: built without pybind11" : fmt::format("package for Python {}", kPython)},
   };
 }

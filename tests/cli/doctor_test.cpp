@@ -45,6 +45,7 @@ TEST(Version, TellsWhatIsBuiltIn) {
   EXPECT_THAT(said, HasSubstr("processor  "));
   EXPECT_THAT(said, HasSubstr("fourier    "));
   EXPECT_THAT(said, HasSubstr("python     "));
+  EXPECT_THAT(said, HasSubstr("mpi        "));
 }
 
 TEST(Doctor, FindsNothingNeededMissingWhereTestsRun) {
@@ -77,6 +78,8 @@ TEST(Doctor, NamesTheProgramThatIsMissingWhatItServesAndItsPackage) {
   EXPECT_EQ(check_of(said, "gnuplot")["needed"], true);
   EXPECT_EQ(check_of(said, "python")["ok"], false);
   EXPECT_EQ(check_of(said, "python")["needed"], false) << "the executable needs no Python";
+  EXPECT_EQ(check_of(said, "mpi")["needed"], false);
+  EXPECT_THAT(check_of(said, "mpi")["problem"].get<std::string>(), HasSubstr("apt-get install openmpi-bin"));
 }
 
 TEST(Doctor, TellsAFolderThatIsNotThere) {
