@@ -47,7 +47,8 @@ Check python_module(const std::string& name, const std::string& serves) {
 void require_mpi() {
   void* library = dlopen("slipmode_mpi.so", RTLD_LAZY);  // found by the executable's run path, as under mpirun
   if (library == nullptr)
-    throw InvalidInput(fmt::format("{}; apt-get install openmpi-bin; a build needs libopenmpi-dev too", dlerror()));
+    throw InvalidInput(
+        "no MPI, or none this build was made for; apt-get install openmpi-bin; a build: libopenmpi-dev too");
   dlclose(library);
   if (std::system("command -v mpirun >/dev/null") == 0) return;  // NOLINT(bugprone-command-processor)
   throw InvalidInput("mpirun is not in PATH; apt-get install openmpi-bin");
