@@ -84,7 +84,8 @@ TEST(RandomScenes, OfTenSeedsThatOnceFailedHold) {
   // 1e-16 (4_11248); a stop left at 1e-9 of its first speed (7_11383); a last step of 5e-14 that forces were solved in
   // (6_11865); a moment's slip of a stretched beam whose loss was a difference of squares (2_17874); a guard that is
   // all rounding, whose root was sought beyond another's event (4_17656: passed by 0.08); steps halved without end
-  // where a first guess was far beyond its law (5_16715).
+  // where a first guess was far beyond its law (5_16715); a chain stretched by 2,000 that moves by 1e-4, its speeds
+  // judged by themselves (4_14538).
   const std::vector<std::pair<std::uint64_t, std::uint64_t>> scenes = {
       {1, 1301}, {2, 1764},  {2, 7405}, {2, 9773},  {2, 17874}, {3, 343},   {3, 7211},
       {4, 937},  {4, 1189},  {4, 9909}, {4, 11248}, {5, 7324},  {6, 11865}, {7, 923},
