@@ -118,14 +118,15 @@ class Crew::Lead {
       : ranks_(ranks), journal_(journal), done_(static_cast<std::size_t>(ranks.count), 0), heard_(done_.size()) {
     send_records(ranks_, journal_, 0);
     tell_all(Sent::kStudy, fingerprint);
-    journal_.share({.begin = [this](std::vector<std::size_t> open, std::size_t done, std::size_t total,
-                                    ProgressCallback progress) { begin(std::move(open), done, total, progress); },
-                    .take = [this] { return take(); },
-                    .end = [this](bool finished, bool for_all) { return end(finished, for_all); }},
-                   [this](const JournalRecord&) {
-                     pace_.count();
-                     count();
-                   });
+    journal_.share(
+        {.begin = [this](std::vector<std::size_t> open, std::size_t done, std::size_t total,
+                         ProgressCallback progress) { begin(std::move(open), done, total, std::move(progress)); },
+         .take = [this] { return take(); },
+         .end = [this](bool finished, bool for_all) { return end(finished, for_all); }},
+        [this](const JournalRecord&) {
+          pace_.count();
+          count();
+        });
   }
 
  private:
@@ -230,7 +231,7 @@ class Crew::Lead {
     const std::size_t fair = open_.size() / (2 * done_.size());
     const std::size_t many = std::min(open_.size(), std::min(wish, std::max<std::size_t>(fair, 1)));
     const auto end = open_.begin() + static_cast<std::ptrdiff_t>(many);
-    const std::vector<std::size_t> pieces(open_.begin(), end);
+    std::vector<std::size_t> pieces(open_.begin(), end);
     open_.erase(open_.begin(), end);
     return pieces;
   }
