@@ -138,7 +138,7 @@ class SweepRunner {
   bool run_shared() {
     const auto open = static_cast<std::size_t>(
         std::ranges::count_if(points_, [](const std::optional<Point>& point) { return !point; }));
-    sink_.sharing.begin(open_pieces(), points_.size() - open, points_.size(), parallel_.progress);
+    sink_.sharing.begin(open_pieces(), points_.size() - open, points_.size(), parallel_);
     ParallelOptions own = parallel_;
     own.progress = {};  // of all processes, which the sharing tells
     const bool finished = sink_.sharing.end(run_tasks_of({}, 0, own, [this] { return tasks_taken(); }), sink_.for_all);

@@ -55,6 +55,8 @@ Sent kind_of(const Parcel& arrived) { return static_cast<Sent>(arrived.bytes.fro
 
 std::string_view text_of(const Parcel& arrived) { return std::string_view(arrived.bytes).substr(1); }
 
+bool is_set(const StopFlag* stop) { return stop != nullptr && stop->load(); }
+
 /// Separated by blanks.
 std::vector<std::size_t> numbers_in(std::string_view text) {
   std::vector<std::size_t> numbers;
@@ -118,24 +120,24 @@ class Crew::Lead {
       : ranks_(ranks), journal_(journal), done_(static_cast<std::size_t>(ranks.count), 0), heard_(done_.size()) {
     send_records(ranks_, journal_, 0);
     tell_all(Sent::kStudy, fingerprint);
-    journal_.share(
-        {.begin = [this](std::vector<std::size_t> open, std::size_t done, std::size_t total,
-                         ProgressCallback progress) { begin(std::move(open), done, total, std::move(progress)); },
-         .take = [this] { return take(); },
-         .end = [this](bool finished, bool for_all) { return end(finished, for_all); }},
-        [this](const JournalRecord&) {
-          pace_.count();
-          count();
-        });
+    journal_.share({.begin = [this](std::vector<std::size_t> open, std::size_t done, std::size_t total,
+                                    const ParallelOptions& run) { begin(std::move(open), done, total, run); },
+                    .take = [this] { return take(); },
+                    .end = [this](bool finished, bool for_all) { return end(finished, for_all); }},
+                   [this](const JournalRecord&) {
+                     pace_.count();
+                     count();
+                   });
   }
 
  private:
-  void begin(std::vector<std::size_t> open, std::size_t done, std::size_t total, ProgressCallback progress) {
+  void begin(std::vector<std::size_t> open, std::size_t done, std::size_t total, const ParallelOptions& run) {
     ++stage_;
     first_record_ = journal_.records().size();
     finished_ = done;
     total_ = total;
-    progress_ = std::move(progress);
+    progress_ = run.progress;
+    stop_ = run.stop;
     pace_.begin(open.size(), total - done);
     open_.assign(open.begin(), open.end());
     std::ranges::fill(done_, 0);
@@ -171,6 +173,7 @@ class Crew::Lead {
     std::optional<Clock::time_point> stopped;
     while (!error_ && std::count(done_.begin() + 1, done_.end(), 0) > 0) {
       changed_.wait_for(lock, milliseconds(10));
+      stopping_ = stopping_ || is_set(stop_);
       if (!stopping_) continue;
       if (!stopped) stopped = Clock::now();
       if (Clock::now() - *stopped > kPatience + 2 * longest_) return;
@@ -258,6 +261,7 @@ class Crew::Lead {
   std::size_t stage_ = 0, first_record_ = 0;  ///< its number from 1, and the first record of it
   std::size_t finished_ = 0, total_ = 0;      ///< values
   ProgressCallback progress_;
+  const StopFlag* stop_ = nullptr;
   Pace pace_;
   std::deque<std::size_t> open_;                         ///< pieces not yet given
   std::vector<std::pair<int, std::size_t>> early_;       ///< wishes of ranks that are at the next stage already
@@ -283,7 +287,7 @@ class Crew::Hand {
           "all ranks the same");
     }
     journal_.share({.begin = [this](const std::vector<std::size_t>& open, std::size_t done, std::size_t total,
-                                    const ProgressCallback&) { begin(open.size(), total - done); },
+                                    const ParallelOptions& run) { begin(open.size(), total - done, run.stop); },
                     .take = [this] { return take(); },
                     .end = [this](bool finished, bool for_all) { return end(finished, for_all); },
                     .leads = false},
@@ -294,8 +298,9 @@ class Crew::Hand {
   }
 
  private:
-  void begin(std::size_t pieces, std::size_t values) {
+  void begin(std::size_t pieces, std::size_t values, const StopFlag* stop) {
     ++stage_;
+    stop_ = stop;
     pace_.begin(pieces, values);
   }
 
@@ -319,6 +324,7 @@ class Crew::Hand {
   Parcel wait() {
     for (;;) {
       auto arrived = ranks_.receive();
+      if (is_set(stop_)) throw Interrupted();
       if (!arrived) {
         std::this_thread::sleep_for(kWait);
       } else if (kind_of(*arrived) == Sent::kStop) {
@@ -331,6 +337,7 @@ class Crew::Hand {
 
   const Ranks& ranks_;
   Journal& journal_;
+  const StopFlag* stop_ = nullptr;
   std::size_t stage_ = 0;
   Pace pace_;
 };
