@@ -69,6 +69,7 @@ End report(const Session& session, const Report& result) {
   if (session.json) {
     Json object = {{"status", status_of(result.exit_code)}, {"exit_code", result.exit_code}};
     object.update(result.data);
+    if (result.exit_code != kDone && !object.contains("message")) object["message"] = result.text;
     print_line(stdout, object.dump(2, ' ', false, Json::error_handler_t::replace));
   }
   if (result.exit_code != kDone) {

@@ -136,21 +136,21 @@ Report store_and_tell(const OrbitContinueArguments& arguments, const Followed& f
 }
 
 Report run_balance(const Session& session, const OrbitContinueArguments& arguments, const Followed& followed) {
-  if (arguments.every && !arguments.balance.words.certify && !arguments.balance.words.error)
-    throw InvalidInput(fmt::format("--every {}: which points to certify; add --certify", *arguments.every));
   const studies::OrbitSearch& search = arguments.search.search;
   const studies::BalanceContinuation found = studies::continue_balance(
       followed.scene, followed.key, followed.basis,
       studies::balance_search(arguments.balance.words, arguments.search.start, search.order), followed.request,
-      arguments.every.value_or(1), {.segments = search.segments, .tolerance = search.tolerance}, session.run_options());
+      arguments.every, {.segments = search.segments, .tolerance = search.tolerance}, session.run_options());
   if (found.branch.points.empty()) {
     const studies::Family at_start(scene::set_key(followed.scene, followed.key, found.start), {}, followed.basis);
     return balance_report("orbit continue", at_start, found.found);
   }
   const int harmonics = found.found.balance.harmonics;
-  Report report = store_and_tell(arguments, followed,
-                                 studies::command_of(followed.key, arguments.search.model, found, followed.request),
-                                 found.start, studies::branches_of(found));
+  Report report =
+      store_and_tell(arguments, followed,
+                     studies::command_of(followed.key, arguments.search.model, search, arguments.balance.words,
+                                         arguments.search.start, arguments.every, followed.request),
+                     found.start, studies::branches_of(found));
   report.data["by"] = "balance";
   report.data["harmonics"] = harmonics;
   if (!found.certificate) return report;

@@ -206,8 +206,13 @@ bool EventResolver::at_belt_speed(double time, int c, const double* x) const {
   // V as computed errs by the rounding of its phase, and of the time.
   double scale = row.dot(state.cwiseAbs()) + drive_.velocity_scale(time) + std::abs(drive_.acceleration(time) * time);
   // Where all is at rest, speeds round by what the displacements would become.
+  const auto np = model_.np;
   if (model_.proportional)
-    scale += row.tail(model_.np).dot(model_.omega.cwiseProduct(state.head(model_.np).cwiseAbs()));
+    scale += row.tail(np).dot(model_.omega.cwiseProduct(state.head(np).cwiseAbs()));
+  else
+    scale += (row.head(np).cwiseAbs2() + row.tail(np).cwiseAbs2())
+                 .cwiseSqrt()
+                 .dot((state.head(np).cwiseAbs2() + state.tail(np).cwiseAbs2()).cwiseSqrt());
   return std::abs(V - contact_velocity(c, x)) <= kAtRest * scale;
 }
 

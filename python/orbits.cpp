@@ -56,10 +56,10 @@ void read_start(Keywords& keywords, Eigen::Index n, studies::OrbitSearch& out_se
 }
 
 struct BranchCertificates {
-  int every = 1;
+  int every = 0;
   static constexpr auto fields() {
-    return std::tuple{
-        optional("every", &BranchCertificates::every, "", "with certify: every so many points, and the last", kCount)};
+    return std::tuple{optional("every", &BranchCertificates::every, "",
+                               "with certify: every so many points, and the last; 0: all", kFromZero)};
   }
 };
 
@@ -67,7 +67,9 @@ struct BranchCertificates {
 struct Method {
   bool balances = false;
   studies::OrbitSearch search;
-  studies::BalanceSearch balance;  ///< if so
+  studies::BalanceWords words;     ///< if so, as they were given, with
+  std::string start = "settle";    ///< and
+  studies::BalanceSearch balance;  ///< what they say
 };
 
 Method method_of(Keywords& keywords, const Scene& scene) {
@@ -80,12 +82,12 @@ Method method_of(Keywords& keywords, const Scene& scene) {
     read_start(keywords, scene.size(), method.search);
     return method;
   }
-  studies::BalanceWords words;
-  keywords.read(words);
-  if (words.error && !words.harmonics) words.harmonics = "auto";
+  keywords.read(method.words);
+  if (method.words.error && !method.words.harmonics) method.words.harmonics = "auto";
   const py::object start = keywords.take("start");
   if (start && !py::isinstance<py::str>(start)) keywords.refuse("start", start, "\"contact\" or \"gap\"");
-  method.balance = studies::balance_search(words, start ? start.cast<std::string>() : "settle", method.search.order);
+  if (start) method.start = start.cast<std::string>();
+  method.balance = studies::balance_search(method.words, method.start, method.search.order);
   return method;
 }
 
@@ -136,19 +138,32 @@ Result find_orbit(const Scene& scene, const py::kwargs& given) {
   return *result;
 }
 
+/// A branch that was lost on its way: what was found is the failure's result.
+void require_whole(const orbits::Branch& branch, double start, const Result& kept) {
+  if (branch.end != orbits::BranchEnd::kLost) return;
+  raise(NumericalFailure("the branch was lost before the end of its range; what was found is kept: " + branch.reason,
+                         branch.points.empty() ? start : branch.points.back().parameter, {}, 0.0),
+        py::cast(kept));
+}
+
 Result continue_balance(const Scene& scene, const std::string& over, const Method& method,
-                        const studies::ContinuationRequest& request, int every, const ModelChoice& choice, Call& call) {
+                        const studies::ContinuationRequest& request, const BranchCertificates& certificates,
+                        const ModelChoice& choice, Call& call) {
+  const std::optional<int> every = certificates.every > 0 ? std::optional(certificates.every) : std::nullopt;
   const auto [found, result] = call([&] {
     const auto basis = choice.basis(scene, call.options());
     studies::BalanceContinuation own = studies::continue_balance(scene, over, basis, method.balance, request, every,
                                                                  certifying(method.search), call.options());
     std::optional<Result> kept;
     if (!own.branch.points.empty())
-      kept.emplace(studies::content_of(studies::Family(scene, {over}, basis), own.start, studies::branches_of(own),
-                                       studies::command_of(over, choice.word(), own, request), call.options()));
+      kept.emplace(studies::content_of(
+          studies::Family(scene, {over}, basis), own.start, studies::branches_of(own),
+          studies::command_of(over, choice.word(), method.search, method.words, method.start, every, request),
+          call.options()));
     return std::pair(std::move(own), std::move(kept));
   });
   require_balance(found.found, result);
+  require_whole(found.branch, found.start, *result);
   return *result;
 }
 
@@ -167,7 +182,7 @@ Result continue_orbit(const Scene& scene, const std::string& over, double to, co
   if (method.balances) keywords.read(own);
   const ModelChoice choice(keywords);
   Call call(keywords);
-  if (method.balances) return continue_balance(scene, over, method, request, own.every, choice, call);
+  if (method.balances) return continue_balance(scene, over, method, request, own, choice, call);
   const auto [found, result] = call([&] {
     const auto basis = choice.basis(scene, call.options());
     studies::Continuation continuation = studies::continue_orbit(scene, over, basis, search, request, call.options());
@@ -180,13 +195,7 @@ Result continue_orbit(const Scene& scene, const std::string& over, double to, co
     return std::pair(std::move(continuation), std::move(kept));
   });
   if (!result) raise_not_found(found.found);
-  const orbits::Branch& main = found.branches.front().branch;
-  if (main.end == orbits::BranchEnd::kLost) {
-    const bool any = !main.points.empty();
-    raise(NumericalFailure("the branch was lost before the end of its range; what was found is kept: " + main.reason,
-                           any ? main.points.back().parameter : found.start, {}, 0.0),
-          py::cast(*result));
-  }
+  require_whole(found.branches.front().branch, found.start, *result);
   return *result;
 }
 
@@ -228,7 +237,8 @@ Result skeleton(const Scene& scene, const py::kwargs& given) {
       return Result(studies::content_of(
           model, std::make_shared<const results::ModelSkeleton>(studies::skeleton(model, request, call.options())),
           choice.word(), request));
-    if (!model.basis()) throw InvalidInput("skeleton: compare = True: a reduced model with the full one; add model");
+    if (choice.word() != "rom")
+      throw InvalidInput("skeleton: compare = True: a reduced model with the full one; add model, a result of reduce");
     return Result(studies::content_of(model,
                                       std::make_shared<const studies::SkeletonPair>(
                                           studies::skeletons(studies::Family(scene), model, request, call.options())),

@@ -78,7 +78,7 @@ results::Content content_of(const Family& model, std::shared_ptr<const BalanceFo
 
 BalanceContinuation continue_balance(const scene::Scene& scene, const std::string& key,
                                      const std::optional<pod::NamedBasis>& basis, BalanceSearch search,
-                                     const ContinuationRequest& request, int every,
+                                     const ContinuationRequest& request, std::optional<int> every,
                                      const orbits::ShootingOptions& shooting, const RunOptions& run) {
   constexpr int kMostHarmonics = 500;  // exponents of a point take (n H)³
   constexpr double kGrowth = 1.3;
@@ -87,6 +87,8 @@ BalanceContinuation continue_balance(const scene::Scene& scene, const std::strin
   if (search.options.samples != 0)
     throw InvalidInput(
         fmt::format("--samples {}: a balance is followed by exact forces alone; leave it out", search.options.samples));
+  if (every && !search.certify && !search.error)
+    throw InvalidInput(fmt::format("--every {}: which points to certify; add --certify", *every));
   KeyFamily over = family_over(scene, key, basis, request, run);
   over.options.shooting = shooting;
   BalanceContinuation out{.found = find_balance(over.family, search, shooting), .start = over.start};
@@ -95,7 +97,7 @@ BalanceContinuation continue_balance(const scene::Scene& scene, const std::strin
   while (out.found.balance.converged && out.found.met) {
     const orbits::Balance& first = out.found.balance;
     out.branch = orbits::continue_balance(over.systems, first, over.start, over.options);
-    if (search.certify) out.certificate = orbits::certify_branch(over.systems, out.branch, every, shooting);
+    if (search.certify) out.certificate = orbits::certify_branch(over.systems, out.branch, every.value_or(1), shooting);
     if (!error) break;
     out.trials.push_back({first.harmonics, first.iterations, out.certificate->worst});
     if (out.certificate->behind > 0 && out.certificate->worst <= *error) break;
@@ -109,10 +111,14 @@ BalanceContinuation continue_balance(const scene::Scene& scene, const std::strin
   return out;
 }
 
-std::string command_of(const std::string& key, const std::string& model, const BalanceContinuation& found,
+std::string command_of(const std::string& key, const std::string& model, const OrbitSearch& search,
+                       const BalanceWords& words, const std::string& start, std::optional<int> every,
                        const ContinuationRequest& request) {
-  return fmt::format("slipmode orbit continue --over {}={}:{}{} --by balance --harmonics {}{}", key, request.from,
-                     request.to, model_option(model), found.found.balance.harmonics, options_text(request));
+  const std::string from = start == "settle" ? "" : " --start " + start;
+  const std::string points = every ? fmt::format(" --every {}", *every) : "";
+  return fmt::format("slipmode orbit continue --over {}={}:{}{} --by balance{}{}{}{}{}", key, request.from, request.to,
+                     model_option(model), options_text(search), from, options_text(words), points,
+                     options_text(request));
 }
 
 std::shared_ptr<const std::vector<results::NamedBranch>> branches_of(const BalanceContinuation& found) {

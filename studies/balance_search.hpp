@@ -73,16 +73,17 @@ struct BalanceContinuation {
 
 /// Finds a balance where continue_orbit would find its orbit, and follows it. With `search.error` the order grows, by
 /// 1.3 at a time, until every certified point that has an orbit behind meets the error.
-/// @param every  certify every k-th point, where `search` asks for certificates; ≥ 1
+/// @param every  certify every k-th point and the last, where `search` asks for certificates; ≥ 1, else all
 /// @throws InvalidInput  as family_over, find_balance and continue_balance
 /// @throws Interrupted   when the stop flag was set
 [[nodiscard]] BalanceContinuation continue_balance(const scene::Scene& scene, const std::string& key,
                                                    const std::optional<pod::NamedBasis>& basis, BalanceSearch search,
-                                                   const ContinuationRequest& request, int every,
+                                                   const ContinuationRequest& request, std::optional<int> every,
                                                    const orbits::ShootingOptions& shooting, const RunOptions& run = {});
 
-/// As studies::command_of, with the order that was chosen.
-[[nodiscard]] std::string command_of(const std::string& key, const std::string& model, const BalanceContinuation& found,
+/// As studies::command_of. @param start, every  as balance_search and continue_balance
+[[nodiscard]] std::string command_of(const std::string& key, const std::string& model, const OrbitSearch& search,
+                                     const BalanceWords& words, const std::string& start, std::optional<int> every,
                                      const ContinuationRequest& request);
 /// Its one branch, to be kept as branches of orbits are.
 [[nodiscard]] std::shared_ptr<const std::vector<results::NamedBranch>> branches_of(const BalanceContinuation& found);

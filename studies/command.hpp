@@ -27,7 +27,7 @@ template <class S>
   for_each_field<S>([&]<class T>(const Field<S, T>& field) {
     if (own.*field.member == usual.*field.member) return;
     text += " " + option_name(field.name);
-    if constexpr (std::is_same_v<T, std::optional<double>>)
+    if constexpr (requires(T value) { value.has_value(); })
       text += fmt::format(" {}", *(own.*field.member));
     else if constexpr (!std::is_same_v<T, bool>)
       text += fmt::format(" {}", own.*field.member);

@@ -59,7 +59,9 @@ results::Content content_of(const scene::Scene& scene, std::shared_ptr<const Sim
   for (const Eigen::MatrixXd* samples : {&run.q, &run.v, &run.contact_q, &run.contact_v, &run.lambda})
     content.shared.push_back({simulation, {samples->data(), static_cast<std::size_t>(samples->size())}});
   content.shared.push_back({simulation, {run.times.data(), static_cast<std::size_t>(run.times.size())}});
-  content.write = [scene, command = "slipmode simulate" + model_option(model_word),
+  content.write = [scene,
+                   command = std::string("slipmode simulate") +
+                             (scene::has_section(scene, "ensemble") ? " --single" : "") + model_option(model_word),
                    simulation = std::move(simulation)](results::StoreWriter& writer) {
     const dynamics::Trajectory& trajectory = simulation->trajectory;
     results::Provenance provenance = results::provenance_of(scene, command);

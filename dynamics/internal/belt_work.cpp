@@ -119,6 +119,8 @@ StayWork BeltWork::until(const StayPlace& at, const Eigen::VectorXd& inputs) {
   measure(at, inputs, end_);
   const double stay = end_.time - begin_.time;
   StayWork work;
+  double size = 0.0;
+  for (const End* end : {&begin_, &end_}) size += std::abs(end->loss) + std::abs(end->dragged) + std::abs(end->squares);
   for (Eigen::Index c = 0; c < nc; ++c) {
     const Exchange by = exchange_[static_cast<std::size_t>(c)];
     const double impulse = end_.impulse(c) - begin_.impulse(c) + stay * (begin_.steady(c) + end_.steady(c)) / 2.0;
@@ -127,16 +129,17 @@ StayWork BeltWork::until(const StayPlace& at, const Eigen::VectorXd& inputs) {
       // ∫ λ v_p + ∫ λ_p d(wᵀq)_f, by parts; λ_p is linear.
       const double growth = stay > 0.0 ? (end_.steady(c) - begin_.steady(c)) / stay : 0.0;
       const double speed = r.velocity_row.col(c).dot(r.particular.col(nc)) + r.velocity_coefficient(nc, c);
-      work.contact += V * speed * impulse + end_.steady(c) * end_.exchange(c) - begin_.steady(c) * begin_.exchange(c) -
-                      growth * (end_.way(c) - begin_.way(c));
+      const double first = begin_.steady(c) * begin_.exchange(c), last = end_.steady(c) * end_.exchange(c);
+      work.contact += V * speed * impulse + last - first - growth * (end_.way(c) - begin_.way(c));
+      size += std::abs(first) + std::abs(last) + std::abs(growth) * (std::abs(begin_.way(c)) + std::abs(end_.way(c)));
     } else {
+      size += std::abs(begin_.exchange(c)) + std::abs(end_.exchange(c));
       work.contact += end_.exchange(c) - begin_.exchange(c) + (by == Exchange::kFollows ? V * impulse : 0.0);
     }
   }
   work.contact += end_.squares - begin_.squares;
   work.viscous = end_.loss - begin_.loss + (end_.dragged - begin_.dragged) + V * V * dragged_loss_ * stay;
-  work.rounding = std::numeric_limits<double>::epsilon() *
-                  (std::abs(begin_.loss) + std::abs(end_.loss) + std::abs(begin_.squares) + std::abs(end_.squares));
+  work.rounding = std::numeric_limits<double>::epsilon() * size;
   std::swap(begin_, end_);
   return work;
 }

@@ -19,7 +19,8 @@ namespace slipmode::dynamics {
 /// modes, else O(n²) of few pairs and one lift of many. Source: docs/theory/flow.md, section 6.
 class BeltWork {
  public:
-  /// Null where the integrals have no such form: rigid-body motion, or pairs that hardly decay and are not real modes.
+  /// Null where the integrals have no such form: rigid-body motion, or pairs that hardly decay where
+  /// squares of x_f are needed: in complex modes, at stops, under normal oscillators.
   [[nodiscard]] static std::unique_ptr<BeltWork> make(const RegimeTables& tables, const ModalModel& slipping);
 
   /// Starts a stay.

@@ -145,7 +145,7 @@ bool CollocationFlow::step(double t_limit) {
     }
     guard = first_guard();
     if (guard.contact >= 0 && bristled(guard.contact)) error = std::max(error, reversal_error(guard));
-    // A sliver that a whole step would leave is as short as the clock's rounding, and forces in it are noise.
+    // Steps that sum up to all but a sliver of the time leave it to rounding: forces solved in it alone are noise.
     const double whole = remaining > h && remaining - h < kSliver * h ? remaining / 2.0 : h;
     tau = std::min(guard.contact >= 0 ? guard.theta * h : whole, remaining);
     tolerance = options_.tolerance * (tau < h ? 1.0 : 1.0 / kEndNodeGain);

@@ -9,12 +9,12 @@ function [report, data] = call(verb, subjects, varargin)
 %   [report, data] = slipmode.call(...) also reads what the verb wrote (see slipmode.read): the file that the option
 %   'output' names, else a temporary one that is removed.
 %
-%   Errors: slipmode:InvalidInput names key, value and remedy; slipmode:NumericalFailure is a computation that could not
+%   Errors: slipmode:Interrupted; slipmode:InvalidInput names key, value and remedy; slipmode:NumericalFailure is a computation that could not
 %   be completed. `slipmode VERB --help` lists the options.
   if mod(numel(varargin), 2) ~= 0
     error('slipmode:InvalidInput', '%s: options come as pairs of name and value', verb);
   end
-  words = [strsplit(verb, ' '), cellstr(subjects)];
+  words = [strsplit(verb, ' '), reshape(cellstr(subjects), 1, [])];
   output = '';
   for k = 1:2:numel(varargin)
     words = [words, option(varargin{k}, varargin{k + 1})];  %#ok<AGROW>
@@ -37,8 +37,10 @@ function [report, data] = call(verb, subjects, varargin)
   end
   report = jsondecode(text);
   if code ~= 0
-    kinds = {'slipmode:InvalidInput', 'slipmode:NumericalFailure'};
-    error(kinds{1 + (code == 3)}, '%s', strtrim(report.message));
+    kind = 'slipmode:InvalidInput';
+    if code == 3, kind = 'slipmode:NumericalFailure'; end
+    if code == 130, kind = 'slipmode:Interrupted'; end
+    error(kind, '%s', strtrim(report.message));
   end
   if nargout > 1, data = slipmode.read(output); end
 end
@@ -47,12 +49,18 @@ function words = option(name, value)
   name = ['--', strrep(name, '_', '-')];
   if islogical(value)
     words = repmat({name}, 1, value);
-  elseif iscell(value)
-    words = reshape([repmat({name}, 1, numel(value)); value(:)'], 1, []);
-  elseif ischar(value)
-    words = {name, value};
+    return;
+  end
+  if ~iscell(value), value = {value}; end
+  texts = cellfun(@text_of, value(:)', 'UniformOutput', false);
+  words = reshape([repmat({name}, 1, numel(texts)); texts], 1, []);
+end
+
+function text = text_of(value)
+  if isnumeric(value)
+    text = strjoin(arrayfun(@(x) sprintf('%.17g', x), value(:)', 'UniformOutput', false), ',');
   else
-    words = {name, strjoin(arrayfun(@(x) sprintf('%.17g', x), value(:)', 'UniformOutput', false), ',')};
+    text = char(value);
   end
 end
 

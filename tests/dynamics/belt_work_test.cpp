@@ -1,4 +1,6 @@
 // The energy audit under a belt of constant speed, in closed form.
+#include "dynamics/internal/belt_work.hpp"
+#include <slipmode/dynamics/cache.hpp>
 #include <slipmode/dynamics/simulate.hpp>
 #include "fixtures/scenes.hpp"
 
@@ -25,6 +27,23 @@ TEST(BeltWork, AgreesWithQuadrature) {
       EXPECT_NEAR(a.drive_work, b.drive_work, 1e-12 * b.exchanged);
       EXPECT_NEAR(a.viscous_loss, b.viscous_loss, 1e-12 * b.exchanged);
     }
+}
+
+TEST(BeltWork, IsThereForComplexModesAndForcesThatVary) {
+  // Else both runs of the comparisons would be quadratures.
+  const auto work_of = [](const friction::Contact& contact, ContactRole role, bool& out_real) {
+    const HybridSystem system(fem::chain({.masses = 4, .damping = 0.05}), {contact}, friction::Belt::constant(0.2));
+    const RegimeTables& tables = system.cache().regime(system, {role});
+    out_real = tables.regime().pairs.proportional;
+    return BeltWork::make(tables, system.cache().tables(system, false).model) != nullptr;
+  };
+  friction::Contact sprung{.direction = fixtures::unit(4, 3), .law = friction::CompliantCoulomb{0.5, 0.3, 20.0}};
+  friction::Contact varying{.direction = fixtures::unit(4, 3), .law = friction::Coulomb{0.5, 0.3}};
+  varying.normal_load.slope = -0.1;
+  bool real = true;
+  EXPECT_TRUE(work_of(sprung, ContactRole::kSprung, real));
+  EXPECT_FALSE(real);
+  EXPECT_TRUE(work_of(varying, ContactRole::kSlidingPositive, real));
 }
 
 }  // namespace

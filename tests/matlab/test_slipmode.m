@@ -27,6 +27,12 @@ function test_slipmode()
   expect(isequal(again.branches.x0.points.period, points.period));
   expect(abs(points.period .* points.parameter - 2 * pi) < 1e-12);
 
+  % Files as a column, an option repeated with numbers.
+  orbit = fullfile(folder, 'orbit.h5');
+  slipmode.call('orbit find', backlash, 'output', orbit);
+  [~, lines] = slipmode.call('orbit spectrum', {orbit}', 'dof', {1}, 'harmonics', 2);
+  expect(size(lines.spectrum.coefficients.q1_cosine) == [3, 1]);
+
   refused('slipmode:InvalidInput', 'omega', @() slipmode.call('orbit find', backlash, 'set', 'drive.omega=x'));
   refused('slipmode:InvalidInput', 'no such scene', @() slipmode.call('orbit find', 'none.toml'));
   refused('slipmode:InvalidInput', 'pairs', @() slipmode.call('orbit find', backlash, 'start'));

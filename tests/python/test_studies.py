@@ -214,6 +214,12 @@ class KnownValues(unittest.TestCase):
             self.assertAlmostEqual(balance["balance/coefficients"]["displacement_1_cosine"][1],
                                    exact["displacement_1_cosine"][1], delta=apart)
 
+    def test_a_branch_of_balances_that_is_lost_says_so_and_keeps_what_was_found(self):
+        with self.assertRaisesRegex(sm.NumericalFailure, "lost") as caught:
+            sm.continue_orbit(PLAY, over="drive.omega", from_=1.0, to=0.05, by="balance", harmonics=3, step=0.3,
+                              max_step=0.3, sequential=True)
+        self.assertEqual(caught.exception.result.kind, "branches")
+
     def test_a_balance_that_is_not_found(self):
         with self.assertRaisesRegex(sm.NumericalFailure, "not met"):
             sm.find_orbit(PLAY, by="balance", error=1e-300)
@@ -311,6 +317,8 @@ class Refused(unittest.TestCase):
                 (lambda: sm.find_orbit(BACKLASH, by="balance", start=[1.0, 0.0]), "contact"),
                 (lambda: sm.find_orbit(scene, by="balance"), "balance"),
                 (lambda: sm.continue_orbit(BACKLASH, over="drive.omega", to=1.1, by="balance", switch=True), "shooting"),
+                (lambda: sm.find_orbit(BACKLASH, by="balance", harmonics=True), "a number or a word"),
+                (lambda: sm.continue_orbit(BACKLASH, over="drive.omega", to=1.1, by="balance", every=5), "certify"),
                 (lambda: sm.spectrum(sm.modes(scene)), "orbit"),
                 (lambda: sm.spectrum(sm.find_orbit(BACKLASH), dofs=[2]), "1 to 1"),
                 (lambda: sm.skeleton(scene, compare=True), "add model"),
