@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <ranges>
 #include <span>
+#include <sstream>
 
 namespace slipmode::results {
 
@@ -122,7 +122,8 @@ nlohmann::json values_json(const StoreReader& store) {
   for (const StoreEntry& entry : store.entries()) {
     if (entry.kind == Kind::kGroup || entry.kind == Kind::kOther) continue;
     nlohmann::json* place = &out;
-    for (const auto part : std::views::split(entry.name, '/')) place = &(*place)[std::string(part.begin(), part.end())];
+    std::istringstream parts(entry.name);
+    for (std::string part; std::getline(parts, part, '/');) place = &(*place)[part];
     *place = values_json(store.dataset(entry.name));
   }
   return out;
