@@ -163,6 +163,16 @@ void ClosedFormFlow::foresee_starts() {
     const double m3 = room * r.weight3.col(guard.output).dot(amplitude_) + third + harmonic3;
     const double m2 = room * r.weight2.col(guard.output).dot(amplitude_) +
                       std::abs(r.polynomial2.col(guard.output).dot(inputs_)) + third / r.rate + harmonic2;
+    if (guard.kind == GuardKind::kStop) {
+      // At rest on the limit for longer than anything takes here: rounding alone would decide between the two sides.
+      const double left = kTouching * size - std::abs(g0), slope = std::abs(g1);
+      if (slope / r.rate + m2 / (2.0 * r.rate * r.rate) < left) {
+        const bool steady = r.growth == 0.0 && third == 0.0;
+        const double stays = 2.0 * left / (slope + std::sqrt(slope * slope + 2.0 * m2 * left));
+        guard.exempt_until = point_.time + (steady ? stays : 1.0 / r.rate);
+        continue;
+      }
+    }
     const bool simple = rigid_speed ? point_.multiplicity[i] == 1 : g1 > kRising * r.rate * size;
     const bool flat = rigid_speed ? point_.multiplicity[i] == 2 : std::abs(g1) <= kSimpleStart * r.rate * size;
     double clear = 0.0;

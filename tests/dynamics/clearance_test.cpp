@@ -138,5 +138,43 @@ TEST(Clearance, AnUndampedStopReturnsTheSpeedItWasHitWith) {
   }
 }
 
+TEST(Clearance, AMassAtRestOnItsStopRests) {
+  // Beside one that hits its own stops. Nothing holds or moves it: on which side of its stop it is, rounding would say.
+  const auto system = [](ContactLoss loss, double damping) {
+    const Eigen::Matrix2d M = Eigen::Vector2d(1.0, 0.652).asDiagonal(), K = Eigen::Vector2d(1.0, 0.0).asDiagonal();
+    const Stop hard{.stiffness = 40.0, .damping = 0.1, .gap = 0.2};
+    const Stop rested{.stiffness = 14.7657, .damping = damping, .gap = 0.28461878757894254};
+    return HybridSystem(fem::Structure(fem::Matrix(Eigen::MatrixXd(M)), fem::Matrix(Eigen::MatrixXd(0.02 * K)),
+                                       fem::Matrix(Eigen::MatrixXd(K))),
+                        {Contact{.direction = Eigen::Vector2d(1.0, 0.0), .law = Clearance{hard, hard}},
+                         Contact{.direction = Eigen::Vector2d(0.0, 1.0), .law = Clearance{rested, std::nullopt, loss}}},
+                        Force{1.1, {{.amplitude = 0.7}}}, {}, Eigen::Vector2d(1.0, 0.0));
+  };
+  for (const ContactLoss loss : {ContactLoss::kGap, ContactLoss::kZeroForce}) {
+    for (const double damping : {0.0, 0.25}) {
+      SCOPED_TRACE(damping);
+      const HybridSystem resting = system(loss, damping);
+      State start{0.0, Eigen::Vector2d(0.1, -0.28461878757894254), Eigen::Vector2d::Zero()};
+      const Trajectory run = simulate(resting, start, {.duration = 200.0});
+      EXPECT_GT(run.events.size(), 100U);
+      for (const Event& event : run.events) EXPECT_EQ(event.contact, 0) << event.time;
+      EXPECT_LT(std::abs(run.final_state.q(1) - start.q(1)), 1e-15);
+      EXPECT_LT(run.statistics.steps, 40 * run.statistics.events);
+
+      // A speed of 1e-9 is more than rounding: the mass flies off, or is in contact at once and for half a period.
+      start.v(1) = 1e-9;
+      EXPECT_NEAR(simulate(resting, start, {.duration = 200.0}).final_state.q(1) - start.q(1), 2e-7, 1e-14);
+      if (damping > 0.0) continue;
+      start.v(1) = -1e-9;
+      const Trajectory pressed = simulate(resting, start, {.duration = 3.0});
+      std::vector<double> times;
+      for (const Event& event : pressed.events)
+        if (event.contact == 1) times.push_back(event.time);
+      ASSERT_EQ(times.size(), 1U);
+      EXPECT_NEAR(times[0], std::numbers::pi / std::sqrt(14.7657 / 0.652), 1e-6);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace slipmode::dynamics
