@@ -42,7 +42,8 @@ void require_writable(const std::filesystem::path& file);
 ///
 /// Names are paths ("group/sub/name"); groups are made when needed. Matrices are row-major as HDF5 has it: rows of the
 /// dataset are rows of the matrix (`write`) or its columns (`write_columns`: our column-per-instant matrices become
-/// time x quantity). Datasets above 64 KiB are chunked, shuffled and deflated. Use from one thread at a time.
+/// time x quantity). Datasets above 64 KiB are chunked, and deflated where that saves a quarter. Use from one
+/// thread at a time.
 /// @throws InvalidInput  when the folder is missing or not writable, the disc is full, or a name is written twice; the
 ///                       message names file, dataset and remedy
 class StoreWriter {

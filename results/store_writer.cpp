@@ -7,6 +7,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
+#include <zlib.h>
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -21,11 +22,27 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kChunkedFrom = 64 * 1024;  // bytes; smaller datasets are stored in one piece
 constexpr std::size_t kChunkBytes = 512 * 1024;  // fits HDF5's default chunk cache of 1 MiB
-constexpr unsigned kDeflateLevel = 1;            // higher levels cost much and gain little on chaotic doubles
+constexpr unsigned kDeflateLevel = 1;
+constexpr std::size_t kTrialBytes = 64 * 1024;
+constexpr double kWorthwhile =
+    0.75;  // motions keep 0.95 of their bytes, and deflating them takes ten times their integration
 
 fs::path temporary_beside(const fs::path& path) {
   const auto ticks = std::chrono::steady_clock::now().time_since_epoch().count();
   return path.parent_path() / fmt::format(".{}.{}-{:x}.tmp", path.filename().string(), ::getpid(), ticks);
+}
+
+/// Whether the middle of the data is worth deflating, shuffled as HDF5 does it: byte k of all numbers side by side.
+bool shrinks(const void* data, std::size_t count, std::size_t element) {
+  const std::size_t taken = std::min(count, kTrialBytes / element);
+  const auto* const bytes = static_cast<const Bytef*>(data) + (count - taken) / 2 * element;
+  std::vector<Bytef> shuffled(taken * element);
+  for (std::size_t k = 0; k < element; ++k)
+    for (std::size_t i = 0; i < taken; ++i) shuffled[k * taken + i] = bytes[i * element + k];
+  uLongf size = compressBound(shuffled.size());
+  std::vector<Bytef> deflated(size);
+  return compress2(deflated.data(), &size, shuffled.data(), shuffled.size(), kDeflateLevel) == Z_OK &&
+         static_cast<double>(size) < kWorthwhile * static_cast<double>(shuffled.size());
 }
 
 /// Largest chunk of at most kChunkBytes made of whole rows, or of parts of one row.
@@ -174,8 +191,10 @@ class Hdf5Target final : public StoreTarget {
     if (!shape.empty() && count * element >= kChunkedFrom) {
       const std::vector<hsize_t> chunk = chunk_shape(shape, element);
       H5Pset_chunk(layout.id(), static_cast<int>(chunk.size()), chunk.data());
-      H5Pset_shuffle(layout.id());
-      H5Pset_deflate(layout.id(), kDeflateLevel);
+      if (H5Tget_size(memory_type) == element && shrinks(data, count, element)) {
+        H5Pset_shuffle(layout.id());
+        H5Pset_deflate(layout.id(), kDeflateLevel);
+      }
       H5Pset_fletcher32(layout.id());
     }
 

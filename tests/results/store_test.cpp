@@ -26,10 +26,24 @@ using slipmode::tests::expect_parts;
 using slipmode::tests::message_of;
 using slipmode::tests::TemporaryFolder;
 
+TEST(Store, DeflatesWhatShrinksAndNothingElse) {
+  const TemporaryFolder folder;
+  const auto size_with = [&](const Eigen::VectorXd& values) {
+    const auto path = folder.path() / "a.h5";
+    StoreWriter out(path, FileKind::kTrajectory);
+    out.write("values", values, {"s", "values"});
+    out.commit();
+    EXPECT_EQ(StoreReader(path).vector("values"), values);
+    return static_cast<double>(std::filesystem::file_size(path)) / static_cast<double>(values.size());
+  };
+  EXPECT_GT(size_with(Eigen::VectorXd::Random(100000)), 8.0);
+  EXPECT_LT(size_with(Eigen::VectorXd::LinSpaced(100000, 0.0, 99999.0)), 2.0);
+}
+
 TEST(Store, EveryTypeReadsBackToTheSameBits) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "a.h5";
-  const Eigen::MatrixXd large = Eigen::MatrixXd::Random(7, 5000);  // chunked and deflated
+  const Eigen::MatrixXd large = Eigen::MatrixXd::Random(7, 5000);  // chunked
   StoreWriter out(path, FileKind::kTrajectory);
   out.write("number", 0.1 + 0.2, {"m", "a number"});
   out.write("g/integer", std::int64_t{-7}, {"", "an integer"});
