@@ -222,9 +222,11 @@ class Scan {
       given_back = share(
           dynamics::simulate(system_, start_, {.duration = *period, .sample = *period / 64.0, .flow = options_.flow}));
     if (given_back > kGivenBack) violate("start", fmt::format("the run begins {:.2g} from its start", given_back));
-    const Eigen::VectorXd momentum_rounding = kRounding * swing * M.diagonal().cwiseSqrt() +
+    // From one step to the next a run may err by its tolerance, of the whole motion: that is a row's own that hardly moves.
+    const double error = kRounding + options_.flow.tolerance;
+    const Eigen::VectorXd momentum_rounding = error * swing * M.diagonal().cwiseSqrt() +
                                               4.0 * h * kRounding * force_sizes() + 4.0 * (M.cwiseAbs() * own_v),
-                          way_rounding = kRounding * largest(run_.q) * inverse_.diagonal().cwiseSqrt() + 4.0 * own_q;
+                          way_rounding = error * largest(run_.q) * inverse_.diagonal().cwiseSqrt() + 4.0 * own_q;
     const auto excess = [&](const Eigen::MatrixXd& rate, const Eigen::MatrixXd& sum, Index k, Index apart,
                             const Eigen::VectorXd& rounding) -> Eigen::VectorXd {
       const double step = static_cast<double>(apart) * h;
