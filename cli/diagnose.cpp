@@ -5,6 +5,7 @@
 #include <slipmode/results/series_input.hpp>
 #include <slipmode/results/series_store.hpp>
 #include "cli/diagnose_model.hpp"
+#include "cli/field_options.hpp"
 #include "cli/series_findings.hpp"
 #include "cli/verbs.hpp"
 
@@ -23,24 +24,8 @@ struct DiagnoseArguments {
   results::SeriesRequest series;
   diagnostics::StudyOptions study;
   std::vector<std::string> tools;
-  std::optional<double> strobe;
   std::string unit = "bits";
 };
-
-std::vector<diagnostics::SeriesTool> tools_of(const std::vector<std::string>& words) {
-  std::vector<diagnostics::SeriesTool> tools;
-  for (const std::string& word : words) {
-    const auto found = std::ranges::find(diagnostics::kSeriesTools, word,
-                                         [](auto tool) { return std::string(diagnostics::to_string(tool)); });
-    if (found == diagnostics::kSeriesTools.end()) {
-      std::vector<std::string> names;
-      for (const auto tool : diagnostics::kSeriesTools) names.emplace_back(diagnostics::to_string(tool));
-      throw InvalidInput(fmt::format("--tools {}: no such tool; valid: {}", word, fmt::join(names, ", ")));
-    }
-    tools.push_back(*found);
-  }
-  return tools;
-}
 
 /// What makes the numbers doubtful, and what to use instead.
 std::vector<std::string> warnings_of(const diagnostics::SeriesStudy& study, const results::SeriesInput& input) {
@@ -61,8 +46,9 @@ std::string diagnosis_file(const DiagnoseRequest& request) {
   return (fs::path(request.figures) / "diagnosis.h5").string();
 }
 
-Report diagnosis_report(const diagnostics::SeriesStudy& study, const results::SeriesInput& input,
+Report diagnosis_report(const std::shared_ptr<const diagnostics::SeriesStudy>& kept, const results::SeriesInput& input,
                         const DiagnoseArguments& arguments) {
+  const diagnostics::SeriesStudy& study = *kept;
   const std::vector<diagnostics::Finding> findings = diagnostics::findings_of(study, arguments.request.bits);
   const std::vector<std::string> warnings = warnings_of(study, input);
   Report report;
@@ -86,9 +72,7 @@ Report diagnosis_report(const diagnostics::SeriesStudy& study, const results::Se
   report.data["not_run"] = not_run;
   const std::string file = diagnosis_file(arguments.request);
   if (file.empty()) return report;
-  results::StoreWriter writer(file, results::FileKind::kSeries);
-  save(writer, study, input, findings);
-  writer.commit();
+  results::content_of(kept, input, arguments.request.bits).save(file);
   report.data["file"] = file;
   report.text += fmt::format("Numbers and curves: {}\n", file);
   if (arguments.request.figures.empty()) return report;
@@ -99,37 +83,27 @@ Report diagnosis_report(const diagnostics::SeriesStudy& study, const results::Se
 }
 
 Report diagnose_series(const Session& session, DiagnoseArguments arguments) {
-  arguments.series.input = arguments.request.input;
-  arguments.study.tools = tools_of(arguments.tools);
+  arguments.study.tools = diagnostics::series_tools(arguments.tools);
   if (!arguments.request.output.empty()) require_writable(arguments.request.output);
   if (!arguments.request.figures.empty()) {
     figures::require_gnuplot();
     fs::create_directories(arguments.request.figures);
     require_writable(fs::path(arguments.request.figures) / "diagnosis.h5");
   }
-  const results::SeriesInput input = results::read_series(arguments.series);
-  arguments.study.strobe = arguments.strobe.value_or(input.drive_period);
+  const results::SeriesInput input = results::read_series(arguments.request.input, arguments.series);
+  if (!arguments.study.strobe) arguments.study.strobe = input.drive_period;
   if (session.seed) arguments.study.seed = *session.seed;
   arguments.study.run = session.run_options().parallel("diagnose");
-  return diagnosis_report(diagnostics::study_series(input.series, arguments.study), input, arguments);
+  return diagnosis_report(
+      std::make_shared<const diagnostics::SeriesStudy>(diagnostics::study_series(input.series, arguments.study)), input,
+      arguments);
 }
 
 void add_record_options(CLI::App& command, DiagnoseArguments& arguments) {
   constexpr const char* kGroup = "Record";
   command.add_option("--time", arguments.series.time, "column or dataset with the instants, when not called time")
       ->group(kGroup);
-  command
-      .add_option("--interval", arguments.series.interval, "between samples, for a file without instants; 1 for a map")
-      ->check(CLI::PositiveNumber)
-      ->group(kGroup);
-  command.add_option("--from", arguments.series.from, "leaves out what is earlier")->group(kGroup);
-  command.add_option("--to", arguments.series.to, "leaves out what is later")->group(kGroup);
-  command.add_option("--every", arguments.series.every, "keeps every so many-th sample")
-      ->check(CLI::PositiveNumber)
-      ->group(kGroup);
-  command.add_option("--member", arguments.series.member, "of an ensemble, from 1")
-      ->check(CLI::PositiveNumber)
-      ->group(kGroup);
+  add_fields(command, arguments.series, kGroup);
 }
 
 void add_tool_options(CLI::App& command, DiagnoseArguments& arguments) {
@@ -141,51 +115,11 @@ void add_tool_options(CLI::App& command, DiagnoseArguments& arguments) {
   command.add_option("--unit", arguments.unit, "of exponents and information: bits or nats")
       ->check(CLI::IsMember({"bits", "nats"}))
       ->group(kGroup);
-  command.add_option("--delay", study.delay, "of the embedding [samples]; else by mutual information")
-      ->check(CLI::PositiveNumber)
-      ->group(kGroup);
-  command.add_option("--dimension", study.dimension, "of the embedding; else by false neighbours")
-      ->check(CLI::Range(1, 100))
-      ->group(kGroup);
-  command.add_option("--window", study.window, "neighbours nearer in time are left out [samples]; else found")
-      ->check(CLI::PositiveNumber)
-      ->group(kGroup);
   command.add_option("--bins", study.bins, "of equal width for mutual information, e.g. 5,10,20")
       ->delimiter(',')
       ->check(CLI::Range(2, 1000))
       ->group(kGroup);
-  command.add_option("--max-dimension", study.max_dimension, "up to which false neighbours are counted")
-      ->check(CLI::Range(1, 50))
-      ->group(kGroup);
-  command.add_option("--ratio", study.ratio, "first criterion for a false neighbour; 3.162 is S4's")
-      ->check(CLI::PositiveNumber)
-      ->group(kGroup);
-  command.add_option("--size", study.size, "second criterion [standard deviations]")
-      ->check(CLI::PositiveNumber)
-      ->group(kGroup);
-  command.add_option("--accepted", study.accepted, "share of false neighbours at which a dimension is enough")
-      ->check(CLI::Range(0.0, 1.0))
-      ->group(kGroup);
-  command.add_option("--evolution", study.evolution, "samples Wolf's pairs are followed; else about a loop")
-      ->check(CLI::PositiveNumber)
-      ->group(kGroup);
-  command.add_option("--angle", study.angle, "Wolf's replacements turn no more than this [rad]")
-      ->check(CLI::PositiveNumber)
-      ->group(kGroup);
-  command.add_option("--rate", study.rate, "share of pairs that recur in the recurrence plot")
-      ->check(CLI::Range(1e-6, 0.999))
-      ->group(kGroup);
-  command
-      .add_option("--strobe", arguments.strobe,
-                  "time between section points; else the drive's period, without a drive upward through the mean (0)")
-      ->check(CLI::NonNegativeNumber)
-      ->group(kGroup);
-  command.add_option("--references", study.references, "points each tool examines")
-      ->check(CLI::Range(100, 100000000))
-      ->group(kGroup);
-  command.add_option("--surrogates", study.surrogates, "records of the same spectrum to compare with, 19 or more")
-      ->check(CLI::Range(19, 100000))
-      ->group(kGroup);
+  add_fields(command, study, kGroup);
 }
 
 /// Options that only a model has: those the verb got from `begin` up to `end`.

@@ -1,3 +1,4 @@
+#include <slipmode/results/series_store.hpp>
 #include <slipmode/scene/own_times.hpp>
 #include <slipmode/studies/exponents.hpp>
 #include <slipmode/studies/pipeline.hpp>
@@ -5,6 +6,7 @@
 #include "python/module.hpp"
 #include "python/result.hpp"
 
+#include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
@@ -39,6 +41,41 @@ Result exponents(const Scene& scene, const py::args& bases, const py::kwargs& gi
   });
 }
 
+/// A record in memory, in a file, or the samples themselves.
+results::SeriesInput record_of(const Keywords& keywords, const py::object& record, const std::string& series,
+                               const results::SeriesRequest& request) {
+  if (py::isinstance<Result>(record)) return read_series(record.cast<const Result&>().reader(), series, request);
+  if (py::isinstance<py::str>(record))
+    return results::read_series(record.cast<std::string>() + (series.empty() ? "" : ":" + series), request);
+  py::detail::make_caster<Eigen::VectorXd> samples;
+  if (!samples.load(record, true)) keywords.refuse("record", record, "a result, a file's path, or an array of samples");
+  return results::series_of(static_cast<Eigen::VectorXd&>(samples), series.empty() ? "record" : series, request);
+}
+
+Result diagnose(const py::object& record, const py::kwargs& given) {
+  Keywords keywords("diagnose", given);
+  const std::string series = keywords.text("series"), unit = keywords.text("unit", "bits");
+  if (unit != "bits" && unit != "nats") keywords.refuse("unit", py::str(unit), "\"bits\" or \"nats\"");
+  results::SeriesRequest request;
+  request.time = keywords.text("time");
+  keywords.read(request);
+  diagnostics::StudyOptions study;
+  keywords.read(study);
+  if (const py::object tools = keywords.take("tools"))
+    study.tools = diagnostics::series_tools(tools.cast<std::vector<std::string>>());
+  if (const py::object bins = keywords.take("bins")) study.bins = bins.cast<std::vector<int>>();
+  if (const py::object seed = keywords.take("seed")) study.seed = seed.cast<std::uint64_t>();
+  const results::SeriesInput input = record_of(keywords, record, series, request);
+  if (!study.strobe) study.strobe = input.drive_period;
+  Call call(keywords);
+  study.run = call.options().parallel("diagnose");
+  return call([&] {
+    return Result(results::content_of(
+        std::make_shared<const diagnostics::SeriesStudy>(diagnostics::study_series(input.series, study)), input,
+        unit == "bits"));
+  });
+}
+
 std::vector<std::string> run(const Scene& scene, const std::filesystem::path& folder, const py::kwargs& given) {
   Keywords keywords("run", given);
   std::error_code error;
@@ -63,6 +100,20 @@ void add_diagnoses(py::module_& module) {
               "    verdict: dimensions, delay, embedding, spectrum and stick side by side too\n" +
               options_text<studies::ExponentRequest>() + call_text())
                  .c_str());
+  module.def(
+      "diagnose", &diagnose, py::arg("record"),
+      ("What a record is: periodic, quasi-periodic, chaotic; exponents, dimensions, and every curve behind them.\n\n"
+       "    record: a result (by default the velocity farthest from the contacts), a file's path, or an array of\n"
+       "        samples, `interval` apart\n"
+       "    series: which record of a result or a file, e.g. \"v/3\"; of samples their name\n"
+       "    time: column or dataset with the instants, when not called time\n" +
+       options_text<results::SeriesRequest>() +
+       "    tools: only these, e.g. [\"information\", \"wolf\"]; by default all that mean something for it\n"
+       "    unit: of exponents and information: \"bits\" or \"nats\"\n"
+       "    bins: of equal width for mutual information, e.g. [5, 10, 20]\n"
+       "    seed: of the surrogates (default 1)\n" +
+       options_text<diagnostics::StudyOptions>() + call_text())
+          .c_str());
   module.def(
       "run", &run, py::arg("scene"), py::arg("folder"),
       ("The whole pipeline, from the scene to files and figures in a folder, whose names it gives. An interrupted\n"

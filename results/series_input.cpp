@@ -133,8 +133,8 @@ SeriesInput read_csv(const FileAndSeries& source, const SeriesRequest& request) 
 /// A result file: where its records are, what they are called.
 class RecordFile {
  public:
-  RecordFile(const FileAndSeries& source, const SeriesRequest& request)
-      : source_(source), request_(request), store_(source.file) {
+  RecordFile(StoreReader store, FileAndSeries source, const SeriesRequest& request)
+      : source_(std::move(source)), request_(request), store_(std::move(store)) {
     if (!store_.has("provenance")) return;
     scene_ = load_scene_of(store_);
     const dynamics::HybridSystem system = scene::build_system(*scene_);
@@ -294,7 +294,7 @@ class RecordFile {
     return text;
   }
 
-  const FileAndSeries& source_;
+  FileAndSeries source_;
   const SeriesRequest& request_;
   StoreReader store_;
   std::optional<scene::Scene> scene_;
@@ -305,9 +305,26 @@ class RecordFile {
 
 }  // namespace
 
-SeriesInput read_series(const SeriesRequest& request) {
-  const FileAndSeries source = file_and_series(request.input);
-  return is_hdf5(source.file) ? RecordFile(source, request).read() : read_csv(source, request);
+SeriesInput read_series(const std::string& input, const SeriesRequest& request) {
+  const FileAndSeries source = file_and_series(input);
+  return is_hdf5(source.file) ? RecordFile(StoreReader(source.file), source, request).read()
+                              : read_csv(source, request);
+}
+
+SeriesInput read_series(StoreReader store, const std::string& series, const SeriesRequest& request) {
+  const std::string name = store.path().string();
+  return RecordFile(std::move(store), {name, series}, request).read();
+}
+
+SeriesInput series_of(const Eigen::VectorXd& values, const std::string& name, const SeriesRequest& request) {
+  if (values.size() < 2)
+    throw InvalidInput(fmt::format("{}: expected 2 samples or more, found {}", name, values.size()));
+  const double interval = request.interval > 0.0 ? request.interval : 1.0;
+  SeriesInput out =
+      stretch_of({.times = equal_steps(values.size(), interval), .values = values, .name = name, .unit = "1"}, request,
+                 [](Eigen::Index k) { return fmt::format("sample {}", k); });
+  out.what = fmt::format("{} samples", values.size());
+  return out;
 }
 
 }  // namespace slipmode::results

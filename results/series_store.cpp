@@ -182,8 +182,6 @@ void save_curves(StoreWriter& store, const diagnostics::SeriesStudy& study) {
   }
 }
 
-}  // namespace
-
 void save(StoreWriter& store, const diagnostics::SeriesStudy& study, const SeriesInput& input,
           const std::vector<diagnostics::Finding>& findings) {
   store.describe_group(kDiagnosisGroup, fmt::format("what {} is", study.series.name));
@@ -204,6 +202,16 @@ void save(StoreWriter& store, const diagnostics::SeriesStudy& study, const Serie
   }
   save(store, diagnosis_path("not_run"),
        {"tools that gave nothing", {{"tool", {"", "tool"}, tools}, {"reason", {"", "why"}, reasons}}});
+}
+
+}  // namespace
+
+Content content_of(std::shared_ptr<const diagnostics::SeriesStudy> study, SeriesInput input, bool bits) {
+  return {.kind = FileKind::kSeries,
+          .unit_system = "SI",
+          .write = [study = std::move(study), input = std::move(input), bits](StoreWriter& store) {
+            save(store, *study, input, diagnostics::findings_of(*study, bits));
+          }};
 }
 
 }  // namespace slipmode::results

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <slipmode/diagnostics/series/findings.hpp>
+#include <slipmode/results/memory_store.hpp>
 #include <slipmode/results/series_input.hpp>
-#include <slipmode/results/store.hpp>
 
+#include <memory>
 #include <string>
-#include <vector>
 
 namespace slipmode::results {
 
@@ -16,9 +16,8 @@ inline constexpr const char* kDiagnosisGroup = "diagnosis";
   return std::string(kDiagnosisGroup) + "/" + name;
 }
 
-/// Writes group `diagnosis`: the record, every number, every curve. Exponents of curves are in nats, information in
-/// bits; the table `diagnosis/findings` is in the units of `findings`.
-void save(StoreWriter& store, const diagnostics::SeriesStudy& study, const SeriesInput& input,
-          const std::vector<diagnostics::Finding>& findings);
+/// Group `diagnosis`: the record, every number, every curve. Exponents of curves are in nats, information in bits.
+/// @param bits  the table `diagnosis/findings` is in bits, else in nats
+[[nodiscard]] Content content_of(std::shared_ptr<const diagnostics::SeriesStudy> study, SeriesInput input, bool bits);
 
 }  // namespace slipmode::results

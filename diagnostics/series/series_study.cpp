@@ -4,6 +4,7 @@
 #include <slipmode/core/none.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -63,15 +64,19 @@ class SeriesExamination {
 
  private:
   void check_options() const {
-    const StudyOptions& o = out.settings;
-    const bool fits = o.delay >= 0 && o.dimension >= 0 && o.window >= 0 && o.max_dimension >= 1 && o.evolution >= 0 &&
-                      o.strobe >= 0.0 && o.references >= 100 && o.surrogates >= 19 &&
-                      std::ranges::all_of(o.bins, [](int bins) { return bins >= 2; });
-    if (fits) return;
-    throw InvalidInput(fmt::format(
-        "diagnosis: expected delay, dimension, window, evolution and strobe ≥ 0, max_dimension ≥ 1, "
-        "references ≥ 100, surrogates ≥ 19 and bins ≥ 2; found {}, {}, {}, {}, {}, {}, {}, {}",
-        o.delay, o.dimension, o.window, o.evolution, o.strobe, o.max_dimension, o.references, o.surrogates));
+    for_each_field<StudyOptions>([&]<class T>(const Field<StudyOptions, T>& field) {
+      double value = 0.0;
+      if constexpr (std::is_same_v<T, std::optional<double>>)
+        value = (out.settings.*field.member).value_or(field.limits.low);
+      else
+        value = static_cast<double>(out.settings.*field.member);
+      if (field.limits.hold(value)) return;
+      throw InvalidInput(fmt::format("diagnosis: {} = {}: expected {}", field.name, value,
+                                     std::is_integral_v<T> ? integer_text(field.limits) : field.limits.text));
+    });
+    for (const int bins : out.settings.bins)
+      if (bins < 2 || bins > 1000)
+        throw InvalidInput(fmt::format("diagnosis: bins = {}: expected an integer from 2 to 1000", bins));
   }
 
   bool named(SeriesTool tool) const { return std::ranges::count(out.settings.tools, tool) > 0; }
@@ -341,7 +346,8 @@ class SeriesExamination {
   }
 
   void cut() {
-    const bool strobe = out.settings.strobe > 0.0;
+    const double period = out.settings.strobe.value_or(0.0);
+    const bool strobe = period > 0.0;
     if (out.sampled_map && !strobe) {
       throw InvalidInput(
           fmt::format("section of {}: expected at least 6 samples per loop, found {:.3g}; a map needs no section",
@@ -349,7 +355,7 @@ class SeriesExamination {
     }
     out.section = diagnostics::section(series(), {.embedding = {.dimension = 3, .lag = out.delay.samples},
                                                   .cut = strobe ? Cut::kStrobe : Cut::kUpward,
-                                                  .period = out.settings.strobe});
+                                                  .period = period});
   }
 
   void test_surrogates() {
@@ -379,6 +385,21 @@ const char* to_string(SeriesTool tool) {
                                  "section",         "recurrence",  "surrogates"};
   static_assert(kNames.size() == kSeriesTools.size());
   return kNames[static_cast<std::size_t>(tool)];
+}
+
+std::vector<SeriesTool> series_tools(const std::vector<std::string>& words) {
+  std::vector<SeriesTool> tools;
+  for (const std::string& word : words) {
+    const auto found =
+        std::ranges::find(kSeriesTools, word, [](SeriesTool tool) { return std::string(to_string(tool)); });
+    if (found == kSeriesTools.end()) {
+      std::vector<std::string> names;
+      for (const SeriesTool tool : kSeriesTools) names.emplace_back(to_string(tool));
+      throw InvalidInput(fmt::format("tools: {}: no such tool; valid: {}", word, fmt::join(names, ", ")));
+    }
+    tools.push_back(*found);
+  }
+  return tools;
 }
 
 SeriesStudy study_series(const Series& series, const StudyOptions& options) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <slipmode/core/fields.hpp>
 #include <slipmode/diagnostics/series/correlation_dimension.hpp>
 #include <slipmode/diagnostics/series/divergence.hpp>
 #include <slipmode/diagnostics/series/exponent_spectrum.hpp>
@@ -47,22 +48,52 @@ inline constexpr std::array kSeriesTools = {
 /// "dimension", "spectrum", "section", "recurrence", "surrogates".
 [[nodiscard]] const char* to_string(SeriesTool tool);
 
+/// @throws InvalidInput  for a word that is none of them, naming those there are
+[[nodiscard]] std::vector<SeriesTool> series_tools(const std::vector<std::string>& words);
+
 struct StudyOptions {
   std::vector<SeriesTool> tools = {};  ///< empty: all that the record allows and that mean something for it
-  Eigen::Index delay = 0;              ///< [samples]; 0: by mutual information
-  int dimension = 0;                   ///< of the embedding; 0: by false neighbours
-  Eigen::Index window = 0;             ///< of Theiler [samples]; 0: theiler_window(series)
+  Eigen::Index delay = 0;
+  int dimension = 0;
+  Eigen::Index window = 0;
   std::vector<int> bins = {};  ///< of equal width, a curve of mutual information each; empty: 5, 10, 20, 40, 80 as S4
-  int max_dimension = 10;      ///< for false neighbours
-  double ratio = 15.0, size = 2.0, accepted = 0.01;  ///< as FalseNeighbourOptions
-  Eigen::Index evolution = 0;  ///< of Wolf [samples]; 0: a mean period, at most four delays; 1 for a map
-  double angle = 0.2;          ///< of Wolf [rad]
-  double rate = 0.05;          ///< of recurrence
-  double strobe = 0.0;         ///< > 0: the section is taken once per this time [time unit]; 0: upward through the mean
-  Eigen::Index references = 5000;  ///< points examined by each tool, evenly spaced
+  int max_dimension = 10;
+  double ratio = 15.0, size = 2.0, accepted = 0.01;
+  Eigen::Index evolution = 0;
+  double angle = 0.2, rate = 0.05;
+  std::optional<double> strobe = std::nullopt;  ///< none as 0
+  Eigen::Index references = 5000;
   int surrogates = 19;
   std::uint64_t seed = 1;    ///< of the surrogates
   ParallelOptions run = {};  ///< progress counts thousandths of all tools
+
+  static constexpr auto fields() {
+    constexpr Limits kShare{.low = 0.0, .high = 1.0, .text = "a number from 0 to 1"};
+    constexpr Limits kRate{.low = 1e-6, .high = 0.999, .text = "a number from 1e-6 to 0.999"};
+    return std::tuple{
+        optional("delay", &StudyOptions::delay, "samples", "of the embedding; 0: by mutual information", kFromZero),
+        optional("dimension", &StudyOptions::dimension, "", "of the embedding; 0: by false neighbours",
+                 {.low = 0.0, .high = 100.0}),
+        optional("window", &StudyOptions::window, "samples",
+                 "neighbours nearer in time are left out (Theiler); 0: found", kFromZero),
+        optional("max_dimension", &StudyOptions::max_dimension, "", "up to which false neighbours are counted",
+                 {.low = 1.0, .high = 50.0}),
+        optional("ratio", &StudyOptions::ratio, "1", "first criterion for a false neighbour; 3.162 is S4's", kPositive),
+        optional("size", &StudyOptions::size, "1", "second criterion [standard deviations]", kPositive),
+        optional("accepted", &StudyOptions::accepted, "1", "share of false neighbours at which a dimension is enough",
+                 kShare),
+        optional("evolution", &StudyOptions::evolution, "samples", "that Wolf's pairs are followed; 0: about a loop",
+                 kFromZero),
+        optional("angle", &StudyOptions::angle, "rad", "Wolf's replacements turn no more than this", kPositive),
+        optional("rate", &StudyOptions::rate, "1", "share of pairs that recur in the recurrence plot", kRate),
+        optional("strobe", &StudyOptions::strobe, "",
+                 "time between section points; else the drive's period, without a drive upward through the mean (0)",
+                 kNonNegative),
+        optional("references", &StudyOptions::references, "", "points each tool examines, evenly spaced",
+                 {.low = 100.0, .high = 1e8}),
+        optional("surrogates", &StudyOptions::surrogates, "", "records of the same spectrum to compare with",
+                 {.low = 19.0, .high = 1e5})};
+  }
 };
 
 /// The delay and how far the estimators agree on it.
