@@ -14,7 +14,7 @@ packages=(
   gnuplot-nox node-d3
   # the Python package, its tests and examples
   pybind11-dev python3-dev python3-numpy python3-scipy python3-h5py python3-matplotlib
-  python3-xarray python3-tqdm
+  python3-xarray python3-tqdm python3-nbclient python3-ipykernel
   # studies under mpirun
   libopenmpi-dev openmpi-bin
   "$@"

@@ -15,6 +15,7 @@ import functools
 import html
 import os
 import sys
+import warnings
 
 import numpy as np
 
@@ -204,7 +205,7 @@ class _Branch:
 class Result(_Branch):
     """What a study gives, or a result file holds: datasets under the names of the file.
 
-    result["trajectory/q"] is one of them by its name; as an attribute, result.q, it is looked for in the first group that
+    result["trajectory/q"] is one of them by its name; as an attribute, result.q, it is looked for in the outermost group that
     has it. Arrays are views, not copies, and not to be written to. print(result) says what there is.
     """
 
@@ -227,13 +228,23 @@ class Result(_Branch):
 
     @functools.cached_property
     def _places(self):
-        """Where an attribute is: in the file itself, or in the first group that has it; provenance comes last."""
-        groups = sorted(self._children, key=lambda name: name == "provenance")
+        """Where an attribute is: in the file itself, or in the outermost group that has it; provenance comes last. Columns
+        stay in their tables."""
         places = {}
-        for group in groups:
-            for child in _Branch(self._store, f"{group}/")._children:
-                places.setdefault(child, f"{group}/")
-        return {**places, **dict.fromkeys(self._children, "")}
+        for last in (False, True):
+            branches = [self]
+            while branches:
+                inner = []
+                for branch in branches:
+                    for child in branch._children:
+                        if branch is self and last != (child == "provenance"):
+                            continue
+                        places.setdefault(child, branch._prefix)
+                        group = _Branch(self._store, f"{branch._prefix}{child}/")
+                        if group._names and group._columns is None:
+                            inner.append(group)
+                branches = inner
+        return places
 
     def __getattr__(self, name):
         if name.startswith("_"):
@@ -326,7 +337,9 @@ def read(path):
 def _tqdm():
     """tqdm where it is installed and somebody looks, else None."""
     try:
-        from tqdm.auto import tqdm
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # a notebook without widgets gets a bar of text
+            from tqdm.auto import tqdm
     except ImportError:
         return None
     return tqdm if sys.stderr.isatty() or "ipykernel" in sys.modules else None
@@ -367,14 +380,21 @@ def _native(value):
     return value
 
 
+def _native_record(value):
+    """A result's store, a path as text, samples as they are."""
+    if isinstance(value, Result):
+        return value._store
+    return os.fspath(value) if isinstance(value, os.PathLike) else value
+
+
 def _named(function, name):
     function.__name__ = function.__qualname__ = name
     function.__doc__ = getattr(_slipmode, name).__doc__.split("\n", 1)[1].strip()  # without pybind11's signature
     return function
 
 
-def _study(name, kind=Result):
-    """A study of a scene as a function of Python."""
+def _study(name, kind=Result, subject=None):
+    """A study of a scene, or of what `subject` makes of its first argument, as a function of Python."""
     study = getattr(_slipmode, name)
 
     def call(scene, *arguments, **options):
@@ -390,7 +410,7 @@ def _study(name, kind=Result):
             options["output"] = os.fspath(options["output"])
         try:
             with bars:
-                return kind(study(_load(scene), *map(_native, arguments), **options))
+                return kind(study((subject or _load)(scene), *map(_native, arguments), **options))
         except NumericalFailure as failure:
             if failure.result is not None:
                 failure.result = kind(failure.result)
@@ -431,5 +451,12 @@ def spectrum(orbit, dofs=(), **options):
     return Result(_slipmode.spectrum(_native(orbit), list(dofs), **options))
 
 
-for _function in (modes, pod, reduce, spectrum):
+_diagnose = _study("diagnose", subject=_native_record)
+
+
+def diagnose(record, **options):
+    return _diagnose(record, **options)
+
+
+for _function in (modes, pod, reduce, spectrum, diagnose):
     _named(_function, _function.__name__)

@@ -60,6 +60,35 @@ class BesideTheExecutable(unittest.TestCase):
                 if name not in apart and attributes["units"] != b"s of clock" and "cost" not in name:
                     np.testing.assert_array_equal(ours[name][0], value)
 
+    def test_diagnosis_of_a_record(self):
+        run = sm.simulate(BACKLASH)
+        run.save(self.folder / "run.h5")
+        tools = ["information", "false-neighbours", "spectrum"]
+        self.executable("diagnose", f"{self.folder / 'run.h5'}:v/1", "--tools", ",".join(tools), "--references", 500,
+                        "--unit", "nats", "-o", self.folder / "theirs.h5")
+        options = {"series": "v/1", "tools": tools, "references": 500, "unit": "nats"}
+        theirs = self.folder / "theirs.h5"
+        self.assert_same(sm.diagnose(self.folder / "run.h5", **options), theirs)
+        in_memory = sm.diagnose(run, **options)  # no file to name
+        self.assert_same(in_memory, theirs, ("diagnosis/series/name", "diagnosis/series/what"))
+
+    def test_diagnosis_of_samples(self):
+        x = 0.3
+        logistic = np.empty(4000)
+        for k in range(len(logistic)):
+            logistic[k] = x = 4.0 * x * (1.0 - x)
+        found = sm.diagnose(logistic, tools=["kantz"], unit="nats")
+        self.assertEqual(found.kind, "series")
+        self.assertTrue(np.any(np.isclose(found.findings["value"], np.log(2.0), atol=0.05)), found.findings)
+        sine = sm.diagnose(record=np.sin(0.1 * np.arange(3000)), interval=0.1, tools=["verdict"])
+        self.assertEqual(sine.verdict, "periodic")
+        for record, options, words in ((logistic[:1], {}, "2 samples"), (logistic, {"every": 0}, "every"),
+                                       (logistic, {"tools": ["wulf"]}, "no such tool"), (3.0, {}, "record"),
+                                       (logistic, {"dimension": 101}, "dimension"), (logistic, {"unit": "dB"}, "unit"),
+                                       (self.folder / "none.h5", {}, "no such file"), (logistic, {"delai": 3}, "delai")):
+            with self.subTest(words), self.assertRaisesRegex(sm.InvalidInput, words):
+                sm.diagnose(record, **options)
+
     def test_modes(self):
         self.executable("modes", CHAIN, "-o", self.folder / "modes.h5")
         self.assert_same(sm.modes(CHAIN), self.folder / "modes.h5")
