@@ -2,7 +2,7 @@
 
 #include <slipmode/core/decompositions.hpp>
 #include <slipmode/fem/modes.hpp>
-#include "dynamics/internal/pair_form.hpp"
+#include "dynamics/internal/sprung_pairs.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -154,8 +154,37 @@ fem::Modes RegimeBuilder::base_modes() const {
   return modes;
 }
 
+std::optional<PairForm> RegimeBuilder::supported_pairs() const {
+  const Eigen::VectorXd damping = modal_.damping.diagonal();
+  if (!held_.empty() || modal_.damping != Eigen::MatrixXd(damping.asDiagonal())) return std::nullopt;
+  // Damping by the masses alone stays diagonal in the sprung structure's own modes.
+  if (damper_.isZero(0.0) && damping.isConstant(damping(0), 0.0)) return std::nullopt;
+  std::vector<Support> supports;
+  for (Eigen::Index c = 0; c < nc_; ++c)
+    if (spring_(c) != 0.0 || damper_(c) != 0.0) supports.push_back({modal_.directions.col(c), spring_(c), damper_(c)});
+  return sprung_pairs(modal_.omega, damping, supports);
+}
+
+void RegimeBuilder::set_pairs(Regime& out, const PairForm& form, const Eigen::VectorXd& scale,
+                              const Eigen::MatrixXd* shapes) {
+  const Eigen::Index m = scale.size(), np = out.pairs.np;
+  check_pair_form(form, scale);
+  set_blocks(out.pairs, form);
+  const auto in_eta = [shapes](Eigen::MatrixXd columns) {
+    return shapes ? Eigen::MatrixXd(*shapes * columns) : std::move(columns);
+  };
+  const auto of_eta = [shapes](Eigen::MatrixXd rows) {
+    return shapes ? Eigen::MatrixXd(rows * shapes->transpose()) : std::move(rows);
+  };
+  at_.to_y = spread_columns(in_eta(scale.cwiseInverse().asDiagonal() * form.T.topRows(m)), np);
+  at_.to_rate = spread_columns(in_eta(form.T.bottomRows(m)), np);
+  at_.from_y = spread(of_eta(form.T_inverse.leftCols(m) * scale.asDiagonal()), np);
+  at_.from_rate = spread(of_eta(form.T_inverse.rightCols(m)), np);
+}
+
 void RegimeBuilder::make_symmetric_pairs(Regime& out) {
   const Eigen::Index m = Z_.cols();
+  if (const std::optional<PairForm> form = supported_pairs()) return set_pairs(out, *form, modal_.omega, nullptr);
   auto [omega, shapes] = base_modes();
   ModalModel& pairs = out.pairs;
   Eigen::MatrixXd D = shapes.transpose() * (Z_.transpose() * C_ * Z_) * shapes;
@@ -180,14 +209,7 @@ void RegimeBuilder::make_symmetric_pairs(Regime& out) {
     return;
   }
   const BalancedState balanced = balanced_state(omega, D);
-  const PairForm form = pair_form(balanced.A);
-  check_pair_form(form, balanced.scale);
-  set_blocks(pairs, form);
-  const Eigen::VectorXd inverse_scale = balanced.scale.cwiseInverse();
-  at_.to_y = spread_columns(shapes * inverse_scale.asDiagonal() * form.T.topRows(m), pairs.np);
-  at_.to_rate = spread_columns(shapes * form.T.bottomRows(m), pairs.np);
-  at_.from_y = spread(form.T_inverse.leftCols(m) * balanced.scale.asDiagonal() * shapes.transpose(), pairs.np);
-  at_.from_rate = spread(form.T_inverse.rightCols(m) * shapes.transpose(), pairs.np);
+  set_pairs(out, pair_form(balanced.A), balanced.scale, &shapes);
 }
 
 void RegimeBuilder::make_general_pairs(Regime& out) {

@@ -4,8 +4,10 @@
 #include <slipmode/dynamics/regime.hpp>
 #include <slipmode/fem/modes.hpp>
 #include <slipmode/friction/load_form.hpp>
+#include "dynamics/internal/pair_form.hpp"
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 namespace slipmode::dynamics {
@@ -35,7 +37,11 @@ class RegimeBuilder {
   void reuse_slipping_pairs(Regime& out);
   void make_symmetric_pairs(Regime& out);
   void make_general_pairs(Regime& out);
-  void set_blocks(ModalModel& pairs, const struct PairForm& form) const;
+  /// Where contacts add springs and dampers to modes that are damped each by itself.
+  [[nodiscard]] std::optional<PairForm> supported_pairs() const;
+  /// @param shapes  η = shapes · (modes of the balanced state); null: they are η
+  void set_pairs(Regime& out, const PairForm& form, const Eigen::VectorXd& scale, const Eigen::MatrixXd* shapes);
+  void set_blocks(ModalModel& pairs, const PairForm& form) const;
   void make_inputs(Regime& out) const;
   void make_contact_rows(Regime& out) const;
   /// Of contacts that stick, without the cancellation behind a stiff spring or on a fine mesh.
