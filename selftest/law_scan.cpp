@@ -207,26 +207,25 @@ class Scan {
     const auto largest = [&](const Eigen::MatrixXd& x) {  // |M^½ x|
       return std::sqrt(x.cwiseProduct(M * x).colwise().sum().maxCoeff());
     };
+    // A motion rounds by the steady answer to its drive, beside which a short record from rest has next to none.
+    dynamics::Trajectory whole = run_;
+    if (const auto period = system_.drive().period(); period && *period > options_.duration)
+      whole =
+          dynamics::simulate(system_, start_, {.duration = *period, .sample = *period / 64.0, .flow = options_.flow});
     // Speeds round by the energy of the motion, displacements' included; and by what the run makes of its own start.
-    const Eigen::MatrixXd elastic = fem::multiply(system_.structure().K(), run_.q);
-    const double swing =
-        std::hypot(largest(run_.v), std::sqrt(std::max(0.0, run_.q.cwiseProduct(elastic).colwise().sum().maxCoeff())));
+    const Eigen::MatrixXd elastic = fem::multiply(system_.structure().K(), whole.q);
+    const double swing = std::hypot(largest(whole.v),
+                                    std::sqrt(std::max(0.0, whole.q.cwiseProduct(elastic).colwise().sum().maxCoeff())));
     const Eigen::VectorXd own_q = (run_.q.col(0) - start_.q).cwiseAbs(), own_v = (run_.v.col(0) - start_.v).cwiseAbs();
-    const auto share = [&](const dynamics::Trajectory& motion) {
-      return std::max(own_q.maxCoeff() / motion.q.cwiseAbs().maxCoeff(),
-                      own_v.maxCoeff() / (motion.v.cwiseAbs().maxCoeff() + swing));
-    };
-    double given_back = share(run_);
-    if (const auto period = system_.drive().period(); given_back > kGivenBack && period)
-      // A start rounds by the steady answer to the drive, beside which a short record from rest has no motion.
-      given_back = share(
-          dynamics::simulate(system_, start_, {.duration = *period, .sample = *period / 64.0, .flow = options_.flow}));
+    const double given_back = std::max(own_q.maxCoeff() / whole.q.cwiseAbs().maxCoeff(),
+                                       own_v.maxCoeff() / (whole.v.cwiseAbs().maxCoeff() + swing));
     if (given_back > kGivenBack) violate("start", fmt::format("the run begins {:.2g} from its start", given_back));
-    // From one step to the next a run may err by its tolerance, of the whole motion: that is a row's own that hardly moves.
+    // From one step to the next a run may err by its tolerance, of the whole motion: that is a row's own that hardly
+    // moves.
     const double error = kRounding + options_.flow.tolerance;
     const Eigen::VectorXd momentum_rounding = error * swing * M.diagonal().cwiseSqrt() +
                                               4.0 * h * kRounding * force_sizes() + 4.0 * (M.cwiseAbs() * own_v),
-                          way_rounding = error * largest(run_.q) * inverse_.diagonal().cwiseSqrt() + 4.0 * own_q;
+                          way_rounding = error * largest(whole.q) * inverse_.diagonal().cwiseSqrt() + 4.0 * own_q;
     const auto excess = [&](const Eigen::MatrixXd& rate, const Eigen::MatrixXd& sum, Index k, Index apart,
                             const Eigen::VectorXd& rounding) -> Eigen::VectorXd {
       const double step = static_cast<double>(apart) * h;
