@@ -56,7 +56,7 @@ Report diagnose_scene(const Session& session, const DiagnoseRequest& request, co
 
   Report report;
   report.data = {{"verb", "diagnose"}, {"scene", request.input}, {"exponents", exponents_json(spectra)}};
-  report.text = exponents_text(spectra, request.bits);
+  report.text = exponents_text(spectra, request.bits, results::Units::of(scene.units));
   if (verdict) {
     report.data["verdict"] = verdict_json(*verdict);
     report.text += verdict_text(*verdict, request.bits);

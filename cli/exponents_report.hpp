@@ -9,7 +9,9 @@
 namespace slipmode::cli {
 
 /// Side by side as a table for a terminal, with what they add up to. @param bits  rather than nats
-[[nodiscard]] std::string exponents_text(const std::vector<results::ModelExponents>& models, bool bits);
+/// @param units  of their scene
+[[nodiscard]] std::string exponents_text(const std::vector<results::ModelExponents>& models, bool bits,
+                                         const results::Units& units);
 /// A number; infinities as words, NaN as null: JSON has none of them.
 [[nodiscard]] Json exponent_json(double value);
 [[nodiscard]] Json exponents_json(const std::vector<results::ModelExponents>& models);

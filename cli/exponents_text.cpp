@@ -65,9 +65,9 @@ std::string halved_cell(const Halved& value) {
 
 }  // namespace
 
-std::string exponents_text(const std::vector<results::ModelExponents>& models, bool bits) {
+std::string exponents_text(const std::vector<results::ModelExponents>& models, bool bits, const results::Units& units) {
   const double unit = exponent_unit(bits);
-  const std::string unit_name = bits ? "bit per unit of time" : "nat per unit of time";
+  const std::string unit_name = fmt::format("{} per {}", bits ? "bit" : "nat", units.one_time());
   std::vector<std::string> header = {"exponent"};
   Eigen::Index rows = 0;
   for (const results::ModelExponents& model : models) {

@@ -98,7 +98,7 @@ std::string modes_text(const PipelineResult& result, bool shaken) {
 
 std::string validation_text(const PipelineResult& result, const scene::Scene& scene) {
   if (result.driven_validation) return '\n' + summary_text(*result.driven_validation, scene);
-  std::string out = '\n' + summary_text(*result.validation);
+  std::string out = '\n' + summary_text(*result.validation, results::Units::of(scene.units));
   if (!result.validation->cost) return out;
   return out + fmt::format("  the basis took {:.2f} s, {}\n", result.basis_wall(),
                            payback(result.validation->cost->break_even(result.basis_wall())));

@@ -2,6 +2,7 @@
 #include <slipmode/studies/ensemble.hpp>
 #include <slipmode/studies/simulation.hpp>
 #include "cli/text_table.hpp"
+#include "cli/times_report.hpp"
 #include "cli/verbs.hpp"
 
 #include <fmt/format.h>
@@ -44,6 +45,7 @@ Report run_trajectory(const Session& session, const SimulateArguments& arguments
   report.text = fmt::format("{}: {} samples, {} events, {}, energy residual {:.2g}\nTrajectory: {}\n", scene.title,
                             trajectory.times.size(), trajectory.events.size(), certificate(statistics),
                             trajectory.audit.residual(), arguments.output);
+  tell_chosen_times(scene, {"time"}, report);
   return report;
 }
 
@@ -70,6 +72,7 @@ Report run_ensemble(const Session& session, const SimulateArguments& arguments, 
   report.text = fmt::format("{}: {} runs, {} snapshots, {}, largest energy residual {:.2g}\nEnsemble: {}\n",
                             scene.title, run.members.size(), run.ensemble.snapshots.cols(), certificate(total),
                             run.worst_audit(), arguments.output);
+  tell_chosen_times(scene, {"time"}, report);
   if (!failures.empty()) {
     report.exit_code = kNumericalFailure;
     report.text = fmt::format("{} of {} runs failed; the others are kept in {}\n  first: {}\n", failures.size(),

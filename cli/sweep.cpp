@@ -9,6 +9,7 @@
 #include "cli/field_options.hpp"
 #include "cli/sweep_report.hpp"
 #include "cli/sweep_request.hpp"
+#include "cli/times_report.hpp"
 #include "cli/verbs.hpp"
 
 #include <fmt/format.h>
@@ -63,7 +64,7 @@ Report summary(const SweepRequest& request, const studies::Family& family, const
     failures = failures_of(sweep.up.empty() ? sweep.down : sweep.up);
   } else {
     say_motions(sweep.belt, report);
-    report.text += results::undecided_note(sweep.belt);
+    report.text += results::undecided_note(sweep.belt, results::Units::of(family.scene().units));
     failures = failures_of(sweep.belt);
   }
   report.data["failures"] = failures;
@@ -103,6 +104,7 @@ Report run(const Session& session, SweepRequest request) {
   file.finish([&](results::StoreWriter& writer) { studies::store(writer, family, sweep); });
   if (session.has_a_share()) return part_made(session, file, request.output, "values");
   Report report = summary(request, family, sweep);
+  tell_chosen_times(scene, {"validation"}, report);
   tell_resumed(session, file.resumed(), "values", report);
   return report;
 }

@@ -2,6 +2,7 @@
 #include "cli/validation_report.hpp"
 
 #include <slipmode/studies/validation.hpp>
+#include "cli/times_report.hpp"
 #include "cli/verbs.hpp"
 
 #include <fmt/format.h>
@@ -23,9 +24,10 @@ Report run(const Session& session, const ValidateArguments& arguments) {
   report.data = {{"verb", "validate"},
                  {"file", arguments.output},
                  {"validation", done.belt ? to_json(*done.belt) : to_json(*done.shaken)}};
-  report.text =
-      fmt::format("{}Validation: {}\n", done.belt ? summary_text(*done.belt) : summary_text(*done.shaken, done.scene),
-                  arguments.output);
+  report.text = done.belt ? summary_text(*done.belt, results::Units::of(done.scene.units))
+                          : summary_text(*done.shaken, done.scene);
+  tell_chosen_times(done.scene, {"validation"}, report);
+  report.text += fmt::format("Validation: {}\n", arguments.output);
   return report;
 }
 

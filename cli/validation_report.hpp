@@ -2,6 +2,7 @@
 
 #include <slipmode/diagnostics/validation/driven_validation.hpp>
 #include <slipmode/diagnostics/validation/validate.hpp>
+#include <slipmode/results/units.hpp>
 #include "cli/session.hpp"
 
 #include <string>
@@ -11,8 +12,8 @@ namespace slipmode::cli {
 /// The same numbers as JSON, slip states left out.
 [[nodiscard]] Json to_json(const diagnostics::ValidationReport& report);
 
-/// The same numbers as tables for a terminal.
-[[nodiscard]] std::string summary_text(const diagnostics::ValidationReport& report);
+/// The same numbers as tables for a terminal. @param units  of its scene
+[[nodiscard]] std::string summary_text(const diagnostics::ValidationReport& report, const results::Units& units);
 
 // Of a shaken scene.
 [[nodiscard]] Json to_json(const diagnostics::DrivenValidationReport& report);

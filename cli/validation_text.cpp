@@ -140,7 +140,7 @@ std::string orbits_text(const ValidationReport& report) {
   return table.str() + orbit_failures(report);
 }
 
-std::string sweep_text(const ValidationReport& report) {
+std::string sweep_text(const ValidationReport& report, const results::Units& units) {
   std::map<std::string, std::size_t> reduced;
   TextTable table({"motion", "full", "reduced"});
   for (const results::MotionCount& count : results::count_motions(report.sweep->reduced))
@@ -152,18 +152,19 @@ std::string sweep_text(const ValidationReport& report) {
   for (const results::MotionCount& count : results::count_motions(report.sweep->reduced)) {
     if (reduced.contains(count.motion)) table.add({count.motion, "0", fmt::format("{}", count.values)});
   }
-  const std::string note = results::undecided_note(report.sweep->full);
-  return table.str() + (note.empty() ? results::undecided_note(report.sweep->reduced) : note);
+  const std::string note = results::undecided_note(report.sweep->full, units);
+  return table.str() + (note.empty() ? results::undecided_note(report.sweep->reduced, units) : note);
 }
 
 }  // namespace
 
-std::string summary_text(const ValidationReport& report) {
+std::string summary_text(const ValidationReport& report, const results::Units& units) {
   std::string out =
       fmt::format("Full model at V = {:g}: {}", report.speed, attractor_text(report.full, report.lyapunov));
   if (report.lyapunov) {
     const double error_bits = report.lyapunov->error / std::numbers::ln2;
-    out += fmt::format(", largest exponent {:.4f} ± {:.4f} bit per unit of time", report.lyapunov->bits, error_bits);
+    out += fmt::format(", largest exponent {:.4f} ± {:.4f} bit per {}", report.lyapunov->bits, error_bits,
+                       units.one_time());
   }
   out += fmt::format(
       ", sticks {:.1f} % of the time\n"
@@ -183,7 +184,7 @@ std::string summary_text(const ValidationReport& report) {
   if (report.sweep && report.bifurcation) {
     out +=
         fmt::format("\nBelt-speed sweep: {} values, full model and {} {}s, in {:.2f} s\n{}", report.sweep->full.size(),
-                    report.chosen, report.candidates.front().name, report.sweep_wall, sweep_text(report));
+                    report.chosen, report.candidates.front().name, report.sweep_wall, sweep_text(report, units));
     const auto& both = *report.bifurcation;
     out += fmt::format(
         "  decided in both models: {} of {} values{}; median distance of slip states {}\n", both.decided,
@@ -194,8 +195,8 @@ std::string summary_text(const ValidationReport& report) {
   if (report.verdict) out += fmt::format("\n{}", verdict_text(*report.verdict, true));
   if (report.cost) {
     const auto& cost = *report.cost;
-    out += fmt::format("\nOne run of {:g} time units: full {:.3f} ms, {} {}s {:.3f} ms, speed-up {:.2f}\n",
-                       cost.duration, 1e3 * cost.full_wall, report.chosen, report.candidates.front().name,
+    out += fmt::format("\nOne run of {:g} {}: full {:.3f} ms, {} {}s {:.3f} ms, speed-up {:.2f}\n", cost.duration,
+                       units.times(), 1e3 * cost.full_wall, report.chosen, report.candidates.front().name,
                        1e3 * cost.reduced_wall, cost.full_wall / cost.reduced_wall);
   }
   return out;

@@ -27,7 +27,7 @@ struct BeamSpan {
         required("length", &Own::length, "m", "length", kPositive),
         required("width", &Own::width, "m", "width", kPositive),
         required("thickness", &Own::thickness, "m", "in the direction of motion", kPositive),
-        required("youngs_modulus", &Own::youngs_modulus, "Pa", "E", kPositive),
+        required("youngs_modulus", &Own::youngs_modulus, "Pa", "Young's modulus", kPositive),
         required("density", &Own::density, "kg/m^3", "density", kPositive),
         required("elements", &Own::elements, "", "number of elements", {.low = 1.0, .high = 1e6}),
         optional("poisson_ratio", &Own::poisson_ratio, "1", "Timoshenko only: ν in G = E / (2 (1 + ν))",

@@ -22,7 +22,7 @@ struct ChainOptions {
 
   static constexpr auto fields() {
     using Own = ChainOptions;
-    return std::tuple{required("masses", &Own::masses, "", "N", {.low = 1.0, .high = 1e7}),
+    return std::tuple{required("masses", &Own::masses, "", "number of masses", {.low = 1.0, .high = 1e7}),
                       optional("mass", &Own::mass, "kg", "one, or one per mass", kPositive).per_item(),
                       optional("stiffness", &Own::stiffness, "N/m", "one, or one per spring", kPositive).per_item(),
                       optional("ground_stiffness", &Own::ground_stiffness, "N/m",

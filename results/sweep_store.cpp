@@ -126,7 +126,7 @@ std::vector<MotionCount> count_motions(const std::vector<SweepPoint>& points) {
   return out;
 }
 
-std::string undecided_note(const std::vector<SweepPoint>& points) {
+std::string undecided_note(const std::vector<SweepPoint>& points, const Units& units) {
   double waited = 0.0;
   bool any = false;
   for (const SweepPoint& point : points) {
@@ -136,9 +136,9 @@ std::string undecided_note(const std::vector<SweepPoint>& points) {
   }
   if (!any) return {};
   return fmt::format(
-      "  undecided: still settling, or too few slips to tell, after {:g} time units; to wait longer:\n"
+      "  undecided: still settling, or too few slips to tell, after {:g} {}; to wait longer:\n"
       "  --set validation.sweep_limit={:g}\n",
-      waited, 10.0 * waited);
+      waited, units.times(), 10.0 * waited);
 }
 
 }  // namespace slipmode::results

@@ -41,6 +41,6 @@ struct MotionCount {
 [[nodiscard]] std::vector<MotionCount> count_motions(const std::vector<diagnostics::SweepPoint>& points);
 
 /// What "undecided" means and what to do about it; empty where no value is.
-[[nodiscard]] std::string undecided_note(const std::vector<diagnostics::SweepPoint>& points);
+[[nodiscard]] std::string undecided_note(const std::vector<diagnostics::SweepPoint>& points, const Units& units);
 
 }  // namespace slipmode::results

@@ -9,6 +9,10 @@ struct Units {
   std::string length = "1", velocity = "1", force = "1", time = "1", rate = "1", energy = "1", angular = "1",
               frequency = "1", stiffness = "1";
 
+  /// In prose, several and one: seconds, or what a dimensionless scene has for them.
+  [[nodiscard]] std::string times() const { return time == "1" ? "units of time" : time; }
+  [[nodiscard]] std::string one_time() const { return time == "1" ? "unit of time" : time; }
+
   /// @param system  a scene's `units`: "SI" or "dimensionless"
   [[nodiscard]] static Units of(const std::string& system) {
     if (system != "SI") return {};

@@ -1,10 +1,11 @@
 #include <slipmode/scene/own_times.hpp>
 
 #include <slipmode/fem/modes.hpp>
+#include "scene/internal/periods.hpp"
 #include "scene/internal/toml_reader.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -12,30 +13,32 @@ namespace slipmode::scene {
 
 namespace {
 
-/// A time of [validation] in slowest periods: of chain10, whose period is 42, the values its source has or that were
-/// found to do.
-struct TimeInPeriods {
-  const char* key;
-  double ValidationSpec::*time;
-  double periods;
-};
-constexpr std::array<TimeInPeriods, 7> kTimes = {{{"transient", &ValidationSpec::transient, 24.0},
-                                                  {"block", &ValidationSpec::block, 120.0},
-                                                  {"limit", &ValidationSpec::limit, 2400.0},
-                                                  {"sweep_limit", &ValidationSpec::sweep_limit, 120.0},
-                                                  {"horizon", &ValidationSpec::horizon, 2.4},
-                                                  {"lyapunov_duration", &ValidationSpec::lyapunov_duration, 480.0},
-                                                  {"cost_duration", &ValidationSpec::cost_duration, 240.0}}};
+constexpr double kSweptTo = 2.5, kSweptSteps = 20.0;  // of the belt's own speed
 
-double to_one_digit(double value) {
-  const double unit = std::pow(10.0, std::floor(std::log10(value)));
-  return std::round(value / unit) * unit;
+/// Which keys a scene gives, overrides counted.
+class GivenKeys {
+ public:
+  explicit GivenKeys(const SceneSource& source) : document_(source.text, source.path, source.overrides) {}
+  [[nodiscard]] bool has(const char* table, const char* key) const {
+    return static_cast<bool>(document_.root()[table][key]);
+  }
+
+ private:
+  TomlDocument document_;
+};
+
+}  // namespace
+
+double to_one_digit(double time) {
+  if (time == 0.0) return 0.0;
+  const double unit = std::pow(10.0, std::floor(std::log10(time)));
+  return std::round(time / unit) * unit;
 }
 
-/// Of the slowest mode that is not one of free motion; 0 where there is none among the first.
-double slowest_period(const fem::Structure& structure) {
+double slowest_period(const Scene& scene) {
   constexpr Eigen::Index kLooked = 8;  // of which a structure in space has six without stiffness
   constexpr double kFree = 1e-6;       // of the fastest of these
+  const fem::Structure structure = build_system(scene).structure();
   const Eigen::VectorXd omega = fem::natural_modes(structure, std::min(kLooked, structure.size())).omega;
   for (const double own : omega) {
     if (own > kFree * omega.maxCoeff()) return 2.0 * std::numbers::pi / own;
@@ -43,24 +46,57 @@ double slowest_period(const fem::Structure& structure) {
   return 0.0;
 }
 
-}  // namespace
+bool leaves_time_open(const Scene& scene) {
+  if (scene.source.text.empty() || scene.time.cycles) return false;
+  const GivenKeys given(scene.source);
+  return !given.has("time", "duration") || !given.has("time", "sample");
+}
 
 Scene with_own_times(Scene scene) {
   if (scene.drive.belt() == nullptr || scene.source.text.empty()) return scene;
-  const TomlDocument document(scene.source.text, scene.source.path, scene.source.overrides);
-  const auto is_given = [&](const char* key) { return static_cast<bool>(document.root()["validation"][key]); };
+  const GivenKeys given(scene.source);
+  const auto is_given = [&](const char* key) { return given.has("validation", key); };
   ValidationSpec& spec = scene.validation;
   const double speed = scene.drive.velocity(0.0);
-  if (!is_given("speeds") && speed != 0.0) spec.speeds = {2.5 * speed, speed / 20.0, std::abs(speed) / 20.0};
-  if (std::ranges::all_of(kTimes, is_given, &TimeInPeriods::key)) return scene;
-  const double period = slowest_period(build_system(scene).structure());
+  if (!is_given("speeds") && speed != 0.0) {
+    spec.speeds = {kSweptTo * speed, speed / kSweptSteps, std::abs(speed) / kSweptSteps};
+  }
+  if (std::ranges::all_of(kValidationTimes, is_given, &TimeInPeriods<ValidationSpec>::key)) return scene;
+  const double period = slowest_period(scene);
   if (period == 0.0) return scene;
-  for (const TimeInPeriods& own : kTimes) {
+  for (const auto& own : kValidationTimes) {
     if (!is_given(own.key)) spec.*own.time = to_one_digit(own.periods * period);
   }
   if (!is_given("block")) spec.block = std::min(spec.block, spec.limit);
   if (!is_given("limit")) spec.limit = std::max(spec.limit, spec.block);
   return scene;
+}
+
+ChosenTimes chosen_times(const Scene& scene, const std::vector<std::string>& tables) {
+  ChosenTimes chosen;
+  if (scene.source.text.empty()) return chosen;
+  const GivenKeys given(scene.source);
+  const auto wanted = [&](const char* table) { return std::ranges::find(tables, table) != tables.end(); };
+  const auto add = [&](const char* table, const char* key, double value) {
+    if (!given.has(table, key)) chosen.times.push_back({fmt::format("{}.{}", table, key), value});
+  };
+  const bool on_belt = scene.drive.belt() != nullptr;
+  if (wanted("time") && scene.time.cycles) {
+    for_each_field<TimeSpec::Cycles>(
+        [&](const auto& field) { add("time", field.name, static_cast<double>(*scene.time.cycles.*field.member)); });
+  } else if (wanted("time")) {
+    for_each_field<TimeSpec>([&](const auto& field) {
+      const bool is_plain = scene.time.*field.member == 0.0;  // no transient beside a given duration
+      if (!is_plain) add("time", field.name, scene.time.*field.member);
+    });
+  }
+  if (wanted("validation") && on_belt) {
+    for (const auto& own : kValidationTimes) add("validation", own.key, scene.validation.*own.time);
+  }
+  if (chosen.times.empty()) return chosen;
+  chosen.period = on_belt ? slowest_period(scene) : scene.drive.period().value();
+  chosen.of = on_belt ? "the structure's slowest natural period" : "the drive's period";
+  return chosen;
 }
 
 }  // namespace slipmode::scene

@@ -1,5 +1,6 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/scene/scene.hpp>
+#include "scene/internal/periods.hpp"
 #include "scene/internal/toml_reader.hpp"
 
 #include <fmt/format.h>
@@ -12,6 +13,9 @@ Scene set_key(const Scene& scene, const std::string& path, double value) {
   Scene changed = parse_scene(scene_to_toml(scene), {change}, scene.source.path);
   changed.source = scene.source;
   changed.source.overrides.push_back(change);
+  if (leaves_time_open(scene)) {  // what the changed structure chooses, as whoever reads the source again will find
+    changed.time = parse_scene(changed.source.text, changed.source.overrides, changed.source.path).time;
+  }
   return changed;
 }
 

@@ -1,4 +1,6 @@
 #include <slipmode/core/errors.hpp>
+#include <slipmode/scene/own_times.hpp>
+#include "scene/internal/periods.hpp"
 #include "scene/internal/scene_parts.hpp"
 #include "scene/internal/scene_words.hpp"
 
@@ -14,7 +16,7 @@ namespace {
 
 TimeSpec read_cycles(TomlReader& in, double frequency_hz) {
   refuse_others<TimeSpec, TimeSpec::Cycles>(in, "the time is given in cycles too", "either cycles or seconds");
-  TimeSpec::Cycles cycles;
+  TimeSpec::Cycles cycles = in.has("cycles") ? TimeSpec::Cycles{} : kUsualCycles;
   read_fields(in, cycles);
   if (cycles.transient_cycles >= cycles.cycles) {
     in.fail("transient_cycles", "nothing is left to keep", fmt::format("less than cycles = {}", cycles.cycles));
@@ -25,12 +27,34 @@ TimeSpec read_cycles(TomlReader& in, double frequency_hz) {
   return in_seconds(cycles, frequency_hz);
 }
 
-TimeSpec read_seconds(TomlReader& in, bool periodic) {
+/// On a belt what is not given is chosen by the structure's slowest period.
+void choose_times(TomlReader& in, const Scene& scene, TimeSpec& out_time) {
+  if (in.has("duration") && in.has("sample")) return;
+  const double period = slowest_period(scene);
+  if (!in.has("duration")) {
+    if (period == 0.0) {
+      in.fail("duration", "missing, and nothing vibrates by whose period it could be chosen", kPositive.text);
+    }
+    if (!in.has("transient")) out_time.transient = to_one_digit(kTransientPeriods * period);
+    out_time.duration = out_time.transient + to_one_digit(kKeptPeriods * period);
+  }
+  if (in.has("sample")) return;
+  constexpr double kFewest = 100.0;  // samples of a record shorter than the period
+  const double longest = to_one_digit((out_time.duration - out_time.transient) / kFewest);
+  out_time.sample = period == 0.0 ? longest : std::min(to_one_digit(kSamplePeriods * period), longest);
+}
+
+TimeSpec read_seconds(TomlReader& in, const Scene& scene) {
   TimeSpec time;
   read_fields(in, time);
-  if (periodic) in.require("sample");
-  if (time.transient >= time.duration) {
+  if (in.has("duration") && time.transient >= time.duration) {
     in.fail("transient", "nothing is left to keep", fmt::format("less than duration = {}", time.duration));
+  }
+  if (const auto cycle = scene.drive.period()) {
+    in.require("duration");
+    if (!in.has("sample")) time.sample = *cycle / static_cast<double>(kUsualCycles.samples);
+  } else {
+    choose_times(in, scene, time);
   }
   if (time.sample > time.duration - time.transient) {
     in.fail("sample", "no sample fits",
@@ -39,15 +63,17 @@ TimeSpec read_seconds(TomlReader& in, bool periodic) {
   return time;
 }
 
-TimeSpec read_time(TomlReader in, const friction::Drive& drive) {
+TimeSpec read_time(TomlReader in, const Scene& scene) {
   TimeSpec time;
+  const friction::Drive& drive = scene.drive;
   if (const auto period = drive.period()) {
     const double frequency = drive.shaker() != nullptr ? drive.shaker()->frequency_hz : 1.0 / *period;
-    time = has_any<TimeSpec::Cycles>(in) ? read_cycles(in, frequency) : read_seconds(in, true);
+    const bool in_cycles = has_any<TimeSpec::Cycles>(in) || !has_any<TimeSpec>(in);
+    time = in_cycles ? read_cycles(in, frequency) : read_seconds(in, scene);
   } else {
     refuse_others<TimeSpec::Cycles, TimeSpec>(in, "counts a shaker's cycles or a force's, the drive is a belt",
                                               "duration");
-    time = read_seconds(in, false);
+    time = read_seconds(in, scene);
   }
   in.finish();
   return time;
@@ -136,7 +162,7 @@ Scene parse_scene(const std::string& text, const std::vector<std::string>& overr
   scene.structure = read_structure(in.table("structure"), scene.units);
   scene.contacts = read_contacts(in, scene);
   read_drive(in.table("drive"), scene);
-  scene.time = read_time(in.table("time"), scene.drive);
+  scene.time = read_time(in.table_or_empty("time"), scene);
   scene.initial = read_initial(in.table_or_empty("initial"), scene);
   scene.ensemble = read_ensemble(in.table_or_empty("ensemble"), scene);
   if (scene.beam() == nullptr) {

@@ -71,12 +71,12 @@ struct ForceSpec {
   std::variant<double, std::vector<double>> mean = 0.0;
 };
 
-/// How long a run is and what is kept ([time]).
+/// How long a run is and what is kept ([time]). What is not given is chosen by a period: see datasets/README.md.
 struct TimeSpec {
   double duration = 0.0, transient = 0.0, sample = 0.5;
 
   static constexpr auto fields() {
-    return std::tuple{required("duration", &TimeSpec::duration, "s", "of the whole run, > transient", kPositive),
+    return std::tuple{optional("duration", &TimeSpec::duration, "s", "of the whole run, > transient", kPositive),
                       optional("transient", &TimeSpec::transient, "s", "not kept", kNonNegative),
                       optional("sample", &TimeSpec::sample, "s", "sampling interval", kPositive)};
   }
@@ -88,7 +88,7 @@ struct TimeSpec {
     std::int64_t samples = 32;
 
     static constexpr auto fields() {
-      return std::tuple{required("cycles", &Cycles::cycles, "", "of the whole run, > transient_cycles", kPositive),
+      return std::tuple{optional("cycles", &Cycles::cycles, "", "of the whole run, > transient_cycles", kPositive),
                         optional("transient_cycles", &Cycles::transient_cycles, "", "not kept", kNonNegative),
                         optional("samples_per_cycle", &Cycles::samples, "", "kept per cycle",
                                  {.low = 1.0, .high = std::numeric_limits<int>::max()})};
@@ -107,7 +107,7 @@ struct InitialSpec {
   std::vector<double> displacement, velocity;  ///< for kGiven
 
   static constexpr auto fields() {
-    return std::tuple{optional("at", &InitialSpec::at, "", "a state of the model"),
+    return std::tuple{optional("at", &InitialSpec::at, "", "a state of its own"),
                       optional("displacement", &InitialSpec::displacement, "m", "one value per degree of freedom"),
                       optional("velocity", &InitialSpec::velocity, "m/s", "one value per degree of freedom")};
   }
@@ -124,8 +124,7 @@ struct EnsembleSpec {
     using Own = EnsembleSpec;
     return std::tuple{optional("members", &Own::members, "", "runs per speed or frequency", kCount),
                       optional("seed", &Own::seed, "", "of the perturbations", kFromZero),
-                      optional("spread", &Own::spread, "m, m/s",
-                               "standard deviation of the starts (see ensemble_states)", kNonNegative),
+                      optional("spread", &Own::spread, "m, m/s", "standard deviation of the starts", kNonNegative),
                       optional("speeds", &Own::speeds, "m/s", "belt speeds to run at; empty: the drive's own"),
                       optional("frequencies", &Own::frequencies, "Hz",
                                "shaker frequencies to run at; empty: the drive's own", kPositive)};
@@ -221,7 +220,8 @@ struct ValidationSpec {
         optional("horizon_starts", &Own::horizon_starts, "", "how many shared starts are averaged", kCount),
         optional("orbits", &Own::orbits, "m/s", "belt speeds at which periodic orbits are compared"),
         optional("orbit_tolerance", &Own::orbit_tolerance, "1", "to which such an orbit must repeat", kPositive),
-        optional("modes", &Own::modes, "", "sizes of the reduced models compared; empty: 1..N", kCount),
+        optional("modes", &Own::modes, "", "sizes of the reduced models compared; empty: all up to 12, then fewer",
+                 kCount),
         optional("lyapunov_duration", &Own::lyapunov_duration, "s", "over which the largest exponent is measured",
                  kPositive),
         optional("cost_duration", &Own::cost_duration, "s", "simulated by the timed runs; 0: no timing", kNonNegative),
@@ -257,7 +257,8 @@ struct ShakenValidationSpec {
         optional("cycles", &Own::cycles, "", "run at each frequency", kPositive),
         optional("kept", &Own::kept, "", "cycles kept, the last ones (S4 6.3.2)", kPositive),
         optional("gauge", &Own::gauge, "m", "x of the strain in Poincare sections; absent: see gauge_position"),
-        optional("modes", &Own::modes, "", "sizes of the reduced models compared; empty: 1..N", kCount),
+        optional("modes", &Own::modes, "", "sizes of the reduced models compared; empty: all up to 12, then fewer",
+                 kCount),
         optional("bases", &Own::bases, "", "bases compared; default: what the scene's structure and sensors allow"),
         optional("follow", &Own::follow, "", "which ways a sweep goes on from value to value"),
         optional("period_tolerance", &Own::period_tolerance, "1",

@@ -41,6 +41,11 @@ template <class Enum>
   return {kWords<Enum>.begin(), kWords<Enum>.end()};
 }
 
+/// Of a table that is a value: its numbers that are not limited themselves are as the table is.
+[[nodiscard]] inline std::function<Limits(std::string_view, const Limits&)> limits_of(const Limits& table) {
+  return [table](std::string_view, const Limits& own) { return own.low == kFinite.low ? table : own; };
+}
+
 template <class S>
 void read_fields(TomlReader& in, S& own, const Reading& how = {});
 
@@ -78,10 +83,8 @@ void read_value(TomlReader& in, const AnyField& field, T& value, const Limits& l
     for (const std::size_t word : in.choices(field.name, words<typename T::value_type>())) {
       value.push_back(static_cast<typename T::value_type>(word));
     }
-  } else {  // numbers that are not limited themselves are as the table is
-    value = read_table<T>(in.table(field.name), {}, {.limits = [&](std::string_view, const Limits& own) {
-                            return own.low == kFinite.low ? limits : own;
-                          }});
+  } else {
+    value = read_table<T>(in.table(field.name), {}, {.limits = limits_of(limits)});
   }
 }
 

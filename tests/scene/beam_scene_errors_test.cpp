@@ -167,8 +167,6 @@ INSTANTIATE_TEST_SUITE_P(
         BadValue{"cycles = 20", "cycles = 20\nduration = 1", {"s.toml:34: time.duration = 1", "cycles too"}},
         BadValue{"transient_cycles = 4", "transient_cycles = 20", {"time.transient_cycles = 20: nothing is left"}},
         BadValue{"samples_per_cycle = 16", "samples_per_cycle = 0", {"time.samples_per_cycle = 0", "an integer >= 1"}},
-        BadValue{
-            "cycles = 20\ntransient_cycles = 4\nsamples_per_cycle = 16", "duration = 20", {"time.sample: missing key"}},
         BadValue{"[ensemble]", "[initial]\nat = \"static\"\n[ensemble]", {"initial.at = \"static\": a shaker has no"}},
         BadValue{"[ensemble]", "[initial]\nvelocity = [1]\n[ensemble]", {"initial.velocity", "an array of 16 values"}},
         BadValue{"spread = 1e-4", "speeds = [1]", {"ensemble.speeds = [1]: belongs to a belt", "valid: frequencies"}},

@@ -56,6 +56,57 @@ TEST(OwnTimes, LeaveWhatIsGivenAlone) {
   EXPECT_EQ(spec.transient, 200.0);
 }
 
+/// Without a word on [time], or with some.
+Scene on_belt(const std::string& time) {
+  return parse_scene(tests::replaced(one_mass(1.0, ""), "[time]\nduration = 1.0\n", time));
+}
+
+// Slowest period 2π: 24 of them are 151, 216 are 1357, an eightieth is 0.0785; each to one digit.
+TEST(OwnTimes, OfARunAreTheStructures) {
+  const TimeSpec time = on_belt("").time;
+  EXPECT_EQ(time.transient, 200.0);
+  EXPECT_EQ(time.duration, 1200.0);
+  EXPECT_DOUBLE_EQ(time.sample, 0.08);
+  EXPECT_EQ(on_belt("[time]\ntransient = 50.0\n").time.duration, 1050.0);
+  EXPECT_EQ(on_belt("[time]\nduration = 300.0\n").time.transient, 0.0) << "as it says";
+  EXPECT_DOUBLE_EQ(on_belt("[time]\nduration = 1.0\n").time.sample, 0.01) << "a hundred of a short run";
+}
+
+TEST(OwnTimes, OfWhatDoesNotVibrateHaveToBeGiven) {
+  const std::string lone =
+      "units = \"SI\"\n[structure]\nkind = \"masses\"\nmass = 1.0\n[[contact]]\nat = 1\n"
+      "law = \"coulomb\"\nmu_s = 0.4\nmu_k = 0.3\nnormal_load = 1.0\n[drive]\nkind = \"belt\"\n"
+      "speed = 0.2\n";
+  tests::expect_parts(tests::error_of(lone),
+                      {"s.toml", "time.duration: missing, and nothing vibrates", "a number > 0"});
+  EXPECT_DOUBLE_EQ(parse_scene(lone + "[time]\nduration = 5.0\n").time.sample, 0.05);
+}
+
+TEST(OwnTimes, UnderAForceAreItsCycles) {
+  const std::string forced =
+      tests::replaced(one_mass(1.0, ""), "kind = \"belt\"\nspeed = 0.2\n[time]\nduration = 1.0\n",
+                      "kind = \"force\"\nfrequency = 2.0\namplitude = 1.0\nat = 1\n");
+  const Scene scene = parse_scene(forced);
+  EXPECT_DOUBLE_EQ(scene.time.duration, 150.0) << "300 cycles";
+  EXPECT_DOUBLE_EQ(scene.time.transient, 100.0);
+  EXPECT_DOUBLE_EQ(scene.time.sample, 0.5 / 32.0);
+  EXPECT_DOUBLE_EQ(parse_scene(forced + "[time]\nduration = 10.0\n").time.sample, 0.5 / 32.0);
+  const ChosenTimes chosen = chosen_times(scene, {"time"});
+  EXPECT_EQ(chosen.of, "the drive's period");
+  ASSERT_EQ(chosen.times.size(), 3U);
+  EXPECT_EQ(chosen.times[0].key, "time.cycles");
+  EXPECT_EQ(chosen.times[0].value, 300.0);
+}
+
+TEST(OwnTimes, AreSaid) {
+  const Scene scene = with_own_times(parse_scene(one_mass(1.0, "[validation]\nblock = 100.0\n"), {"time.sample=0.5"}));
+  const ChosenTimes chosen = chosen_times(scene, {"time", "validation"});
+  EXPECT_NEAR(chosen.period, 6.283185307179586, 1e-12);
+  ASSERT_EQ(chosen.times.size(), 6U) << "those of [validation] but the block";
+  EXPECT_EQ(chosen.times.front().key, "validation.transient");
+  EXPECT_EQ(chosen.times.front().value, 200.0);
+}
+
 // Free at both ends: the motion as a whole has no period, the two masses against each other have 2π/√2.
 TEST(OwnTimes, ComeFromTheSlowestModeThatVibrates) {
   const Scene scene = parse_scene(one_mass(1.0, "[validation]\n"), {"structure.masses=2", "structure.ends=free-free"});

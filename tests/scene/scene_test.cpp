@@ -193,7 +193,6 @@ INSTANTIATE_TEST_SUITE_P(
                  "dampng = 0.006",
                  {"s.toml:6: structure.dampng = 0.006: unknown key", "did you mean 'damping'", "valid: ", "masses"}},
         BadValue{"title =", "tilte =", {"s.toml:1: tilte", "unknown key", "did you mean 'title'"}},
-        BadValue{"[time]\nduration = 100.0\n", "", {"s.toml", "time: missing key"}},
         BadValue{"alpha = 8.0\n", "", {"s.toml:7: contact.0.alpha: missing key"}},
         BadValue{"mu_k = 0.2", "mu_kk = 0.2", {"contact.0.mu_k: missing key", "is 'mu_kk' meant to be 'mu_k'?"}},
         BadValue{"masses = 10", "masses = 10.5", {"s.toml:5: structure.masses = 10.5: wrong type", "an integer"}},

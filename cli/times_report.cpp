@@ -1,0 +1,24 @@
+#include "cli/times_report.hpp"
+
+#include <slipmode/core/terminal.hpp>
+#include <slipmode/scene/own_times.hpp>
+
+#include <fmt/format.h>
+
+namespace slipmode::cli {
+
+void tell_chosen_times(const scene::Scene& scene, const std::vector<std::string>& tables, Report& out_report) {
+  constexpr std::size_t kColumns = 80;
+  const scene::ChosenTimes chosen = scene::chosen_times(scene, tables);
+  if (chosen.times.empty()) return;
+  Json values = Json::object();
+  std::string text = fmt::format("Chosen by {}, {:.4g}{}:", chosen.of, chosen.period, scene.units == "SI" ? " s" : "");
+  for (const auto& time : chosen.times) {
+    values[time.key] = time.value;
+    text += fmt::format("{} {} {:g}", &time == &chosen.times.front() ? "" : ",", time.key, time.value);
+  }
+  out_report.data["chosen_times"] = {{"by", chosen.of}, {"period", chosen.period}, {"values", values}};
+  out_report.text += wrapped(text, kColumns) + "\n";
+}
+
+}  // namespace slipmode::cli
