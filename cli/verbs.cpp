@@ -37,13 +37,14 @@ void add_common_options(const Verb& verb, Session& session) {
 }  // namespace
 
 std::vector<Verb> add_verbs(CLI::App& app, Session& session) {
-  std::vector<Verb> verbs = {add_run(app),   add_modes(app),    add_simulate(app), add_pod(app), add_reduce(app),
-                             add_sweep(app), add_validate(app), add_plot(app),     add_info(app)};
+  std::vector<Verb> verbs = {add_new(app),    add_run(app),   add_modes(app),    add_simulate(app), add_pod(app),
+                             add_reduce(app), add_sweep(app), add_validate(app), add_plot(app),     add_info(app)};
   verbs.push_back(add_diagnose(app));
   verbs.push_back(add_trade(app));
   verbs.push_back(add_advise(app));
   verbs.push_back(add_merge(app));
   verbs.push_back(add_report(app));
+  verbs.push_back(add_schema(app));
   verbs.push_back(add_doctor(app));
   verbs.push_back(add_manual(app));
   verbs.push_back(add_selftest(app));

@@ -16,6 +16,7 @@ struct Verb {
 };
 
 // Each adds one sub-command with its arguments, help and example; one file per verb.
+[[nodiscard]] Verb add_new(CLI::App& app);
 [[nodiscard]] Verb add_run(CLI::App& app);
 [[nodiscard]] Verb add_modes(CLI::App& app);
 [[nodiscard]] Verb add_simulate(CLI::App& app);
@@ -32,6 +33,7 @@ struct Verb {
 [[nodiscard]] Verb add_advise(CLI::App& app);
 [[nodiscard]] Verb add_merge(CLI::App& app);
 [[nodiscard]] Verb add_doctor(CLI::App& app);
+[[nodiscard]] Verb add_schema(CLI::App& app);
 [[nodiscard]] Verb add_manual(CLI::App& app);
 
 /// All verbs with the options common to them, which go to `session`.

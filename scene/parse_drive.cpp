@@ -1,5 +1,6 @@
 #include <slipmode/core/errors.hpp>
 #include "scene/internal/scene_parts.hpp"
+#include "scene/internal/scene_words.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -59,8 +60,7 @@ friction::AmplitudeCurve read_amplitude(TomlReader& in) {
 }  // namespace
 
 void read_drive(TomlReader in, Scene& scene) {
-  const std::vector<std::string> kinds = {"belt", "shaker", "force"};
-  const std::string kind = kinds[in.choice("kind", kinds)];
+  const std::string kind = kDrives[in.choice("kind", kDrives)];
   if (kind == "belt") {
     scene.drive = read_belt(in);
     in.finish();

@@ -61,6 +61,9 @@ echo "  from apt-get install to all figures: $((SECONDS - begun)) s"
 
 check "doctor: nothing that is needed is missing" anna "slipmode doctor && slipmode --version | grep -q 'report  *D3'"
 refused "doctor without gnuplot names its package" anna "PATH=/nowhere /usr/bin/slipmode doctor" 2 "apt-get install gnuplot-nox"
+check "a new scene runs; editors find the schema of scenes" anna "slipmode new clearance -o mine.toml
+  grep -q '^#:schema file:///usr/share/slipmode/scene.schema.json' mine.toml
+  test -s /usr/share/slipmode/scene.schema.json; slipmode run mine.toml -o out/mine; test -s out/mine/report.html"
 check "manual pages, completion" anna "test -s /usr/share/man/man1/slipmode-orbit-find.1.gz
   . /usr/share/bash-completion/completions/slipmode
   COMP_WORDS=(slipmode orbit f); COMP_CWORD=2; _slipmode slipmode f orbit; test \"\${COMPREPLY[*]}\" = find"

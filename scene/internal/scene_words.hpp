@@ -17,6 +17,8 @@ inline const std::vector<std::string> kUnits = {"dimensionless", "SI"};
 /// In the order of StructureSpec's alternatives.
 inline const std::vector<std::string> kStructures = {"chain", "beam", "masses", "matrices"};
 
+inline const std::vector<std::string> kDrives = {"belt", "shaker", "force"};
+
 /// Of a chain, the left one first.
 inline const std::vector<std::string> kEnds = {"fixed-free", "free-fixed", "fixed-fixed", "free-free"};
 
