@@ -56,11 +56,11 @@ Figure bifurcation_diagram(const std::vector<BifurcationPanel>& panels, const Bi
   }
   figure.show(diagram_drawing(panels, labels, x, y));
   const double bottom = 90.0 / figure.height(), top = 1.0 - 40.0 / figure.height();
-  figure.command(fmt::format("set multiplot layout {},1 margins 0.1,0.975,{:.4f},{:.4f} spacing 0,{:.4f}", count,
+  figure.command(fmt::format("set multiplot layout {},1 margins 0.125,0.975,{:.4f},{:.4f} spacing 0,{:.4f}", count,
                              bottom, top, 45.0 / figure.height()));
   figure.command("unset key");
   figure.command("set xrange " + padded_range(x.low, x.high, 0.012));
-  figure.command("set yrange " + padded_range(y.low, y.high));
+  figure.command("set yrange " + padded_range(y.low, y.high) + "; set format y '%g'");
   for (int i = 0; i < count; ++i) {
     const bool last = i + 1 == count;
     const BifurcationPanel points = thinned(panels[i], x, y, 1100.0, 0.5 * panel_height);

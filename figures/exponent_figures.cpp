@@ -101,7 +101,7 @@ Figure exponent_convergence(const std::vector<ExponentHistory>& models, const st
       range.include(model.running.row(i).tail(model.running.cols() - settled).transpose());
   }
   range.include(0.0);
-  figure.command(fmt::format("set multiplot layout {},1 margins 0.115,0.97,{:.4f},{:.4f} spacing 0,{:.4f}", count,
+  figure.command(fmt::format("set multiplot layout {},1 margins 0.125,0.97,{:.4f},{:.4f} spacing 0,{:.4f}", count,
                              75.0 / figure.height(), 1.0 - 40.0 / figure.height(), 45.0 / figure.height()));
   figure.command("unset key");
   figure.command(fmt::format("set xrange [0:{:.10g}]", end));

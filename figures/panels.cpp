@@ -91,7 +91,7 @@ Figure panel_grid(const std::vector<Panel>& panels, const PanelLayout& layout) {
   for (const Panel& panel : panels) all.include(panel, layout.log_y);
   const double height = figure.height();
   const double gap_x = columns == 1 ? 0.0 : (layout.shared_y ? 0.03 : 0.085);
-  figure.command(fmt::format("set multiplot layout {},{} margins 0.115,0.98,{:.4f},{:.4f} spacing {:.3f},{:.4f}", rows,
+  figure.command(fmt::format("set multiplot layout {},{} margins 0.14,0.98,{:.4f},{:.4f} spacing {:.3f},{:.4f}", rows,
                              columns, 75.0 / height, 1.0 - 95.0 / height, gap_x,
                              (layout.shared_x ? 45.0 : 90.0) / height));
   if (layout.log_y) figure.command("set logscale y; set format y '%.0e'");
@@ -104,6 +104,7 @@ Figure panel_grid(const std::vector<Panel>& panels, const PanelLayout& layout) {
     figure.command(i == 0 ? std::string(layout.legend.empty() ? kLegendAbove : layout.legend) : "unset key");
     figure.command(
         fmt::format("set xrange {}; set yrange {}", range_text(ranges.x, false), range_text(ranges.y, layout.log_y)));
+    figure.command(x_tics(ranges.x.low, ranges.x.high, columns));
     figure.command(fmt::format("set title \"{}\" offset 0,-0.7", literal(panels[static_cast<std::size_t>(i)].title)));
     figure.command(left ? fmt::format("set ylabel \"{}\"", layout.y_label) : std::string("unset ylabel"));
     if (layout.shared_y) {

@@ -59,7 +59,7 @@ Figure phase_portraits(const std::vector<PhasePortrait>& portraits, const Portra
   }
 
   const double height = figure.height();
-  figure.command(fmt::format("set multiplot layout {},{} margins 0.095,0.985,{:.4f},{:.4f} spacing {},{:.4f}", rows,
+  figure.command(fmt::format("set multiplot layout {},{} margins 0.11,0.985,{:.4f},{:.4f} spacing {},{:.4f}", rows,
                              columns, 95.0 / height, 1.0 - 45.0 / height, shared_axes ? 0.02 : 0.065, 85.0 / height));
   figure.command("unset key");
   for (int i = 0; i < count; ++i) {
@@ -69,6 +69,7 @@ Figure phase_portraits(const std::vector<PhasePortrait>& portraits, const Portra
     const std::string block = figure.data({portraits[i].displacement, portraits[i].velocity});
     figure.command(fmt::format("set title \"{}\" offset 0,-0.6", literal(portraits[i].title)));
     figure.command("set xrange " + padded_range(box.left, box.right));
+    figure.command(x_tics(box.left, box.right, columns));
     figure.command("set yrange " + padded_range(box.low, box.high, 0.06));
     figure.command(i % columns == 0
                        ? fmt::format("set ylabel \"{}\"", axis_label(layout.velocity, layout.velocity_unit))

@@ -20,6 +20,21 @@ void common_style(Figure& figure) {
   figure.command("set key noopaque samplen 2.5 spacing 1.15");
 }
 
+std::string x_tics(double low, double high, int columns) {
+  constexpr double kCharacters = 105.0, kGap = 2.0;  // across the page; between labels
+  if (columns == 1 || !std::isfinite(high - low) || !(high > low)) return "set xtics autofreq";
+  const auto length = [](double tic) { return static_cast<double>(fmt::format("{:.6g}", tic).size()); };
+  double unit = std::pow(10.0, std::floor(std::log10(high - low)) - 1.0);
+  for (;; unit *= 10.0) {
+    for (const double digit : {1.0, 2.0, 5.0}) {
+      const double step = digit * unit;
+      const double longest = std::max(length(step * std::floor(low / step)), length(step * std::floor(high / step)));
+      const double all = (high - low) / step * (longest + kGap);
+      if (all <= kCharacters / columns || step > high - low) return fmt::format("set xtics {:.1g}", step);
+    }
+  }
+}
+
 std::string padded_range(double low, double high, double margin) {
   if (!std::isfinite(low) || !std::isfinite(high)) return "[0:1]";
   constexpr double kRounding = 1e-6;  // narrower than this, a curve is a constant with noise, and labels would be equal

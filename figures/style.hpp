@@ -23,6 +23,10 @@ inline constexpr std::string_view kLegendAbove = "set key at screen 0.985,0.995 
 /// Borders left and below, light grid, ticks outside: the frame that all figures share.
 void common_style(Figure& figure);
 
+/// Tics of the x axis in one of several columns: as many as have room for their labels, which are long where numbers
+/// are small or large (1.5×10⁻⁶).
+[[nodiscard]] std::string x_tics(double low, double high, int columns);
+
 /// A range a little wider than the data: "[low:high]". Never empty: a constant stands in the middle, and without data
 /// (infinite bounds) it is "[0:1]".
 [[nodiscard]] std::string padded_range(double low, double high, double margin = 0.04);
