@@ -92,7 +92,7 @@ std::string summary_text(const DrivenValidationReport& report, const scene::Scen
       report.noise.mean_wasserstein, report.noise.median_wasserstein, 100.0 * report.noise.same_label,
       100.0 * report.noise.same_period, results::peaks_text(report.peaks));
   if (report.cost.wall > 0.0) {
-    out += fmt::format("  time of {:g} cycles at {:g} Hz, full model: {:.1f} ms\n", scene.shaken.cost_cycles,
+    out += fmt::format("  time of {:g} cycles at {:g} Hz, full model: {:.3g} ms\n", scene.shaken.cost_cycles,
                        scene::drive_parameter(scene), 1e3 * report.cost.wall);
   }
   for (const DrivenCandidateReport& candidate : report.candidates) out += '\n' + candidate_text(candidate, report);

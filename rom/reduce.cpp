@@ -54,10 +54,11 @@ void check_contacts(const std::vector<friction::Contact>& contacts, const Eigen:
   const Eigen::VectorXd sigma = Eigen::JacobiSVD<Eigen::MatrixXd>(seen).singularValues();
   const double independence = seen.cols() > seen.rows() ? 0.0 : sigma[sigma.size() - 1] / sigma[0];
   if (!(independence >= kVisible)) {
-    throw InvalidInput(
-        fmt::format("reduce: a basis of {} vectors cannot tell its {} contacts apart (smallest to largest "
-                    "singular value of their projections {:.3g}, at least {:.0e} needed). Keep more vectors",
-                    Phi.cols(), contacts.size(), independence, kVisible));
+    throw InvalidInput(fmt::format(
+        "reduce: a basis of {} vectors cannot tell its {} contacts apart (smallest to largest "
+        "singular value of their projections {:.3g}, at least {:.0e} needed). Keep more vectors: {} or more by --modes "
+        "or reduction.modes",
+        Phi.cols(), contacts.size(), independence, kVisible, std::max<Eigen::Index>(Phi.cols() + 1, seen.cols())));
   }
 }
 

@@ -77,7 +77,8 @@ ReductionSpec read_reduction(TomlReader in, const Scene& scene) {
   ReductionSpec reduction;
   reduction.basis = static_cast<BasisChoice>(in.choice_or("basis", 0, basis_words(scene)));
   check_sensors(in, "basis", reduction.basis, scene);
-  if (in.has("modes") && in.has("energy")) in.fail("modes", "energy is given too", "either modes or energy");
+  if (in.has("modes") && in.has("energy"))
+    in.fail("modes", "energy is given too", "either modes or energy; --set reduction={modes=2} replaces both");
   read_fields(in, reduction.choice, {.limits = [&](std::string_view key, const Limits& own) {
                 return key == "modes" ? mode_limits(scene) : own;
               }});

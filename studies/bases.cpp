@@ -112,8 +112,8 @@ Eigen::Index modes_taken(const scene::Scene& scene, const pod::NamedBasis& choic
   if (is_reduced) return available;
   if (choice.captured.size() == 0 && scene.reduction.choice.modes == 0)
     throw InvalidInput(fmt::format("'{}' leaves the number of {}s open; say how many with --modes", file, choice.name));
-  return pod::chosen_modes(scene.reduction.choice, choice.captured, available,
-                           fmt::format("the {}s of '{}'", choice.name, file));
+  return chosen_modes(scene, scene.reduction.choice, choice.captured, available,
+                      fmt::format("the {}s of '{}'", choice.name, file));
 }
 
 /// Processor time of a piece of work, of all its threads [s].
@@ -197,6 +197,13 @@ std::optional<pod::NamedBasis> worded_basis(const scene::Scene& scene, const std
 }
 
 }  // namespace
+
+Eigen::Index chosen_modes(const scene::Scene& scene, const pod::ModeChoice& choice, const Eigen::VectorXd& captured,
+                          Eigen::Index available, const std::string& source) {
+  const Eigen::Index wanted = pod::chosen_modes(choice, captured, available, source);
+  const auto contacts = static_cast<Eigen::Index>(scene.contacts.size());
+  return choice.modes > 0 ? wanted : std::min(available, std::max(wanted, contacts));
+}
 
 results::ShakenModes shaken_modes(const scene::Scene& scene, const fem::Structure& structure,
                                   const pod::Ensemble& snapshots) {

@@ -20,6 +20,12 @@ namespace slipmode::studies {
 [[nodiscard]] results::ShakenModes shaken_modes(const scene::Scene& scene, const fem::Structure& structure,
                                                 const pod::Ensemble& snapshots);
 
+/// How many vectors a choice takes of a basis: by energy no fewer than the scene has contacts, as these have to move
+/// each on its own. Otherwise as pod::chosen_modes.
+[[nodiscard]] Eigen::Index chosen_modes(const scene::Scene& scene, const pod::ModeChoice& choice,
+                                        const Eigen::VectorXd& captured, Eigen::Index available,
+                                        const std::string& source);
+
 /// The basis that a word of a shaken scene means, with all vectors that can be used.
 /// @param motion  bases from motion need an ensemble's modes: called when such a word comes
 /// @throws InvalidInput  for "pomf" without sensors, or "pom" on a beam

@@ -8,6 +8,7 @@
 #include <slipmode/results/provenance.hpp>
 #include <slipmode/results/records.hpp>
 #include <slipmode/rom/reduce.hpp>
+#include <slipmode/scene/own_times.hpp>
 #include <slipmode/scene/shaken.hpp>
 #include <slipmode/studies/bases.hpp>
 #include <slipmode/studies/ensemble.hpp>
@@ -32,7 +33,7 @@ bool gathers_ensemble(const scene::Scene& scene) {
 std::vector<LeftOut> left_out_of(const scene::Scene& scene) {
   std::vector<LeftOut> out;
   if (!gathers_ensemble(scene)) out.push_back({"ensemble, proper orthogonal modes and reduced models", "[ensemble]"});
-  if (!has_section(scene, "validation"))
+  if (!has_section(scene, "validation") && !scene.force)  // under a force orbits are compared
     out.push_back({"comparison of reduced models with the full one", "[validation]"});
   return out;
 }
@@ -96,11 +97,13 @@ class Pipeline {
 
   /// One run as [time] says; where an ensemble on a belt follows, only a stretch to look at.
   void trajectory() {
-    constexpr double kExcerpt = 200.0, kFineSample = 0.1;
+    constexpr double kExcerpt = 5.0, kFineSample = 1.0 / 400.0;  // slowest natural periods
     dynamics::SimulateOptions options = scene::simulate_options(scene_);
-    if (!shaken_ && gathers_ensemble(scene_)) {
-      options.duration = std::min(options.duration, options.transient + kExcerpt);
-      options.sample = std::min(options.sample, kFineSample);
+    const double period =
+        scene_.drive.belt() != nullptr && gathers_ensemble(scene_) ? scene::slowest_period(scene_) : 0.0;
+    if (period > 0.0) {
+      options.duration = std::min(options.duration, options.transient + scene::to_one_digit(kExcerpt * period));
+      options.sample = std::min(options.sample, scene::to_one_digit(kFineSample * period));
     }
     options.on_event = [this](const auto&, const auto&) { return run_.stop == nullptr || !run_.stop->load(); };
     const dynamics::Trajectory run = dynamics::simulate(full_, scene::initial_state(scene_, full_), options);
@@ -147,8 +150,8 @@ class Pipeline {
       const auto motion = [this]() -> const results::ShakenModes& { return *result_.shaken_modes; };
       bases_ = shaken_bases(scene_, full_, motion);
       const pod::Basis basis = shaken_basis(scene_.reduction.basis, scene_, full_, motion);
-      result_.chosen = pod::chosen_modes(scene_.reduction.choice, pod::cumulative(basis.energy), basis.modes(),
-                                         fmt::format("basis '{}'", scene::to_string(scene_.reduction.basis)));
+      result_.chosen = chosen_modes(scene_, scene_.reduction.choice, pod::cumulative(basis.energy), basis.modes(),
+                                    fmt::format("basis '{}'", scene::to_string(scene_.reduction.basis)));
       write_reduced("reduced.h5", basis.truncated(result_.chosen));
       return;
     }

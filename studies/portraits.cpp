@@ -15,14 +15,14 @@ using results::Portrait;
 using results::PortraitSet;
 
 /// Contact 0 of a run from `start`; a run that fails gives an empty portrait rather than no figure at all.
-Portrait run_portrait(const dynamics::HybridSystem& system, const dynamics::State& start, std::string title,
-                      std::string role) {
-  constexpr double kDuration = 500.0, kSample = 0.1;
+Portrait run_portrait(const dynamics::HybridSystem& system, const dynamics::State& start, double horizon,
+                      std::string title, std::string role) {
+  constexpr double kHorizons = 5.0, kSamples = 1000.0;
   Portrait portrait{.title = std::move(title), .role = std::move(role), .displacement = {}, .velocity = {}};
   try {
     const auto run = dynamics::simulate(system, dynamics::handed_on(system, start),
-                                        {.duration = kDuration,
-                                         .sample = kSample,
+                                        {.duration = kHorizons * horizon,
+                                         .sample = horizon / kSamples,
                                          .keep_events = false,
                                          .output = dynamics::SimulateOptions::Output::kContacts});
     portrait.displacement = run.contact_q.row(0);
@@ -52,12 +52,12 @@ Portrait orbit_portrait(const dynamics::HybridSystem& full, const Model& model, 
 }  // namespace
 
 results::PortraitSet level_portraits(const dynamics::HybridSystem& full, const pod::NamedBasis& candidate,
-                                     const diagnostics::ValidationReport& report) {
+                                     const diagnostics::ValidationReport& report, double horizon) {
   constexpr std::size_t kMostPanels = 8;
   constexpr Eigen::Index kFewest = 3;  // one and two modes leave the frame (S4 section 3.4.2)
   const dynamics::HybridSystem at_speed = full.with_drive(friction::Belt::constant(report.speed));
   PortraitSet set{.columns = 4, .portraits = {}};
-  set.portraits.push_back(run_portrait(at_speed, report.full.end,
+  set.portraits.push_back(run_portrait(at_speed, report.full.end, horizon,
                                        fmt::format("full, {}", results::motion_text(report.full.period)), "full"));
   std::vector<const diagnostics::ShareRow*> levels;
   for (const auto& row : report.candidates.front().shares) {
@@ -68,7 +68,7 @@ results::PortraitSet level_portraits(const dynamics::HybridSystem& full, const p
   if (levels.size() >= kMostPanels) levels.erase(levels.begin(), levels.end() - (kMostPanels - 1));
   for (const diagnostics::ShareRow* row : levels) {
     set.portraits.push_back(run_portrait(
-        rom::reduce(at_speed, candidate.basis.truncated(row->modes)), row->attractor->end,
+        rom::reduce(at_speed, candidate.basis.truncated(row->modes)), row->attractor->end, horizon,
         fmt::format("{} {}s, {}", row->modes, candidate.name, results::motion_text(row->attractor->period)),
         candidate.name));
   }

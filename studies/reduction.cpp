@@ -65,7 +65,7 @@ Reduction reduce(const scene::Scene& scene, const dynamics::HybridSystem& full, 
         fmt::format("basis '{}' has no energy shares to choose by; give modes or reduction.modes", name));
   }
   const Eigen::Index taken =
-      pod::chosen_modes(choice, source.captured, source.basis.modes(), fmt::format("basis '{}'", name));
+      chosen_modes(scene, choice, source.captured, source.basis.modes(), fmt::format("basis '{}'", name));
   const pod::Basis basis = source.basis.truncated(taken);
   return {.full = full,
           .model = {.system = rom::reduce(full, basis), .basis = basis},

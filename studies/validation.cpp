@@ -59,11 +59,12 @@ diagnostics::ValidationOptions validation_options(const scene::Scene& scene,
   options.horizon_gap = 2.0 * spec.horizon;
   options.sample = spec.horizon / kHorizonSamples;
   options.horizon_starts = spec.horizon_starts;
+  if (scene.ensemble.spread > 0.0) options.start_spread = scene.ensemble.spread;
   options.orbit_speeds = spec.orbits;
   options.orbit_tolerance = spec.orbit_tolerance;
   options.chosen = bases.size() == 1 ? available
-                                     : pod::chosen_modes(scene.reduction.choice, first.captured, available,
-                                                         fmt::format("the ensemble's {} basis", first.name));
+                                     : chosen_modes(scene, scene.reduction.choice, first.captured, available,
+                                                    fmt::format("the ensemble's {} basis", first.name));
   options.grow = options.modes.empty();
   if (options.grow) options.modes = diagnostics::mode_ladder(available, options.chosen);
   options.sweep_values = spec.speeds.values();
@@ -93,7 +94,7 @@ Validation validate_belt(const scene::Scene& scene, const std::vector<pod::Named
   const auto report = std::make_shared<const diagnostics::ValidationReport>(
       diagnostics::validate(full, bases, scene::initial_state(scene, full), options));
   if (report->interrupted) throw Interrupted();
-  const auto levels = level_portraits(full, bases.front(), *report);
+  const auto levels = level_portraits(full, bases.front(), *report, scene.validation.horizon);
   const auto orbits = orbit_portraits(full, bases.front(), *report);
   const auto write = [report, scene, levels, orbits](results::StoreWriter& writer) {
     const results::Units units = results::Units::of(scene.units);

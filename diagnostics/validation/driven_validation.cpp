@@ -3,6 +3,7 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/core/none.hpp>
 #include <slipmode/diagnostics/validation/timing.hpp>
+#include <slipmode/diagnostics/validation/validate.hpp>
 #include <slipmode/rom/reduce.hpp>
 
 #include <fmt/format.h>
@@ -42,10 +43,7 @@ void check(const DrivenCase& full, const std::vector<pod::NamedBasis>& candidate
 std::vector<Eigen::Index> sizes(const pod::NamedBasis& candidate, const std::vector<Eigen::Index>& asked) {
   std::vector<Eigen::Index> out;
   const Eigen::Index available = candidate.basis.modes();
-  if (asked.empty()) {
-    for (Eigen::Index L = 1; L <= available; ++L) out.push_back(L);
-    return out;
-  }
+  if (asked.empty()) return mode_ladder(available, available);
   std::copy_if(asked.begin(), asked.end(), std::back_inserter(out),
                [available](Eigen::Index L) { return L >= 1 && L <= available; });
   return out;

@@ -11,7 +11,7 @@ namespace slipmode::diagnostics {
 
 struct DrivenValidationOptions {
   std::vector<double> values = {};       ///< of the swept parameter, not empty (shaker frequencies [Hz])
-  std::vector<Eigen::Index> modes = {};  ///< L to try, those that a basis has; empty: 1..basis size
+  std::vector<Eigen::Index> modes = {};  ///< L to try, those that a basis has; empty: mode_ladder of the basis' size
   SweepMode mode = SweepMode::kIndependent;
   std::size_t segments = 1;
   DrivenOptions driven = {};

@@ -141,7 +141,8 @@ class Validation {
     std::vector<dynamics::State> starts = {start_};
     if (count == 0) return starts;
     const auto centre = RandomStateOptions::Centre::kRest;
-    for (const dynamics::State& shift : random_states(full_, {.count = count, .spread = 0.1, .centre = centre})) {
+    for (const dynamics::State& shift :
+         random_states(full_, {.count = count, .spread = options_.start_spread, .centre = centre})) {
       starts.push_back({.time = 0.0, .q = start_.q + shift.q, .v = start_.v + shift.v});
     }
     return starts;

@@ -23,11 +23,12 @@ struct ValidationOptions {
   double horizon = 100.0;                 ///< of the shared-start comparison [s]
   int horizon_starts = 16;                ///< starts on the full model's attractor
   double horizon_gap = 200.0;             ///< between those starts [s]
+  double start_spread = 0.1;              ///< of further starts about the given one, standard deviation [m, m/s]
   double sample = 0.1;                    ///< of the shared-start records [s]
   std::vector<double> orbit_speeds = {};  ///< belt speeds of the periodic-orbit table [m/s]
   double orbit_tolerance = 1e-8;          ///< to which orbits must have settled
   /// Starts of the full model tried at a speed until one leads to a periodic orbit: the given one, then random ones
-  /// about it (spread 0.1). Where several motions coexist the given start alone may lead to chaos.
+  /// about it (start_spread). Where several motions coexist the given start alone may lead to chaos.
   int orbit_starts = 12;
   Eigen::Index orbit_samples = 2048;          ///< per period
   Eigen::Index chosen = 0;                    ///< L of sweep and cost; 0: the first candidate's L at 99 % energy

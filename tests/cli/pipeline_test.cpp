@@ -13,7 +13,7 @@ using testing::HasSubstr;
 
 /// What must not depend on the number of threads: everything but times.
 nlohmann::json without_times(nlohmann::json summary) {
-  for (const char* key : {"seconds", "folder"}) summary.erase(key);
+  for (const char* key : {"seconds", "folder", "report"}) summary.erase(key);
   summary["validation"].erase("cost");
   return summary;
 }
@@ -102,6 +102,47 @@ TEST(Run, OfOwnMatricesIsComparedInItsOwnTimes) {
   for (const auto& row : validation["bases"]["POM"]["shares"]) {
     EXPECT_EQ(row.contains("failure"), row["modes"] < 2) << row << ": one mode cannot tell two contacts apart";
   }
+}
+
+// Slowest period 14 μs: 500 units of time of portraits would be 35 million periods.
+TEST(Run, OfASmallFastStructureIsDrawnInItsOwnTimes) {
+  const TemporaryFolder folder;
+  write_file(folder.path() / "fast.toml",
+             "units = \"SI\"\n[structure]\nkind = \"chain\"\nmasses = 3\nmass = 1e-9\nstiffness = 1e3\ndamping = 1e-9\n"
+             "[[contact]]\nat = 3\nlaw = \"coulomb\"\nmu_s = 0.4\nmu_k = 0.2\nnormal_load = 1e-4\n"
+             "[drive]\nkind = \"belt\"\nspeed = 0.01\n[ensemble]\nmembers = 2\nspread = 1e-8\n[validation]\n");
+  const Outcome outcome = slipmode_in(folder, {"run", "fast.toml", "-o", "out", "--json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NEAR(outcome.json()["chosen_times"]["period"], 1.412e-5, 1e-8);  // 2π/(2 ω sin(π/14)), ω² = k/m
+  const slipmode::results::StoreReader trajectory(folder.path() / "out/trajectory.h5");
+  const Eigen::VectorXd times = trajectory.vector("trajectory/time");
+  EXPECT_NEAR(times[times.size() - 1] - times[0], 7e-5, 1e-8) << "five periods";
+  EXPECT_EQ(times.size(), 1751) << "every 4e-8";
+  const slipmode::results::StoreReader validation(folder.path() / "out/validation.h5");
+  EXPECT_EQ(validation.vector("portraits/levels/00/displacement").size(), 5001);
+}
+
+// 85 % of the energy is in one mode; two contacts need two.
+TEST(Run, TakesNoFewerModesByEnergyThanThereAreContacts) {
+  const TemporaryFolder folder;
+  write_file(folder.path() / "own.toml", kOwnMatrices);
+  const Words asked = {"run", "own.toml", "-o", "out", "--json"};
+  const Outcome by_energy = slipmode_in(folder, asked + Words{"--set", "reduction={energy=0.5}"});
+  ASSERT_EQ(by_energy.exit_code, 0) << by_energy.err;
+  EXPECT_EQ(by_energy.json()["pod"]["chosen_modes"], 2);
+  const Outcome one = slipmode_in(folder, asked + Words{"--set", "reduction={modes=1}"});
+  EXPECT_EQ(one.exit_code, 2);
+  EXPECT_THAT(one.err, HasSubstr("2 or more by --modes or reduction.modes"));
+}
+
+TEST(Run, OpensItsReportOnlyWhereThereIsADisplay) {
+  const TemporaryFolder folder;
+  write_file(folder.path() / "two.toml", kTwoContacts);
+  for (const char* name : {"DISPLAY", "WAYLAND_DISPLAY"}) unsetenv(name);
+  const Outcome outcome = slipmode_in(folder, {"run", "two.toml", "-o", "out", "--open"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, testing::EndsWith("Not opened: no display here\n"
+                                             "To look at it all, in a browser: out/report.html\n"));
 }
 
 TEST(Run, OfManyMassesComparesFewReducedModels) {
