@@ -53,14 +53,16 @@ std::string mode_table(const scene::Scene& scene, const studies::ModeSets& sets,
     return k < omega.size() ? fmt::format("{:.8g}", omega[k] * scale) : std::string("–");
   };
   for (Eigen::Index k = 0; k < sets.slipping.omega.size(); ++k) {
-    std::vector<std::string> row = {fmt::format("{}", k + 1), cell(sets.slipping.omega, k, 1.0),
-                                    cell(sets.slipping.omega, k, hertz(1.0)), fmt::format("{:.4g}", ratios[k]),
-                                    cell(sets.sticking.omega, k, 1.0)};
+    std::vector<std::string> row = {
+        fmt::format("{}", k + 1), cell(sets.slipping.omega, k, 1.0), cell(sets.slipping.omega, k, hertz(1.0)),
+        std::isnan(ratios[k]) ? "–" : fmt::format("{:.4g}", ratios[k]), cell(sets.sticking.omega, k, 1.0)};
     if (scene.beam() != nullptr) row.push_back(cell(sets.sticking.omega, k, hertz(1.0)));
     if (springs) row.push_back(cell(sets.compliant.omega, k, hertz(1.0)));
     table.add(row);
   }
-  return table.str();
+  const bool coupled = ratios.array().isNaN().any();
+  return table.str() +
+         (coupled ? "damping ratio –: damping couples this mode to others, or it is one of free motion\n" : "");
 }
 
 /// What shear and rotary inertia change, mode by mode.

@@ -16,13 +16,19 @@ struct OrbitFindArguments {
   std::string output;
 };
 
+Report with_nothing_kept(Report report) {
+  report.text += "Nothing was kept: -o orbit.h5 keeps it, for plot, info, report and orbit spectrum\n";
+  return report;
+}
+
 Report run_balance(const OrbitFindArguments& arguments, const studies::Family& model) {
   const studies::OrbitSearch& search = arguments.search.search;
   const auto found = std::make_shared<const studies::BalanceFound>(studies::find_balance(
       model, studies::balance_search(arguments.balance.words, arguments.search.start, search.order),
       {.segments = search.segments, .tolerance = search.tolerance}));
   Report report = balance_report("orbit find", model, *found);
-  if (arguments.output.empty() || !found->balance.converged) return report;
+  if (!found->balance.converged) return report;
+  if (arguments.output.empty()) return with_nothing_kept(report);
   studies::content_of(model, found).save(arguments.output);
   report.data["file"] = arguments.output;
   report.text += fmt::format("Balance: {}\n", arguments.output);
@@ -46,11 +52,10 @@ Report run(const Session& session, const OrbitFindArguments& arguments) {
   report.data = {{"verb", "orbit find"}, {"title", scene.title}, {"model", model.title()}};
   report.data.update(orbit_json(system, result.orbit, amplitudes));
   report.text = fmt::format("{}, {}: {}", scene.title, model.title(), orbit_text(system, result.orbit, amplitudes));
-  if (!arguments.output.empty()) {
-    studies::content_of(model, std::make_shared<const orbits::PeriodicOrbit>(result.orbit)).save(arguments.output);
-    report.data["file"] = arguments.output;
-    report.text += fmt::format("Orbit: {}\n", arguments.output);
-  }
+  if (arguments.output.empty()) return with_nothing_kept(report);
+  studies::content_of(model, std::make_shared<const orbits::PeriodicOrbit>(result.orbit)).save(arguments.output);
+  report.data["file"] = arguments.output;
+  report.text += fmt::format("Orbit: {}\n", arguments.output);
   return report;
 }
 

@@ -2,13 +2,15 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <cmath>
 
 namespace slipmode {
 
 std::string describe(const NumericalFailure& failure) {
   constexpr Eigen::Index kShown = 20;
-  std::string text =
-      fmt::format("{}\n  time {:.17g}, residual {:.6g}\n  state", failure.what(), failure.time, failure.residual);
+  std::string text = fmt::format("{}\n  time {:.17g}", failure.what(), failure.time);
+  if (!std::isnan(failure.residual)) text += fmt::format(", residual {:.6g}", failure.residual);
+  text += "\n  state";
   for (Eigen::Index i = 0; i < std::min(failure.state.size(), kShown); ++i) {
     text += fmt::format(" {:.17g}", failure.state[i]);
   }

@@ -164,9 +164,8 @@ std::string advice(const Descent& d, const ShootingOptions& options) {
     case ShootingStatus::kSingular:
       return fmt::format(
           "no orbit found: {}; the closing conditions are singular there (smallest singular value {:.1e} of the "
-          "largest), as at a fold or where a symmetric orbit loses its symmetry. Try half_period for a symmetric "
-          "orbit, "
-          "another parameter, or continuation past the fold",
+          "largest), as at a fold or where a symmetric orbit loses its symmetry. Try the half period of a symmetric "
+          "orbit (--symmetric), another parameter, or continuation past the fold",
           where, d.smallest_singular);
     case ShootingStatus::kStalled:
       if (d.best.largest < 1e-8)
