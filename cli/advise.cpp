@@ -1,110 +1,208 @@
+#include <slipmode/core/files.hpp>
 #include <slipmode/results/trade_store.hpp>
 #include <slipmode/scene/own_times.hpp>
+#include <slipmode/studies/advice.hpp>
 #include <slipmode/studies/result_file.hpp>
-#include <slipmode/trade/effects.hpp>
 #include <slipmode/trade/variants.hpp>
+#include "cli/json_values.hpp"
 #include "cli/text_table.hpp"
 #include "cli/trade_report.hpp"
 #include "cli/trade_request.hpp"
 #include "cli/verbs.hpp"
 
 #include <fmt/format.h>
-#include <optional>
+#include <array>
+#include <cmath>
 
 namespace slipmode::cli {
 namespace {
 
 struct AdviseArguments {
-  std::string scene, output, measure, error = "1%";
+  std::string scene, output, question, measure, write, error = "2%";
 };
 
-std::vector<trade::Variant> variants_of(const scene::Scene& scene, const std::vector<trade::Effect>& effects) {
-  std::vector<trade::Variant> all = {trade::as_it_stands(scene)};
-  for (const trade::Effect& effect : effects) all.push_back(effect.without);
-  return all;
-}
+constexpr std::array kQuestions = {trade::Question::kMotion, trade::Question::kStatistics};
 
-std::string names_of(const std::vector<trade::Effect>& effects, const std::vector<trade::EffectAdvice>& advice,
-                     trade::Verdict verdict) {
-  std::string names;
-  for (std::size_t i = 0; i < effects.size(); ++i) {
-    if (advice[i].verdict == verdict) names += (names.empty() ? "" : ", ") + effects[i].name;
+studies::AdviceRequest request_of(const AdviseArguments& arguments) {
+  studies::AdviceRequest request{.bound = parse_percent("--error", arguments.error)};
+  if (!arguments.measure.empty()) request.only = parse_measure(arguments.measure);
+  if (arguments.question.empty()) return request;
+  for (const trade::Question question : kQuestions) {
+    if (trade::to_string(question) == arguments.question) request.question = question;
   }
-  return names;
+  if (!request.question) {
+    throw InvalidInput(fmt::format("--question {}: no such question; valid: motion, statistics", arguments.question));
+  }
+  if (request.only && trade::question_of(*request.only) != *request.question) {
+    throw InvalidInput(fmt::format("--measure {}: answers the question {}, not {}; give one of the two options",
+                                   arguments.measure, trade::to_string(trade::question_of(*request.only)),
+                                   arguments.question));
+  }
+  return request;
 }
 
-/// What all effects come to, verdict by verdict.
-std::string summary(const std::vector<trade::Effect>& effects, const std::vector<trade::EffectAdvice>& advice) {
-  std::string text;
-  const auto add = [&](trade::Verdict verdict, const std::string& words) {
-    const std::string names = names_of(effects, advice, verdict);
-    if (!names.empty()) text += fmt::format("{}: {}\n", words, names);
-  };
-  add(trade::Verdict::kNeeded, "The scene needs");
-  add(trade::Verdict::kSpare, "It could leave out");
-  add(trade::Verdict::kUnclear, "Not to be told from scatter");
-  add(trade::Verdict::kFailed, "It does not run without");
+/// The answer to one question alone, of every effect.
+trade::Judgement judged(const studies::Advice& advice, std::size_t effect, trade::Question question) {
+  const trade::Ask& asked = advice.asked.ask;
+  return trade::judge(advice.study.rows[advice.lean->alone[effect]],
+                      question == asked.question ? asked : trade::Ask{.question = question, .bound = asked.bound});
+}
+
+std::string error_cell(const trade::Judgement& judgement) {
+  return std::isnan(judgement.error) ? "–" : trade::error_text(judgement);
+}
+
+std::string time_cell(const studies::Advice& advice, const trade::Row& row) {
+  return fixed(1.0 / trade::speed_up(advice.study, row), 2);
+}
+
+/// Row by row what was tried to be left out, each together with all before it.
+std::string steps_text(const studies::Advice& advice) {
+  if (advice.lean->steps.empty()) return "";
+  TextTable table({"left out together, in this order", "", "furthest off", "time of a run"});
+  for (const trade::Step& step : advice.lean->steps) {
+    const trade::Row& row = advice.study.rows[step.row];
+    table.add({advice.effects[step.effect].name, step.left_out ? "left out" : "stays",
+               error_cell(trade::judge(row, advice.asked.ask)), time_cell(advice, row)});
+  }
+  if (advice.lean->verified) {
+    const trade::Row& row = advice.study.rows[*advice.lean->verified];
+    table.add(
+        {"the whole, measured once more", "", error_cell(trade::judge(row, advice.asked.ask)), time_cell(advice, row)});
+  }
+  std::string text = table.str();
+  for (const std::size_t effect : advice.lean->put_back) {
+    text += fmt::format("{}: given back, as the whole did not keep to the bound.\n", advice.effects[effect].name);
+  }
   return text;
 }
 
-Json effect_json(const trade::Effect& effect, const trade::EffectAdvice& advice) {
-  return {{"effect", effect.name},
-          {"verdict", trade::to_string(advice.verdict)},
-          {"measure", trade::to_string(advice.measure)},
-          {"time_share", advice.time_share},
-          {"sentence", advice.sentence}};
+std::string effects_text(const studies::Advice& advice) {
+  TextTable table({"each alone", "for the motion", "off by", "for the statistics", "off by", "time of a run"});
+  for (std::size_t e = 0; e < advice.effects.size(); ++e) {
+    const trade::Row& row = advice.study.rows[advice.lean->alone[e]];
+    std::vector<std::string> cells = {row.variant.name};
+    for (const trade::Question question : kQuestions) {
+      const trade::Judgement judgement = judged(advice, e, question);
+      cells.emplace_back(trade::to_string(judgement.verdict));
+      cells.push_back(error_cell(judgement));
+    }
+    cells.push_back(time_cell(advice, row));
+    table.add(std::move(cells));
+  }
+  const trade::Schedule& schedule = advice.study.schedule;
+  return fmt::format(
+      "Motion: dX, dE up to {:g} from {} shared starts. Statistics: points, spread, energy, stick over "
+      "{:g}, mean of runs.\n{}{}",
+      schedule.horizon, schedule.starts * schedule.runs, schedule.duration, table.str(), failures_text(advice.study));
+}
+
+Json judgement_json(const trade::Judgement& judgement) {
+  return {{"verdict", trade::to_string(judgement.verdict)},
+          {"measure", trade::to_string(judgement.measure)},
+          {"error_percent", json_number(judgement.error)},
+          {"noise_percent", json_number(judgement.noise)}};
+}
+
+Json effect_json(const studies::Advice& advice, std::size_t e) {
+  const trade::Effect& effect = advice.effects[e];
+  const trade::Row& row = advice.study.rows[advice.lean->alone[e]];
+  Json out = merged({{"effect", effect.name}, {"kind", trade::to_string(effect.kind)}, {"row", row.variant.name}},
+                    judgement_json(judged(advice, e, advice.asked.ask.question)),
+                    Json{{"time_share", json_number(1.0 / trade::speed_up(advice.study, row))}});
+  for (const trade::Question question : kQuestions) {
+    out[std::string(trade::to_string(question))] = judgement_json(judged(advice, e, question));
+  }
+  return out;
+}
+
+Json step_json(const studies::Advice& advice, const trade::Step& step) {
+  const trade::Row& row = advice.study.rows[step.row];
+  return merged({{"effect", advice.effects[step.effect].name}, {"left_out", step.left_out}},
+                judgement_json(trade::judge(row, advice.asked.ask)),
+                Json{{"time_share", json_number(1.0 / trade::speed_up(advice.study, row))}});
+}
+
+Json lean_json(const studies::Advice& advice) {
+  Json names = Json::array(), back = Json::array();
+  for (const std::size_t e : advice.lean->left_out) names.push_back(advice.effects[e].name);
+  for (const std::size_t e : advice.lean->put_back) back.push_back(advice.effects[e].name);
+  Json out = {{"left_out", names}, {"given_back", back}};
+  if (!advice.lean->verified) return out;
+  const trade::Row& row = advice.study.rows[*advice.lean->verified];
+  out.update(judgement_json(trade::judge(row, advice.asked.ask)));
+  out["time_share"] = json_number(1.0 / trade::speed_up(advice.study, row));
+  return out;
+}
+
+Report report_of(const studies::Advice& advice, const scene::Scene& scene) {
+  const studies::Asked& asked = advice.asked;
+  const std::string found = asked.sentence + '\n';
+  const std::string said = trade::lean_sentences(*advice.lean, advice.effects, advice.study, asked.ask);
+  Report report;
+  report.text = fmt::format("{}\n{}{}\n{}\n{}", scene.title, found, said, steps_text(advice), effects_text(advice));
+  Json effects = Json::array(), steps = Json::array();
+  for (std::size_t e = 0; e < advice.effects.size(); ++e) effects.push_back(effect_json(advice, e));
+  for (const trade::Step& step : advice.lean->steps) steps.push_back(step_json(advice, step));
+  report.data = {{"verb", "advise"},
+                 {"sentence", found + said},
+                 {"question", trade::to_string(asked.ask.question)},
+                 {"limit_percent", asked.ask.bound},
+                 {"exponent", asked.exponent ? json_number(*asked.exponent) : Json()},
+                 {"exponent_error", asked.exponent ? json_number(asked.exponent_error) : Json()},
+                 {"lean", lean_json(advice)},
+                 {"steps", steps},
+                 {"effects", effects},
+                 {"study", to_json(advice.study, scene)}};
+  return report;
 }
 
 Report run(const Session& session, const AdviseArguments& arguments) {
   if (!arguments.output.empty()) require_writable(arguments.output);
+  if (!arguments.write.empty()) require_writable(arguments.write);
   const scene::Scene scene = scene::with_own_times(session.load(arguments.scene));
-  const double limit = parse_percent("--error", arguments.error);
-  std::optional<trade::Measure> only;
-  if (!arguments.measure.empty()) only = parse_measure(arguments.measure);
-  const trade::Schedule schedule = trade::schedule_of(scene);
-  const std::vector<trade::Effect> effects = trade::effects_of(scene);
-  const std::vector<trade::Variant> variants = variants_of(scene, effects);
-  std::optional<studies::ResultFile> file;
-  if (!arguments.output.empty()) {
-    file.emplace(arguments.output, scene, results::FileKind::kTrade, "slipmode advise", "", session.division(),
-                 studies::Pieces{variants.size(), "configurations"});
-  }
-  trade::StudyOptions options{.schedule = schedule};
-  options.parallel = session.run_options().parallel("advise");
-  if (file) results::keep_in(*file->journal(), options);
-  const trade::Study done = trade::study(scene, trade::as_it_stands(scene), variants, {}, options);
-  if (file) file->finish([&](results::StoreWriter& writer) { results::store_study(writer, done, scene); });
-  if (session.has_a_share()) return part_made(session, *file, arguments.output, "configurations");
+  const studies::AdviceRequest request = request_of(arguments);
+  const std::size_t pieces = trade::effects_of(scene).size();
+  studies::ResultFile file(arguments.output, scene, results::FileKind::kTrade, "slipmode advise",
+                           fmt::format("{}", request.bound), session.division(), studies::Pieces{pieces, "effects"},
+                           studies::Unfinished::kKept);
+  const studies::Advice advice = studies::advise(scene, request, session.run_options(), file.journal());
+  file.finish([&](results::StoreWriter& writer) { results::store_study(writer, advice.study, scene); });
+  if (session.has_a_share()) return part_made(session, file, arguments.output, "configurations");
 
-  Report report;
-  std::vector<trade::EffectAdvice> advice;
-  Json list = Json::array();
-  report.text = study_text(done, scene);
-  for (std::size_t i = 0; i < effects.size(); ++i) {
-    advice.push_back(trade::advise(effects[i], done.rows.front(), done.rows[i + 1], limit, only));
-    list.push_back(effect_json(effects[i], advice.back()));
-    report.text += advice.back().sentence + '\n';
+  Report report = report_of(advice, scene);
+  tell_resumed(session, file.resumed(), "configurations", report);
+  if (!arguments.output.empty()) {
+    report.data["file"] = arguments.output;
+    report.text += fmt::format("Result: {}\n", arguments.output);
   }
-  report.text += summary(effects, advice);
-  report.data = {{"verb", "advise"}, {"limit_percent", limit}, {"effects", list}, {"study", to_json(done, scene)}};
-  if (!file) return report;
-  report.data["file"] = arguments.output;
-  tell_resumed(session, file->resumed(), "configurations", report);
-  report.text += fmt::format("Result: {}\n", arguments.output);
+  if (arguments.write.empty()) return report;
+  const trade::Variant lean =
+      advice.lean->verified ? advice.study.rows[*advice.lean->verified].variant : trade::as_it_stands(scene);
+  write_renamed(arguments.write, trade::scene_text(lean));
+  report.data["scene"] = arguments.write;
+  report.text += fmt::format("Scene: {}\n{}", arguments.write, how_to_run(lean, arguments.write));
   return report;
 }
 
 }  // namespace
 
 Verb add_advise(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("advise", "what a scene needs, and what it could leave out");
+  CLI::App* command = app.add_subcommand("advise", "what a scene requires, and what it can do without");
   const auto arguments = std::make_shared<AdviseArguments>();
   command->add_option("SCENE", arguments->scene, "scene file (TOML)")->required();
   command->add_option("-o,--output", arguments->output, "result file (HDF5)");
-  command->add_option("--measure", arguments->measure,
-                      "the one output that counts: dX, dE, points, spread, energy, stick; default: all");
-  command->add_option("--error", arguments->error, "change of an output that matters; default 1%");
-  command->footer("Example:\n  slipmode advise datasets/beam_12hz/scene.toml");
+  command->add_option("--question", arguments->question,
+                      "motion: where everything is up to the horizon; statistics: of the settled motion; default: "
+                      "the one that the motion found can answer");
+  command->add_option(
+      "--measure", arguments->measure,
+      "the one measure that counts: dX, dE, points, spread, energy, stick; default: all of the question");
+  command->add_option("--error", arguments->error, "bound of what may change; default 2%");
+  command->add_option("--write", arguments->write, "write the scene with only what it requires (TOML)");
+  command->footer(
+      "Example:\n  slipmode advise datasets/chain10/scene.toml --error 2% --write lean.toml\n"
+      "  slipmode advise datasets/beam_12hz/scene.toml --question statistics --error 5%");
   return {.command = command,
           .run = [arguments](const Session& session) { return run(session, *arguments); },
           .divides = true};

@@ -43,16 +43,6 @@ std::vector<trade::Variant> variants_of(const scene::Scene& scene, const std::ve
   return all;
 }
 
-/// How the reduced model of a written scene is run.
-std::string how_to_run(const trade::Row& row, const std::string& path) {
-  if (!row.variant.reduction) return fmt::format("  slipmode simulate {} -o run.h5\n", path);
-  return fmt::format(
-      "  [reduction] says the reduced model; 'slipmode run {} -o DIR' makes it, or step by step\n"
-      "  slipmode simulate {} -o ensemble.h5; slipmode pod ensemble.h5 -o pod.h5; "
-      "slipmode reduce {} pod.h5 -o reduced.h5\n",
-      path, path, path);
-}
-
 Report run(const Session& session, const TradeArguments& arguments) {
   if (!arguments.output.empty()) require_writable(arguments.output);
   if (!arguments.write.empty()) require_writable(arguments.write);
@@ -72,30 +62,28 @@ Report run(const Session& session, const TradeArguments& arguments) {
   const std::vector<trade::Variant> variants = variants_of(scene, axes, bases, arguments.product);
   std::string identity;
   for (const trade::Axis axis : axes) identity += trade::to_string(axis);
-  std::optional<studies::ResultFile> file;
-  if (!arguments.output.empty()) {
-    file.emplace(arguments.output, scene, results::FileKind::kTrade,
-                 fmt::format("slipmode trade{}", arguments.product ? " --product" : ""), identity, session.division(),
-                 studies::Pieces{variants.size(), "configurations known beforehand"});
-  }
+  studies::ResultFile file(arguments.output, scene, results::FileKind::kTrade,
+                           fmt::format("slipmode trade{}", arguments.product ? " --product" : ""), identity,
+                           session.division(), studies::Pieces{variants.size(), "configurations known beforehand"},
+                           studies::Unfinished::kKept);
   trade::StudyOptions options{.schedule = schedule};
   options.parallel = session.run_options().parallel("trade");
-  if (file) results::keep_in(*file->journal(), options);
+  if (file.journal() != nullptr) results::keep_in(*file.journal(), options);
   if (!arguments.product) {
     options.more = [&](const std::vector<trade::Row>& rows) { return trade::worth_combining(rows, limit); };
   }
   const trade::Study done = trade::study(scene, trade::reference_of(scene), variants, bases, options);
-  if (file) file->finish([&](results::StoreWriter& writer) { results::store_study(writer, done, scene); });
-  if (session.has_a_share()) return part_made(session, *file, arguments.output, "configurations");
+  file.finish([&](results::StoreWriter& writer) { results::store_study(writer, done, scene); });
+  if (session.has_a_share()) return part_made(session, file, arguments.output, "configurations");
 
   Report report;
   const std::vector<std::string> advice = recommendations(done, limit);
   report.data = {{"verb", "trade"}, {"trade", to_json(done, scene)}, {"recommendations", advice}};
   report.text = study_text(done, scene);
   for (const std::string& sentence : advice) report.text += sentence + '\n';
+  tell_resumed(session, file.resumed(), "configurations", report);
   if (!arguments.output.empty()) {
     report.data["file"] = arguments.output;
-    tell_resumed(session, file->resumed(), "configurations", report);
     report.text += fmt::format("Result: {}\n", arguments.output);
   }
   if (!arguments.figures.empty()) {
@@ -110,7 +98,7 @@ Report run(const Session& session, const TradeArguments& arguments) {
   if (arguments.write.empty()) return report;
   write_renamed(arguments.write, trade::scene_text(row.variant));
   report.data["scene"] = arguments.write;
-  report.text += fmt::format("Scene: {}\n{}", arguments.write, how_to_run(row, arguments.write));
+  report.text += fmt::format("Scene: {}\n{}", arguments.write, how_to_run(row.variant, arguments.write));
   return report;
 }
 

@@ -80,12 +80,8 @@ std::string study_text(const Study& study, const scene::Scene& scene) {
   for (const double value : study.reference.noise) scatter.push_back(trade::percent_text(value));
   scatter.push_back(milliseconds(study.reference.cost));
   table.add(std::move(scatter));
-  std::string failures;
   for (const Row& row : study.rows) {
-    if (!row.failure.empty()) {
-      failures += fmt::format("  {}: {}\n", row.variant.name, row.failure);
-      continue;
-    }
+    if (!row.failure.empty()) continue;
     std::vector<std::string> cells = {row.variant.name};
     for (const double value : row.error) cells.push_back(trade::percent_text(value));
     cells.push_back(milliseconds(row.cost));
@@ -95,13 +91,28 @@ std::string study_text(const Study& study, const scene::Scene& scene) {
     if (row.variant.reduction) cells.push_back(runs_text(trade::break_even(study, row, scene.time.duration)));
     table.add(std::move(cells));
   }
-  std::string text = fmt::format(
+  return fmt::format(
       "{}\nErrors against the {}; one axis varied at a time, reduced models in every basis and size.\n"
-      "dX, dE up to {:g} from {} shared starts; the others over {:g}; times are processor time of {:g}.\n{}",
+      "dX, dE up to {:g} from {} shared starts; the others over {:g}; times are processor time of {:g}.\n{}{}",
       scene.title, study.reference.variant.name, study.schedule.horizon, study.schedule.starts * study.schedule.runs,
-      study.schedule.duration, study.schedule.timed, table.str());
-  if (!failures.empty()) text += "Could not be run:\n" + failures;
-  return text;
+      study.schedule.duration, study.schedule.timed, table.str(), failures_text(study));
+}
+
+std::string failures_text(const Study& study) {
+  std::string text;
+  for (const Row& row : study.rows) {
+    if (!row.failure.empty()) text += fmt::format("  {}: {}\n", row.variant.name, row.failure);
+  }
+  return text.empty() ? "" : "Could not be run:\n" + text;
+}
+
+std::string how_to_run(const trade::Variant& variant, const std::string& path) {
+  if (!variant.reduction) return fmt::format("  slipmode simulate {} -o run.h5\n", path);
+  return fmt::format(
+      "  [reduction] says the reduced model; 'slipmode run {} -o DIR' makes it, or step by step\n"
+      "  slipmode simulate {} -o ensemble.h5; slipmode pod ensemble.h5 -o pod.h5; "
+      "slipmode reduce {} pod.h5 -o reduced.h5\n",
+      path, path, path);
 }
 
 }  // namespace slipmode::cli

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <slipmode/trade/advice.hpp>
-#include <slipmode/trade/effects.hpp>
 #include <slipmode/trade/study.hpp>
 #include "cli/session.hpp"
 
@@ -16,5 +15,11 @@ namespace slipmode::cli {
 [[nodiscard]] Json to_json(const trade::Study& study, const scene::Scene& scene);
 /// The table for a terminal.
 [[nodiscard]] std::string study_text(const trade::Study& study, const scene::Scene& scene);
+
+/// Why rows have no errors; empty where all have.
+[[nodiscard]] std::string failures_text(const trade::Study& study);
+
+/// How a written scene is run, or its reduced model.
+[[nodiscard]] std::string how_to_run(const trade::Variant& variant, const std::string& path);
 
 }  // namespace slipmode::cli

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <utility>
@@ -40,6 +41,17 @@ std::optional<results::Shard> checked(std::optional<results::Shard> shard, const
 /// Of ranks that compute together, one that gives its values to the first.
 bool is_hand(const Division& division) { return division.ranks != nullptr && division.ranks->own != 0; }
 
+/// Where programs keep what can be made again (XDG Base Directory Specification); empty: nowhere.
+std::filesystem::path cache() {
+  const auto folder = [](const char* variable) {
+    const char* value = std::getenv(variable);
+    return std::filesystem::path(value == nullptr ? "" : value);
+  };
+  if (const auto own = folder("XDG_CACHE_HOME"); own.is_absolute()) return own / "slipmode";
+  const auto home = folder("HOME");
+  return home.is_absolute() ? home / ".cache" / "slipmode" : std::filesystem::path();
+}
+
 std::vector<results::JournalRecord> all_records(const std::vector<results::Part>& parts) {
   std::vector<results::JournalRecord> all;
   for (const results::Part& part : parts) all.insert(all.end(), part.records.begin(), part.records.end());
@@ -49,7 +61,8 @@ std::vector<results::JournalRecord> all_records(const std::vector<results::Part>
 }  // namespace
 
 ResultFile::ResultFile(std::filesystem::path path, scene::Scene scene, results::FileKind kind, std::string command,
-                       const std::string& identity, const Division& division, const Pieces& pieces)
+                       const std::string& identity, const Division& division, const Pieces& pieces,
+                       Unfinished unfinished)
     : path_(std::move(path)),
       scene_(std::move(scene)),
       kind_(kind),
@@ -57,7 +70,10 @@ ResultFile::ResultFile(std::filesystem::path path, scene::Scene scene, results::
       fingerprint_(results::fingerprint(fmt::format("{}\n{}\n{}\n{}\n{}", results::version(), results::rounding(),
                                                     command_, identity, scene::scene_to_toml(scene_)))),
       shard_(checked(division.shard, pieces, path_, fingerprint_)) {
-  if (path_.empty()) return;
+  if (path_.empty()) {
+    if (unfinished == Unfinished::kKept && division.joined.empty()) keep_in_cache();
+    return;
+  }
   if (division.joined.empty() && !is_hand(division)) {
     journal_.emplace(results::Journal::path_for(path_),
                      shard_ ? results::shard_fingerprint(fingerprint_, *shard_) : fingerprint_);
@@ -68,6 +84,19 @@ ResultFile::ResultFile(std::filesystem::path path, scene::Scene scene, results::
   if (shard_) begin_part(division.words);
   if (!division.joined.empty()) join(division.joined);
   resumed_ = finished();
+}
+
+void ResultFile::keep_in_cache() {
+  const std::filesystem::path folder = cache();
+  std::error_code none;
+  if (folder.empty() || (std::filesystem::create_directories(folder, none), none)) return;
+  try {
+    journal_.emplace(results::Journal::path_for(folder / fingerprint_), fingerprint_);
+    resumed_ = finished();
+  } catch (
+      const InvalidInput&) {  // another process computes the same, or the disc is full: it is computed all the same
+    journal_.reset();
+  }
 }
 
 void ResultFile::begin_part(const std::vector<std::string>& words) {
@@ -134,7 +163,7 @@ results::Content ResultFile::finish(std::function<void(results::StoreWriter&)> w
     return content;
   }
   require_all();
-  content.save(path_);
+  if (!path_.empty()) content.save(path_);
   journal_->remove();
   return content;
 }

@@ -9,6 +9,7 @@
 #include <slipmode/scene/scene.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -36,22 +37,31 @@ struct Division {
   const Ranks* ranks = nullptr;
 };
 
+/// What becomes of values that a study without a file had finished when it was stopped.
+enum class Unfinished : std::uint8_t {
+  kDropped,
+  /// Kept in the user's cache ($XDG_CACHE_HOME, else ~/.cache) until the same study is asked again and ends; dropped
+  /// where there is none, or another process computes the same study.
+  kKept,
+};
+
 /// A result in the making, for a file or for memory. Values that a long study finishes are kept in a journal beside its
 /// file until that is whole; the same study, asked again after an interruption, goes on from there. A shard's file is a
 /// part: its journal, complete. Joined parts stand in for the journal of a study whose values are all there. Of ranks
 /// that compute together, the first has file and journal.
 class ResultFile {
  public:
-  /// @param path      empty: in memory only, without a journal
+  /// @param path      empty: in memory only, with a journal as `unfinished` says
   /// @param command   what was asked, for provenance: with the scene, the version, kernels and `identity` it decides
   ///                  whether a journal found beside the file belongs to the same study
   /// @param identity  of what else decides values: the models of files, see identity_of
   /// @throws InvalidInput  as results::Journal; for more shards than pieces; for parts of another study, also where a
   ///                       part would be replaced
   ResultFile(std::filesystem::path path, scene::Scene scene, results::FileKind kind, std::string command,
-             const std::string& identity = "", const Division& division = {}, const Pieces& pieces = {});
+             const std::string& identity = "", const Division& division = {}, const Pieces& pieces = {},
+             Unfinished unfinished = Unfinished::kDropped);
 
-  /// Null without a file.
+  /// Null without a file, but for values kept elsewhere.
   [[nodiscard]] results::Journal* journal() { return journal_ ? &*journal_ : nullptr; }
   /// Values that were found finished.
   [[nodiscard]] std::size_t resumed() const { return resumed_; }
@@ -65,6 +75,7 @@ class ResultFile {
   results::Content finish(std::function<void(results::StoreWriter&)> write);
 
  private:
+  void keep_in_cache();
   void begin_part(const std::vector<std::string>& words);
   void join(const std::vector<results::Part>& parts);
   void require_all() const;

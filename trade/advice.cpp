@@ -15,9 +15,10 @@ namespace slipmode::trade {
 
 namespace {
 
-const Row* row_as_it_stands(const Study& study) {
+/// Where it is the reference it has no row of its own.
+const Row& row_as_it_stands(const Study& study) {
   const auto found = std::ranges::find(study.rows, Axis::kScene, [](const Row& row) { return row.variant.axis; });
-  return found == study.rows.end() ? nullptr : &*found;
+  return found == study.rows.end() ? study.reference : *found;
 }
 
 std::string error_text(const Row& row, Measure measure) {
@@ -118,15 +119,11 @@ std::string percent_text(double value) {
   return value > 0.0 ? fmt::format("{:.1e}", value) : "0";
 }
 
-double speed_up(const Study& study, const Row& row) {
-  const Row* own = row_as_it_stands(study);
-  return own == nullptr ? kNone : own->cost.cpu / row.cost.cpu;
-}
+double speed_up(const Study& study, const Row& row) { return row_as_it_stands(study).cost.cpu / row.cost.cpu; }
 
 double break_even(const Study& study, const Row& row, double duration) {
-  const Row* own = row_as_it_stands(study);
-  if (own == nullptr || !std::isfinite(row.cost.cpu)) return kNone;
-  const double saved = (own->cost.cpu - row.cost.cpu) * duration / row.cost.simulated;
+  if (!std::isfinite(row.cost.cpu)) return kNone;
+  const double saved = (row_as_it_stands(study).cost.cpu - row.cost.cpu) * duration / row.cost.simulated;
   if (!(saved > 0.0)) return std::numeric_limits<double>::infinity();
   return row.basis_seconds > 0.0 ? (row.basis_seconds + row.cost.setup) / saved : 0.0;
 }

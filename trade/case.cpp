@@ -48,7 +48,7 @@ Case build_case(const Variant& variant, const std::vector<OfferedBasis>& bases) 
   if (scene.beam() != nullptr) beam = std::make_shared<const fem::Beam>(scene::build_beam(scene));
   const dynamics::HybridSystem full = beam ? scene::build_system(scene, *beam) : scene::build_system(scene);
   diagnostics::DrivenCase model{.system = full, .readings = readings_of(scene, full, beam.get())};
-  const std::optional<pod::Basis> basis = basis_of(variant, bases);
+  const std::optional<pod::Basis> basis = basis_of(variant, bases, full);
   if (basis) model = diagnostics::reduced_case(model, *basis);
   dynamics::FlowOptions flow = scene::uncertified(scene.flow);
   flow.audit = false;

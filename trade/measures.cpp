@@ -20,6 +20,8 @@ constexpr std::array<Words, kMeasures> kWords = {
 
 std::string_view to_string(Measure measure) { return kWords[static_cast<std::size_t>(measure)].name; }
 
+std::string_view to_string(Question question) { return question == Question::kMotion ? "motion" : "statistics"; }
+
 std::string_view describe(Measure measure) { return kWords[static_cast<std::size_t>(measure)].description; }
 
 }  // namespace slipmode::trade

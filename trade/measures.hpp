@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <string_view>
 
 namespace slipmode::trade {
@@ -21,6 +22,19 @@ inline constexpr std::size_t kMeasures = 6;
 [[nodiscard]] std::string_view to_string(Measure measure);
 /// One line about it.
 [[nodiscard]] std::string_view describe(Measure measure);
+
+/// What is asked of a model. Paths of a chaotic motion part whatever is left out, its statistics need not.
+enum class Question : std::uint8_t {
+  kMotion,      ///< where everything is, up to the horizon: kDx, kDe
+  kStatistics,  ///< attractor and response of the settled motion: kPoints … kStick
+};
+
+/// "motion", "statistics".
+[[nodiscard]] std::string_view to_string(Question question);
+/// The question that a measure is part of the answer to.
+[[nodiscard]] constexpr Question question_of(Measure measure) {
+  return measure == Measure::kDx || measure == Measure::kDe ? Question::kMotion : Question::kStatistics;
+}
 
 /// One value per measure; NaN where it says nothing (a law without stick has no slip states).
 using Values = std::array<double, kMeasures>;

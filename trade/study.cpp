@@ -9,6 +9,7 @@
 #include "trade/internal/motion.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <numeric>
 #include <variant>
@@ -37,6 +38,16 @@ dynamics::State at_phase(const dynamics::HybridSystem& system, const dynamics::S
   return dynamics::handed_on(system, state, shaker != nullptr ? shaker->next_upward_zero(0.0) : 0.0);
 }
 
+/// So many that two standard errors of a difference, and their own scatter, fit into `change`.
+std::size_t runs_to_resolve(const Values& scatter, double change) {
+  constexpr double kFits = 2.5;
+  double runs = 2.0;
+  for (const double one : scatter) {
+    if (!std::isnan(one)) runs = std::max(runs, std::ceil(std::pow(kFits * one / change, 2)));
+  }
+  return static_cast<std::size_t>(std::min<double>(runs, kMostRuns));
+}
+
 class Work {
  public:
   Work(const scene::Scene& scene, const Variant& reference, const std::vector<OfferedBasis>& bases,
@@ -50,7 +61,7 @@ class Work {
   Study run(const std::vector<Variant>& variants) {
     run_reference();
     if (!measure(variants, options_.leave)) return std::move(out_);
-    if (options_.more) measure(options_.more(out_.rows));
+    while (options_.more && measure_new(options_.more(out_.rows))) continue;
     if (options_.sharing.leads) take_times();
     return std::move(out_);
   }
@@ -58,19 +69,80 @@ class Work {
  private:
   [[nodiscard]] const StopFlag* stop() const { return options_.parallel.stop; }
 
+  /// What configurations are run from, in the reference's coordinates, and compared with.
+  struct Ground {
+    std::vector<Motion> motions;          ///< of the reference; none of one that dies out
+    std::vector<dynamics::State> begins;  ///< of each motion's counterpart
+    double transient = 0.0;               ///< run from there before it is recorded
+    std::vector<dynamics::State> shared;  ///< starts up to the horizon
+  };
+
   void run_reference() {
     const Case own = build_case(as_it_stands(scene_), bases_);
-    const std::vector<dynamics::State> starts = starts_of(scene_, own.full, schedule_.runs - 1);
-    motions_.resize(starts.size());
-    std::vector<std::vector<dynamics::State>> along(starts.size());
-    rethrow_first(parallel_for(starts.size(), options_.parallel, [&](std::size_t i) {
-      const dynamics::State start = at_phase(model_->model.system, handed_on(own, *model_, starts[i]));
-      motions_[i] = run_motion(*model_, start, schedule_.first_transient, schedule_, stop());
-      along[i] = states_of(*model_, motions_[i].end, schedule_.starts, schedule_.gap, stop());
-    }));
-    for (const auto& states : along) shared_.insert(shared_.end(), states.begin(), states.end());
+    const auto first = static_cast<std::size_t>(schedule_.runs);
+    const int most = options_.resolve ? std::max(kMostRuns, 2 * schedule_.runs) : schedule_.runs;
+    for (const dynamics::State& start : starts_of(scene_, own.full, most - 1)) {
+      starts_.push_back(at_phase(model_->model.system, handed_on(own, *model_, start)));
+    }
+    ground_.transient = schedule_.transient;
     out_.reference.error.fill(0.0);
-    out_.reference.noise = scatter_ = motion_scatter(motions_);
+    out_.reference.noise.fill(kNone);
+    if (options_.dies_out) {
+      ground_.shared.assign(starts_.begin(), starts_.begin() + schedule_.runs);
+      return;
+    }
+    run_motions(first);
+    share_starts(ground_);
+    out_.reference.noise = motion_scatter(ground_.motions);
+    if (options_.resolve) run_motions(runs_to_resolve(out_.reference.noise, *options_.resolve));
+    for (const Motion& motion : ground_.motions) ground_.begins.push_back(motion.end);
+  }
+
+  /// The reference's motions from its first `count` starts, those that there are kept.
+  void run_motions(std::size_t count) {
+    std::vector<Motion>& motions = ground_.motions;
+    const std::size_t known = std::min(motions.size(), count);
+    motions.resize(count);
+    rethrow_first(parallel_for(count - known, options_.parallel, [&](std::size_t k) {
+      const std::size_t i = known + k;
+      motions[i] = run_motion(*model_, starts_[i], schedule_.first_transient, schedule_, stop());
+    }));
+  }
+
+  /// Shared starts along the first motions.
+  void share_starts(Ground& ground) const {
+    std::vector<std::vector<dynamics::State>> along(
+        std::min(ground.motions.size(), static_cast<std::size_t>(schedule_.runs)));
+    rethrow_first(parallel_for(along.size(), options_.parallel, [&](std::size_t i) {
+      along[i] = states_of(*model_, ground.motions[i].end, schedule_.starts, schedule_.gap, stop());
+    }));
+    for (const auto& states : along) ground.shared.insert(ground.shared.end(), states.begin(), states.end());
+  }
+
+  /// What has decided nothing: the reference's motions go on, and a lean scene finds its own from the scene's starts.
+  void run_on() {
+    if (options_.dies_out) {
+      fresh_.shared.assign(starts_.begin() + schedule_.runs, starts_.begin() + 2 * schedule_.runs);
+      return;
+    }
+    fresh_.motions.resize(ground_.motions.size());
+    rethrow_first(parallel_for(fresh_.motions.size(), options_.parallel, [&](std::size_t i) {
+      fresh_.motions[i] = run_motion(*model_, ground_.motions[i].end, 0.0, schedule_, stop());
+    }));
+    fresh_.begins = starts_;
+    fresh_.transient = schedule_.first_transient;
+    share_starts(fresh_);
+  }
+
+  /// Those of the variants that no row has yet; false when there are none.
+  bool measure_new(std::vector<Variant> variants) {
+    std::erase_if(variants, [&](const Variant& variant) {
+      return std::ranges::any_of(out_.rows, [&](const Row& row) { return row.variant.name == variant.name; });
+    });
+    const bool lean = std::ranges::any_of(variants, [](const Variant& v) { return v.axis == Axis::kLean; });
+    if (lean && fresh_.shared.empty()) run_on();
+    measure(variants);
+    return !variants.empty();
   }
 
   /// False when some were left to others.
@@ -127,14 +199,15 @@ class Work {
   [[nodiscard]] Finished errors_of(const Variant& variant) const {
     Finished out;
     out.error.fill(kNone);
-    out.noise = scatter_;
+    out.noise = out_.reference.noise;
     at(out.noise, Measure::kDx) = at(out.noise, Measure::kDe) = kNone;
     try {
       const Case candidate = build_case(variant, bases_);
-      const Motion motion = run_motion(candidate, handed_on(*model_, candidate, motions_.front().end),
-                                       schedule_.transient, schedule_, stop());
-      out.error = motion_distance(motions_.front(), motion);
-      const HorizonDeviation horizon = horizon_deviation(*model_, candidate, shared_, schedule_, stop());
+      const Ground& ground = variant.axis == Axis::kLean ? fresh_ : ground_;
+      if (!ground.motions.empty()) compare_motions(candidate, ground, out);
+      const HorizonDeviation horizon =
+          horizon_deviation(*model_, candidate, ground.shared, schedule_,
+                            options_.resolve ? HorizonStarts::kReference : HorizonStarts::kCandidate, stop());
       at(out.error, Measure::kDx) = horizon.dX;
       at(out.error, Measure::kDe) = horizon.dE;
       at(out.noise, Measure::kDx) = horizon.dX_scatter;
@@ -147,9 +220,24 @@ class Work {
     return out;
   }
 
+  void compare_motions(const Case& candidate, const Ground& ground, Finished& out_finished) const {
+    std::vector<Motion> motions;
+    for (std::size_t k = 0; k < (options_.resolve ? ground.motions.size() : 1); ++k) {
+      motions.push_back(
+          run_motion(candidate, handed_on(*model_, candidate, ground.begins[k]), ground.transient, schedule_, stop()));
+    }
+    if (!options_.resolve) {
+      out_finished.error = motion_distance(ground.motions.front(), motions.front());
+      return;
+    }
+    const MotionChange change = motion_change(ground.motions, motions);
+    out_finished.error = change.error;
+    out_finished.noise = change.noise;
+  }
+
   [[nodiscard]] Timed timed(const Variant& variant) const {
     return {.build = [&] { return build_case(variant, bases_); },
-            .start = [this](const Case& candidate) { return handed_on(*model_, candidate, motions_.front().end); }};
+            .start = [this](const Case& candidate) { return handed_on(*model_, candidate, ground_.shared.front()); }};
   }
 
   void take_times() {
@@ -167,10 +255,9 @@ class Work {
   const std::vector<OfferedBasis>& bases_;
   const StudyOptions& options_;
   const Schedule& schedule_;
-  std::optional<Case> model_;  ///< the reference's
-  std::vector<Motion> motions_;
-  std::vector<dynamics::State> shared_;
-  Values scatter_ = {};
+  std::optional<Case> model_;            ///< the reference's
+  std::vector<dynamics::State> starts_;  ///< of the reference
+  Ground ground_, fresh_;                ///< fresh: for lean scenes
   Study out_;
 };
 

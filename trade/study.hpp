@@ -19,8 +19,8 @@ namespace slipmode::trade {
 struct Row {
   Variant variant;
   Values error = {};  ///< against the reference [%]
-  /// Scatter of each error [%]: of kDx and kDe the standard error over the starts, of the others how far independent
-  /// runs of the reference are from each other.
+  /// Scatter of each error [%]: of kDx and kDe the standard error over the starts; of the others how far independent
+  /// runs of the reference are from each other, or, where StudyOptions::resolve is given, the row's own standard error.
   Values noise = {};
   RunCost cost = {};
   double basis_seconds = 0.0;  ///< what its basis took to make; 0 for a full model [s of clock]
@@ -37,10 +37,20 @@ struct Finished {
   std::string failure = {};
 };
 
+/// Runs of one configuration at most, see StudyOptions::resolve.
+inline constexpr int kMostRuns = 16;
+
 struct StudyOptions {
   Schedule schedule = {};
-  /// More configurations, once the first ones are measured; empty function: none.
+  /// More configurations, of all measured so far; asked again until it gives none that is new, by name. What is left to
+  /// other processes is of the first ones alone. Empty function: none.
   std::function<std::vector<Variant>(const std::vector<Row>&)> more = {};
+  /// The change of a statistic that matters [%]: every configuration then runs as often as the scatter of the
+  /// reference's runs needs to tell it, twice at least and kMostRuns times at most. Empty: once.
+  std::optional<double> resolve = {};
+  /// True for a motion that dies out: nothing is settled that statistics could be of, and the horizon begins at the
+  /// scene's start and at others about it. With `resolve`.
+  bool dies_out = false;
   ParallelOptions parallel = {};  ///< parallel.progress counts configurations, then timed runs
   /// What an earlier study found, by name, and where to keep what is found now; empty functions: nothing kept.
   /// Times are always taken anew: those of another process compare with nothing.
@@ -66,7 +76,8 @@ struct Study {
 /// The reference runs schedule.runs times, from the scene's start and from others about it. Each configuration starts
 /// from the first run's end, settles, and is compared as an attractor; and it runs beside the reference from shared
 /// starts along all runs. Errors in parallel; then times, one thread alone, by turns. The errors are the same bytes for
-/// any number of threads.
+/// any number of threads. A lean scene (Axis::kLean), found by the errors of others, is run from the
+/// scene's own starts, and compared with runs of the reference that no other row was compared with.
 /// @param scene  whose start the reference takes; `reference` may have another mesh
 /// @throws InvalidInput      as build_case of the reference
 /// @throws NumericalFailure  if the reference fails; other failures are recorded in their rows

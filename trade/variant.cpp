@@ -1,6 +1,8 @@
 #include <slipmode/trade/variant.hpp>
 
 #include <slipmode/core/errors.hpp>
+#include <slipmode/diagnostics/attractors/model.hpp>
+#include <slipmode/rom/reduce.hpp>
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
@@ -11,8 +13,8 @@ namespace slipmode::trade {
 
 namespace {
 
-constexpr std::array<std::string_view, 9> kAxes = {"scene", "modes", "flow",     "theory", "elements",
-                                                   "law",   "load",  "combined", "effect"};
+constexpr std::array<std::string_view, 10> kAxes = {"scene", "modes", "flow",     "theory", "elements",
+                                                    "law",   "load",  "combined", "effect", "lean"};
 
 /// True when the scene, or an override of it, has that table.
 bool has_table(const scene::Scene& scene, const std::string& name) {
@@ -38,14 +40,29 @@ void drop_modes_beyond(scene::Scene& scene) {
   scene.reduction.choice.modes = std::min(scene.reduction.choice.modes, scene.size());
 }
 
+/// Where a belt holds the structure on average; elsewhere zero.
+Eigen::VectorXd resting_place(const dynamics::HybridSystem& system) {
+  if (system.drive().belt() == nullptr) return Eigen::VectorXd::Zero(system.size());
+  try {
+    return diagnostics::sliding_equilibrium(system).q;
+  } catch (const InvalidInput&) {
+    return Eigen::VectorXd::Zero(system.size());
+  }
+}
+
 }  // namespace
 
 std::string_view to_string(Axis axis) { return kAxes[static_cast<std::size_t>(axis)]; }
 
-std::optional<pod::Basis> basis_of(const Variant& variant, const std::vector<OfferedBasis>& bases) {
-  if (variant.basis) return variant.basis;
+std::optional<pod::Basis> basis_of(const Variant& variant, const std::vector<OfferedBasis>& bases,
+                                   const dynamics::HybridSystem& full) {
   if (!variant.reduction) return std::nullopt;
   const auto found = std::ranges::find(bases, variant.reduction->basis, &OfferedBasis::choice);
+  if (found == bases.end() && variant.reduction->basis == scene::BasisChoice::kLnm) {
+    pod::Basis modes = rom::lnm_basis(full.structure(), variant.reduction->modes);
+    modes.mean = resting_place(full);
+    return modes;
+  }
   if (found == bases.end()) {
     throw InvalidInput(fmt::format("{}: basis \"{}\" is not on offer for this scene", variant.name,
                                    scene::to_string(variant.reduction->basis)));
@@ -54,9 +71,6 @@ std::optional<pod::Basis> basis_of(const Variant& variant, const std::vector<Off
 }
 
 std::string scene_text(const Variant& variant) {
-  if (variant.basis) {
-    throw InvalidInput(fmt::format("{}: no scene can say this basis; valid: a basis of [reduction]", variant.name));
-  }
   scene::Scene scene = variant.scene;
   if (variant.reduction) {
     scene.reduction.basis = variant.reduction->basis;

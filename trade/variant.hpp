@@ -1,5 +1,6 @@
 #pragma once
 
+#include <slipmode/dynamics/system.hpp>
 #include <slipmode/pod/basis.hpp>
 #include <slipmode/scene/scene.hpp>
 
@@ -22,10 +23,11 @@ enum class Axis : std::uint8_t {
   kLaw,       ///< contact law: rigid, compliant, regularised
   kLoad,      ///< model of the normal load
   kCombined,  ///< a reduced model and a tolerance
-  kEffect,    ///< an effect left out
+  kEffect,    ///< effects left out, or one put in
+  kLean,      ///< all that can be left out together, as it is written
 };
 
-/// "scene", "modes", "flow", "theory", "elements", "law", "load", "combined", "effect".
+/// "scene", "modes", "flow", "theory", "elements", "law", "load", "combined", "effect", "lean".
 [[nodiscard]] std::string_view to_string(Axis axis);
 
 /// A reduced model as [reduction] says it.
@@ -40,8 +42,6 @@ struct Variant {
   Axis axis = Axis::kScene;
   scene::Scene scene;
   std::optional<Reduction> reduction = {};
-  /// A basis of its own instead of `reduction`: all modes but one.
-  std::optional<pod::Basis> basis = {};
 };
 
 /// A basis on offer, with all vectors that may be used.
@@ -51,13 +51,15 @@ struct OfferedBasis {
   double seconds = 0.0;  ///< what making it took: ensemble and decomposition, or natural modes
 };
 
-/// The basis a reduced variant is projected on; empty for a full model.
+/// The basis a reduced variant is projected on; empty for a full model. Natural modes that are not on offer are those
+/// of `full`, about the sliding equilibrium on a belt.
 /// @throws InvalidInput  when the basis is not on offer or has fewer vectors
-[[nodiscard]] std::optional<pod::Basis> basis_of(const Variant& variant, const std::vector<OfferedBasis>& bases);
+[[nodiscard]] std::optional<pod::Basis> basis_of(const Variant& variant, const std::vector<OfferedBasis>& bases,
+                                                 const dynamics::HybridSystem& full);
 
 /// The variant as a scene that the other verbs take: [reduction] says the reduced model. Tables that the variant's
 /// scene never had are left out, so that `run` does no more than it did.
-/// @throws InvalidInput  for a variant with a basis of its own, or one whose scene cannot be read back
+/// @throws InvalidInput  for a scene that cannot be read back
 [[nodiscard]] std::string scene_text(const Variant& variant);
 
 }  // namespace slipmode::trade

@@ -92,22 +92,14 @@ std::vector<Variant> of(Axis axis, std::vector<OtherContacts> others) {
   return all;
 }
 
-/// 1 to `size`, thinned evenly when there are many; those asked for that the basis has.
+/// Those asked for that the basis has, or a few.
 std::vector<Eigen::Index> sizes_of(const scene::Scene& scene, Eigen::Index size) {
   const std::vector<int>& asked = scene.drive.shaker() != nullptr ? scene.shaken.modes : scene.validation.modes;
   std::vector<Eigen::Index> sizes;
   for (const int L : asked) {
     if (L <= size) sizes.push_back(L);
   }
-  if (!sizes.empty()) return sizes;
-  const auto count = std::min(static_cast<std::size_t>(size), kMostSizes);
-  for (std::size_t k = 1; k <= count; ++k) {
-    const double place = std::pow(static_cast<double>(size), static_cast<double>(k) / static_cast<double>(count));
-    const Eigen::Index L = count == static_cast<std::size_t>(size) ? static_cast<Eigen::Index>(k)
-                                                                   : static_cast<Eigen::Index>(std::lround(place));
-    if (sizes.empty() || L > sizes.back()) sizes.push_back(L);
-  }
-  return sizes;
+  return sizes.empty() ? thinned_sizes(size) : sizes;
 }
 
 std::string shown(scene::BasisChoice basis) {
@@ -159,6 +151,19 @@ Variant reference_of(const scene::Scene& scene) {
   return reference;
 }
 
+std::vector<Eigen::Index> thinned_sizes(Eigen::Index size) {
+  std::vector<Eigen::Index> sizes;
+  if (size < 1) return sizes;
+  const auto count = std::min(static_cast<std::size_t>(size), kMostSizes);
+  for (std::size_t k = 1; k <= count; ++k) {
+    const double place = std::pow(static_cast<double>(size), static_cast<double>(k) / static_cast<double>(count));
+    const Eigen::Index L = count == static_cast<std::size_t>(size) ? static_cast<Eigen::Index>(k)
+                                                                   : static_cast<Eigen::Index>(std::lround(place));
+    if (sizes.empty() || L > sizes.back()) sizes.push_back(L);
+  }
+  return sizes;
+}
+
 std::vector<Axis> axes_of(const scene::Scene& scene) {
   std::vector<Axis> axes;
   if (scene.size() > 1) axes.push_back(Axis::kModes);
@@ -202,6 +207,7 @@ std::vector<Variant> along(Axis axis, const scene::Scene& scene, const std::vect
     case Axis::kScene:
     case Axis::kCombined:
     case Axis::kEffect:
+    case Axis::kLean:
       break;
   }
   return {};

@@ -30,6 +30,9 @@ inline constexpr double kReferenceTolerance = 1e-12;
 /// [validation], by default 1 to its size, thinned to at most twelve.
 [[nodiscard]] std::vector<Variant> along(Axis axis, const scene::Scene& scene, const std::vector<OfferedBasis>& bases);
 
+/// 1 to `size`, thinned evenly by ratio to at most twelve numbers, ascending. None for a size below 1.
+[[nodiscard]] std::vector<Eigen::Index> thinned_sizes(Eigen::Index size);
+
 /// A reduced model with another flow. @param reduced  of kModes  @param flow  of kFlow
 [[nodiscard]] Variant combined(const Variant& reduced, const Variant& flow);
 

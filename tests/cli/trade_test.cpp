@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 #include <algorithm>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -82,24 +83,64 @@ TEST_F(TradeVerbs, BadInputIsRefusedAndSaysWhatIsValid) {
           "the cheapest that exists: ");
 }
 
-TEST_F(TradeVerbs, AdviceNamesEveryEffectWithOneSentence) {
-  const Outcome outcome = call({"advise", "free.toml", "-o", "advice.h5"});
+TEST_F(TradeVerbs, AdviceSaysFirstWhatTheSceneRequiresAndWritesIt) {
+  const Outcome outcome = call(
+      {"advise", "free.toml", "--question", "statistics", "--error", "5%", "-o", "advice.h5", "--write", "lean.toml"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const auto json = outcome.json();
-  std::vector<std::string> names;
-  for (const auto& effect : json["effects"]) {
-    names.push_back(effect["effect"]);
-    EXPECT_TRUE(effect["sentence"].get<std::string>().starts_with(names.back() + ": "));
-  }
-  const std::vector<std::string> expected = {
-      "static friction peak", "Stribeck slope", "structural damping", "mode 1", "mode 2", "mode 3"};
-  EXPECT_EQ(names, expected);
+  const std::string sentence = json["sentence"];
+  EXPECT_TRUE(sentence.starts_with("The motion is ")) << sentence;
+  EXPECT_NE(sentence.find("\nFor the statistics within 5 % the scene requires "), std::string::npos) << sentence;
+  const auto effect = [&](const std::string& name) {
+    return *std::ranges::find_if(json["effects"], [&](const auto& one) { return one["effect"] == name; });
+  };
   // Without the falling slope the belt does not excite the masses: what moves them is needed.
-  EXPECT_EQ(json["effects"][0]["verdict"], "needed");
+  EXPECT_EQ(effect("static friction peak")["verdict"], "needed");
   // The contact is in the middle of three masses: the antisymmetric mode 2 never moves, modes 1 and 3 do.
-  EXPECT_EQ(json["effects"][3]["verdict"], "needed");
-  EXPECT_EQ(json["effects"][4]["verdict"], "can be left out");
-  EXPECT_EQ(json["effects"][5]["verdict"], "needed");
+  EXPECT_EQ(effect("modes above 2")["statistics"]["verdict"], "needed");
+  const double one = effect("modes above 1")["statistics"]["error_percent"];
+  const double two = effect("modes above 2")["statistics"]["error_percent"];
+  EXPECT_NEAR(one, two, 1e-6 * one);
+  EXPECT_EQ(effect("tolerance below 1e-06")["motion"]["verdict"], "can be left out");
+  EXPECT_EQ(json["lean"]["left_out"], std::vector<std::string>{"tolerance below 1e-03"});
+  EXPECT_EQ(json["lean"]["verdict"], "can be left out");
+  EXPECT_EQ(slipmode::scene::load_scene(folder.path() / "lean.toml").flow.tolerance, 1e-3);
+  const Outcome text = slipmode_in(folder, {"advise", "free.toml", "--question", "statistics", "--error", "5%"});
+  EXPECT_EQ(text.out.find("free ends\nThe motion is "), 0U) << text.out;
+}
+
+TEST_F(TradeVerbs, AdviceRefusesWhatItCannotAnswer) {
+  refused({"advise", "free.toml", "--question", "colour"},
+          "--question colour: no such question; valid: motion, statis");
+  refused({"advise", "free.toml", "--question", "motion", "--measure", "energy"},
+          "--measure energy: answers the question statistics, not motion");
+  refused({"advise", "free.toml", "--error", "0"}, "--error 0: expected a share in percent");
+}
+
+TEST_F(TradeVerbs, WithoutAFileGoOnWhereTheyWereStopped) {
+  setenv("XDG_CACHE_HOME", (folder.path() / "cache").c_str(), 1);
+  const auto kept = [&] {
+    std::uintmax_t bytes = 0;
+    std::error_code none;
+    for (const auto& file : std::filesystem::directory_iterator(folder.path() / "cache/slipmode", none))
+      bytes += file.file_size();
+    return bytes;
+  };
+  for (const char* verb : {"advise", "trade"}) {
+    SCOPED_TRACE(verb);
+    const std::vector<std::string> words = {
+        verb,        "free.toml", "--set", "validation.limit=4e4", "--set", "validation.block=4e4",
+        "--threads", "1",         "--json"};
+    SlipmodeProcess process(words, folder.path());
+    ASSERT_TRUE(process.signal_when([&] { return kept() > 500; }, SIGINT)) << "over before it was stopped";
+    EXPECT_EQ(process.wait().exit_code, 130);
+    EXPECT_GT(kept(), 500U);
+    const Outcome repeated = slipmode_in(folder, words);
+    ASSERT_EQ(repeated.exit_code, 0) << repeated.err;
+    EXPECT_GT(repeated.json()["resumed"], 0);
+    EXPECT_EQ(kept(), 0U) << "what is finished is not kept twice";
+  }
+  unsetenv("XDG_CACHE_HOME");
 }
 
 }  // namespace

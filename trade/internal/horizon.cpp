@@ -106,11 +106,11 @@ std::vector<dynamics::State> states_of(const Case& reference, const dynamics::St
 
 HorizonDeviation horizon_deviation(const Case& reference, const Case& candidate,
                                    const std::vector<dynamics::State>& starts, const Schedule& schedule,
-                                   const StopFlag* stop) {
+                                   HorizonStarts from, const StopFlag* stop) {
   std::vector<dynamics::State> own, shared;
   for (const dynamics::State& start : starts) {
     own.push_back(handed_on(reference, candidate, start));
-    shared.push_back(handed_on(candidate, reference, own.back()));
+    shared.push_back(from == HorizonStarts::kReference ? start : handed_on(candidate, reference, own.back()));
     if (shared.back().internal.size() == 0) shared.back().internal = start.internal;
   }
   const auto columns = static_cast<Eigen::Index>(std::llround(schedule.horizon / schedule.horizon_sample));

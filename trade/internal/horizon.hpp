@@ -4,6 +4,7 @@
 #include <slipmode/trade/case.hpp>
 #include <slipmode/trade/schedule.hpp>
 
+#include <cstdint>
 #include <vector>
 
 namespace slipmode::trade {
@@ -18,7 +19,14 @@ struct HorizonDeviation {
 [[nodiscard]] std::vector<dynamics::State> states_of(const Case& reference, const dynamics::State& start, int count,
                                                      double gap, const StopFlag* stop = nullptr);
 
-/// Both run from each start as the candidate can have it (projected, on its mesh), up to the horizon.
+/// What both models start from.
+enum class HorizonStarts : std::uint8_t {
+  kCandidate,  ///< the start as the candidate can have it: dX is zero at time 0
+  kReference,  ///< each as it can have it: what a projection or a mesh takes off the start counts
+};
+
+/// Both run from each start, as the candidate can have it (projected, on its mesh) or each as it can, up to the
+/// horizon.
 ///
 /// Where both have the same degrees of freedom and these are of one kind, ΔX and ΔE are those of
 /// diagnostics::deviation. On a beam, where displacements and rotations would be added, and meshes may differ, ΔX is
@@ -28,6 +36,7 @@ struct HorizonDeviation {
 /// @throws Interrupted  if the stop flag was set
 [[nodiscard]] HorizonDeviation horizon_deviation(const Case& reference, const Case& candidate,
                                                  const std::vector<dynamics::State>& starts, const Schedule& schedule,
+                                                 HorizonStarts from = HorizonStarts::kCandidate,
                                                  const StopFlag* stop = nullptr);
 
 }  // namespace slipmode::trade

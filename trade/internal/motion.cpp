@@ -93,6 +93,45 @@ double distance(const std::vector<double>& a, const std::vector<double>& b, doub
   return 100.0 * diagnostics::wasserstein(a, b) / scale;
 }
 
+constexpr Eigen::Index kQuantiles = 400;
+
+/// Of a set, at the middles of equal shares; of NaN where there is none.
+Eigen::VectorXd quantiles(std::vector<double> values) {
+  if (values.empty()) return Eigen::VectorXd::Constant(kQuantiles, kNone);
+  std::ranges::sort(values);
+  return Eigen::VectorXd::NullaryExpr(kQuantiles, [&](Eigen::Index k) {
+    const double share = (static_cast<double>(k) + 0.5) / static_cast<double>(kQuantiles);
+    return values[static_cast<std::size_t>(share * static_cast<double>(values.size()))];
+  });
+}
+
+/// What a measure compares of a motion.
+Eigen::VectorXd compared_by(Measure measure, const Motion& motion) {
+  switch (measure) {
+    case Measure::kPoints:
+      return quantiles(motion.points);
+    case Measure::kSpread:
+      return quantiles(motion.readings);
+    case Measure::kEnergy:
+      return Eigen::VectorXd::Constant(1, motion.energy);
+    case Measure::kStick:
+      return Eigen::VectorXd::Constant(1, motion.stick);
+    case Measure::kDx:
+    case Measure::kDe:
+      break;
+  }
+  return Eigen::VectorXd::Constant(1, kNone);
+}
+
+/// What a difference is told in [%]: the reading's rms, the mean energy, the time.
+double unit_of(Measure measure, const std::vector<Motion>& reference) {
+  double sum = 0.0;
+  for (const Motion& motion : reference) {
+    sum += measure == Measure::kStick ? 1.0 : measure == Measure::kEnergy ? motion.energy : rms(motion.readings);
+  }
+  return sum / (100.0 * static_cast<double>(reference.size()));
+}
+
 }  // namespace
 
 Motion run_motion(const Case& model, const dynamics::State& start, double transient, const Schedule& schedule,
@@ -127,6 +166,38 @@ Values motion_distance(const Motion& reference, const Motion& other) {
   at(values, Measure::kEnergy) = 100.0 * std::abs(other.energy - reference.energy) / reference.energy;
   at(values, Measure::kStick) = 100.0 * std::abs(other.stick - reference.stick);
   return values;
+}
+
+MotionChange motion_change(const std::vector<Motion>& reference, const std::vector<Motion>& other) {
+  const std::size_t runs = reference.size();
+  if (runs < 2 || other.size() != runs) {
+    throw InvalidInput(fmt::format("change of motions: expected as many runs of both, two or more, found {} and {}",
+                                   runs, other.size()));
+  }
+  MotionChange change;
+  for (std::size_t m = 0; m < kMeasures; ++m) {
+    const auto measure = static_cast<Measure>(m);
+    std::vector<Eigen::VectorXd> differences;
+    Eigen::VectorXd mean;
+    for (std::size_t k = 0; k < runs; ++k) {
+      differences.push_back(compared_by(measure, other[k]) - compared_by(measure, reference[k]));
+      mean = k == 0 ? differences[0] : Eigen::VectorXd(mean + differences[k]);
+    }
+    mean /= static_cast<double>(runs);
+    double scatter = 0.0;
+    for (const Eigen::VectorXd& difference : differences) {
+      const double apart = (difference - mean).cwiseAbs().mean();
+      scatter += apart * apart;
+    }
+    const auto pairs = static_cast<double>(runs * (runs - 1));
+    const double unit = unit_of(measure, reference), noise = std::sqrt(scatter / pairs);
+    const double apart = mean.cwiseAbs().mean();
+    const bool has_unit = unit > 0.0;
+    change.noise[m] = has_unit ? noise / unit : kNone;
+    const double left = apart * apart - noise * noise;
+    change.error[m] = !has_unit || std::isnan(left) ? kNone : std::sqrt(std::max(0.0, left)) / unit;
+  }
+  return change;
 }
 
 Values motion_scatter(const std::vector<Motion>& motions) {

@@ -36,4 +36,17 @@ struct Motion {
 /// @throws InvalidInput  for fewer than two motions
 [[nodiscard]] Values motion_scatter(const std::vector<Motion>& motions);
 
+/// A change of each measure and what it is uncertain by; kDx and kDe stay NaN [%].
+struct MotionChange {
+  Values error = {}, noise = {};
+};
+
+/// How far the motions of one model are from those of another, run by run from common starts: means over the runs of
+/// numbers, and of quantiles where motion_distance compares distributions. The standard error of the difference, from
+/// its scatter over the runs, is the noise; its square is taken off that of the difference, so that runs of one model
+/// are on average no distance apart.
+/// @param reference, other  of the same number of runs, two or more
+/// @throws InvalidInput  for other numbers of runs
+[[nodiscard]] MotionChange motion_change(const std::vector<Motion>& reference, const std::vector<Motion>& other);
+
 }  // namespace slipmode::trade

@@ -1,0 +1,83 @@
+#include <slipmode/studies/advice.hpp>
+
+#include <slipmode/core/errors.hpp>
+#include <slipmode/results/trade_store.hpp>
+#include <slipmode/studies/exponents.hpp>
+#include <slipmode/trade/variants.hpp>
+
+#include <fmt/format.h>
+#include <algorithm>
+
+namespace slipmode::studies {
+namespace {
+
+constexpr double kBeyondDoubt = 4.0;  // standard errors, as LyapunovSpectrum::is_chaotic
+constexpr double kGone = 3.0;         // factors of e by which a motion that dies out is smaller when that is measured
+
+/// Of the largest exponent: what kind of motion there is, and what can be asked of it.
+Asked by_the_motion(const scene::Scene& scene, const RunOptions& run) {
+  Asked out{.ask = {.question = trade::Question::kStatistics}};
+  const dynamics::HybridSystem system = scene::build_system(scene);
+  try {
+    const diagnostics::LyapunovSpectrum found = diagnostics::lyapunov_spectrum(
+        system, scene::initial_state(scene, system),
+        tangent_options(scene, system, {.exponents = 1, .transient = {}, .duration = {}}, run));
+    out.exponent = found.nats(0);
+    out.exponent_error = found.error(0);
+    const std::string figure = fmt::format("largest exponent {:.3g} ± {:.1g} {}", *out.exponent, out.exponent_error,
+                                           scene.units == "SI" ? "1/s" : "per unit of time");
+    if (found.is_chaotic()) {
+      out.sentence =
+          fmt::format("The motion is chaotic ({}): paths part whatever is left out, its statistics need not.", figure);
+      return out;
+    }
+    out.ask.question = trade::Question::kMotion;
+    out.dies_out = found.self_excited && *out.exponent < -kBeyondDoubt * out.exponent_error &&
+                   *out.exponent * found.duration < -kGone;
+    out.sentence = out.dies_out
+                       ? fmt::format(
+                             "The motion dies out ({}): the way there counts, from the scene's start "
+                             "on, and statistics have nothing to be of.",
+                             figure)
+                       : fmt::format("The motion is regular ({}): it can be told where everything is.", figure);
+  } catch (const NumericalFailure& failure) {
+    out.sentence = fmt::format("Whether paths part could not be measured: {}.", failure.what());
+  }
+  return out;
+}
+
+}  // namespace
+
+Asked asked(const scene::Scene& scene, const AdviceRequest& request, const RunOptions& run) {
+  Asked found = by_the_motion(scene, run);
+  if (request.question) found.ask.question = *request.question;
+  if (request.only) found.ask.question = trade::question_of(*request.only);
+  found.ask.bound = request.bound;
+  found.ask.only = request.only;
+  return found;
+}
+
+std::vector<trade::Variant> advice_pieces(const scene::Scene& scene, const std::vector<trade::Effect>& effects) {
+  std::vector<trade::Variant> alone;
+  for (std::size_t e = 0; e < effects.size(); ++e) alone.push_back(trade::without(scene, effects, {e}));
+  return alone;
+}
+
+Advice advise(const scene::Scene& scene, const AdviceRequest& request, const RunOptions& run,
+              results::Journal* journal) {
+  trade::StudyOptions options{.schedule = trade::schedule_of(scene), .resolve = request.bound};
+  Advice out{.asked = asked(scene, request, run), .effects = trade::effects_of(scene), .study = {}};
+  // From the scene's motion to a neighbouring one it is not as far as from a start.
+  options.schedule.transient = std::min(options.schedule.transient, options.schedule.duration);
+  options.dies_out = out.asked.dies_out;
+  options.parallel = run.parallel("advise");
+  if (journal != nullptr) results::keep_in(*journal, options);
+  options.more = [&](const std::vector<trade::Row>& rows) {
+    out.lean = trade::lean_scene(scene, out.effects, rows, out.asked.ask);
+    return out.lean->wanted;
+  };
+  out.study = trade::study(scene, trade::as_it_stands(scene), advice_pieces(scene, out.effects), {}, options);
+  return out;
+}
+
+}  // namespace slipmode::studies
