@@ -84,7 +84,8 @@ std::string effects_text(const studies::Advice& advice) {
     std::vector<std::string> cells = {row.variant.name};
     for (const trade::Question question : kQuestions) {
       const trade::Judgement judgement = judged(advice, e, question);
-      cells.emplace_back(trade::to_string(judgement.verdict));
+      const bool nothing = judgement.verdict == trade::Verdict::kUnclear && std::isnan(judgement.error);
+      cells.emplace_back(nothing ? "–" : trade::to_string(judgement.verdict));
       cells.push_back(error_cell(judgement));
     }
     cells.push_back(time_cell(advice, row));
@@ -150,6 +151,7 @@ Report report_of(const studies::Advice& advice, const scene::Scene& scene) {
                  {"limit_percent", asked.ask.bound},
                  {"exponent", asked.exponent ? json_number(*asked.exponent) : Json()},
                  {"exponent_error", asked.exponent ? json_number(asked.exponent_error) : Json()},
+                 {"parting_percent", asked.parting ? json_number(*asked.parting) : Json()},
                  {"lean", lean_json(advice)},
                  {"steps", steps},
                  {"effects", effects},

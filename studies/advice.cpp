@@ -3,6 +3,8 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/results/trade_store.hpp>
 #include <slipmode/studies/exponents.hpp>
+#include <slipmode/trade/advice.hpp>
+#include <slipmode/trade/parting.hpp>
 #include <slipmode/trade/variants.hpp>
 
 #include <fmt/format.h>
@@ -15,7 +17,7 @@ constexpr double kBeyondDoubt = 4.0;  // standard errors, as LyapunovSpectrum::i
 constexpr double kGone = 3.0;         // factors of e by which a motion that dies out is smaller when that is measured
 
 /// Of the largest exponent: what kind of motion there is, and what can be asked of it.
-Asked by_the_motion(const scene::Scene& scene, const RunOptions& run) {
+Asked by_the_motion(const scene::Scene& scene, double bound, const RunOptions& run) {
   Asked out{.ask = {.question = trade::Question::kStatistics}};
   const dynamics::HybridSystem system = scene::build_system(scene);
   try {
@@ -31,15 +33,27 @@ Asked by_the_motion(const scene::Scene& scene, const RunOptions& run) {
           fmt::format("The motion is chaotic ({}): paths part whatever is left out, its statistics need not.", figure);
       return out;
     }
-    out.ask.question = trade::Question::kMotion;
     out.dies_out = found.self_excited && *out.exponent < -kBeyondDoubt * out.exponent_error &&
                    *out.exponent * found.duration < -kGone;
-    out.sentence = out.dies_out
-                       ? fmt::format(
-                             "The motion dies out ({}): the way there counts, from the scene's start "
-                             "on, and statistics have nothing to be of.",
-                             figure)
-                       : fmt::format("The motion is regular ({}): it can be told where everything is.", figure);
+    if (out.dies_out) {
+      out.ask.question = trade::Question::kMotion;
+      out.sentence = fmt::format(
+          "The motion dies out ({}): the way there counts, from the scene's start on, and "
+          "statistics have nothing to be of.",
+          figure);
+      return out;
+    }
+    out.parting = trade::parting(trade::build_case(trade::as_it_stands(scene), {}), found.end,
+                                 trade::schedule_of(scene), run.stop);
+    if (*out.parting > bound) {
+      out.sentence = fmt::format(
+          "Paths part: {} % up to the horizon from starts a millionth apart ({}), whatever is left "
+          "out; statistics need not.",
+          trade::percent_text(*out.parting), figure);
+      return out;
+    }
+    out.ask.question = trade::Question::kMotion;
+    out.sentence = fmt::format("The motion is regular ({}): it can be told where everything is.", figure);
   } catch (const NumericalFailure& failure) {
     out.sentence = fmt::format("Whether paths part could not be measured: {}.", failure.what());
   }
@@ -49,7 +63,7 @@ Asked by_the_motion(const scene::Scene& scene, const RunOptions& run) {
 }  // namespace
 
 Asked asked(const scene::Scene& scene, const AdviceRequest& request, const RunOptions& run) {
-  Asked found = by_the_motion(scene, run);
+  Asked found = by_the_motion(scene, request.bound, run);
   if (request.question) found.ask.question = *request.question;
   if (request.only) found.ask.question = trade::question_of(*request.only);
   found.ask.bound = request.bound;

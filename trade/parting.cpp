@@ -1,0 +1,32 @@
+#include <slipmode/trade/parting.hpp>
+
+#include "trade/internal/horizon.hpp"
+
+#include <cmath>
+
+namespace slipmode::trade {
+
+double parting(const Case& model, const dynamics::State& settled, const Schedule& schedule, const StopFlag* stop) {
+  constexpr int kStarts = 8;
+  constexpr double kApart = 1e-6;
+  const auto columns = static_cast<Eigen::Index>(std::llround(schedule.horizon / schedule.horizon_sample));
+  const auto reading_from = [&](const dynamics::State& start) {
+    const dynamics::Trajectory run = dynamics::simulate(
+        model.model.system, start,
+        {.duration = schedule.horizon, .sample = schedule.horizon_sample, .keep_events = false, .flow = model.flow});
+    return Eigen::ArrayXd(model.model.readings.of(run.q.leftCols(columns)).row(0).transpose());
+  };
+  double apart = 0.0, size = 0.0;
+  for (const dynamics::State& start : states_of(model, settled, kStarts, schedule.gap, stop)) {
+    dynamics::State other = start;
+    other.q *= 1.0 + kApart;
+    other.v *= 1.0 + kApart;
+    other.modes.clear();
+    const Eigen::ArrayXd own = reading_from(start);
+    apart += (reading_from(other) - own).square().sum();
+    size += (own - own.mean()).square().sum();
+  }
+  return size > 0.0 ? 100.0 * std::sqrt(apart / size) : 0.0;
+}
+
+}  // namespace slipmode::trade
