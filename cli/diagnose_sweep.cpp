@@ -42,7 +42,7 @@ std::vector<SweptModel> swept_models(const scene::Scene& scene, const std::strin
 
 /// A line of the summary: at how many values the motion is chaotic, and hyperchaotic.
 std::string exponent_summary(const std::string& title, const std::vector<results::ExponentPoint>& points,
-                             Json& out_json) {
+                             const results::Units& units, Json& out_json) {
   std::size_t chaotic = 0, hyper = 0, failed = 0;
   double largest = -std::numeric_limits<double>::infinity();
   for (const results::ExponentPoint& point : points) {
@@ -59,9 +59,8 @@ std::string exponent_summary(const std::string& title, const std::vector<results
   out_json = {{"model", title},        {"values", points.size()}, {"chaotic", chaotic},
               {"two_positive", hyper}, {"failed", failed},        {"largest_nats", json_number(largest)}};
   return fmt::format(
-      "{}: {} values, {} with a positive exponent, {} with two or more, {} failed; largest {:.4f} bit per unit of "
-      "time\n",
-      title, points.size(), chaotic, hyper, failed, largest / std::numbers::ln2);
+      "{}: {} values, {} with a positive exponent, {} with two or more, {} failed; largest {:.4g} bit per {}\n", title,
+      points.size(), chaotic, hyper, failed, largest / std::numbers::ln2, units.one_time());
 }
 
 }  // namespace
@@ -107,7 +106,7 @@ Report diagnose_over(const Session& session, const scene::Scene& scene, const Di
   if (session.has_a_share()) return part_made(session, file, request.output, "values");
   for (std::size_t m = 0; m < swept.size(); ++m) {
     Json summary;
-    report.text += exponent_summary(swept[m].title, sweeps[m].points, summary);
+    report.text += exponent_summary(swept[m].title, sweeps[m].points, units, summary);
     report.data["models"].push_back(std::move(summary));
   }
   tell_resumed(session, file.resumed(), "values", report);

@@ -39,6 +39,7 @@ Eigen::VectorXd read_series(const OrbitReturnsArguments& arguments) {
   const auto shape = store.entry(name).shape;
   if (shape.size() == 1) return store.vector(name);
   const Eigen::MatrixXd values = store.matrix(name);
+  if (values.cols() == 1 && arguments.column == 0) return values.col(0);
   if (arguments.column < 1 || arguments.column > values.cols()) {
     throw InvalidInput(
         fmt::format("--column {}: '{}' has columns 1 to {}; say which", arguments.column, name, values.cols()));

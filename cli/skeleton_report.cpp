@@ -43,7 +43,7 @@ std::string skeleton_text(const results::ModelSkeleton& model) {
   TextTable table({"orbit", "period", "length", "|multiplier|", "", "share %", "off", "hits", "mismatch"});
   for (std::size_t k = 0; k < model.skeleton.orbits.size(); ++k) {
     const SkeletonOrbit& member = model.skeleton.orbits[k];
-    table.add({std::to_string(k + 1), fixed(member.orbit.period, 5), std::to_string(member.length),
+    table.add({std::to_string(k + 1), fmt::format("{:.6g}", member.orbit.period), std::to_string(member.length),
                fixed(member.orbit.leading_modulus, 4), orbits::to_string(member.orbit.stability),
                fixed(100.0 * member.share, 1), fixed(member.off_attractor, 3), std::to_string(member.hits),
                fmt::format("{:.1e}", member.orbit.residual)});
@@ -68,7 +68,7 @@ std::string comparison_text(const SkeletonComparison& comparison, const Skeleton
   for (const OrbitMatch& match : comparison.matched) {
     const SkeletonOrbit& a = full.orbits[match.full];
     const SkeletonOrbit& b = reduced.orbits[match.reduced];
-    table.add({std::to_string(match.full + 1), std::to_string(match.reduced + 1), fixed(a.orbit.period, 4),
+    table.add({std::to_string(match.full + 1), std::to_string(match.reduced + 1), fmt::format("{:.6g}", a.orbit.period),
                std::to_string(a.length), fixed(100.0 * match.period, 3), fixed(match.log_multiplier, 3),
                fixed(100.0 * match.shape, 1), fixed(100.0 * a.share, 1), fixed(100.0 * b.share, 1)});
   }

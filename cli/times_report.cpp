@@ -21,4 +21,11 @@ void tell_chosen_times(const scene::Scene& scene, const std::vector<std::string>
   out_report.text += wrapped(text, kColumns) + "\n";
 }
 
+void tell_without_slips(const scene::Scene& scene, Report& out_report) {
+  if (scene.drive.belt() == nullptr || has_sticking_law(scene)) return;
+  out_report.text +=
+      "No law of this scene sticks: without slips motions stay undecided here; 'orbit\n"
+      "find' tells a period, 'diagnose' whether a motion is chaotic\n";
+}
+
 }  // namespace slipmode::cli

@@ -26,6 +26,7 @@ Report run(const Session& session, const ValidateArguments& arguments) {
                  {"validation", done.belt ? to_json(*done.belt) : to_json(*done.shaken)}};
   report.text = done.belt ? summary_text(*done.belt, results::Units::of(done.scene.units))
                           : summary_text(*done.shaken, done.scene);
+  tell_without_slips(done.scene, report);
   tell_chosen_times(done.scene, {"validation"}, report);
   report.text += fmt::format("Validation: {}\n", arguments.output);
   return report;

@@ -46,6 +46,11 @@ double slowest_period(const Scene& scene) {
   return 0.0;
 }
 
+bool has_sticking_law(const Scene& scene) {
+  return std::ranges::any_of(scene.contacts,
+                             [](const ContactSpec& contact) { return friction::sticks(friction::kind(contact.law)); });
+}
+
 bool leaves_time_open(const Scene& scene) {
   if (scene.source.text.empty() || scene.time.cycles) return false;
   const GivenKeys given(scene.source);
@@ -68,7 +73,7 @@ Scene with_own_times(Scene scene) {
     if (!is_given(own.key)) spec.*own.time = to_one_digit(own.periods * period);
   }
   if (!is_given("block")) spec.block = std::min(spec.block, spec.limit);
-  if (!is_given("limit")) spec.limit = std::max(spec.limit, spec.block);
+  if (!is_given("limit")) spec.limit = has_sticking_law(scene) ? std::max(spec.limit, spec.block) : spec.block;
   return scene;
 }
 

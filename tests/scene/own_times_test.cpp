@@ -107,6 +107,14 @@ TEST(OwnTimes, AreSaid) {
   EXPECT_EQ(chosen.times.front().value, 200.0);
 }
 
+TEST(OwnTimes, WaitOneBlockWhereNoLawSticks) {
+  const std::string smooth = tests::replaced(one_mass(1.0, "[validation]\n"), "coulomb", "tanh");
+  const Scene scene = with_own_times(parse_scene(smooth));
+  EXPECT_FALSE(has_sticking_law(scene));
+  EXPECT_EQ(scene.validation.limit, scene.validation.block);
+  EXPECT_EQ(with_own_times(parse_scene(smooth, {"validation.limit=5000.0"})).validation.limit, 5000.0);
+}
+
 // Free at both ends: the motion as a whole has no period, the two masses against each other have 2π/√2.
 TEST(OwnTimes, ComeFromTheSlowestModeThatVibrates) {
   const Scene scene = parse_scene(one_mass(1.0, "[validation]\n"), {"structure.masses=2", "structure.ends=free-free"});
