@@ -116,6 +116,7 @@ Json linked_motions(const StoreReader& validation, const StoreReader& bases, con
   const scene::Scene scene = scene::with_own_times(results::load_scene_of(validation));
   if (!validation.has("sweep/full/values") || scene.force || is_shaken(scene) || scene.size() > kMostDrawnDofs)
     return nullptr;
+  if (!has_sticking_law(scene)) return nullptr;  // motions are found by their slips
   const DrawnStructure structure = drawn_structure(scene);
   const pod::NamedBasis basis = studies::load_bases(scene, scene::build_system(scene), bases).front();
   MotionsRequest request = request_of(scene, validation);
