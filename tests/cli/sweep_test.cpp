@@ -126,7 +126,8 @@ TEST_F(Sweep, SimulatesNoLongerAtAValueThanItsOwnLimit) {
   const slipmode::results::StoreReader store(folder.path() / "sweep.h5");
   const slipmode::results::Table values = slipmode::results::load_table(store, "sweep/full/values");
   EXPECT_THAT(values.numbers("time"), testing::Each(150.0));  // transient 100, then less than a block
-  EXPECT_THAT(outcome.out, HasSubstr("after 150 units of time")) << "too few slips for a verdict, and what to do about it";
+  EXPECT_THAT(outcome.out, HasSubstr("after 150 units of time"))
+      << "too few slips for a verdict, and what to do about it";
 }
 
 TEST_F(Sweep, RefusesTheJournalOfAnotherTaskAndLeavesItAlone) {
