@@ -13,17 +13,18 @@
 namespace slipmode::studies {
 namespace {
 
-constexpr double kBeyondDoubt = 4.0;  // standard errors, as LyapunovSpectrum::is_chaotic
-constexpr double kGone = 3.0;         // factors of e by which a motion that dies out is smaller when that is measured
+/// Of what a motion on a belt reached from its start on: below that it dies out.
+constexpr double kGone = 0.02;
+constexpr int kPartingStarts = 8;
 
 /// Of the largest exponent: what kind of motion there is, and what can be asked of it.
 Asked by_the_motion(const scene::Scene& scene, double bound, const RunOptions& run) {
   Asked out{.ask = {.question = trade::Question::kStatistics}};
   const dynamics::HybridSystem system = scene::build_system(scene);
+  const dynamics::State start = scene::initial_state(scene, system);
   try {
     const diagnostics::LyapunovSpectrum found = diagnostics::lyapunov_spectrum(
-        system, scene::initial_state(scene, system),
-        tangent_options(scene, system, {.exponents = 1, .transient = {}, .duration = {}}, run));
+        system, start, tangent_options(scene, system, {.exponents = 1, .transient = {}, .duration = {}}, run));
     out.exponent = found.nats(0);
     out.exponent_error = found.error(0);
     const std::string figure = fmt::format("largest exponent {:.3g} ± {:.1g} {}", *out.exponent, out.exponent_error,
@@ -33,8 +34,11 @@ Asked by_the_motion(const scene::Scene& scene, double bound, const RunOptions& r
           fmt::format("The motion is chaotic ({}): paths part whatever is left out, its statistics need not.", figure);
       return out;
     }
-    out.dies_out = found.self_excited && *out.exponent < -kBeyondDoubt * out.exponent_error &&
-                   *out.exponent * found.duration < -kGone;
+    const trade::Case model = trade::build_case(trade::as_it_stands(scene), {});
+    const trade::Schedule schedule = trade::schedule_of(scene);
+    const trade::Parting found_there = trade::parting(model, found.end, kPartingStarts, schedule, run.stop);
+    const trade::Parting at_first = trade::parting(model, start, 1, schedule, run.stop);
+    out.dies_out = scene.drive.belt() != nullptr && found_there.reach <= kGone * at_first.reach;
     if (out.dies_out) {
       out.ask.question = trade::Question::kMotion;
       out.sentence = fmt::format(
@@ -43,8 +47,7 @@ Asked by_the_motion(const scene::Scene& scene, double bound, const RunOptions& r
           figure);
       return out;
     }
-    out.parting = trade::parting(trade::build_case(trade::as_it_stands(scene), {}), found.end,
-                                 trade::schedule_of(scene), run.stop);
+    out.parting = found_there.apart;
     if (*out.parting > bound) {
       out.sentence = fmt::format(
           "Paths part: {} % up to the horizon from starts a millionth apart ({}), whatever is left "

@@ -24,14 +24,14 @@ struct Asked {
   std::string sentence = {};            ///< about the motion found; empty where the question was given
   std::optional<double> exponent = {};  ///< largest Lyapunov exponent [1/s]; empty: not measured
   double exponent_error = 0.0;          ///< its standard error [1/s]
-  std::optional<double> parting = {};   ///< trade::parting; empty: not measured [%]
+  std::optional<double> parting = {};   ///< trade::Parting::apart; empty: not measured [%]
   bool dies_out = false;                ///< the motion: it is asked for from the scene's start on
 };
 
 /// The question as requested; else, from the largest exponent of the motion: of a chaotic one its statistics, as paths
 /// part whatever is left out, and so of one whose paths part by more than the bound from starts a millionth apart
-/// (trade::parting); of others where everything is, up to the horizon. A self-excited motion whose largest exponent is
-/// below zero dies out: it has no statistics.
+/// (trade::parting); of others where everything is, up to the horizon. A motion on a belt that ends up within a
+/// fiftieth of what it reached from its start on dies out: it has no statistics.
 /// @throws Interrupted  if the stop flag was set
 [[nodiscard]] Asked asked(const scene::Scene& scene, const AdviceRequest& request, const RunOptions& run = {});
 

@@ -224,9 +224,10 @@ std::string lean_sentences(const Lean& lean, const std::vector<Effect>& effects,
         e > 0 && goes_further(effects, e, e - 1) && std::ranges::find(lean.left_out, e - 1) == lean.left_out.end();
     if (!nearer_stays) (alone.verdict == Verdict::kUnclear ? unclear : required).push_back(effects[e].name);
   }
+  const std::string none = unclear.empty() ? "none of its effects" : "none of its effects for certain";
   std::string text = fmt::format("For {} within {} % the scene requires {}.",
                                  ask.only ? std::string(to_string(*ask.only)) : asked_for(ask.question),
-                                 percent_text(ask.bound), required.empty() ? "none of its effects" : listed(required));
+                                 percent_text(ask.bound), required.empty() ? none : listed(required));
   if (lean.verified) {
     const Row& whole = study.rows[*lean.verified];
     text += fmt::format(" It can do without {}{}: {} off, measured once more as a whole, and {}.", listed(spare),

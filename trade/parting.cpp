@@ -6,8 +6,8 @@
 
 namespace slipmode::trade {
 
-double parting(const Case& model, const dynamics::State& settled, const Schedule& schedule, const StopFlag* stop) {
-  constexpr int kStarts = 8;
+Parting parting(const Case& model, const dynamics::State& from, int starts, const Schedule& schedule,
+                const StopFlag* stop) {
   constexpr double kApart = 1e-6;
   const auto columns = static_cast<Eigen::Index>(std::llround(schedule.horizon / schedule.horizon_sample));
   const auto reading_from = [&](const dynamics::State& start) {
@@ -17,7 +17,7 @@ double parting(const Case& model, const dynamics::State& settled, const Schedule
     return Eigen::ArrayXd(model.model.readings.of(run.q.leftCols(columns)).row(0).transpose());
   };
   double apart = 0.0, size = 0.0;
-  for (const dynamics::State& start : states_of(model, settled, kStarts, schedule.gap, stop)) {
+  for (const dynamics::State& start : states_of(model, from, starts, schedule.gap, stop)) {
     dynamics::State other = start;
     other.q *= 1.0 + kApart;
     other.v *= 1.0 + kApart;
@@ -26,7 +26,8 @@ double parting(const Case& model, const dynamics::State& settled, const Schedule
     apart += (reading_from(other) - own).square().sum();
     size += (own - own.mean()).square().sum();
   }
-  return size > 0.0 ? 100.0 * std::sqrt(apart / size) : 0.0;
+  return {.apart = size > 0.0 ? 100.0 * std::sqrt(apart / size) : 0.0,
+          .reach = std::sqrt(size / static_cast<double>(starts * columns))};
 }
 
 }  // namespace slipmode::trade

@@ -6,13 +6,18 @@
 
 namespace slipmode::trade {
 
-/// How far two runs of a model part up to the horizon when their starts are a millionth apart: dX of the reading, root
-/// mean square over eight starts along its motion [%]. Exponents do not tell it where the flow jumps: a contact that
-/// just sticks, or just does not.
-/// @param settled  a state of the motion; under a shaker or a force its time sets the phase
+struct Parting {
+  double apart = 0.0;  ///< dX of the reading up to the horizon, of two runs whose starts are a millionth apart [%]
+  double reach = 0.0;  ///< root mean square of the reading about its mean, in its own unit
+};
+
+/// How far two runs of a model part, over some starts along its motion. Exponents do not tell it where the flow jumps:
+/// a contact that just sticks, or just does not.
+/// @param from    a state of the motion; under a shaker or a force its time sets the phase
+/// @param starts  ≥ 1, the first being `from`
 /// @throws NumericalFailure  as dynamics::simulate
 /// @throws Interrupted       if the stop flag was set
-[[nodiscard]] double parting(const Case& model, const dynamics::State& settled, const Schedule& schedule,
-                             const StopFlag* stop = nullptr);
+[[nodiscard]] Parting parting(const Case& model, const dynamics::State& from, int starts, const Schedule& schedule,
+                              const StopFlag* stop = nullptr);
 
 }  // namespace slipmode::trade

@@ -4,6 +4,7 @@
 #include <slipmode/dynamics/simulate.hpp>
 #include <slipmode/fem/modes.hpp>
 #include <slipmode/rom/reduce.hpp>
+#include <slipmode/scene/own_times.hpp>
 #include <slipmode/studies/advice.hpp>
 #include <slipmode/trade/case.hpp>
 #include <slipmode/trade/variants.hpp>
@@ -161,6 +162,11 @@ TEST(Advice, AsksForStatisticsWhereExponentsArePositiveAndForTheMotionElsewhere)
   const Asked linear = asked(linear_pair(0.55), {});
   EXPECT_EQ(linear.ask.question, trade::Question::kMotion);
   EXPECT_LT(*linear.exponent, 0.0);
+  EXPECT_LT(*linear.parting, 1e-4) << "starts a millionth, 1e-4 %, apart come nearer to each other";
+  // Coulomb's friction brings a free mass to rest in a finite time: the way there is all there is.
+  const scene::Scene decay = scene::load_scene(std::string(SLIPMODE_SOURCE_DIR) + "/datasets/coulomb_decay/scene.toml");
+  EXPECT_TRUE(asked(scene::with_own_times(decay), {}).dies_out);
+  EXPECT_FALSE(linear.dies_out);
   const scene::Scene chain = scene::load_scene(std::string(SLIPMODE_SOURCE_DIR) + "/datasets/chain10/scene.toml");
   const Asked chaotic = asked(chain, {});
   EXPECT_EQ(chaotic.ask.question, trade::Question::kStatistics);
