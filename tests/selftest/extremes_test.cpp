@@ -88,8 +88,8 @@ TEST(RandomScenes, OfTenSeedsThatOnceFailedHold) {
   // all rounding, whose root was sought beyond another's event (4_17656: passed by 0.08); steps halved without end
   // where a first guess was far beyond its law (5_16715); a chain stretched by 2,000 that moves by 1e-4, its speeds
   // judged by themselves (4_14538); a mass at rest on its stop, of which rounding made contacts (7_19158: in windows
-  // of 1e-9 without end; 4_6523: Zeno); what a step may err by, held against a mass that hardly moves (6_18840); a steady answer
-  // 1e5 times what a record of 15 us has of motion (13_1240).
+  // of 1e-9 without end; 4_6523: Zeno); what a step may err by, held against a mass that hardly moves (6_18840); a
+  // steady answer 1e5 times what a record of 15 us has of motion (13_1240).
   std::vector<std::pair<std::uint64_t, std::uint64_t>> scenes;
   for (const auto& file : std::filesystem::directory_iterator(SLIPMODE_SOURCE_DIR "/tests/selftest/scenes")) {
     const std::string name = file.path().stem();
