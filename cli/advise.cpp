@@ -139,7 +139,7 @@ Json lean_json(const studies::Advice& advice) {
 Report report_of(const studies::Advice& advice, const scene::Scene& scene) {
   const studies::Asked& asked = advice.asked;
   const std::string found = asked.sentence + '\n';
-  const std::string said = trade::lean_sentences(*advice.lean, advice.effects, advice.study, asked.ask);
+  const std::string said = trade::lean_sentences(scene, *advice.lean, advice.effects, advice.study, asked.ask);
   Report report;
   report.text = fmt::format("{}\n{}{}\n{}\n{}", scene.title, found, said, steps_text(advice), effects_text(advice));
   Json effects = Json::array(), steps = Json::array();

@@ -36,14 +36,15 @@ double to_one_digit(double time) {
 }
 
 double slowest_period(const Scene& scene) {
-  constexpr Eigen::Index kLooked = 8;  // of which a structure in space has six without stiffness
-  constexpr double kFree = 1e-6;       // of the fastest of these
+  constexpr double kFree = 1e-6;  // of the fastest mode looked at
   const fem::Structure structure = build_system(scene).structure();
-  const Eigen::VectorXd omega = fem::natural_modes(structure, std::min(kLooked, structure.size())).omega;
-  for (const double own : omega) {
-    if (own > kFree * omega.maxCoeff()) return 2.0 * std::numbers::pi / own;
+  // Eight are enough where no more than a structure in space has are without stiffness.
+  for (Eigen::Index looked = 8;; looked *= 2) {
+    const Eigen::VectorXd omega = fem::natural_modes(structure, std::min(looked, structure.size())).omega;
+    for (const double own : omega)
+      if (own > kFree * omega.maxCoeff()) return 2.0 * std::numbers::pi / own;
+    if (looked >= structure.size()) return 0.0;
   }
-  return 0.0;
 }
 
 bool has_sticking_law(const Scene& scene) {

@@ -402,14 +402,17 @@ class Scan {
       if (last - first > 1 || k < 4 || k >= s.times.size() || !quiet(s.times(k - 4), t - 1e-12 * (1.0 + t)) ||
           !smooth_drive(s.times(k - 4), t) || t - s.times(k) < 1e-9 * h)
         continue;
-      const std::span<const ContactInstant> samples(instants.data() + k - 3, 4);
+      const std::span<const ContactInstant> samples(instants.data() + k - 4, 5);
       const auto guard_by = [&](std::size_t points) {
         return check_law(contact(c), timeline.before(i), continued(samples.last(points), (t - s.times(k)) / h), scales)
             .guard;
       };
-      // By four points, and by three to know how far that can be trusted: what four leave out is less than what the
-      // fourth changes, as long as samples resolve the motion.
-      const double at = guard_by(4), excess = std::max(0.0, std::abs(at) - 4.0 * std::abs(at - guard_by(3)));
+      // By five points, and by four and three to know how far that can be trusted: what five leave out is less than
+      // what the fifth or the fourth changes, one of which may happen to change nothing, as long as samples resolve the
+      // motion.
+      const double at = guard_by(5), by_four = guard_by(4);
+      const double changed = std::max(std::abs(at - by_four), std::abs(by_four - guard_by(3)));
+      const double excess = std::max(0.0, std::abs(at) - 4.0 * changed);
       figures_.spurious = std::max(figures_.spurious, excess);
       if (excess > limits_.spurious)
         violate("spurious event", fmt::format("contact {}: its guard is {:.2g} at the event at t = {:.9g}", c, at, t));

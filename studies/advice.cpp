@@ -13,7 +13,7 @@
 namespace slipmode::studies {
 namespace {
 
-/// Of what a motion on a belt reached from its start on: below that it dies out.
+/// Of what a motion on a belt reached from its start on: below that, and still falling, it dies out.
 constexpr double kGone = 0.02;
 constexpr int kPartingStarts = 8;
 
@@ -38,7 +38,12 @@ Asked by_the_motion(const scene::Scene& scene, double bound, const RunOptions& r
     const trade::Schedule schedule = trade::schedule_of(scene);
     const trade::Parting found_there = trade::parting(model, found.end, kPartingStarts, schedule, run.stop);
     const trade::Parting at_first = trade::parting(model, start, 1, schedule, run.stop);
-    out.dies_out = scene.drive.belt() != nullptr && found_there.reach <= kGone * at_first.reach;
+    if (found_there.reach == 0.0 && at_first.reach == 0.0)
+      throw InvalidInput(
+          "initial: nothing moves from the scene's start on, so there is nothing to advise about; give "
+          "initial.displacement or initial.velocity, or initial.at = \"rest\"");
+    out.dies_out = scene.drive.belt() != nullptr && *out.exponent + out.exponent_error < 0.0 &&
+                   found_there.reach <= kGone * at_first.reach;
     if (out.dies_out) {
       out.ask.question = trade::Question::kMotion;
       out.sentence = fmt::format(
@@ -69,6 +74,7 @@ Asked asked(const scene::Scene& scene, const AdviceRequest& request, const RunOp
   Asked found = by_the_motion(scene, request.bound, run);
   if (request.question) found.ask.question = *request.question;
   if (request.only) found.ask.question = trade::question_of(*request.only);
+  found.dies_out &= found.ask.question == trade::Question::kMotion;
   found.ask.bound = request.bound;
   found.ask.only = request.only;
   return found;

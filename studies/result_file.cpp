@@ -91,7 +91,9 @@ void ResultFile::keep_in_cache() {
   std::error_code none;
   if (folder.empty() || (std::filesystem::create_directories(folder, none), none)) return;
   try {
-    journal_.emplace(results::Journal::path_for(folder / fingerprint_), fingerprint_);
+    // Nobody named the file, so nobody knows that another build began it.
+    const std::string own = results::fingerprint(fingerprint_ + results::git_commit());
+    journal_.emplace(results::Journal::path_for(folder / own), own);
     resumed_ = finished();
   } catch (
       const InvalidInput&) {  // another process computes the same, or the disc is full: it is computed all the same

@@ -130,18 +130,18 @@ class Search {
 
   void give_back() {
     std::vector<std::size_t>& set = out_.left_out;
-    auto chosen = set.end() - 1;
-    for (auto one = set.end(); set.size() > 1 && one-- != set.begin();) {
+    auto chosen = static_cast<std::ptrdiff_t>(set.size()) - 1;
+    for (std::ptrdiff_t k = chosen; set.size() > 1 && k >= 0; --k) {
       std::vector<std::size_t> others = set;
-      others.erase(others.begin() + (one - set.begin()));
+      others.erase(others.begin() + k);
       const auto row = whole(others);
       if (!row || !stands(*row)) continue;
-      chosen = one;
+      chosen = k;
       break;
     }
     if (!out_.wanted.empty()) return;
-    out_.put_back.push_back(*chosen);
-    set.erase(chosen);
+    out_.put_back.push_back(*(set.begin() + chosen));
+    set.erase(set.begin() + chosen);
   }
 
   const scene::Scene& scene_;
@@ -206,7 +206,8 @@ Lean lean_scene(const scene::Scene& scene, const std::vector<Effect>& effects, c
   return Search(scene, effects, rows, ask).run();
 }
 
-std::string lean_sentences(const Lean& lean, const std::vector<Effect>& effects, const Study& study, const Ask& ask) {
+std::string lean_sentences(const scene::Scene& scene, const Lean& lean, const std::vector<Effect>& effects,
+                           const Study& study, const Ask& ask) {
   std::vector<std::string> required, unclear, spare, mattering;
   for (std::size_t e = 0; e < effects.size(); ++e) {
     const Judgement alone = judge(study.rows[lean.alone[e]], ask);
@@ -237,9 +238,11 @@ std::string lean_sentences(const Lean& lean, const std::vector<Effect>& effects,
   text += '\n';
   if (!unclear.empty()) {
     text += fmt::format(
-        "Not to be told within {} % from scatter, and kept: {}. A larger bound, or longer records (validation.limit, "
-        "validation.kept), would tell.\n",
-        percent_text(ask.bound), listed(unclear));
+        "Not to be told within {} % from scatter, and kept: {}. A larger bound, or longer records ({}), would tell.\n",
+        percent_text(ask.bound), listed(unclear),
+        scene.drive.belt() != nullptr     ? "validation.limit, validation.kept"
+        : scene.drive.shaker() != nullptr ? "validation.cycles, validation.kept"
+                                          : "time.cycles");
   }
   if (!mattering.empty()) text += fmt::format("It leaves out what would matter: {}.\n", listed(mattering));
   return text;

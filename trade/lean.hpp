@@ -68,7 +68,7 @@ struct Lean {
 
 /// What a scene requires to answer, what it can do without and what that saves, what cannot be told, and what it leaves
 /// out that would matter: a sentence each, where there is something to say.
-[[nodiscard]] std::string lean_sentences(const Lean& lean, const std::vector<Effect>& effects, const Study& study,
-                                         const Ask& ask);
+[[nodiscard]] std::string lean_sentences(const scene::Scene& scene, const Lean& lean,
+                                         const std::vector<Effect>& effects, const Study& study, const Ask& ask);
 
 }  // namespace slipmode::trade

@@ -8,7 +8,7 @@ namespace slipmode::trade {
 
 struct Parting {
   double apart = 0.0;  ///< dX of the reading up to the horizon, of two runs whose starts are a millionth apart [%]
-  double reach = 0.0;  ///< root mean square of the reading about its mean, in its own unit
+  double reach = 0.0;  ///< root mean square of the reading about its mean, in its own unit; 0 where nothing moves
 };
 
 /// How far two runs of a model part, over some starts along its motion. Exponents do not tell it where the flow jumps:

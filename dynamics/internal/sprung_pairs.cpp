@@ -10,8 +10,10 @@ namespace {
 
 using Complex = std::complex<double>;
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-/// A mode that a support shifts by less than this share of its eigenvalue is left as it is.
-constexpr double kUnreached = 1e-17;
+/// A mode that a support couples to none by more than this share of its eigenvalue is left as it is.
+constexpr double kUnreached = 1e-18;
+/// Largest remainder of the equations of motion, as a share of the sum of their terms.
+constexpr double kRemainder = 1e-13;
 /// Eigenvalues closer than this share of their size are one.
 constexpr double kOne = 1e-11;
 constexpr int kSweeps = 60;
@@ -166,12 +168,14 @@ class SecularEquation {
 /// False where the support is left to `pair_form`.
 bool add(const Support& support, DampedModes& modes) {
   const Eigen::VectorXcd reach = modes.shapes.transpose() * support.w.cast<Complex>();
+  const auto shift = [&](Eigen::Index j) {
+    return std::abs((support.stiffness + support.damping * modes.values(j)) * reach(j) * reach(j) / modes.norms(j));
+  };
+  double largest = 0.0;
+  for (Eigen::Index j = 0; j < reach.size(); ++j) largest = std::max(largest, shift(j));
   std::vector<Eigen::Index> reached;
-  for (Eigen::Index j = 0; j < reach.size(); ++j) {
-    const Complex p = modes.values(j);
-    const double shift = std::abs((support.stiffness + support.damping * p) * reach(j) * reach(j) / modes.norms(j));
-    if (shift > kUnreached * std::abs(p)) reached.push_back(j);
-  }
+  for (Eigen::Index j = 0; j < reach.size(); ++j)
+    if (std::sqrt(shift(j) * largest) > kUnreached * std::abs(modes.values(j))) reached.push_back(j);
   for (std::size_t i = 0; i < reached.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
       const Complex p = modes.values(reached[i]);
@@ -205,11 +209,31 @@ bool add(const Support& support, DampedModes& modes) {
   return true;
 }
 
+/// Supports along one direction are one support: the second would be reached through what the first has left.
+std::vector<Support> joined(const std::vector<Support>& supports) {
+  std::vector<Support> out;
+  for (const Support& support : supports) {
+    const auto same = std::ranges::find_if(out, [&](const Support& other) {
+      const double share = other.w.dot(support.w) / other.w.squaredNorm();
+      return (support.w - share * other.w).norm() <= kOne * support.w.norm();
+    });
+    if (same == out.end()) {
+      out.push_back(support);
+      continue;
+    }
+    const double share = support.w.squaredNorm() / same->w.squaredNorm();
+    same->stiffness += share * support.stiffness;
+    same->damping += share * support.damping;
+  }
+  return out;
+}
+
 }  // namespace
 
 std::optional<PairForm> sprung_pairs(const Eigen::VectorXd& omega, const Eigen::VectorXd& damping,
-                                     const std::vector<Support>& supports) {
+                                     const std::vector<Support>& contacts) {
   const Eigen::Index n = omega.size();
+  const std::vector<Support> supports = joined(contacts);
   DampedModes modes{Eigen::VectorXcd(n), Eigen::VectorXcd(n), Eigen::MatrixXcd::Identity(n, n)};
   for (Eigen::Index i = 0; i < n; ++i) {
     const double half = damping(i) / 2.0, square = (omega(i) - half) * (omega(i) + half);
@@ -231,9 +255,16 @@ std::optional<PairForm> sprung_pairs(const Eigen::VectorXd& omega, const Eigen::
     const Complex z = modes.values(i);
     const Eigen::VectorXcd shape = modes.shapes.col(i);
     Eigen::VectorXcd damped = z * shape + damping.cast<Complex>().cwiseProduct(shape);
-    for (const Support& support : supports)
-      if (support.damping != 0.0)
-        damped += support.damping * (support.w.cast<Complex>().cwiseProduct(shape)).sum() * support.w;
+    Eigen::VectorXcd remainder = z * damped + omega.cwiseAbs2().cast<Complex>().cwiseProduct(shape);
+    double terms = std::norm(z) * shape.norm() + omega.cwiseAbs2().cwiseProduct(shape.cwiseAbs()).norm();
+    for (const Support& support : supports) {
+      const Complex there = support.w.cast<Complex>().cwiseProduct(shape).sum();
+      damped += support.damping * there * support.w;
+      remainder += (support.stiffness + z * support.damping) * there * support.w;
+      terms += std::abs(support.stiffness + z * support.damping) * support.w.norm() *
+               support.w.cwiseAbs().dot(shape.cwiseAbs());
+    }
+    if (!(remainder.norm() <= kRemainder * terms)) return std::nullopt;
     Eigen::VectorXcd right(2 * n), left(2 * n);
     right << omega.cast<Complex>().cwiseProduct(shape), z * shape;
     left << damped.cwiseQuotient(omega.cast<Complex>()), shape;

@@ -22,8 +22,9 @@ struct Support {
 /// @param omega    natural frequencies without supports [n]
 /// @param damping  modal dampings c [n]
 /// @return in the balanced state (ω η, η̇); none where a pair is not oscillatory, with or without supports, where two
-///         modes that a support reaches have one eigenvalue, or where roots do not converge: then for `pair_form`
+///         modes that a support reaches have one eigenvalue, or where roots do not converge or do not solve the
+///         equations of motion: then for `pair_form`
 [[nodiscard]] std::optional<PairForm> sprung_pairs(const Eigen::VectorXd& omega, const Eigen::VectorXd& damping,
-                                                   const std::vector<Support>& supports);
+                                                   const std::vector<Support>& contacts);
 
 }  // namespace slipmode::dynamics

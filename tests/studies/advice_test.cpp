@@ -175,6 +175,56 @@ TEST(Advice, AsksForStatisticsWhereExponentsArePositiveAndForTheMotionElsewhere)
   EXPECT_EQ(asked(chain, {.only = Measure::kDx}).ask.question, trade::Question::kMotion);
 }
 
+/// One mass that sticks and slips.
+scene::Scene stick_slip(const std::string& initial) {
+  return scene::with_own_times(scene::parse_scene(R"(
+units = "dimensionless"
+[structure]
+kind = "chain"
+masses = 1
+stiffness = 1.0
+damping = 0.02
+ends = "fixed-free"
+[[contact]]
+at = 1
+law = "stribeck"
+mu_s = 0.4
+mu_k = 0.2
+alpha = 3.0
+normal_load = 1.0
+[drive]
+kind = "belt"
+speed = 0.1
+[validation]
+block = 200.0
+limit = 400.0
+[initial]
+)" + initial));
+}
+
+TEST(Advice, DoesNotTakeALimitCycleForDecayHoweverFarAwayItBegins) {
+  for (const double start : {0.3, 20.0}) {
+    SCOPED_TRACE(start);
+    const scene::Scene scene = stick_slip(fmt::format("displacement = [{}]\n", start));
+    EXPECT_FALSE(asked(scene, {}).dies_out);
+    const Advice advice = advise(scene, {});
+    EXPECT_FALSE(is_left_out(advice, "Stribeck slope"));
+    EXPECT_FALSE(is_left_out(advice, "static friction peak"));
+  }
+}
+
+TEST(Advice, RefusesASceneInWhichNothingMoves) {
+  scene::Scene scene = stick_slip("at = \"static\"\n");
+  auto& law = std::get<friction::Stribeck>(scene.contacts.front().law);
+  law.mu_s = law.mu_k;  // without a slope of friction its equilibrium is stable
+  try {
+    static_cast<void>(asked(scene, {}));
+    FAIL() << "expected a refusal";
+  } catch (const InvalidInput& refusal) {
+    EXPECT_NE(std::string(refusal.what()).find("initial"), std::string::npos) << refusal.what();
+  }
+}
+
 TEST(Advice, IsTheSameForAnyNumberOfThreads) {
   const scene::Scene scene = scene::parse_scene(
       forced_text(chain_text(2, 0.05), 2, 1.0, 0.5, {.mu_s = 0.33, .slope = 0.01, .tilt_deg = 1e-6}));
