@@ -20,9 +20,10 @@ TEST_P(NewScenes, RunAtOnceWithFiguresAndAReport) {
   EXPECT_THAT(made.out, HasSubstr("slipmode run scene.toml -o out"));
   const Outcome run = slipmode_in(folder, {"run", "scene.toml", "-o", "out", "--json"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_GE(run.json()["figures"].size(), 4U);
-  for (const std::string name : run.json()["figures"]) EXPECT_TRUE(is_figure(folder.path() / "out" / name)) << name;
-  EXPECT_EQ(run.json()["report"], "out/report.html");
+  const auto said = run.json();
+  EXPECT_GE(said["figures"].size(), 4U);
+  for (const std::string name : said["figures"]) EXPECT_TRUE(is_figure(folder.path() / "out" / name)) << name;
+  EXPECT_EQ(said["report"], "out/report.html");
   EXPECT_TRUE(fs::exists(folder.path() / "out/report.html"));
 }
 
