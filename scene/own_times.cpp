@@ -101,7 +101,11 @@ ChosenTimes chosen_times(const Scene& scene, const std::vector<std::string>& tab
   }
   if (chosen.times.empty()) return chosen;
   chosen.period = on_belt ? slowest_period(scene) : scene.drive.period().value();
-  chosen.of = on_belt ? "the structure's slowest natural period" : "the drive's period";
+  // Of a short record a sample is a hundredth at most.
+  const bool by_record = on_belt && wanted("time") && given.has("time", "duration") && !given.has("time", "sample");
+  chosen.of = !on_belt    ? "the drive's period"
+              : by_record ? "the record's length and the structure's slowest natural period"
+                          : "the structure's slowest natural period";
   return chosen;
 }
 
