@@ -288,6 +288,8 @@ class FilesOfOtherKinds(unittest.TestCase):
 
     def test_a_branch_tells_stable_from_unstable(self):
         def examine(page):
+            page.place(".chart svg")  # drawn when it is in sight
+            page.wait("document.querySelector('.chart svg').textContent !== ''")
             legend = page.run("document.querySelector('.chart svg').textContent")
             for word in ("main branch", "unstable", "fold"):
                 self.assertIn(word, legend)
