@@ -135,6 +135,17 @@ struct TangentResult {
   std::vector<Event> events;
 };
 
+/// Tangents to carry along a run, one per column: what changes of its start and of the forces on it.
+struct Tangents {
+  Eigen::MatrixXd start;  ///< (q, q̇, internal) [N x k]
+  /// Along the system's force directions, direction after direction: a constant, then the coefficients of cos jωt,
+  /// j = 1 … H, then of sin jωt, ω that of its force drive [nk (2H + 1) x k]. No rows: forces stay.
+  Eigen::MatrixXd forces = {};
+};
+
+/// Called with the state at a time that was asked for, and the tangents there [N x k].
+using TangentSample = std::function<void(const State&, const Eigen::MatrixXd&)>;
+
 /// Runs the tangent flow again and again on one system, as shooting does: what a run has prepared serves the next.
 /// Not for several threads at once; copies of the system are.
 class TangentFlow {
@@ -147,8 +158,11 @@ class TangentFlow {
 
   /// Carries all N tangents. Entering stick projects out one direction (rank drops by one).
   [[nodiscard]] TangentResult run(const State& start, double duration);
-  /// Carries these alone: `monodromy` is d(end)/d(start) times them. @param directions  [N x k]
-  [[nodiscard]] TangentResult run(const State& start, double duration, const Eigen::MatrixXd& directions);
+  /// Carries these alone: `monodromy` is what they have become [N x k].
+  /// @param times   in order, within the run; `sample` is called at each
+  /// @throws InvalidInput  for tangents of wrong size; of forces, for a system without a force drive
+  [[nodiscard]] TangentResult run(const State& start, double duration, const Tangents& tangents,
+                                  const std::vector<double>& times = {}, const TangentSample& sample = {});
 
  private:
   struct Implementation;

@@ -18,7 +18,9 @@ struct TangentFlow::Implementation {
 
   void set_coordinates(const ModalModel& m);
   template <class AnyFlow>
-  TangentResult run(AnyFlow& flow, const ModalModel& m, double end, const Eigen::MatrixXd& directions);
+  TangentResult run(AnyFlow& flow, const ModalModel& m, double end, const std::vector<double>& times,
+                    const TangentSample& sample);
+  void check(const Tangents& tangents) const;
 };
 
 void TangentFlow::Implementation::set_coordinates(const ModalModel& m) {
@@ -34,14 +36,35 @@ void TangentFlow::Implementation::set_coordinates(const ModalModel& m) {
   enter.bottomRightCorner(own, own) = leave.bottomRightCorner(own, own) = Eigen::MatrixXd::Identity(own, own);
 }
 
+void TangentFlow::Implementation::check(const Tangents& tangents) const {
+  const Eigen::Index size = 2 * system.size() + system.internal_size(), directions = system.force_directions().cols();
+  if (tangents.start.rows() != size)
+    throw InvalidInput("tangents have " + std::to_string(tangents.start.rows()) + " rows; the state has " +
+                       std::to_string(size) + " (displacements, velocities, contacts' own states)");
+  const Eigen::Index rows = tangents.forces.rows();
+  if (rows == 0) return;
+  if (system.drive().force() == nullptr || directions == 0)
+    throw InvalidInput("tangents of forces need a force drive with directions");
+  if (rows % directions != 0 || rows / directions % 2 == 0 || tangents.forces.cols() != tangents.start.cols())
+    throw InvalidInput("tangents of forces are " + std::to_string(rows) + " x " +
+                       std::to_string(tangents.forces.cols()) + "; valid: 2H + 1 rows for each of " +
+                       std::to_string(directions) + " directions, " + std::to_string(tangents.start.cols()) +
+                       " columns");
+}
+
 template <class AnyFlow>
 TangentResult TangentFlow::Implementation::run(AnyFlow& flow, const ModalModel& m, double end,
-                                               const Eigen::MatrixXd& directions) {
-  if (enter.size() == 0) set_coordinates(m);
-  flow.set_tangents(enter * directions);
+                                               const std::vector<double>& times, const TangentSample& sample) {
   TangentResult out;
-  while (flow.point().time < end)
-    if (advance_flow(flow, m, end)) out.events.insert(out.events.end(), flow.events().begin(), flow.events().end());
+  const auto go_on = [&](double until) {
+    while (flow.point().time < until)
+      if (advance_flow(flow, m, until)) out.events.insert(out.events.end(), flow.events().begin(), flow.events().end());
+  };
+  for (const double time : times) {
+    go_on(time);
+    sample(end_state(system, m, flow.point()), leave * flow.tangents());
+  }
+  go_on(end);
   out.end = end_state(system, m, flow.point());
   out.monodromy = leave * flow.tangents();
   out.rate = leave * flow.point_rate();
@@ -57,28 +80,29 @@ TangentFlow::~TangentFlow() = default;
 
 TangentResult TangentFlow::run(const State& start, double duration) {
   const Eigen::Index size = 2 * implementation_->system.size() + implementation_->system.internal_size();
-  return run(start, duration, Eigen::MatrixXd::Identity(size, size));
+  return run(start, duration, {.start = Eigen::MatrixXd::Identity(size, size)});
 }
 
-TangentResult TangentFlow::run(const State& start, double duration, const Eigen::MatrixXd& directions) {
+TangentResult TangentFlow::run(const State& start, double duration, const Tangents& tangents,
+                               const std::vector<double>& times, const TangentSample& sample) {
   if (!(duration >= 0 && std::isfinite(duration))) throw InvalidInput("duration must be finite and not negative");
   Implementation& own = *implementation_;
-  const Eigen::Index size = 2 * own.system.size() + own.system.internal_size();
-  if (directions.rows() != size)
-    throw InvalidInput("tangents have " + std::to_string(directions.rows()) + " rows; the state has " +
-                       std::to_string(size) + " (displacements, velocities, contacts' own states)");
+  own.check(tangents);
   Prepared p = prepare(own.system, start, own.options, false);
   const ModalModel& m = p.tables.model;
   const double end = start.time + duration;
+  if (own.enter.size() == 0) own.set_coordinates(m);
   if (own.method == FlowMethod::kCollocation) {
     CollocationFlow flow(own.system, p.tables.steps, std::move(p.start), p.options);
-    return own.run(flow, m, end, directions);
+    flow.set_tangents(own.enter * tangents.start);
+    return own.run(flow, m, end, times, sample);
   }
   if (own.closed_form)
     own.closed_form->restart(std::move(p.start));
   else
     own.closed_form = std::make_unique<ClosedFormFlow>(own.system, std::move(p.start), p.options);
-  return own.run(*own.closed_form, m, end, directions);
+  own.closed_form->set_tangents(own.enter * tangents.start, tangents.forces);
+  return own.run(*own.closed_form, m, end, times, sample);
 }
 
 TangentResult tangent_flow(const HybridSystem& system, const State& start, double duration,

@@ -1,11 +1,11 @@
 #include <slipmode/orbits/orbit_series.hpp>
 
 #include <slipmode/core/errors.hpp>
-#include <slipmode/dynamics/nodes.hpp>
+#include "orbits/internal/legendre_panel.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 
@@ -15,41 +15,14 @@ namespace {
 using dynamics::State;
 
 constexpr int kTerms = OrbitSeries::kTerms;
+static_assert(kTerms == LegendrePanel::kTerms);
 /// Last terms below this share of a quantity's size are rounding.
 constexpr double kResolved = 1e-14;
+/// Displacements and velocities round by all of the motion: of a contact that sticks nothing else is left.
+constexpr double kMotionRounding = 16.0 * std::numeric_limits<double>::epsilon();
 /// Where halving a panel no longer lowers its last terms they are the flow's own error, if they are below this.
 constexpr double kNoise = 1e-9;
 constexpr double kShortest = 1.0 / 16384.0;
-
-/// P_0 … P_15 at x.
-Eigen::Vector<double, kTerms> legendre(double x) {
-  Eigen::Vector<double, kTerms> p;
-  p[0] = 1.0;
-  p[1] = x;
-  for (int j = 1; j + 1 < kTerms; ++j) p[j + 1] = ((2 * j + 1) * x * p[j] - j * p[j - 1]) / (j + 1);
-  return p;
-}
-
-/// Gauss' rule of as many points, and values there → coefficients.
-struct GaussLegendre {
-  std::array<double, kTerms> point{};
-  Eigen::Matrix<double, kTerms, kTerms> to_terms;
-
-  GaussLegendre() {
-    const dynamics::GaussRule rule = dynamics::gauss_rule(kTerms);
-    for (int i = 0; i < kTerms; ++i) {
-      const double x = 2.0 * rule.node(i) - 1.0;
-      point[static_cast<std::size_t>(i)] = x;
-      to_terms.row(i) = rule.weight(i) * legendre(x);
-      for (int j = 0; j < kTerms; ++j) to_terms(i, j) *= 2 * j + 1;
-    }
-  }
-};
-
-const GaussLegendre& gauss() {
-  static const GaussLegendre rule;
-  return rule;
-}
 
 /// Spherical Bessel functions j_0 … j_15 at x ≥ 0: upward where that is stable, else downward from far above (Miller),
 /// put to scale by the larger of the first two.
@@ -102,6 +75,25 @@ class Cutter {
       if (k == 0) size_ = now.cwiseAbs();
       size_ = size_.cwiseMax(now.cwiseAbs());
     }
+    const Eigen::Index nc = run.contact_q.rows();
+    const double radian = orbit.period / (2.0 * std::numbers::pi);
+    double q = std::max(run.q.cwiseAbs().maxCoeff(), run.v.cwiseAbs().maxCoeff() * radian);
+    for (Eigen::Index c = 0; c < nc; ++c) {  // where all is at rest, what the force would move
+      const Eigen::VectorXd& w = system_.contacts()[static_cast<std::size_t>(c)].direction;
+      const double stiffness = w.dot(fem::multiply(system_.structure().K(), w).col(0)) / w.squaredNorm();
+      if (stiffness > 0.0) q = std::max(q, run.lambda.row(c).cwiseAbs().maxCoeff() / stiffness);
+    }
+    const double v = q / radian;
+    rounding_ = Eigen::VectorXd::Zero(size_.size());
+    for (Eigen::Index c = 0; c < nc; ++c) {
+      const double reach = system_.contacts()[static_cast<std::size_t>(c)].direction.lpNorm<1>();
+      rounding_[c] = kMotionRounding * reach * q;
+      rounding_[nc + c] = kMotionRounding * reach * v;
+    }
+    for (Eigen::Index r = 0; r < rows_.cols(); ++r) {
+      rounding_[3 * nc + r] = kMotionRounding * rows_.col(r).lpNorm<1>() * q;
+      rounding_[3 * nc + rows_.cols() + r] = kMotionRounding * rows_.col(r).lpNorm<1>() * v;
+    }
   }
 
   /// A stay from `state` on; its last state.
@@ -134,13 +126,15 @@ class Cutter {
       return run;
     };
     for (int i = 0; i < kTerms; ++i) {
-      const dynamics::Trajectory run = go_on(panel.half * (1.0 + gauss().point[static_cast<std::size_t>(i)]));
+      const dynamics::Trajectory run =
+          go_on(panel.half * (1.0 + LegendrePanel::rule().point[static_cast<std::size_t>(i)]));
       values.col(i) = quantities(run, run.times.size() - 1);
     }
-    panel.terms = values * gauss().to_terms;
+    panel.terms = values * LegendrePanel::rule().to_terms;
     double last = 0.0;
     for (Eigen::Index r = 0; r < size_.size(); ++r)
-      if (size_[r] > 0.0) last = std::max(last, panel.terms.row(r).tail<2>().cwiseAbs().maxCoeff() / size_[r]);
+      if (const double own = panel.terms.row(r).tail<2>().cwiseAbs().maxCoeff(); own > rounding_[r])
+        last = std::max(last, own / size_[r]);
     const bool noise = last < kNoise && last > 0.25 * before;
     if (last > kResolved && !noise) {
       if (length < shortest_)
@@ -159,7 +153,7 @@ class Cutter {
   const dynamics::HybridSystem& system_;
   const Eigen::MatrixXd& rows_;
   double shortest_;
-  Eigen::VectorXd size_;
+  Eigen::VectorXd size_, rounding_;
 };
 
 }  // namespace
@@ -193,7 +187,7 @@ Eigen::VectorXd OrbitSeries::at(double time) const {
   const auto next = std::upper_bound(panels_.begin(), panels_.end(), t,
                                      [](double value, const Panel& p) { return value < p.middle - p.half; });
   const Panel& panel = next == panels_.begin() ? *next : *(next - 1);
-  return panel.terms * legendre((t - panel.middle) / panel.half);
+  return panel.terms * LegendrePanel::polynomials((t - panel.middle) / panel.half);
 }
 
 Eigen::VectorXcd OrbitSeries::coefficient(int order) const {

@@ -1,6 +1,7 @@
 #include <slipmode/orbits/shooting.hpp>
 
 #include <slipmode/core/errors.hpp>
+#include "orbits/internal/descent.hpp"
 #include "orbits/internal/describe_orbit.hpp"
 #include "orbits/internal/shooting_problem.hpp"
 
@@ -56,93 +57,49 @@ void check(const dynamics::HybridSystem& system, const State& guess, const Shoot
           fmt::format("half_period needs a periodic drive and an odd order, not {}", options.order));
 }
 
-/// How Newton's method went.
-struct Descent {
-  ShootingEvaluation best;
-  std::vector<double> residuals;
-  int iterations = 0;
-  double smallest_singular = 1.0;  ///< over the largest, at the best point
-  ShootingStatus status = ShootingStatus::kConverged;
-  std::string failure;  ///< of the flow
-};
+/// Shooting as `descend` solves it: closing conditions and, where the period is unknown, the phase.
+class Closing {
+ public:
+  using Point = ShootingPoint;
+  using Evaluation = ShootingEvaluation;
 
-/// The least-squares system of one Newton step: closing conditions and, where the period is unknown, the phase.
-struct NewtonSystem {
-  Eigen::MatrixXd J;
-  Eigen::VectorXd r;
-  std::vector<Eigen::MatrixXd> columns;
-};
+  Closing(ShootingProblem& problem, double first_period) : problem_(problem), first_period_(first_period) {}
 
-NewtonSystem newton_system(const ShootingProblem& problem, const ShootingEvaluation& at) {
-  NewtonSystem out;
-  if (problem.period_unknown()) out.columns = problem.period_columns(at);
-  const CondensedShooting condensed = problem.condense(at, out.columns);
-  const Eigen::Index n = condensed.rest.size(), extra = condensed.columns.cols();
-  out.J = Eigen::MatrixXd::Zero(n + extra, n + extra);
-  out.J.topLeftCorner(n, n) = condensed.matrix;
-  out.J.topRightCorner(n, extra) = condensed.columns;
-  out.r = Eigen::VectorXd::Zero(n + extra);
-  out.r.head(n) = condensed.rest;
-  if (extra > 0) out.J.row(n).head(n) = at.rate.back().transpose().normalized();
-  return out;
-}
+  [[nodiscard]] ShootingEvaluation evaluate(const ShootingPoint& point) { return problem_.evaluate(point); }
 
-/// Damped Newton from a point: steps within a trust region, kept only when they lower the residual.
-Descent descend(ShootingProblem& problem, const ShootingPoint& from, const ShootingOptions& options) {
-  Descent d;
-  const auto try_evaluate = [&](const ShootingPoint& point) -> std::optional<ShootingEvaluation> {
-    try {
-      return problem.evaluate(point);
-    } catch (const NumericalFailure& failure) {
-      d.failure = failure.what();
-    } catch (const InvalidInput& refused) {
-      if (d.best.ends.empty()) throw;  // the caller's guess or system
-      d.failure = refused.what();
-    }
+  [[nodiscard]] NewtonSystem linearised(const ShootingEvaluation& at) {
+    columns_.clear();
+    if (problem_.period_unknown()) columns_ = problem_.period_columns(at);
+    const CondensedShooting condensed = problem_.condense(at, columns_);
+    const Eigen::Index n = condensed.rest.size(), extra = condensed.columns.cols();
+    NewtonSystem out{Eigen::MatrixXd::Zero(n + extra, n + extra), Eigen::VectorXd::Zero(n + extra)};
+    out.J.topLeftCorner(n, n) = condensed.matrix;
+    out.J.topRightCorner(n, extra) = condensed.columns;
+    out.r.head(n) = condensed.rest;
+    if (extra > 0) out.J.row(n).head(n) = at.rate.back().transpose().normalized();
+    return out;
+  }
+
+  [[nodiscard]] std::optional<ShootingPoint> moved(const ShootingEvaluation& at, const Eigen::VectorXd& step,
+                                                   double share) const {
+    const Eigen::Index n = problem_.scale().size();
+    ShootingPoint trial = problem_.moved(at, step.head(n), columns_, step.tail(step.size() - n), share);
+    if (trial.period > 0.05 * first_period_ && trial.period < 20.0 * first_period_) return trial;
     return std::nullopt;
-  };
-  if (auto first = try_evaluate(from)) {
-    d.best = std::move(*first);
-  } else {
-    d.status = ShootingStatus::kFlowFailed;
-    d.best.point = from;
-    return d;
   }
-  d.residuals = {d.best.largest};
-  double radius = 1.0;  // in units of the orbit's size
-  const double first_period = from.period;
-  const Eigen::Index n = problem.scale().size();
-  while (d.best.largest > options.tolerance) {
-    if (d.iterations == options.max_iterations) {
-      d.status = ShootingStatus::kIterations;
-      return d;
-    }
-    const NewtonSystem system = newton_system(problem, d.best);
-    std::optional<ShootingEvaluation> accepted;
-    while (!accepted) {
-      const BoundedLeastSquares solved = bounded_least_squares(system.J, system.r, radius);
-      d.smallest_singular = solved.smallest;
-      const double length = solved.step.norm();
-      const double norm = system.r.norm();
-      const double share = norm > 0 ? 1.0 - solved.predicted / norm : 1.0;
-      const ShootingPoint trial =
-          problem.moved(d.best, solved.step.head(n), system.columns, solved.step.tail(solved.step.size() - n), share);
-      if (trial.period > 0.05 * first_period && trial.period < 20.0 * first_period) accepted = try_evaluate(trial);
-      if (accepted && accepted->norm <= (1.0 - 1e-4 * share) * d.best.norm && accepted->norm < d.best.norm) {
-        if (length > 0.5 * radius || radius < 1.0) radius = std::max(radius, 2.0 * length);
-        break;
-      }
-      accepted.reset();
-      radius = 0.25 * std::min(radius, length);
-      if (radius < 1e-13 || !(length > 0)) {
-        d.status = ShootingStatus::kStalled;
-        return d;
-      }
-    }
-    d.best = std::move(*accepted);
-    d.residuals.push_back(d.best.largest);
-    ++d.iterations;
-  }
+
+ private:
+  ShootingProblem& problem_;
+  double first_period_;
+  std::vector<Eigen::MatrixXd> columns_;
+};
+
+using ShootingDescent = Descent<ShootingEvaluation>;
+
+ShootingDescent descend(ShootingProblem& problem, const ShootingPoint& from, const ShootingOptions& options) {
+  Closing closing(problem, from.period);
+  ShootingDescent d = descend(closing, from, options.tolerance, options.max_iterations);
+  if (!d.begun) d.best.point = from;
   return d;
 }
 
@@ -154,7 +111,7 @@ bool is_equilibrium(const ShootingProblem& problem, const ShootingEvaluation& at
   return fastest < 1e-6;
 }
 
-std::string advice(const Descent& d, const ShootingOptions& options) {
+std::string advice(const ShootingDescent& d, const ShootingOptions& options) {
   const std::string where =
       fmt::format("residual {:.2e} after {} Newton steps (from {:.2e}, asked {:.0e})", d.best.largest, d.iterations,
                   d.residuals.empty() ? NAN : d.residuals.front(), options.tolerance);
@@ -189,7 +146,7 @@ std::string advice(const Descent& d, const ShootingOptions& options) {
   return {};
 }
 
-ShootingResult unconverged(const ShootingProblem& problem, const Descent& d, const ShootingOptions& options) {
+ShootingResult unconverged(const ShootingProblem& problem, const ShootingDescent& d, const ShootingOptions& options) {
   ShootingResult result;
   result.status = d.status;
   result.message = advice(d, options);
@@ -205,7 +162,7 @@ ShootingResult unconverged(const ShootingProblem& problem, const Descent& d, con
 
 /// The point with its origin `shift` later on the same trajectory.
 ShootingPoint shifted(const ShootingProblem& problem, ShootingPoint point, double shift) {
-  for (State& node : point.nodes) node = advanced(problem.system(), problem.runnable(node), shift);
+  for (State& node : point.nodes) node = advanced(problem.system(), runnable(problem.system(), node), shift);
   return point;
 }
 
@@ -253,10 +210,10 @@ ShootingResult shoot(const dynamics::HybridSystem& system, const State& guess, c
     } catch (const NumericalFailure&) {  // met again, and reported, by the search
     }
   }
-  Descent d = descend(problem, point, options);
+  ShootingDescent d = descend(problem, point, options);
   int iterations = d.iterations;
   std::vector<double> residuals = d.residuals;
-  for (int turn = 0; turn < 2 && !d.best.ends.empty(); ++turn) {
+  for (int turn = 0; turn < 2 && d.begun; ++turn) {
     // A start on a guard spoils the derivative, so the search is taken up again a little later on the trajectory; a
     // self-excited orbit gets its origin from its events.
     const double shift = wanted_shift(problem, d.best);
@@ -269,7 +226,7 @@ ShootingResult shoot(const dynamics::HybridSystem& system, const State& guess, c
   d.residuals = std::move(residuals);
   const bool searched_in_vain = d.status == ShootingStatus::kStalled || d.status == ShootingStatus::kIterations;
   if (searched_in_vain && d.smallest_singular < 1e-5) d.status = ShootingStatus::kSingular;
-  if (!d.best.ends.empty() && is_equilibrium(problem, d.best)) d.status = ShootingStatus::kPeriodLost;
+  if (d.begun && is_equilibrium(problem, d.best)) d.status = ShootingStatus::kPeriodLost;
   if (d.status != ShootingStatus::kConverged) return unconverged(problem, d, options);
   ShootingResult result;
   result.orbit = describe_orbit(problem, d.best, options);

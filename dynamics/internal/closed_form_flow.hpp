@@ -31,7 +31,8 @@ class ClosedFormFlow {
 
   /// Carries tangents along from here, saltation included. Coordinates: the slipping model's state without padding
   /// (first components, then second ones), then the contacts' own states. @param tangents  [2n + internal_size x k]
-  void set_tangents(Eigen::MatrixXd tangents);
+  /// @param forces  what they change of a force drive, as Tangents::forces; no rows: nothing
+  void set_tangents(Eigen::MatrixXd tangents, Eigen::MatrixXd forces = {});
   /// They, at `point().time` (brought up to date at events and at the time asked).
   [[nodiscard]] const Eigen::MatrixXd& tangents();
   /// d/dt of the point in the same coordinates, right limit [2n + internal_size].
@@ -66,6 +67,14 @@ class ClosedFormFlow {
     Eigen::MatrixXd leave, leave_inputs;   ///< back: of x [N x 2m], of all inputs [N x ni]
     Eigen::MatrixXd row;                   ///< of the outputs [2m x no]
     Eigen::MatrixXd B;                     ///< [2m x ni]
+    /// What the regime answers to a cosine of each order along a force direction, one per direction: of x [2m x H], of
+    /// the outputs [no x H].
+    std::vector<DriveOverlay::Amplitudes> forced_state{}, forced_outputs{};
+  };
+  /// What tangents change of the forces at an instant: coefficients of the answers' cosines and sines, direction after
+  /// direction [nk H x k], and the forces themselves [nk x k].
+  struct ForceChange {
+    Eigen::MatrixXd cosine, sine, value;
   };
   /// A regime met in this run.
   struct Visited {
@@ -148,6 +157,11 @@ class ClosedFormFlow {
   /// is nobody's.
   void leave_tangents(const Guard* guard);
   void salt_tangents();
+  void prepare_forced(TangentMaps& out_maps) const;
+  [[nodiscard]] ForceChange force_change(double t) const;
+  /// Adds what the changed forces alone make of these rows, steadily. @param answers  one per direction
+  static void add_forced(const std::vector<DriveOverlay::Amplitudes>& answers, const ForceChange& change, double factor,
+                         Eigen::MatrixXd& out_rows);
   /// The phase of a periodic drive, remembered: several are asked at an event.
   [[nodiscard]] DrivePhase phase_at(double t) const {
     if (t != phase_time_) {
@@ -183,8 +197,9 @@ class ClosedFormFlow {
 
   /// At `point_.time` between stays; within a stay, of x and of the inputs that follow.
   Eigen::MatrixXd tangents_, x_tangents_, follow_tangents_, follow_response_;
-  bool carries_ = false;           ///< tangents are carried, be they none
-  bool tangents_current_ = false;  ///< tangents_ belongs to point_
+  Eigen::MatrixXd force_tangents_;  ///< as Tangents::forces; what x_tangents_ has is beside the steady answer to them
+  bool carries_ = false;            ///< tangents are carried, be they none
+  bool tangents_current_ = false;   ///< tangents_ belongs to point_
   Eigen::VectorXd rate_, rate_before_, x_rate_, input_rate_;
   Eigen::RowVectorXd delay_;  ///< δg/ġ
   std::vector<ContactMode> modes_before_;

@@ -1,6 +1,7 @@
 #include "dynamics/internal/closed_form_flow.hpp"
 
 #include <Eigen/Dense>
+#include <numbers>
 
 namespace slipmode::dynamics {
 namespace {
@@ -54,17 +55,72 @@ void ClosedFormFlow::enter_tangents() {
       maps.enter.col(2 * n + oscillator_states_[j]) = from_own.col(static_cast<Eigen::Index>(j));
       maps.leave.row(2 * n + oscillator_states_[j]) = to_own.row(static_cast<Eigen::Index>(j));
     }
+    if (force_tangents_.rows() > 0) prepare_forced(maps);
   }
   x_tangents_.noalias() = now.maps->enter * tangents_;
+  if (force_tangents_.rows() > 0) add_forced(now.maps->forced_state, force_change(point_.time), -1.0, x_tangents_);
   follow_tangents_.noalias() = now.maps->enter_follows * tangents_;
   tangent_time_ = point_.time;
 }
 
-void ClosedFormFlow::set_tangents(Eigen::MatrixXd tangents) {
+void ClosedFormFlow::set_tangents(Eigen::MatrixXd tangents, Eigen::MatrixXd forces) {
   tangents_ = std::move(tangents);
+  if (forces.rows() != force_tangents_.rows())
+    for (Visited& visited : visited_) visited.maps.reset();  // made for other orders
+  force_tangents_ = std::move(forces);
   carries_ = true;
   enter_tangents();
   tangents_current_ = false;
+}
+
+void ClosedFormFlow::prepare_forced(TangentMaps& out_maps) const {
+  const Regime& r = regime_->tables->regime();
+  const Eigen::Index orders = (force_tangents_.rows() / r.forces - 1) / 2;
+  for (int direction = 0; orders > 0 && direction < r.forces; ++direction) {
+    friction::Force unit{.omega = regime_->overlay->omega()};
+    for (int order = 1; order <= orders; ++order)
+      unit.harmonics.push_back(
+          {.amplitude = 1.0, .phase = 0.5 * std::numbers::pi, .order = order, .direction = direction});
+    const DriveOverlay answer(r, slipping_, unit);
+    out_maps.forced_state.emplace_back(unpadded_rows(answer.state.c, r.pairs.n),
+                                       unpadded_rows(answer.state.s, r.pairs.n));
+    out_maps.forced_outputs.push_back(answer.outputs);
+  }
+}
+
+ClosedFormFlow::ForceChange ClosedFormFlow::force_change(double t) const {
+  // a cos jθ + b sin jθ is answered by c (a cos jθ + b sin jθ) + s (a sin jθ − b cos jθ) if cos jθ is by c cos jθ + s
+  // sin jθ.
+  const Eigen::Index directions = regime_->tables->regime().forces, block = force_tangents_.rows() / directions,
+                     orders = (block - 1) / 2;
+  ForceChange out;
+  out.cosine.resize(directions * orders, force_tangents_.cols());
+  out.sine.resizeLike(out.cosine);
+  out.value.resize(directions, force_tangents_.cols());
+  const DrivePhase first = phase_at(t);
+  for (Eigen::Index d = 0; d < directions; ++d) {
+    out.value.row(d) = force_tangents_.row(d * block);
+    DrivePhase p;
+    for (Eigen::Index j = 0; j < orders; ++j) {
+      p = p.times(first);
+      const auto a = force_tangents_.row(d * block + 1 + j), b = force_tangents_.row(d * block + 1 + orders + j);
+      out.cosine.row(d * orders + j) = p.cosine * a + p.sine * b;
+      out.sine.row(d * orders + j) = p.sine * a - p.cosine * b;
+      out.value.row(d) += out.cosine.row(d * orders + j);
+    }
+  }
+  return out;
+}
+
+void ClosedFormFlow::add_forced(const std::vector<DriveOverlay::Amplitudes>& answers, const ForceChange& change,
+                                double factor, Eigen::MatrixXd& out_rows) {
+  Eigen::Index next = 0;
+  for (const DriveOverlay::Amplitudes& answer : answers) {
+    const Eigen::Index orders = answer.c.cols();
+    out_rows += factor * (answer.c * change.cosine.middleRows(next, orders));
+    out_rows += factor * (answer.s * change.sine.middleRows(next, orders));
+    next += orders;
+  }
 }
 
 void ClosedFormFlow::push_tangents() {
@@ -82,12 +138,16 @@ void ClosedFormFlow::push_tangents() {
       x_tangents_(n + i, k) = E(1, 0) * a + E(1, 1) * b;
     }
   }
-  for (std::size_t k = 0; k < regime_->maps->follows.size(); ++k) {
+  const auto hold = [&](Eigen::Index input, const auto& tangents) {
     Eigen::VectorXd response = Eigen::VectorXd::Zero(2 * np);
-    Eigen::VectorXd held = Eigen::VectorXd::Unit(r.inputs(), regime_->maps->follows[k]);
+    Eigen::VectorXd held = Eigen::VectorXd::Unit(r.inputs(), input);
     advance(*tables_, tau, response, held);
-    x_tangents_ += unpadded_rows(response, n) * follow_tangents_.row(static_cast<Eigen::Index>(k));
-  }
+    x_tangents_ += unpadded_rows(response, n) * tangents;
+  };
+  for (std::size_t k = 0; k < regime_->maps->follows.size(); ++k)
+    hold(regime_->maps->follows[k], follow_tangents_.row(static_cast<Eigen::Index>(k)));
+  for (Eigen::Index d = 0; force_tangents_.rows() > 0 && d < r.forces; ++d)
+    hold(r.force_input(d), force_tangents_.row(d * (force_tangents_.rows() / r.forces)));
 }
 
 const Eigen::MatrixXd& ClosedFormFlow::tangents() {
@@ -96,6 +156,14 @@ const Eigen::MatrixXd& ClosedFormFlow::tangents() {
     tangents_.noalias() = maps.leave * x_tangents_;
     for (std::size_t k = 0; k < maps.follows.size(); ++k)
       tangents_ += maps.leave_inputs.col(maps.follows[k]) * follow_tangents_.row(static_cast<Eigen::Index>(k));
+    if (force_tangents_.rows() > 0) {
+      const Regime& r = tables_->regime();
+      const ForceChange change = force_change(point_.time);
+      Eigen::MatrixXd steady = Eigen::MatrixXd::Zero(x_tangents_.rows(), x_tangents_.cols());
+      add_forced(maps.forced_state, change, 1.0, steady);
+      tangents_.noalias() += maps.leave * steady;
+      tangents_.noalias() += maps.leave_inputs.middleCols(r.force_input(0), r.forces) * change.value;
+    }
     tangents_current_ = true;
   }
   return tangents_;
@@ -136,6 +204,14 @@ void ClosedFormFlow::leave_tangents(const Guard* guard) {
     delay_.noalias() = maps.row.col(guard->output).transpose() * x_tangents_;
     for (std::size_t k = 0; k < maps.follows.size(); ++k)
       delay_ += r.coefficient(maps.follows[k], guard->output) * follow_tangents_.row(static_cast<Eigen::Index>(k));
+    if (force_tangents_.rows() > 0) {
+      const Eigen::Index block = force_tangents_.rows() / r.forces;
+      Eigen::MatrixXd outputs = Eigen::MatrixXd::Zero(r.row.cols(), force_tangents_.cols());
+      add_forced(maps.forced_outputs, force_change(point_.time), 1.0, outputs);
+      delay_ += outputs.row(guard->output);
+      for (Eigen::Index d = 0; d < r.forces; ++d)
+        delay_ += r.coefficient(r.force_input(d), guard->output) * force_tangents_.row(d * block);
+    }
     delay_ *= guard->sign / evaluate(*guard, point_.time).rate;
   }
   static_cast<void>(tangents());

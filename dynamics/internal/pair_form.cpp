@@ -104,10 +104,10 @@ void add_driven_pair(PairForm& form, const Eigen::Matrix2d& A, const Eigen::Matr
   const Eigen::Index n = form.g11.size();
   const PairForm own = pair_form(A);
   // X with [x; X x] the motion of the pair under each of the others: A X − X G = −B T, two columns at a time.
+  const Eigen::MatrixXd BT = B * form.T;
   Eigen::MatrixXd X = Eigen::MatrixXd::Zero(2, 2 * n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    Eigen::Matrix2d driven;
-    driven << B * form.T.col(i), B * form.T.col(n + i);
+    const Eigen::Vector4d driven(BT(0, i), BT(1, i), BT(0, n + i), BT(1, n + i));
     if (driven.isZero(0.0)) continue;
     Eigen::Matrix4d S = Eigen::Matrix4d::Zero();
     S.topLeftCorner<2, 2>() = S.bottomRightCorner<2, 2>() = A;
@@ -116,9 +116,12 @@ void add_driven_pair(PairForm& form, const Eigen::Matrix2d& A, const Eigen::Matr
     S.bottomLeftCorner<2, 2>().diagonal().array() -= form.g12(i);
     const Eigen::JacobiSVD<Eigen::Matrix4d> svd(S, Eigen::ComputeFullU | Eigen::ComputeFullV);
     check_condition(svd.singularValues()(0) / svd.singularValues()(3));
-    const Eigen::Vector4d x = svd.solve(-driven.reshaped());
-    X.col(i) = x.head<2>();
-    X.col(n + i) = x.tail<2>();
+    const Eigen::Vector4d x =
+        -svd.matrixV() * (svd.matrixU().transpose() * driven).cwiseQuotient(svd.singularValues());
+    for (Eigen::Index k = 0; k < 2; ++k) {
+      X(k, i) = x(k);
+      X(k, n + i) = x(k + 2);
+    }
   }
   // The new states stand behind the first ones and behind the second ones.
   const auto widened = [n](const Eigen::MatrixXd& old, const Eigen::MatrixXd& rows, const Eigen::Matrix2d& corner) {

@@ -70,7 +70,7 @@ BranchEvaluation BranchSolver::evaluate(const BranchUnknowns& at) const {
   BranchEvaluation out{at, {}, std::make_shared<ShootingProblem>(system, options_.shooting, kind_), {}, {}, {}};
   set_times(out.at, system);
   out.problem->use_scale(scale_);
-  for (dynamics::State& node : out.at.point.nodes) out.problem->put_on_constraint(node);
+  for (dynamics::State& node : out.at.point.nodes) put_on_constraint(out.problem->system(), node);
   out.shooting = out.problem->evaluate(out.at.point);
   out.columns = parameter_columns(out.at, out.shooting);
   if (period_unknown()) {
@@ -199,7 +199,7 @@ BranchEvaluation BranchSolver::shifted(const BranchEvaluation& at, double share)
   BranchUnknowns later = at.at;
   const dynamics::HybridSystem system = family_(at.at.parameter);
   for (dynamics::State& node : later.point.nodes)
-    node = advanced(system, at.problem->runnable(node), share * at.at.point.period);
+    node = advanced(system, runnable(system, node), share * at.at.point.period);
   if (kind_ == OrbitKind::kDriven) later.phase = share_of(later.phase + share * options_.shooting.order, 1.0);
   return evaluate(later);
 }

@@ -117,7 +117,7 @@ void add_motion(PeriodicOrbit& orbit, ShootingProblem& problem, const ShootingEv
     State second = reflected(orbit.start);
     second.time = at.ends.back().time;
     second.modes = at.ends.back().modes;
-    const dynamics::TangentResult half = problem.flow().run(problem.runnable(second), 0.5 * orbit.period);
+    const dynamics::TangentResult half = problem.flow().run(runnable(problem.system(), second), 0.5 * orbit.period);
     orbit.events.insert(orbit.events.end(), half.events.begin(), half.events.end());
     orbit.start.modes = half.end.modes;
     product = scale.cwiseInverse().asDiagonal() * half.monodromy * scale.asDiagonal() * product;

@@ -30,10 +30,55 @@ ContactMode mirrored(ContactMode mode) {
 
 }  // namespace
 
+void put_on_constraint(const dynamics::HybridSystem& system, State& node) {
+  std::vector<std::size_t> stuck;
+  for (std::size_t c = 0; c < node.modes.size(); ++c)
+    if (node.modes[c] == ContactMode::kStick && friction::sticks_rigidly(friction::kind(system.contacts()[c].law)))
+      stuck.push_back(c);
+  if (stuck.empty()) return;
+  Eigen::MatrixXd W(system.size(), static_cast<Eigen::Index>(stuck.size()));
+  for (std::size_t k = 0; k < stuck.size(); ++k)
+    W.col(static_cast<Eigen::Index>(k)) = system.contacts()[stuck[k]].direction;
+  const Eigen::VectorXd missing = (W.transpose() * node.v).array() - system.drive().velocity(node.time);
+  node.v -= W * Eigen::MatrixXd(W.transpose() * W).ldlt().solve(missing);
+}
+
+State runnable(const dynamics::HybridSystem& system, State node) {
+  const auto compliant = [](const friction::Contact& contact) {
+    return friction::kind(contact.law) == friction::LawKind::kCompliant;
+  };
+  if (std::ranges::none_of(system.contacts(), compliant)) {
+    node.modes.clear();
+    return node;
+  }
+  for (std::size_t c = 0; c < node.modes.size(); ++c) {
+    const friction::Contact& contact = system.contacts()[c];
+    if (!friction::sticks_rigidly(friction::kind(contact.law)) || node.modes[c] == ContactMode::kStick) continue;
+    const double sliding = system.drive().velocity(node.time) - contact.direction.dot(node.v);
+    node.modes[c] = sliding > 0 ? ContactMode::kSlipPositive : ContactMode::kSlipNegative;
+  }
+  return node;
+}
+
+Eigen::VectorXd coordinate_scale(const dynamics::HybridSystem& system, const State& one, const State& other,
+                                 double period) {
+  const double q = std::max(largest(one.q), largest(other.q)), v = std::max(largest(one.v), largest(other.v));
+  const double radian = period / (2.0 * std::numbers::pi);
+  const double size = std::max(q, v * radian) > 0 ? std::max(q, v * radian) : 1.0;
+  const double speed = std::max(v, q / radian) > 0 ? std::max(v, q / radian) : 1.0;
+  const Eigen::Index n = system.size();
+  Eigen::VectorXd scale(2 * n + system.internal_size());
+  scale.head(n).setConstant(size);
+  scale.segment(n, n).setConstant(speed);
+  scale.tail(system.internal_size()).setConstant(size);
+  for (std::size_t c = 0; c < system.contacts().size(); ++c)  // ż of a normal oscillator
+    if (system.contacts()[c].normal_load.oscillator)
+      scale[2 * n + system.internal_begin(static_cast<int>(c)) + internal_states(system.contacts()[c]) - 1] = speed;
+  return scale;
+}
+
 ShootingProblem::ShootingProblem(const dynamics::HybridSystem& system, const ShootingOptions& options, OrbitKind kind)
     : system_(system), options_(options), kind_(kind), flow_(system, options.flow) {
-  for (const friction::Contact& contact : system.contacts())
-    keeps_modes_ |= friction::kind(contact.law) == friction::LawKind::kCompliant;
   in_halves_ = kind == OrbitKind::kDriven && options.segments == 1 && !options.half_period && options.order % 2 == 1 &&
                is_symmetric(system);
 }
@@ -49,21 +94,6 @@ ShootingPoint ShootingProblem::initial_point(const State& guess, double period) 
   return point;
 }
 
-void ShootingProblem::set_scale(const State& start, const State& middle, double period) {
-  const double q = std::max(largest(start.q), largest(middle.q)), v = std::max(largest(start.v), largest(middle.v));
-  const double radian = period / (2.0 * std::numbers::pi);
-  const double size = std::max(q, v * radian) > 0 ? std::max(q, v * radian) : 1.0;
-  const double speed = std::max(v, q / radian) > 0 ? std::max(v, q / radian) : 1.0;
-  const Eigen::Index n = system_.size();
-  scale_.resize(2 * n + system_.internal_size());
-  scale_.head(n).setConstant(size);
-  scale_.segment(n, n).setConstant(speed);
-  scale_.tail(system_.internal_size()).setConstant(size);
-  for (std::size_t c = 0; c < system_.contacts().size(); ++c)  // ż of a normal oscillator
-    if (system_.contacts()[c].normal_load.oscillator)
-      scale_[2 * n + system_.internal_begin(static_cast<int>(c)) + internal_states(system_.contacts()[c]) - 1] = speed;
-}
-
 ShootingEvaluation ShootingProblem::evaluate(const ShootingPoint& point) {
   ShootingEvaluation out;
   out.point = point;
@@ -72,13 +102,13 @@ ShootingEvaluation ShootingProblem::evaluate(const ShootingPoint& point) {
   for (std::size_t k = 0; k < count; ++k) {
     State& node = out.point.nodes[k];
     node.time = out.point.nodes[0].time + length * static_cast<double>(k);
-    dynamics::TangentResult run = flow_.run(runnable(node), in_halves_ ? 0.5 * length : length);
-    if (scale_.size() == 0) set_scale(node, run.end, point.period);
+    dynamics::TangentResult run = flow_.run(runnable(system_, node), in_halves_ ? 0.5 * length : length);
+    if (scale_.size() == 0) scale_ = coordinate_scale(system_, node, run.end, point.period);
     out.events.insert(out.events.end(), run.events.begin(), run.events.end());
     if (in_halves_) {
       out.half_state = stacked(run.end).cwiseQuotient(scale_);
       out.half_transfer = in_scale(run.monodromy);
-      run = flow_.run(runnable(run.end), 0.5 * length);
+      run = flow_.run(runnable(system_, run.end), 0.5 * length);
       out.events.insert(out.events.end(), run.events.begin(), run.events.end());
     }
     out.transfer.push_back(in_scale(run.monodromy));
@@ -106,7 +136,7 @@ Eigen::MatrixXd ShootingProblem::in_scale(const Eigen::MatrixXd& transfer) const
 }
 
 State ShootingProblem::end_of(const State& start, double duration) {
-  return flow_.run(runnable(start), duration, Eigen::MatrixXd::Zero(scale_.size(), 1)).end;
+  return flow_.run(runnable(system_, start), duration, {.start = Eigen::MatrixXd::Zero(scale_.size(), 1)}).end;
 }
 
 Eigen::MatrixXd ShootingProblem::ends_of(const ShootingPoint& point) {
@@ -116,7 +146,7 @@ Eigen::MatrixXd ShootingProblem::ends_of(const ShootingPoint& point) {
   for (Eigen::Index k = 0; k < count; ++k) {
     State node = point.nodes[static_cast<std::size_t>(k)];
     node.time = point.nodes[0].time + length * static_cast<double>(k);
-    put_on_constraint(node);
+    put_on_constraint(system_, node);
     ends.col(k) = scaled(stacked(end_of(node, length)));
   }
   return ends;
@@ -156,39 +186,12 @@ ShootingPoint ShootingProblem::moved(const ShootingEvaluation& at, const Eigen::
     node.time = out.nodes[0].time + length * static_cast<double>(k);
     node.modes = at.ends[(k + count - 1) % count].modes;
     if (k == 0 && options_.half_period) std::ranges::transform(node.modes, node.modes.begin(), mirrored);
-    put_on_constraint(node);
+    put_on_constraint(system_, node);
     if (k + 1 == count) break;
     step = at.transfer[k] * step + share * at.mismatch[k];
     if (!columns.empty()) step += columns[k] * extra;
   }
   return out;
-}
-
-State ShootingProblem::runnable(State node) const {
-  if (!keeps_modes_) {
-    node.modes.clear();
-    return node;
-  }
-  for (std::size_t c = 0; c < node.modes.size(); ++c) {
-    if (!friction::sticks_rigidly(friction::kind(system_.contacts()[c].law)) || node.modes[c] == ContactMode::kStick)
-      continue;
-    const double sliding = system_.drive().velocity(node.time) - system_.contacts()[c].direction.dot(node.v);
-    node.modes[c] = sliding > 0 ? ContactMode::kSlipPositive : ContactMode::kSlipNegative;
-  }
-  return node;
-}
-
-void ShootingProblem::put_on_constraint(State& node) const {
-  std::vector<std::size_t> stuck;
-  for (std::size_t c = 0; c < node.modes.size(); ++c)
-    if (node.modes[c] == ContactMode::kStick && friction::sticks_rigidly(friction::kind(system_.contacts()[c].law)))
-      stuck.push_back(c);
-  if (stuck.empty()) return;
-  Eigen::MatrixXd W(system_.size(), static_cast<Eigen::Index>(stuck.size()));
-  for (std::size_t k = 0; k < stuck.size(); ++k)
-    W.col(static_cast<Eigen::Index>(k)) = system_.contacts()[stuck[k]].direction;
-  const Eigen::VectorXd missing = (W.transpose() * node.v).array() - system_.drive().velocity(node.time);
-  node.v -= W * Eigen::MatrixXd(W.transpose() * W).ldlt().solve(missing);
 }
 
 }  // namespace slipmode::orbits

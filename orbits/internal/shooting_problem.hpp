@@ -14,6 +14,16 @@ struct ShootingPoint {
   double period = 0.0;
 };
 
+/// Gives contacts that stick (node.modes) the velocity of their counterpart, with the least change of velocities.
+void put_on_constraint(const dynamics::HybridSystem& system, dynamics::State& node);
+
+/// The node as the flow takes it: modes are derived where they follow from the state.
+[[nodiscard]] dynamics::State runnable(const dynamics::HybridSystem& system, dynamics::State node);
+
+/// Units that make the coordinates (q, q̇, internal) of a periodic motion comparable, by two of its states [N].
+[[nodiscard]] Eigen::VectorXd coordinate_scale(const dynamics::HybridSystem& system, const dynamics::State& one,
+                                               const dynamics::State& other, double period);
+
 /// Everything one pass over all segments gives. Vectors and matrices are scaled: coordinate i in units of scale[i].
 struct ShootingEvaluation {
   ShootingPoint point;
@@ -69,11 +79,6 @@ class ShootingProblem {
                                     const std::vector<Eigen::MatrixXd>& columns, const Eigen::VectorXd& extra,
                                     double share) const;
 
-  /// Gives contacts that stick (node.modes) the velocity of their counterpart, with the least change of velocities.
-  void put_on_constraint(dynamics::State& node) const;
-
-  /// The node as the flow takes it: modes are derived where they follow from the state.
-  [[nodiscard]] dynamics::State runnable(dynamics::State node) const;
   [[nodiscard]] bool period_unknown() const { return kind_ == OrbitKind::kSelfExcited; }
   [[nodiscard]] OrbitKind kind() const { return kind_; }
   [[nodiscard]] const Eigen::VectorXd& scale() const { return scale_; }
@@ -85,7 +90,6 @@ class ShootingProblem {
   [[nodiscard]] Eigen::VectorXd scaled(const Eigen::VectorXd& x) const { return x.cwiseQuotient(scale_); }
 
  private:
-  void set_scale(const dynamics::State& start, const dynamics::State& middle, double period);
   [[nodiscard]] Eigen::MatrixXd in_scale(const Eigen::MatrixXd& transfer) const;
 
   dynamics::HybridSystem system_;
@@ -93,8 +97,7 @@ class ShootingProblem {
   OrbitKind kind_;
   dynamics::TangentFlow flow_;
   Eigen::VectorXd scale_;
-  bool keeps_modes_ = false;  ///< contacts whose modes do not follow from their states
-  bool in_halves_ = false;    ///< the one segment is run in two halves, to see the symmetry
+  bool in_halves_ = false;  ///< the one segment is run in two halves, to see the symmetry
 };
 
 /// Minimises ‖J d + r‖ for ‖d‖ ≤ radius (Levenberg, Marquardt, Moré), of minimum norm where J has no full rank.

@@ -125,7 +125,7 @@ TEST(ClearanceTangent, NoTangentsAtAllCarryNothing) {
   const HybridSystem system = backlash_mass(0.65);
   TangentFlow flow(system);
   const State start{0.0, Eigen::VectorXd::Constant(1, 2.0), Eigen::VectorXd::Zero(1)};
-  const TangentResult none = flow.run(start, 50.0, Eigen::MatrixXd(2, 0)), all = flow.run(start, 50.0);
+  const TangentResult none = flow.run(start, 50.0, {.start = Eigen::MatrixXd(2, 0)}), all = flow.run(start, 50.0);
   EXPECT_EQ(none.monodromy.cols(), 0);
   EXPECT_EQ(stacked(none.end), stacked(all.end));
   EXPECT_EQ(none.rate, all.rate);

@@ -138,6 +138,25 @@ TEST(Spectrum, SeriesIsTheOrbit) {
   }
 }
 
+TEST(Spectrum, OfAContactThatNeverSlips) {
+  // Its velocity is the rounding of all others: it has no series, and needs none.
+  constexpr int kMasses = 6;
+  const HybridSystem system(fem::chain({.masses = kMasses, .damping = 0.05}),
+                            {{Eigen::VectorXd::Unit(kMasses, 2), friction::Coulomb{50.0, 50.0}}},
+                            friction::Force{0.7, {{.amplitude = 1.0}}}, {},
+                            Eigen::MatrixXd(Eigen::VectorXd::Unit(kMasses, 5)));
+  const PeriodicOrbit orbit = find_orbit(system, settled(system, system.rest(), 600.0));
+  EXPECT_EQ(orbit.word, "0");
+  const Spectrum spectrum = orbit_spectrum(system, orbit, 2, Eigen::VectorXd::Unit(kMasses, 5));
+  // The masses beyond are a chain on a wall: (K + iωC − ω²M)⁻¹ there.
+  Eigen::MatrixXd K(3, 3);
+  K << 2, -1, 0, -1, 2, -1, 0, -1, 1;
+  const Eigen::MatrixXcd D = K * std::complex<double>(1.0, 0.7 * 0.05) - 0.49 * Eigen::MatrixXcd::Identity(3, 3);
+  const Eigen::VectorXcd expected = D.partialPivLu().solve(Eigen::VectorXcd::Unit(3, 2));
+  EXPECT_NEAR(spectrum.row_displacement[0].amplitude()[1], std::abs(expected[2]), 1e-12);
+  EXPECT_LT(spectrum.velocity[0].amplitude().maxCoeff(), 1e-14);
+}
+
 TEST(Spectrum, RefusesWhatHasNoMeaning) {
   const HybridSystem system = Backlash{.omega = 1.2}.system();
   const PeriodicOrbit orbit = find_orbit(system, settled(system, displaced(system, 0, 2.0), 60.0));

@@ -64,7 +64,7 @@ TangentWalk::TangentWalk(const dynamics::HybridSystem& system, const dynamics::S
   const Eigen::Index N = directions_of(system);
   const Eigen::Index count = options.exponents == 0 ? N : options.exponents;
   Random random(options.seed);
-  const dynamics::TangentResult begun = flow_.run(start, 0.0, metric_.leave(random_frame(N, count, random)));
+  const dynamics::TangentResult begun = flow_.run(start, 0.0, {.start = metric_.leave(random_frame(N, count, random))});
   state_ = begun.end;
   lost_ = confined(system, state_.modes);
   frame_ = orthonormalise(metric_.enter(begun.monodromy)).directions;
@@ -86,7 +86,7 @@ std::vector<Event> TangentWalk::push(double duration) {
   const double rounding = 4e-16 * std::abs(end);
   for (double left = duration; left > rounding; left = end - state_.time) {
     const double piece = std::min(left, longest_);
-    const dynamics::TangentResult result = flow_.run(state_, piece, metric_.leave(frame_));
+    const dynamics::TangentResult result = flow_.run(state_, piece, {.start = metric_.leave(frame_)});
     std::vector<ContactMode> modes = state_.modes;
     Eigen::Index most = confined(system_, modes);
     for (const Event& event : result.events) {
