@@ -2,7 +2,6 @@
 
 #include <slipmode/fem/modes.hpp>
 #include "scene/internal/periods.hpp"
-#include "scene/internal/toml_reader.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -15,17 +14,9 @@ namespace {
 
 constexpr double kSweptTo = 2.5, kSweptSteps = 20.0;  // of the belt's own speed
 
-/// Which keys a scene gives, overrides counted.
-class GivenKeys {
- public:
-  explicit GivenKeys(const SceneSource& source) : document_(source.text, source.path, source.overrides) {}
-  [[nodiscard]] bool has(const char* table, const char* key) const {
-    return static_cast<bool>(document_.root()[table][key]);
-  }
-
- private:
-  TomlDocument document_;
-};
+bool is_given_in(const Scene& scene, const char* table, const char* key) {
+  return scene.source.given.contains(fmt::format("{}.{}", table, key));
+}
 
 }  // namespace
 
@@ -52,23 +43,16 @@ bool has_sticking_law(const Scene& scene) {
                              [](const ContactSpec& contact) { return friction::sticks(friction::kind(contact.law)); });
 }
 
-bool leaves_time_open(const Scene& scene) {
-  if (scene.source.text.empty() || scene.time.cycles) return false;
-  const GivenKeys given(scene.source);
-  return !given.has("time", "duration") || !given.has("time", "sample");
-}
-
 Scene with_own_times(Scene scene) {
   if (scene.drive.belt() == nullptr || scene.source.text.empty()) return scene;
-  const GivenKeys given(scene.source);
-  const auto is_given = [&](const char* key) { return given.has("validation", key); };
+  const auto is_given = [&](const char* key) { return is_given_in(scene, "validation", key); };
   ValidationSpec& spec = scene.validation;
   const double speed = scene.drive.velocity(0.0);
   if (!is_given("speeds") && speed != 0.0) {
     spec.speeds = {kSweptTo * speed, speed / kSweptSteps, std::abs(speed) / kSweptSteps};
   }
   if (std::ranges::all_of(kValidationTimes, is_given, &TimeInPeriods<ValidationSpec>::key)) return scene;
-  const double period = slowest_period(scene);
+  const double period = scene.source.period = slowest_period(scene);
   if (period == 0.0) return scene;
   for (const auto& own : kValidationTimes) {
     if (!is_given(own.key)) spec.*own.time = to_one_digit(own.periods * period);
@@ -81,10 +65,9 @@ Scene with_own_times(Scene scene) {
 ChosenTimes chosen_times(const Scene& scene, const std::vector<std::string>& tables) {
   ChosenTimes chosen;
   if (scene.source.text.empty()) return chosen;
-  const GivenKeys given(scene.source);
   const auto wanted = [&](const char* table) { return std::ranges::find(tables, table) != tables.end(); };
   const auto add = [&](const char* table, const char* key, double value) {
-    if (!given.has(table, key)) chosen.times.push_back({fmt::format("{}.{}", table, key), value});
+    if (!is_given_in(scene, table, key)) chosen.times.push_back({fmt::format("{}.{}", table, key), value});
   };
   const bool on_belt = scene.drive.belt() != nullptr;
   if (wanted("time") && scene.time.cycles) {
@@ -100,9 +83,10 @@ ChosenTimes chosen_times(const Scene& scene, const std::vector<std::string>& tab
     for (const auto& own : kValidationTimes) add("validation", own.key, scene.validation.*own.time);
   }
   if (chosen.times.empty()) return chosen;
-  chosen.period = on_belt ? slowest_period(scene) : scene.drive.period().value();
+  chosen.period = on_belt ? scene.source.period : scene.drive.period().value();
   // Of a short record a sample is a hundredth at most.
-  const bool by_record = on_belt && wanted("time") && given.has("time", "duration") && !given.has("time", "sample");
+  const bool by_record =
+      on_belt && wanted("time") && is_given_in(scene, "time", "duration") && !is_given_in(scene, "time", "sample");
   chosen.of = !on_belt    ? "the drive's period"
               : by_record ? "the record's length and the structure's slowest natural period"
                           : "the structure's slowest natural period";

@@ -12,6 +12,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,9 @@ struct SceneSource {
   std::string path;                    ///< as given; "<text>" when parsed from memory
   std::string text;                    ///< as read
   std::vector<std::string> overrides;  ///< "drive.speed=0.25", in order
+  /// What text and overrides give: tables and their keys, "time" and "time.sample". A seed alone makes no "ensemble".
+  std::set<std::string> given = {};
+  double period = 0.0;  ///< slowest_period by which times were chosen; 0 where none were [s]
 };
 
 /// What [structure] may be.

@@ -1,6 +1,6 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/scene/scene.hpp>
-#include "scene/internal/periods.hpp"
+#include "scene/internal/scene_parts.hpp"
 #include "scene/internal/toml_reader.hpp"
 
 #include <fmt/format.h>
@@ -8,13 +8,37 @@
 
 namespace slipmode::scene {
 
+namespace {
+
+/// True when the scene says its [time] neither in cycles nor in full, so that its own periods have a say in it.
+bool leaves_time_open(const Scene& scene) {
+  if (scene.source.text.empty() || scene.time.cycles) return false;
+  return !scene.source.given.contains("time.duration") || !scene.source.given.contains("time.sample");
+}
+
+/// Whether a key has a say in times left open: by the structure's slowest period on a belt, elsewhere by the drive's.
+bool bears_on_time(const Scene& scene, const std::string& path) {
+  return path.starts_with("time.") || path.starts_with(scene.drive.belt() != nullptr ? "structure." : "drive.");
+}
+
+}  // namespace
+
+void note_given(std::set<std::string>& out_given, const std::string& key) {
+  const std::size_t dot = key.find('.');
+  if (key != "ensemble.seed") out_given.insert(key.substr(0, dot));
+  if (dot != std::string::npos) out_given.insert(key.substr(0, key.find('.', dot + 1)));
+}
+
 Scene set_key(const Scene& scene, const std::string& path, double value) {
   const std::string change = fmt::format("{}={}", path, value);
   Scene changed = parse_scene(scene_to_toml(scene), {change}, scene.source.path);
   changed.source = scene.source;
   changed.source.overrides.push_back(change);
-  if (leaves_time_open(scene)) {  // what the changed structure chooses, as whoever reads the source again will find
-    changed.time = parse_scene(changed.source.text, changed.source.overrides, changed.source.path).time;
+  note_given(changed.source.given, path);
+  if (leaves_time_open(scene) && bears_on_time(scene, path)) {  // as whoever reads the source again will find
+    const Scene again = parse_scene(changed.source.text, changed.source.overrides, changed.source.path);
+    changed.time = again.time;
+    changed.source.period = again.source.period;
   }
   return changed;
 }
@@ -84,14 +108,6 @@ double get_continuous_key(const Scene& scene, const std::string& path) {
   return node.value<double>().value();
 }
 
-bool has_section(const Scene& scene, const std::string& name) {
-  const toml::table written = toml::parse(scene.source.text);
-  if (written.contains(name)) return true;
-  for (const std::string& override : scene.source.overrides) {
-    if (override.starts_with("ensemble.seed=")) continue;
-    if (override.starts_with(name + ".") || override.starts_with(name + "=")) return true;
-  }
-  return false;
-}
+bool has_section(const Scene& scene, const std::string& name) { return scene.source.given.contains(name); }
 
 }  // namespace slipmode::scene

@@ -28,9 +28,9 @@ TimeSpec read_cycles(TomlReader& in, double frequency_hz) {
 }
 
 /// On a belt what is not given is chosen by the structure's slowest period.
-void choose_times(TomlReader& in, const Scene& scene, TimeSpec& out_time) {
+void choose_times(TomlReader& in, Scene& scene, TimeSpec& out_time) {
   if (in.has("duration") && in.has("sample")) return;
-  const double period = slowest_period(scene);
+  const double period = scene.source.period = slowest_period(scene);
   if (!in.has("duration")) {
     if (period == 0.0) {
       in.fail("duration", "missing, and nothing vibrates by whose period it could be chosen", kPositive.text);
@@ -44,7 +44,7 @@ void choose_times(TomlReader& in, const Scene& scene, TimeSpec& out_time) {
   out_time.sample = period == 0.0 ? longest : std::min(to_one_digit(kSamplePeriods * period), longest);
 }
 
-TimeSpec read_seconds(TomlReader& in, const Scene& scene) {
+TimeSpec read_seconds(TomlReader& in, Scene& scene) {
   TimeSpec time;
   read_fields(in, time);
   if (in.has("duration") && time.transient >= time.duration) {
@@ -63,8 +63,9 @@ TimeSpec read_seconds(TomlReader& in, const Scene& scene) {
   return time;
 }
 
-TimeSpec read_time(TomlReader in, const Scene& scene) {
-  TimeSpec time;
+/// [time] into time, and period of the source, of `scene`.
+void read_time(TomlReader in, Scene& scene) {
+  TimeSpec& time = scene.time;
   const friction::Drive& drive = scene.drive;
   if (const auto period = drive.period()) {
     const double frequency = drive.shaker() != nullptr ? drive.shaker()->frequency_hz : 1.0 / *period;
@@ -76,7 +77,6 @@ TimeSpec read_time(TomlReader in, const Scene& scene) {
     time = read_seconds(in, scene);
   }
   in.finish();
-  return time;
 }
 
 InitialSpec read_initial(TomlReader in, const Scene& scene) {
@@ -128,6 +128,17 @@ EnsembleSpec read_ensemble(TomlReader in, const Scene& scene) {
   return ensemble;
 }
 
+std::set<std::string> keys_given(const TomlDocument& document, const std::vector<std::string>& overrides) {
+  std::set<std::string> given = document.written();
+  for (const std::string& change : overrides) note_given(given, change.substr(0, change.find_first_of(" =")));
+  for (const auto& [name, node] : document.root()) {
+    if (const toml::table* table = node.as_table()) {
+      for (const auto& [key, value] : *table) given.insert(fmt::format("{}.{}", name.str(), key.str()));
+    }
+  }
+  return given;
+}
+
 std::string read_file(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path)) {
     throw InvalidInput(fmt::format("{}: no such scene file; check the path", path.string()));
@@ -156,13 +167,13 @@ Scene parse_scene(const std::string& text, const std::vector<std::string>& overr
   const TomlDocument document(text, path, overrides);
   TomlReader in(document);
   Scene scene;
-  scene.source = {path, text, overrides};
+  scene.source = {.path = path, .text = text, .overrides = overrides, .given = keys_given(document, overrides)};
   scene.title = in.text_or("title", "");
   scene.units = kUnits[in.choice("units", kUnits)];
   scene.structure = read_structure(in.table("structure"), scene.units);
   scene.contacts = read_contacts(in, scene);
   read_drive(in.table("drive"), scene);
-  scene.time = read_time(in.table_or_empty("time"), scene);
+  read_time(in.table_or_empty("time"), scene);
   scene.initial = read_initial(in.table_or_empty("initial"), scene);
   scene.ensemble = read_ensemble(in.table_or_empty("ensemble"), scene);
   if (scene.beam() == nullptr) {

@@ -91,6 +91,7 @@ TomlDocument::TomlDocument(const std::string& text, const std::string& path, con
   } catch (const toml::parse_error& error) {
     throw InvalidInput(fmt::format("{}:{}: not valid TOML: {}", path, error.source().begin.line, error.description()));
   }
+  for (const auto& [key, node] : root_) written_.emplace(key.str());
   for (const std::string& override_text : overrides) apply(override_text);
 }
 

@@ -5,7 +5,6 @@
 #include <slipmode/rom/reduce.hpp>
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 #include <algorithm>
 #include <array>
 
@@ -16,12 +15,9 @@ namespace {
 constexpr std::array<std::string_view, 10> kAxes = {"scene", "modes", "flow",     "theory", "elements",
                                                     "law",   "load",  "combined", "effect", "lean"};
 
-/// True when the scene, or an override of it, has that table.
+/// True when the scene, or an override of it, has that table, be it a seed alone.
 bool has_table(const scene::Scene& scene, const std::string& name) {
-  if (toml::parse(scene.source.text).contains(name)) return true;
-  return std::ranges::any_of(scene.source.overrides, [&](const std::string& override) {
-    return override.starts_with(name + ".") || override.starts_with(name + "=");
-  });
+  return scene::has_section(scene, name) || scene.source.given.contains(name + ".seed");
 }
 
 /// A table of scene_to_toml's text cut out: it goes from its head to the next one.

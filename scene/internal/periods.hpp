@@ -31,7 +31,4 @@ inline constexpr double kTransientPeriods = 24.0, kKeptPeriods = 216.0, kSampleP
 /// [time] under a shaker or a force, in its cycles.
 inline constexpr TimeSpec::Cycles kUsualCycles = {.cycles = 300.0, .transient_cycles = 200.0};
 
-/// True when the scene says its [time] neither in cycles nor in full, so that its own periods have a say in it.
-[[nodiscard]] bool leaves_time_open(const Scene& scene);
-
 }  // namespace slipmode::scene

@@ -5,6 +5,9 @@
 #include <slipmode/scene/scene.hpp>
 #include "scene/internal/toml_fields.hpp"
 
+#include <set>
+#include <string>
+
 namespace slipmode::scene {
 
 /// A position computed by hand may miss an end by rounding; fem::Beam takes as much.
@@ -48,5 +51,8 @@ void read_drive(TomlReader in, Scene& scene);
 
 /// The time in seconds of a time in cycles.
 [[nodiscard]] TimeSpec in_seconds(const TimeSpec::Cycles& cycles, double frequency_hz);
+
+/// Adds the key of an override to SceneSource::given.
+void note_given(std::set<std::string>& out_given, const std::string& key);
 
 }  // namespace slipmode::scene

@@ -27,6 +27,8 @@ class TomlDocument {
   TomlDocument(const std::string& text, const std::string& path, const std::vector<std::string>& overrides);
 
   [[nodiscard]] const toml::table& root() const { return root_; }
+  /// Keys at the top of the text, before overrides.
+  [[nodiscard]] const std::set<std::string>& written() const { return written_; }
   /// Place of a value.
   /// @param dotted  its path, "contact.0.mu_s"
   /// @param node    the value, or the table in which it is missing
@@ -36,6 +38,7 @@ class TomlDocument {
   void apply(const std::string& override_text);
 
   toml::table root_;
+  std::set<std::string> written_;
   std::string path_;
   std::map<std::string, std::string> overridden_;  // dotted path -> text of the override
 };

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 #include <string>
+#include <vector>
 
 namespace slipmode::scene {
 namespace {
@@ -105,6 +106,44 @@ TEST(OwnTimes, AreSaid) {
   ASSERT_EQ(chosen.times.size(), 6U) << "those of [validation] but the block";
   EXPECT_EQ(chosen.times.front().key, "validation.transient");
   EXPECT_EQ(chosen.times.front().value, 200.0);
+}
+
+std::vector<std::string> keys_chosen(const Scene& scene) {
+  std::vector<std::string> keys;
+  for (const ChosenTimes::Time& time : chosen_times(scene, {"time", "validation"}).times) keys.push_back(time.key);
+  return keys;
+}
+
+// A scene with a key set is the scene that its source and overrides say.
+TEST(OwnTimes, AreThoseOfASceneWithAKeySet) {
+  const Scene scene = on_belt("[time]\nduration = 300.0\n");
+  for (const char* change : {"time.sample", "time.duration", "time.transient", "structure.stiffness", "drive.speed",
+                             "contact.0.mu_s", "validation.horizon", "ensemble.seed", "flow.tolerance"}) {
+    SCOPED_TRACE(change);
+    const Scene changed = set_key(scene, change, change == std::string("ensemble.seed") ? 7.0 : 0.75);
+    const Scene again = parse_scene(changed.source.text, changed.source.overrides);
+    EXPECT_EQ(changed.time.duration, again.time.duration);
+    EXPECT_EQ(changed.time.transient, again.time.transient);
+    EXPECT_EQ(changed.time.sample, again.time.sample);
+    EXPECT_EQ(changed.source.given, again.source.given);
+    EXPECT_EQ(changed.source.period, again.source.period);
+    EXPECT_EQ(keys_chosen(changed), keys_chosen(again));
+    EXPECT_EQ(scene_to_toml(with_own_times(changed)), scene_to_toml(with_own_times(again)));
+  }
+  const std::string forced = tests::replaced(one_mass(1.0, ""), "kind = \"belt\"\nspeed = 0.2\n",
+                                             "kind = \"force\"\nfrequency = 2.0\namplitude = 1.0\nat = 1\n");
+  EXPECT_DOUBLE_EQ(set_key(parse_scene(forced), "drive.frequency", 4.0).time.sample, 0.25 / 32.0);
+}
+
+TEST(OwnTimes, SectionsAreThoseOfTextAndOverridesButASeed) {
+  const Scene scene = parse_scene(one_mass(1.0, ""), {"ensemble.seed=3", "validation = {limit = 70.0}"});
+  EXPECT_TRUE(has_section(scene, "time"));
+  EXPECT_TRUE(has_section(scene, "validation"));
+  EXPECT_FALSE(has_section(scene, "ensemble"));
+  EXPECT_FALSE(has_section(scene, "reduction"));
+  EXPECT_TRUE(has_section(set_key(scene, "ensemble.members", 3.0), "ensemble"));
+  EXPECT_TRUE(has_section(parse_scene(one_mass(1.0, "[ensemble]\nseed = 3\n")), "ensemble"));
+  EXPECT_EQ(with_own_times(scene).validation.limit, 70.0);
 }
 
 TEST(OwnTimes, WaitOneBlockWhereNoLawSticks) {
