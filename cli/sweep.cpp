@@ -105,7 +105,7 @@ Report run(const Session& session, SweepRequest request) {
   if (session.has_a_share()) return part_made(session, file, request.output, "values");
   Report report = summary(request, family, sweep);
   tell_without_slips(scene, report);
-  tell_chosen_times(scene, {"validation"}, report);
+  tell_chosen_times(scene, {"validation.transient", "validation.block", "validation.sweep_limit"}, report);
   tell_resumed(session, file.resumed(), "values", report);
   return report;
 }

@@ -7,9 +7,9 @@
 
 namespace slipmode::cli {
 
-void tell_chosen_times(const scene::Scene& scene, const std::vector<std::string>& tables, Report& out_report) {
+void tell_chosen_times(const scene::Scene& scene, const std::vector<std::string>& names, Report& out_report) {
   constexpr std::size_t kColumns = 80;
-  const scene::ChosenTimes chosen = scene::chosen_times(scene, tables);
+  const scene::ChosenTimes chosen = scene::chosen_times(scene, names);
   if (chosen.times.empty()) return;
   Json values = Json::object();
   std::string text = fmt::format("Chosen by {}, {:.4g}{}:", chosen.of, chosen.period, scene.units == "SI" ? " s" : "");

@@ -62,24 +62,25 @@ Scene with_own_times(Scene scene) {
   return scene;
 }
 
-ChosenTimes chosen_times(const Scene& scene, const std::vector<std::string>& tables) {
+ChosenTimes chosen_times(const Scene& scene, const std::vector<std::string>& names) {
   ChosenTimes chosen;
   if (scene.source.text.empty()) return chosen;
-  const auto wanted = [&](const char* table) { return std::ranges::find(tables, table) != tables.end(); };
+  const auto wanted = [&](const std::string& name) { return std::ranges::find(names, name) != names.end(); };
   const auto add = [&](const char* table, const char* key, double value) {
-    if (!is_given_in(scene, table, key)) chosen.times.push_back({fmt::format("{}.{}", table, key), value});
+    const std::string path = fmt::format("{}.{}", table, key);
+    if ((wanted(table) || wanted(path)) && !scene.source.given.contains(path)) chosen.times.push_back({path, value});
   };
   const bool on_belt = scene.drive.belt() != nullptr;
-  if (wanted("time") && scene.time.cycles) {
+  if (scene.time.cycles) {
     for_each_field<TimeSpec::Cycles>(
         [&](const auto& field) { add("time", field.name, static_cast<double>(*scene.time.cycles.*field.member)); });
-  } else if (wanted("time")) {
+  } else {
     for_each_field<TimeSpec>([&](const auto& field) {
       const bool is_plain = scene.time.*field.member == 0.0;  // no transient beside a given duration
       if (!is_plain) add("time", field.name, scene.time.*field.member);
     });
   }
-  if (wanted("validation") && on_belt) {
+  if (on_belt) {
     for (const auto& own : kValidationTimes) add("validation", own.key, scene.validation.*own.time);
   }
   if (chosen.times.empty()) return chosen;

@@ -34,8 +34,8 @@ struct ChosenTimes {
   std::vector<Time> times = {};
 };
 
-/// What was chosen of these tables, "time" and "validation".
+/// What was chosen of these tables and keys: "time", "validation", "validation.block".
 /// @param scene  as with_own_times gives it
-[[nodiscard]] ChosenTimes chosen_times(const Scene& scene, const std::vector<std::string>& tables);
+[[nodiscard]] ChosenTimes chosen_times(const Scene& scene, const std::vector<std::string>& names);
 
 }  // namespace slipmode::scene

@@ -106,6 +106,9 @@ TEST(OwnTimes, AreSaid) {
   ASSERT_EQ(chosen.times.size(), 6U) << "those of [validation] but the block";
   EXPECT_EQ(chosen.times.front().key, "validation.transient");
   EXPECT_EQ(chosen.times.front().value, 200.0);
+  const ChosenTimes one = chosen_times(scene, {"validation.limit", "validation.block"});
+  ASSERT_EQ(one.times.size(), 1U) << "the block is given";
+  EXPECT_EQ(one.times.front().key, "validation.limit");
 }
 
 std::vector<std::string> keys_chosen(const Scene& scene) {
