@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace slipmode::cli {
 namespace {
@@ -53,7 +54,7 @@ std::string error_cell(const trade::Judgement& judgement) {
 }
 
 std::string time_cell(const studies::Advice& advice, const trade::Row& row) {
-  return fixed(1.0 / trade::speed_up(advice.study, row), 2);
+  return fixed(trade::time_share(advice.study, row), 2);
 }
 
 /// Row by row what was tried to be left out, each together with all before it.
@@ -110,7 +111,7 @@ Json effect_json(const studies::Advice& advice, std::size_t e) {
   const trade::Row& row = advice.study.rows[advice.lean->alone[e]];
   Json out = merged({{"effect", effect.name}, {"kind", trade::to_string(effect.kind)}, {"row", row.variant.name}},
                     judgement_json(judged(advice, e, advice.asked.ask.question)),
-                    Json{{"time_share", json_number(1.0 / trade::speed_up(advice.study, row))}});
+                    Json{{"time_share", json_number(trade::time_share(advice.study, row))}});
   for (const trade::Question question : kQuestions) {
     out[std::string(trade::to_string(question))] = judgement_json(judged(advice, e, question));
   }
@@ -121,7 +122,7 @@ Json step_json(const studies::Advice& advice, const trade::Step& step) {
   const trade::Row& row = advice.study.rows[step.row];
   return merged({{"effect", advice.effects[step.effect].name}, {"left_out", step.left_out}},
                 judgement_json(trade::judge(row, advice.asked.ask)),
-                Json{{"time_share", json_number(1.0 / trade::speed_up(advice.study, row))}});
+                Json{{"time_share", json_number(trade::time_share(advice.study, row))}});
 }
 
 Json lean_json(const studies::Advice& advice) {
@@ -132,7 +133,7 @@ Json lean_json(const studies::Advice& advice) {
   if (!advice.lean->verified) return out;
   const trade::Row& row = advice.study.rows[*advice.lean->verified];
   out.update(judgement_json(trade::judge(row, advice.asked.ask)));
-  out["time_share"] = json_number(1.0 / trade::speed_up(advice.study, row));
+  out["time_share"] = json_number(trade::time_share(advice.study, row));
   return out;
 }
 
@@ -164,11 +165,12 @@ Report run(const Session& session, const AdviseArguments& arguments) {
   if (!arguments.write.empty()) require_writable(arguments.write);
   const scene::Scene scene = scene::with_own_times(session.load(arguments.scene));
   const studies::AdviceRequest request = request_of(arguments);
-  const std::size_t pieces = trade::effects_of(scene).size();
+  std::vector<trade::Effect> effects = trade::effects_of(scene);
   studies::ResultFile file(arguments.output, scene, results::FileKind::kTrade, "slipmode advise",
-                           fmt::format("{}", request.bound), session.division(), studies::Pieces{pieces, "effects"},
-                           studies::Unfinished::kKept);
-  const studies::Advice advice = studies::advise(scene, request, session.run_options(), file.journal());
+                           fmt::format("{}", request.bound), session.division(),
+                           studies::Pieces{effects.size(), "effects"}, studies::Unfinished::kKept);
+  const studies::Advice advice =
+      studies::advise(scene, std::move(effects), request, session.run_options(), file.journal());
   file.finish([&](results::StoreWriter& writer) { results::store_study(writer, advice.study, scene); });
   if (session.has_a_share()) return part_made(session, file, arguments.output, "configurations");
 

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <utility>
 
 namespace slipmode::studies {
 namespace {
@@ -86,10 +87,10 @@ std::vector<trade::Variant> advice_pieces(const scene::Scene& scene, const std::
   return alone;
 }
 
-Advice advise(const scene::Scene& scene, const AdviceRequest& request, const RunOptions& run,
-              results::Journal* journal) {
+Advice advise(const scene::Scene& scene, std::vector<trade::Effect> effects, const AdviceRequest& request,
+              const RunOptions& run, results::Journal* journal) {
   trade::StudyOptions options{.schedule = trade::schedule_of(scene), .resolve = request.bound};
-  Advice out{.asked = asked(scene, request, run), .effects = trade::effects_of(scene), .study = {}};
+  Advice out{.asked = asked(scene, request, run), .effects = std::move(effects), .study = {}};
   // From the scene's motion to a neighbouring one it is not as far as from a start.
   options.schedule.transient = std::min(options.schedule.transient, options.schedule.duration);
   options.dies_out = out.asked.dies_out;

@@ -50,9 +50,10 @@ struct Advice {
 
 /// Measures every effect alone, leaves out together what can be, and measures what remains once more.
 /// @param scene    with its own times (scene::with_own_times)
+/// @param effects  those of the scene (trade::effects_of)
 /// @param journal  keeps what is measured and gives back what was; nullptr: in memory only
 /// @throws as trade::study
-[[nodiscard]] Advice advise(const scene::Scene& scene, const AdviceRequest& request, const RunOptions& run = {},
-                            results::Journal* journal = nullptr);
+[[nodiscard]] Advice advise(const scene::Scene& scene, std::vector<trade::Effect> effects, const AdviceRequest& request,
+                            const RunOptions& run = {}, results::Journal* journal = nullptr);
 
 }  // namespace slipmode::studies

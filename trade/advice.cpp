@@ -121,6 +121,8 @@ std::string percent_text(double value) {
 
 double speed_up(const Study& study, const Row& row) { return row_as_it_stands(study).cost.cpu / row.cost.cpu; }
 
+double time_share(const Study& study, const Row& row) { return 1.0 / speed_up(study, row); }
+
 double break_even(const Study& study, const Row& row, double duration) {
   if (!std::isfinite(row.cost.cpu)) return kNone;
   const double saved = (row_as_it_stands(study).cost.cpu - row.cost.cpu) * duration / row.cost.simulated;

@@ -41,6 +41,8 @@ struct Choice {
 
 /// Processor time of the scene as it stands over that of a row; NaN where either is not known.
 [[nodiscard]] double speed_up(const Study& study, const Row& row);
+/// Its inverse: what a run takes of the time.
+[[nodiscard]] double time_share(const Study& study, const Row& row);
 
 /// Runs of that length after which basis and projection are paid for, against the scene as it stands; infinite when the
 /// row is not faster, 0 for a full model that is.

@@ -233,7 +233,7 @@ std::string lean_sentences(const scene::Scene& scene, const Lean& lean, const st
     const Row& whole = study.rows[*lean.verified];
     text += fmt::format(" It can do without {}{}: {} off, measured once more as a whole, and {}.", listed(spare),
                         spare.size() > 1 ? ", together" : "", error_text(judge(whole, ask)),
-                        time_text(1.0 / speed_up(study, whole)));
+                        time_text(time_share(study, whole)));
   }
   text += '\n';
   if (!unclear.empty()) {

@@ -24,6 +24,10 @@ scene::Scene lean_of(const Advice& advice, const scene::Scene& scene) {
   return advice.lean->verified ? advice.study.rows[*advice.lean->verified].variant.scene : scene;
 }
 
+Advice advised(const scene::Scene& scene, const AdviceRequest& request, const RunOptions& run = {}) {
+  return advise(scene, trade::effects_of(scene), request, run);
+}
+
 bool is_left_out(const Advice& advice, const std::string& name) {
   return std::ranges::any_of(advice.lean->left_out, [&](std::size_t e) { return advice.effects[e].name == name; });
 }
@@ -74,7 +78,7 @@ TEST(Advice, KeepsAModeOfFivePercentAtABoundOfTwoAndLeavesOutOneOfHalfAPercent) 
     const scene::Scene scene = linear_pair(omega);
     const double share = 100.0 * share_of_mode_2(scene, omega);
     SCOPED_TRACE(fmt::format("omega {}, share {} %", omega, share));
-    const Advice advice = advise(scene, {.bound = 2.0, .only = Measure::kEnergy});
+    const Advice advice = advised(scene, {.bound = 2.0, .only = Measure::kEnergy});
     const auto& alone = advice.study.rows[advice.lean->alone.at(1)];
     ASSERT_EQ(alone.variant.name, "without modes above 1");
     EXPECT_NEAR(trade::at(alone.error, Measure::kEnergy), share, 1e-3 * share);
@@ -149,7 +153,7 @@ TEST(Advice, OfALeanSceneWithEffectsOfAMillionthIsTheLeanScene) {
   const scene::Scene full = scene::parse_scene(
       forced_text(structure, 1, 1.0, 1.3, {.mu_s = 0.3 * (1.0 + 1e-6), .slope = 1e-6, .tilt_deg = 1e-6}));
   for (const trade::Question question : {trade::Question::kMotion, trade::Question::kStatistics}) {
-    const Advice advice = advise(full, {.question = question});
+    const Advice advice = advised(full, {.question = question});
     const scene::Scene found = lean_of(advice, full);
     EXPECT_EQ(trade::scene_text(trade::as_it_stands(found)), trade::scene_text(trade::as_it_stands(lean)));
     EXPECT_TRUE(advice.lean->put_back.empty());
@@ -207,7 +211,7 @@ TEST(Advice, DoesNotTakeALimitCycleForDecayHoweverFarAwayItBegins) {
     SCOPED_TRACE(start);
     const scene::Scene scene = stick_slip(fmt::format("displacement = [{}]\n", start));
     EXPECT_FALSE(asked(scene, {}).dies_out);
-    const Advice advice = advise(scene, {});
+    const Advice advice = advised(scene, {});
     EXPECT_FALSE(is_left_out(advice, "Stribeck slope"));
     EXPECT_FALSE(is_left_out(advice, "static friction peak"));
   }
@@ -228,7 +232,7 @@ TEST(Advice, RefusesASceneInWhichNothingMoves) {
 TEST(Advice, IsTheSameForAnyNumberOfThreads) {
   const scene::Scene scene = scene::parse_scene(
       forced_text(chain_text(2, 0.05), 2, 1.0, 0.5, {.mu_s = 0.33, .slope = 0.01, .tilt_deg = 1e-6}));
-  const Advice one = advise(scene, {}, {.threads = 1}), three = advise(scene, {}, {.threads = 3});
+  const Advice one = advised(scene, {}, {.threads = 1}), three = advised(scene, {}, {.threads = 3});
   ASSERT_EQ(one.study.rows.size(), three.study.rows.size());
   for (std::size_t i = 0; i < one.study.rows.size(); ++i) {
     EXPECT_EQ(one.study.rows[i].variant.name, three.study.rows[i].variant.name);
@@ -274,7 +278,7 @@ std::string false_advice(std::uint64_t index) {
   const std::string text = belt ? belt_text(structure, at, 0.3 * pace, numbers)
                                 : forced_text(structure, at, random.uniform(0.6, 1.5), pace, numbers);
   const scene::Scene scene = scene::parse_scene(text);
-  const Advice advice = advise(scene, {.bound = kBound});
+  const Advice advice = advised(scene, {.bound = kBound});
   std::string wrong;
   const auto tiny_stays = [&](const char* name, bool tiny) {
     if (tiny && !is_left_out(advice, name)) wrong += fmt::format("{} stays; ", name);
