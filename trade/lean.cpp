@@ -24,6 +24,11 @@ bool goes_further(const std::vector<Effect>& effects, std::size_t further, std::
   return further > than && !effects[than].ladder.empty() && effects[further].ladder == effects[than].ladder;
 }
 
+/// Whether something of a set goes further than an effect.
+bool is_passed(const std::vector<Effect>& effects, const std::vector<std::size_t>& set, std::size_t effect) {
+  return std::ranges::any_of(set, [&](std::size_t other) { return goes_further(effects, other, effect); });
+}
+
 class Search {
  public:
   Search(const scene::Scene& scene, const std::vector<Effect>& effects, const std::vector<Row>& rows, const Ask& ask)
@@ -69,7 +74,7 @@ class Search {
     std::vector<std::size_t> set = out_.left_out;
     for (std::size_t k = 0; k < queue.size(); ++k) {
       const std::size_t e = queue[k];
-      if (std::ranges::any_of(set, [&](std::size_t other) { return goes_further(effects_, other, e); })) continue;
+      if (is_passed(effects_, set, e)) continue;
       set.push_back(e);
       const auto row = row_without(set);
       if (!row) {
@@ -91,8 +96,7 @@ class Search {
   void want(const std::vector<std::size_t>& queue, std::size_t from) {
     std::vector<std::size_t> set = out_.left_out;
     for (std::size_t k = from; k < queue.size() && out_.wanted.size() < kAhead; ++k) {
-      if (std::ranges::any_of(set, [&](std::size_t other) { return goes_further(effects_, other, queue[k]); }))
-        continue;
+      if (is_passed(effects_, set, queue[k])) continue;
       set.push_back(queue[k]);
       if (!row_without(set)) out_.wanted.push_back(without(scene_, effects_, set));
     }
@@ -215,8 +219,7 @@ std::string lean_sentences(const scene::Scene& scene, const Lean& lean, const st
       mattering.push_back(fmt::format("{} ({})", effects[e].name, error_text(alone)));
     }
     if (!effects[e].removable) continue;
-    const auto passed = [&](std::size_t other) { return goes_further(effects, other, e); };
-    if (std::ranges::any_of(lean.left_out, passed)) continue;
+    if (is_passed(effects, lean.left_out, e)) continue;
     if (std::ranges::find(lean.left_out, e) != lean.left_out.end()) {
       spare.push_back(effects[e].name);
       continue;
