@@ -91,7 +91,7 @@ struct Numbers {
   double mu_s = 0.3, slope = 0.0, tilt_deg = 0.0;
 };
 
-std::string forced_text(const std::string& structure, int at, double amplitude, double omega, const Numbers& numbers) {
+std::string rubbed_text(const std::string& structure, int at, const Numbers& numbers) {
   return fmt::format(R"(
 {}
 [[contact]]
@@ -101,7 +101,12 @@ mu_k = 0.3
 mu_s = {}
 normal_load = {{ constant = 1.0, slope = {} }}
 tilt_deg = {}
-[drive]
+)",
+                     structure, at, numbers.mu_s, numbers.slope, numbers.tilt_deg);
+}
+
+std::string forced_text(const std::string& structure, int at, double amplitude, double omega, const Numbers& numbers) {
+  return rubbed_text(structure, at, numbers) + fmt::format(R"([drive]
 kind = "force"
 omega = {}
 amplitude = {}
@@ -110,20 +115,11 @@ at = {}
 cycles = 120
 transient_cycles = 80
 )",
-                     structure, at, numbers.mu_s, numbers.slope, numbers.tilt_deg, omega, amplitude, at);
+                                                           omega, amplitude, at);
 }
 
 std::string belt_text(const std::string& structure, int at, double speed, const Numbers& numbers) {
-  return fmt::format(R"(
-{}
-[[contact]]
-at = {}
-law = "coulomb"
-mu_k = 0.3
-mu_s = {}
-normal_load = {{ constant = 1.0, slope = {} }}
-tilt_deg = {}
-[drive]
+  return rubbed_text(structure, at, numbers) + fmt::format(R"([drive]
 kind = "belt"
 speed = {}
 [time]
@@ -137,7 +133,7 @@ limit = 800.0
 horizon = 20.0
 horizon_starts = 4
 )",
-                     structure, at, numbers.mu_s, numbers.slope, numbers.tilt_deg, speed);
+                                                           speed);
 }
 
 std::string chain_text(int masses, double damping) {
