@@ -31,8 +31,7 @@ Verb add_schema(CLI::App& app) {
   command->add_option("-o,--output", arguments->output, "schema file (JSON); default: standard output");
   command->footer(
       "An editor that knows Taplo ('Even Better TOML') explains and completes keys, and marks what is wrong, in a "
-      "scene "
-      "whose first line is '#:schema scene.schema.json'.\n"
+      "scene whose first line is '#:schema scene.schema.json'.\n"
       "Example:\n  slipmode schema -o scene.schema.json");
   return {command, [arguments](const Session&) { return run(*arguments); }};
 }

@@ -23,7 +23,7 @@ struct Sample {
   const char* scene;
 };
 
-constexpr std::array<Sample, 4> kSamples = {{{"chain", "Five masses, the last one on a moving belt.", R"(
+constexpr const char* kChainScene = R"(
 title = "Chain on a belt"
 units = "SI"
 
@@ -60,8 +60,9 @@ spread = 1.0e-3
 energy = 0.99
 
 [validation]
-)"},
-                                             {"beam", "A steel cantilever rubbed at its tip by a shaken slider.", R"(
+)";
+
+constexpr const char* kBeamScene = R"(
 title = "Beam on a shaker"
 units = "SI"
 
@@ -106,8 +107,9 @@ energy = 0.99
 [validation]
 cycles = 300
 modes = [1, 2, 3, 4, 6]
-)"},
-                                             {"matrices", "Three degrees of freedom by their matrices, on a belt.", R"(
+)";
+
+constexpr const char* kMatricesScene = R"(
 title = "A structure of its own"
 units = "SI"
 
@@ -145,8 +147,9 @@ spread = 1.0e-3
 energy = 0.99
 
 [validation]
-)"},
-                                             {"clearance", "Two masses with a gap between them, under a force.", R"(
+)";
+
+constexpr const char* kClearanceScene = R"(
 title = "Masses with a gap"
 units = "SI"
 
@@ -183,7 +186,13 @@ samples_per_cycle = 64
 
 [initial]
 displacement = [0.0, 0.0]
-)"}}};
+)";
+
+constexpr std::array<Sample, 4> kSamples = {
+    {{"chain", "Five masses, the last one on a moving belt.", kChainScene},
+     {"beam", "A steel cantilever rubbed at its tip by a shaken slider.", kBeamScene},
+     {"matrices", "Three degrees of freedom by their matrices, on a belt.", kMatricesScene},
+     {"clearance", "Two masses with a gap between them, under a force.", kClearanceScene}}};
 
 constexpr std::size_t kColumns = 80, kComment = 28;
 
