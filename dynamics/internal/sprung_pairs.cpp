@@ -231,9 +231,8 @@ std::vector<Support> joined(const std::vector<Support>& supports) {
 }  // namespace
 
 std::optional<PairForm> sprung_pairs(const Eigen::VectorXd& omega, const Eigen::VectorXd& damping,
-                                     const std::vector<Support>& contacts) {
+                                     const std::vector<Support>& supports) {
   const Eigen::Index n = omega.size();
-  const std::vector<Support> supports = joined(contacts);
   DampedModes modes{Eigen::VectorXcd(n), Eigen::VectorXcd(n), Eigen::MatrixXcd::Identity(n, n)};
   for (Eigen::Index i = 0; i < n; ++i) {
     const double half = damping(i) / 2.0, square = (omega(i) - half) * (omega(i) + half);
@@ -241,7 +240,8 @@ std::optional<PairForm> sprung_pairs(const Eigen::VectorXd& omega, const Eigen::
     modes.values(i) = {-half, std::sqrt(square)};
     modes.norms(i) = {0.0, 2.0 * std::sqrt(square)};
   }
-  for (const Support& support : supports)
+  const std::vector<Support> own = joined(supports);
+  for (const Support& support : own)
     if (!add(support, modes)) return std::nullopt;
 
   PairForm form;
@@ -257,7 +257,7 @@ std::optional<PairForm> sprung_pairs(const Eigen::VectorXd& omega, const Eigen::
     Eigen::VectorXcd damped = z * shape + damping.cast<Complex>().cwiseProduct(shape);
     Eigen::VectorXcd remainder = z * damped + omega.cwiseAbs2().cast<Complex>().cwiseProduct(shape);
     double terms = std::norm(z) * shape.norm() + omega.cwiseAbs2().cwiseProduct(shape.cwiseAbs()).norm();
-    for (const Support& support : supports) {
+    for (const Support& support : own) {
       const Complex there = support.w.cast<Complex>().cwiseProduct(shape).sum();
       damped += support.damping * there * support.w;
       remainder += (support.stiffness + z * support.damping) * there * support.w;

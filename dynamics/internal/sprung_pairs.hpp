@@ -25,6 +25,6 @@ struct Support {
 ///         modes that a support reaches have one eigenvalue, or where roots do not converge or do not solve the
 ///         equations of motion: then for `pair_form`
 [[nodiscard]] std::optional<PairForm> sprung_pairs(const Eigen::VectorXd& omega, const Eigen::VectorXd& damping,
-                                                   const std::vector<Support>& contacts);
+                                                   const std::vector<Support>& supports);
 
 }  // namespace slipmode::dynamics
