@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 
 namespace slipmode::selftest {
@@ -208,10 +209,11 @@ class Scan {
       return std::sqrt(x.cwiseProduct(M * x).colwise().sum().maxCoeff());
     };
     // A motion rounds by the steady answer to its drive, beside which a short record from rest has next to none.
-    dynamics::Trajectory whole = run_;
+    std::optional<dynamics::Trajectory> cycle;
     if (const auto period = system_.drive().period(); period && *period > options_.duration)
-      whole =
+      cycle =
           dynamics::simulate(system_, start_, {.duration = *period, .sample = *period / 64.0, .flow = options_.flow});
+    const dynamics::Trajectory& whole = cycle ? *cycle : run_;
     // Speeds round by the energy of the motion, displacements' included; and by what the run makes of its own start.
     const Eigen::MatrixXd elastic = fem::multiply(system_.structure().K(), whole.q);
     const double swing = std::hypot(largest(whole.v),
