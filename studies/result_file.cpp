@@ -86,6 +86,10 @@ ResultFile::ResultFile(std::filesystem::path path, scene::Scene scene, results::
   resumed_ = finished();
 }
 
+ResultFile::~ResultFile() {
+  if (path_.empty() && journal_ && journal_->records().empty()) journal_->remove();
+}
+
 void ResultFile::keep_in_cache() {
   const std::filesystem::path folder = cache();
   std::error_code none;

@@ -60,6 +60,10 @@ class ResultFile {
   ResultFile(std::filesystem::path path, scene::Scene scene, results::FileKind kind, std::string command,
              const std::string& identity = "", const Division& division = {}, const Pieces& pieces = {},
              Unfinished unfinished = Unfinished::kDropped);
+  /// A journal in the cache of which nothing was kept is dropped.
+  ~ResultFile();
+  ResultFile(const ResultFile&) = delete;
+  ResultFile& operator=(const ResultFile&) = delete;
 
   /// Null without a file, but for values kept elsewhere.
   [[nodiscard]] results::Journal* journal() { return journal_ ? &*journal_ : nullptr; }

@@ -7,6 +7,9 @@
 
 #include <gtest/gtest.h>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <iterator>
 
 namespace slipmode::studies {
 namespace {
@@ -52,6 +55,32 @@ TEST(ResultFile, GoesOnFromItsOwnJournalAndRefusesAnother) {
   again.finish([](results::StoreWriter&) {});
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "sweep.h5"));
   EXPECT_FALSE(std::filesystem::exists(results::Journal::path_for(folder.path() / "sweep.h5")));
+}
+
+TEST(ResultFile, LeavesNothingInTheCacheOfAStudyThatKeptNothing) {
+  const tests::TemporaryFolder folder;
+  const char* before = std::getenv("XDG_CACHE_HOME");
+  const std::string own = before == nullptr ? "" : before;
+  setenv("XDG_CACHE_HOME", folder.path().c_str(), 1);
+  const scene::Scene scene = scene::load_scene(std::string(SLIPMODE_SOURCE_DIR) + "/datasets/chain10/scene.toml");
+  const auto left = [&] {
+    return std::distance(std::filesystem::directory_iterator(folder.path() / "slipmode"),
+                         std::filesystem::directory_iterator());
+  };
+  const auto fail_after = [&](int records) {
+    ResultFile failed("", scene, results::FileKind::kTrade, "slipmode trade", "", {}, {}, Unfinished::kKept);
+    EXPECT_EQ(left(), 1) << "its journal";
+    for (int i = 0; i < records; ++i) failed.journal()->append({"row", i, {0.25}, ""});
+  };
+  fail_after(0);
+  EXPECT_EQ(left(), 0);
+  fail_after(1);
+  EXPECT_EQ(left(), 1) << "what is finished is kept";
+  if (before == nullptr) {
+    unsetenv("XDG_CACHE_HOME");
+  } else {
+    setenv("XDG_CACHE_HOME", own.c_str(), 1);
+  }
 }
 
 }  // namespace
