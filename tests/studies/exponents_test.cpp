@@ -22,6 +22,45 @@ TEST(ModelExponents, AreThoseOfTheModelWithoutProgressAsked) {
   EXPECT_EQ(models[0].spectrum.nats, diagnostics::lyapunov_spectrum(subjects.full, subjects.start, options).nats);
 }
 
+// Pieces of 0.4 sum up to three units in the last place less than the interval's end at t = 358.4, while the last mass
+// sticks: a step over what is left found a release that is none.
+TEST(ModelExponents, DoNotStepOverWhatRoundingLeavesOfAnInterval) {
+  const scene::Scene scene = scene::parse_scene(R"(
+units = "dimensionless"
+[structure]
+kind = "chain"
+masses = 37
+stiffness = 30.0
+damping = 0.002
+mass_damping = 0.01
+[[contact]]
+at = 19
+law = "dahl"
+mu = 0.25
+stiffness = 5.0
+normal_load = 0.6
+[[contact]]
+at = 37
+law = "stribeck"
+mu_s = 0.45
+mu_k = 0.2
+alpha = 4.0
+normal_load = 1.0
+[drive]
+kind = "belt"
+speed = 0.13
+[time]
+duration = 400.0
+transient = 150.0
+[initial]
+at = "static"
+)");
+  const Subjects subjects = subjects_of(scene, {});
+  const auto models = model_exponents(
+      subjects, tangent_options(scene, subjects.full, {.exponents = 1, .transient = {}, .duration = {}}));
+  EXPECT_EQ(models.at(0).spectrum.failure, "");
+}
+
 // Expected: the exponents from the state in which the diagram's own value has settled, without a transient more.
 TEST(ExponentSweeps, StandBelowTheirDiagramAndStartWhereItSettled) {
   const Family family(chain10(), {"drive.speed"});

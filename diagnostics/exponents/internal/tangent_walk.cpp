@@ -18,6 +18,8 @@ using dynamics::EventKind;
 constexpr double kContraction = 1e-4;
 /// Pieces are not made shorter than this share of the interval: what is lost within one is lost by an event.
 constexpr double kShortest = 1.0 / 65536.0;
+/// What pieces leave below this share of one is rounding, and run along with it: forces solved in it alone are noise.
+constexpr double kSliver = 1e-6;
 /// Distance kept from events, in units of the fastest frequency's radian.
 constexpr double kMargin = 1e-5;
 
@@ -85,7 +87,7 @@ std::vector<Event> TangentWalk::push(double duration) {
   const double end = state_.time + duration;
   const double rounding = 4e-16 * std::abs(end);
   for (double left = duration; left > rounding; left = end - state_.time) {
-    const double piece = std::min(left, longest_);
+    const double piece = left < (1.0 + kSliver) * longest_ ? left : longest_;
     const dynamics::TangentResult result = flow_.run(state_, piece, {.start = metric_.leave(frame_)});
     std::vector<ContactMode> modes = state_.modes;
     Eigen::Index most = confined(system_, modes);
