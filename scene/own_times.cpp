@@ -22,8 +22,9 @@ bool is_given_in(const Scene& scene, const char* table, const char* key) {
 
 double to_one_digit(double time) {
   if (time == 0.0) return 0.0;
-  const double unit = std::pow(10.0, std::floor(std::log10(time)));
-  return std::round(time / unit) * unit;
+  const double exponent = std::floor(std::log10(time)), unit = std::pow(10.0, std::abs(exponent));
+  // 3 / 10 is the number next to 0.3, 3 · 0.1 is not.
+  return exponent < 0.0 ? std::round(time * unit) / unit : std::round(time / unit) * unit;
 }
 
 double slowest_period(const Scene& scene) {

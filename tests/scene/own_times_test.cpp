@@ -99,6 +99,15 @@ TEST(OwnTimes, UnderAForceAreItsCycles) {
   EXPECT_EQ(chosen.times[0].value, 300.0);
 }
 
+// The number next to the decimal, as a scene file has it: 3 · 0.1 is 0.30000000000000004.
+TEST(OwnTimes, AreTheirDecimal) {
+  EXPECT_EQ(to_one_digit(0.3423), 0.3);
+  EXPECT_EQ(to_one_digit(7.2e-5), 7e-5);
+  EXPECT_EQ(to_one_digit(0.097), 0.1);
+  EXPECT_EQ(to_one_digit(1.0), 1.0);
+  EXPECT_EQ(to_one_digit(2349.0), 2000.0);
+}
+
 TEST(OwnTimes, AreSaid) {
   const Scene scene = with_own_times(parse_scene(one_mass(1.0, "[validation]\nblock = 100.0\n"), {"time.sample=0.5"}));
   const ChosenTimes chosen = chosen_times(scene, {"time", "validation"});
