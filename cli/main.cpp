@@ -1,6 +1,6 @@
 #include <slipmode/core/errors.hpp>
+#include <slipmode/core/ranks.hpp>
 #include <slipmode/core/terminal.hpp>
-#include <slipmode/results/crew.hpp>
 #include "cli/features.hpp"
 #include "cli/folded_tables.hpp"
 #include "cli/help_layout.hpp"
@@ -200,7 +200,7 @@ int run_launched(int argc, char** argv) {
   }
   const End end = run_main(argc, argv, ranks ? &*ranks : nullptr);
   std::fflush(nullptr);  // ranks may end abruptly
-  return ranks ? results::end_ranks(*ranks, end.code, end.message) : end.code;
+  return ranks ? end_ranks(*ranks, end.code, end.message) : end.code;
 }
 
 }  // namespace

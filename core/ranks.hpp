@@ -26,4 +26,30 @@ struct Ranks {
   std::function<void(int code)> abort = {};  ///< ends all ranks; the launcher's exit code is `code`
 };
 
+/// Ends the ranks, each as it calls this: the others tell rank 0 how they ended and wait for it; rank 0 lets them go,
+/// or ends them where it failed.
+/// @param code     0, or the exit code of this rank
+/// @param message  why, where the code is not 0
+/// @return what this process exits with: rank 0's code, of others 0, so that the launcher tells rank 0's
+int end_ranks(const Ranks& ranks, int code, const std::string& message);
+
+/// First letters of parcels that end_ranks() sends; what ranks send each other otherwise begins with others.
+inline constexpr char kFailureParcel = 'f', kGoParcel = 'G';
+
+/// How another rank has ended, for rank 0, which then fails too.
+struct RankFailure {
+  int rank = 0, code = 0;
+  std::string message;
+
+  /// @throws Interrupted         where the rank was stopped
+  /// @throws InvalidInput        for its bad input, with its number
+  /// @throws std::runtime_error  for all else, with its number
+  [[noreturn]] void rethrow() const;
+};
+/// Nothing where a parcel says something else.
+[[nodiscard]] std::optional<RankFailure> failure_in(const Parcel& parcel);
+
+/// @throws InvalidInput  on a rank whose study is another than rank 0's
+void require_same_study(const std::string& of_rank_0, const std::string& own);
+
 }  // namespace slipmode

@@ -12,7 +12,6 @@
 #include <condition_variable>
 #include <deque>
 #include <optional>
-#include <stdexcept>
 #include <string_view>
 #include <thread>
 #include <utility>
@@ -28,23 +27,20 @@ constexpr double kBusy = 0.25;                          // s, that pieces handed
 constexpr auto kWatch = milliseconds(2);                // between two looks for what has arrived: under 1 % of a core
 constexpr auto kWait = std::chrono::microseconds(100);  // of a thread that has nothing else to do
 constexpr auto kPatience = milliseconds(200);           // mpirun kills a second after it has asked to end, or at once
-constexpr std::string_view kBadInputCode = "2 ", kStoppedCode = "130 ";  // of failures
-constexpr std::size_t kMost = std::size_t{1} << 20;                      // bytes of a parcel of records
+constexpr std::size_t kMost = std::size_t{1} << 20;     // bytes of a parcel of records
 
 // Parcels: a letter, and text. To rank 0 a record (its line), a wish for pieces ("stage number"), the end of a stage
-// ("stage 1", or "stage 0" where it was stopped), a failure ("code message"). From it records (lines), the study's
-// fingerprint after the last of them, pieces ("1 2 3"), and three without text.
+// ("stage 1", or "stage 0" where it was stopped). From it records (lines), the study's fingerprint after the last of
+// them, pieces ("1 2 3"), and two without text.
 enum class Sent : char {
   kRecord = 'r',
   kWish = 'w',
   kDone = 'd',
-  kFailure = 'f',
   kRecords = 'R',
   kStudy = 'S',
   kPieces = 'P',
   kComplete = 'C',  ///< all records of a stage were sent
   kStop = 'X',
-  kGo = 'G',  ///< the rank may end
 };
 
 std::string bytes_of(Sent kind, std::string_view text = "") {
@@ -201,23 +197,29 @@ class Crew::Lead {
       return;
     }
     const std::scoped_lock lock(mutex_);
-    if (kind_of(arrived) == Sent::kWish) {
+    if (const auto failure = failure_in(arrived)) {
+      fail(*failure);
+    } else if (kind_of(arrived) == Sent::kWish) {
       const auto numbers = numbers_in(text);  // stage, wish
       if (numbers[0] == stage_) {
         answer(arrived.from, numbers[1]);
       } else {
         early_.emplace_back(arrived.from, numbers[1]);
       }
-    } else if (kind_of(arrived) == Sent::kDone) {
-      end_of(arrived.from, numbers_in(text)[1] != 0);
-    } else if (text.starts_with(kStoppedCode)) {
-      end_of(arrived.from, false);
     } else {
-      const std::string why = fmt::format("rank {}: {}", arrived.from, text.substr(text.find(' ') + 1));
-      error_ = text.starts_with(kBadInputCode) ? std::make_exception_ptr(InvalidInput(why))
-                                               : std::make_exception_ptr(std::runtime_error(why));
+      end_of(arrived.from, numbers_in(text)[1] != 0);
     }
     changed_.notify_all();
+  }
+
+  void fail(const RankFailure& failure) {
+    try {
+      failure.rethrow();
+    } catch (const Interrupted&) {
+      end_of(failure.rank, false);
+    } catch (...) {
+      error_ = std::current_exception();
+    }
   }
 
   void end_of(int rank, bool finished) {
@@ -281,11 +283,7 @@ class Crew::Hand {
   Hand(const Ranks& ranks, Journal& journal, const std::string& fingerprint) : ranks_(ranks), journal_(journal) {
     Parcel arrived = wait();
     for (; kind_of(arrived) == Sent::kRecords; arrived = wait()) take_over(text_of(arrived), journal_);
-    if (text_of(arrived) != fingerprint) {
-      throw InvalidInput(
-          "its study is another than rank 0's: another scene, other files, version or kernels (SLIPMODE_KERNELS); give "
-          "all ranks the same");
-    }
+    require_same_study(std::string(text_of(arrived)), fingerprint);
     journal_.share({.begin = [this](const std::vector<std::size_t>& open, std::size_t done, std::size_t total,
                                     const ParallelOptions& run) { begin(open.size(), total - done, run.stop); },
                     .take = [this] { return take(); },
@@ -351,19 +349,5 @@ Crew::Crew(const Ranks& ranks, Journal& journal, const std::string& fingerprint)
 }
 
 Crew::~Crew() = default;
-
-int end_ranks(const Ranks& ranks, int code, const std::string& message) {
-  if (ranks.own == 0) {
-    if (code != 0) ranks.abort(code);
-    for (int to = 1; to < ranks.count; ++to) ranks.send(to, bytes_of(Sent::kGo));
-  } else {
-    if (code != 0) ranks.send(0, bytes_of(Sent::kFailure, fmt::format("{} {}", code, message)));
-    // Asleep, not in a barrier that spins: rank 0 may be measuring times.
-    for (auto arrived = ranks.receive(); !arrived || kind_of(*arrived) != Sent::kGo; arrived = ranks.receive())
-      if (!arrived) std::this_thread::sleep_for(kWatch);
-  }
-  ranks.leave();
-  return ranks.own == 0 ? code : 0;
-}
 
 }  // namespace slipmode::results

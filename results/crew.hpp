@@ -33,11 +33,4 @@ class Crew {
   std::unique_ptr<Hand> hand_;  ///< of others
 };
 
-/// Ends the ranks of a study, each as it calls this: the others tell rank 0 how they ended and wait for it; rank 0 lets
-/// them go, or ends them where it failed.
-/// @param code     0, or the exit code of this rank
-/// @param message  why, where the code is not 0
-/// @return what this process exits with: rank 0's code, of others 0, so that the launcher tells rank 0's
-int end_ranks(const Ranks& ranks, int code, const std::string& message);
-
 }  // namespace slipmode::results

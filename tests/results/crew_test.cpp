@@ -4,6 +4,7 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/core/sweep_runner.hpp>
 #include <slipmode/results/crew.hpp>
+#include "core/network.hpp"
 #include "results/internal/journal_line.hpp"
 
 #include <gmock/gmock.h>
@@ -11,7 +12,6 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <deque>
 #include <map>
 #include <numeric>
 #include <set>
@@ -22,38 +22,7 @@ namespace {
 
 using std::chrono::microseconds;
 using testing::HasSubstr;
-
-/// Queues between ranks.
-class Network {
- public:
-  explicit Network(int count) : queues_(static_cast<std::size_t>(count)) {}
-
-  [[nodiscard]] Ranks rank(int own) {
-    const auto at = [this](int rank) -> std::deque<Parcel>& { return queues_[static_cast<std::size_t>(rank)]; };
-    return {.own = own,
-            .count = static_cast<int>(queues_.size()),
-            .send =
-                [this, own, at](int to, std::string bytes) {
-                  const std::scoped_lock lock(mutex_);
-                  at(to).push_back({own, std::move(bytes)});
-                },
-            .receive = [this, own, at]() -> std::optional<Parcel> {
-              const std::scoped_lock lock(mutex_);
-              if (at(own).empty()) return std::nullopt;
-              Parcel first = std::move(at(own).front());
-              at(own).pop_front();
-              return first;
-            },
-            .leave = [this] { ++left; },
-            .abort = [this](int code) { aborted = code; }};
-  }
-
-  std::atomic<int> left = 0, aborted = 0;
-
- private:
-  std::mutex mutex_;
-  std::vector<std::deque<Parcel>> queues_;
-};
+using tests::Network;
 
 std::vector<double> values_up_to(std::size_t count) {
   std::vector<double> values(count);
