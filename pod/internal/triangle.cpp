@@ -11,7 +11,7 @@ constexpr Eigen::Index kPanel = 32;
 
 /// Reduces the panel of columns [begin, begin + width) and returns the triangular factor of its compact WY form; the
 /// lower parts of the reflectors replace those columns of `rows`.
-Eigen::MatrixXd reduce_panel(Eigen::MatrixXd& R, Eigen::Ref<Eigen::MatrixXd>& rows, Eigen::Index begin,
+Eigen::MatrixXd reduce_panel(Eigen::Ref<Eigen::MatrixXd>& R, Eigen::Ref<Eigen::MatrixXd>& rows, Eigen::Index begin,
                              Eigen::Index width) {
   Eigen::MatrixXd factor = Eigen::MatrixXd::Zero(width, width);
   for (Eigen::Index j = 0; j < width; ++j) {
@@ -45,7 +45,7 @@ Eigen::MatrixXd reduce_panel(Eigen::MatrixXd& R, Eigen::Ref<Eigen::MatrixXd>& ro
 
 }  // namespace
 
-void absorb_rows(Eigen::MatrixXd& R, Eigen::Ref<Eigen::MatrixXd> rows) {
+void absorb_rows(Eigen::Ref<Eigen::MatrixXd> R, Eigen::Ref<Eigen::MatrixXd> rows) {
   const Eigen::Index n = R.cols();
   for (Eigen::Index begin = 0; begin < n; begin += kPanel) {
     const Eigen::Index width = std::min(kPanel, n - begin);
