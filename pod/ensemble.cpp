@@ -1,6 +1,7 @@
 #include <slipmode/pod/ensemble.hpp>
 
 #include <slipmode/core/errors.hpp>
+#include "pod/internal/assemble.hpp"
 
 #include <fmt/format.h>
 #include <cmath>
@@ -8,20 +9,6 @@
 namespace slipmode::pod {
 
 namespace {
-
-void check_finite(const Eigen::MatrixXd& snapshots) {
-  for (Eigen::Index j = 0; j < snapshots.cols(); ++j) {
-    if (snapshots.col(j).allFinite()) continue;
-    for (Eigen::Index i = 0; i < snapshots.rows(); ++i) {
-      if (!std::isfinite(snapshots(i, j))) {
-        throw InvalidInput(fmt::format(
-            "ensemble: snapshot {} (from 1), dof {} (from 1) is {}; every displacement must be finite. Remove the run "
-            "or the instant it comes from",
-            j + 1, i + 1, snapshots(i, j)));
-      }
-    }
-  }
-}
 
 void check_runs(const Ensemble& ensemble) {
   Eigen::Index previous = -1;
@@ -38,16 +25,32 @@ void check_runs(const Ensemble& ensemble) {
 
 }  // namespace
 
-void validate(const Ensemble& ensemble) {
-  if (ensemble.snapshots.rows() < 1)
-    throw InvalidInput("ensemble: no degrees of freedom (0 rows); expected at least 1");
-  if (ensemble.snapshots.cols() < 2) {
-    throw InvalidInput(
-        fmt::format("ensemble: {} snapshot(s); expected at least 2. Sample more often or longer, or add runs",
-                    ensemble.snapshots.cols()));
+void check_finite(const Eigen::MatrixXd& snapshots, Eigen::Index first) {
+  for (Eigen::Index j = 0; j < snapshots.cols(); ++j) {
+    if (snapshots.col(j).allFinite()) continue;
+    for (Eigen::Index i = 0; i < snapshots.rows(); ++i) {
+      if (!std::isfinite(snapshots(i, j))) {
+        throw InvalidInput(fmt::format(
+            "ensemble: snapshot {} (from 1), dof {} (from 1) is {}; every displacement must be finite. Remove the run "
+            "or the instant it comes from",
+            first + j + 1, i + 1, snapshots(i, j)));
+      }
+    }
   }
+}
+
+void check_counts(Eigen::Index dofs, Eigen::Index snapshots) {
+  if (dofs < 1) throw InvalidInput("ensemble: no degrees of freedom (0 rows); expected at least 1");
+  if (snapshots < 2) {
+    throw InvalidInput(fmt::format(
+        "ensemble: {} snapshot(s); expected at least 2. Sample more often or longer, or add runs", snapshots));
+  }
+}
+
+void validate(const Ensemble& ensemble) {
+  check_counts(ensemble.snapshots.rows(), ensemble.snapshots.cols());
   check_runs(ensemble);
-  check_finite(ensemble.snapshots);
+  check_finite(ensemble.snapshots, 0);
 }
 
 Ensemble join(std::span<const Eigen::MatrixXd> runs) {

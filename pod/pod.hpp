@@ -34,8 +34,9 @@ struct PodResult {
 
 /// Proper orthogonal modes of an ensemble.
 ///
-/// QR: memory beyond the snapshots O(n² + 256 n) for T ≥ n, O(n T) otherwise; cost 2 n T min(n, T). Lanczos: O(n k)
-/// memory and 4 n T per step. Single-threaded and deterministic.
+/// QR: memory beyond the snapshots O(n² log(T/n) + 256 n) for T ≥ n, O(n T) otherwise; cost 2 n T min(n, T), a sixth
+/// more above max(2 n, 4096) snapshots. Lanczos: O(n k) memory and 4 n T per step. Single-threaded and deterministic;
+/// pod_of_ranks() does the same with snapshots that lie on several ranks.
 /// @throws InvalidInput      T < 2, values not finite, constant snapshots, more modes asked than the data's rank, all
 ///                           modes asked of Lanczos
 /// @throws NumericalFailure  an iteration that does not converge, modes that are not orthonormal to 1e-10

@@ -17,6 +17,13 @@ struct Decomposition {
   std::string method;           ///< for the basis's provenance
 };
 
+/// @throws InvalidInput  for no degrees of freedom, or fewer than two snapshots
+void check_counts(Eigen::Index dofs, Eigen::Index snapshots);
+
+/// @param first  number of the first one among all, from 0
+/// @throws InvalidInput  naming the first value that is not finite
+void check_finite(const Eigen::MatrixXd& snapshots, Eigen::Index first);
+
 /// Checks a choice before work starts.
 /// @throws InvalidInput  for a negative count, more modes than `dofs`, a share outside (0, 1], a negative tolerance
 void validate(const PodOptions& options, Eigen::Index dofs);
