@@ -8,34 +8,65 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace slipmode::pod {
 
 namespace {
 
-/// y ↦ (X − q̄)(X − q̄)ᵀ y, one pass over the snapshots.
+/// The snapshots less their mean, as Lanczos sees them.
+struct Gram {
+  Eigen::Index dofs, snapshots;
+  Eigen::VectorXd mean;
+  double total;                                                  ///< ‖X − q̄‖²_F
+  std::function<Eigen::VectorXd(const Eigen::VectorXd&)> apply;  ///< y ↦ (X − q̄)(X − q̄)ᵀ y
+};
+
+/// One pass over the snapshots a step. @param centred  outlives this
+Gram gram_of(const Centred& centred) {
+  return {.dofs = centred.rows(),
+          .snapshots = centred.cols(),
+          .mean = centred.mean(),
+          .total = centred.total(),
+          .apply = [&centred](const Eigen::VectorXd& y) {
+            Eigen::VectorXd z = Eigen::VectorXd::Zero(y.size());
+            centred.for_each_block([&](const auto& block) {
+              const Eigen::VectorXd amplitude = block.transpose() * y;
+              z.noalias() += block * amplitude;
+            });
+            return z;
+          }};
+}
+
+/// @param sum  outlives this
+Gram gram_of(const SnapshotTriangle& sum) {
+  return {.dofs = sum.R.cols(),
+          .snapshots = sum.count,
+          .mean = sum.origin + sum.mean,
+          .total = sum.R.squaredNorm(),
+          .apply = [&R = sum.R](const Eigen::VectorXd& y) {
+            const Eigen::VectorXd amplitude = R.triangularView<Eigen::Upper>() * y;
+            return Eigen::VectorXd(R.transpose().triangularView<Eigen::Lower>() * amplitude);
+          }};
+}
+
+/// As Spectra wants it.
 class GramOperator {
  public:
   using Scalar = double;
 
-  explicit GramOperator(const Centred& centred) : centred_(centred) {}
+  explicit GramOperator(const Gram& gram) : gram_(gram) {}
 
-  [[nodiscard]] Eigen::Index rows() const { return centred_.rows(); }
-  [[nodiscard]] Eigen::Index cols() const { return centred_.rows(); }
+  [[nodiscard]] Eigen::Index rows() const { return gram_.dofs; }
+  [[nodiscard]] Eigen::Index cols() const { return gram_.dofs; }
 
   void perform_op(const double* in, double* out) const {
-    const Eigen::Map<const Eigen::VectorXd> y(in, rows());
-    Eigen::Map<Eigen::VectorXd> z(out, rows());
-    z.setZero();
-    centred_.for_each_block([&](const auto& block) {
-      const Eigen::VectorXd amplitude = block.transpose() * y;
-      z.noalias() += block * amplitude;
-    });
+    Eigen::Map<Eigen::VectorXd>(out, rows()) = gram_.apply(Eigen::Map<const Eigen::VectorXd>(in, rows()));
   }
 
  private:
-  const Centred& centred_;
+  const Gram& gram_;
 };
 
 struct Leading {
@@ -43,18 +74,18 @@ struct Leading {
   Eigen::MatrixXd vectors;
 };
 
-Leading leading(const Centred& centred, Eigen::Index count) {
+Leading leading(const Gram& gram, Eigen::Index count) {
   constexpr Eigen::Index kMaxRestarts = 1000;
   constexpr double kTolerance = 1e-13;  // of the Gram eigenvalues, that is of the squares
-  GramOperator gram(centred);
-  const Eigen::Index subspace = std::min(centred.rows(), std::max<Eigen::Index>(2 * count + 10, 20));
-  Spectra::SymEigsSolver<GramOperator> solver(gram, count, subspace);
+  GramOperator applied(gram);
+  const Eigen::Index subspace = std::min(gram.dofs, std::max<Eigen::Index>(2 * count + 10, 20));
+  Spectra::SymEigsSolver<GramOperator> solver(applied, count, subspace);
   solver.init();
   solver.compute(Spectra::SortRule::LargestAlge, kMaxRestarts, kTolerance);
   if (solver.info() != Spectra::CompInfo::Successful) {
     throw NumericalFailure(fmt::format("POD: Lanczos found not all of {} leading modes of {} degrees of freedom in {} "
                                        "restarts; ask for fewer modes or use the QR method",
-                                       count, centred.rows(), kMaxRestarts),
+                                       count, gram.dofs, kMaxRestarts),
                            kNone, {}, kNone);
   }
   // A negative Ritz value is rounding about zero.
@@ -62,45 +93,53 @@ Leading leading(const Centred& centred, Eigen::Index count) {
 }
 
 /// Leading modes until their share reaches the one asked, doubling their number.
-Leading leading_by_share(const Centred& centred, double total, double energy) {
-  const Eigen::Index limit = centred.rows() - 1;
+Leading leading_by_share(const Gram& gram, double energy) {
+  const Eigen::Index limit = gram.dofs - 1;
   for (Eigen::Index count = std::min<Eigen::Index>(8, limit);; count = std::min(2 * count, limit)) {
-    Leading found = leading(centred, count);
-    const Eigen::VectorXd shares = found.sigma.array().square() / total;
+    Leading found = leading(gram, count);
+    const Eigen::VectorXd shares = found.sigma.array().square() / gram.total;
     if (modes_for_energy(shares, energy) <= count) return found;
     if (count == limit) {
       throw InvalidInput(
           fmt::format("POD: {} modes of {} do not reach the share {}; Lanczos gives leading modes only, use "
                       "the QR method",
-                      count, centred.rows(), energy));
+                      count, gram.dofs, energy));
     }
   }
+}
+
+Decomposition decompose(const Gram& gram, const PodOptions& options) {
+  const Eigen::Index wanted = options.choice.modes;
+  if (wanted >= gram.dofs || (wanted == 0 && options.choice.energy == 1.0) || gram.dofs < 2) {
+    throw InvalidInput(
+        fmt::format("POD: Lanczos gives leading modes only; ask for fewer than {} modes, or a share below "
+                    "1, or use the QR method",
+                    gram.dofs));
+  }
+  Decomposition found;
+  found.total = gram.total;
+  found.mean = gram.mean;
+  found.snapshots = gram.snapshots;
+  if (is_constant(found.total, found.mean, found.snapshots)) {
+    fail_constant(found.snapshots, found.total, options.remove_mean);
+  }
+  Leading modes = wanted > 0 ? leading(gram, wanted) : leading_by_share(gram, options.choice.energy);
+  found.sigma = std::move(modes.sigma);
+  found.vectors = std::move(modes.vectors);
+  found.relative_error = 4.0 * std::sqrt(static_cast<double>(gram.dofs) * std::numeric_limits<double>::epsilon());
+  found.method = "Lanczos";
+  return found;
 }
 
 }  // namespace
 
 Decomposition decompose_lanczos(const Eigen::MatrixXd& snapshots, const PodOptions& options) {
   const Centred centred(snapshots, options.remove_mean);
-  const Eigen::Index wanted = options.choice.modes;
-  if (wanted >= centred.rows() || (wanted == 0 && options.choice.energy == 1.0) || centred.rows() < 2) {
-    throw InvalidInput(
-        fmt::format("POD: Lanczos gives leading modes only; ask for fewer than {} modes, or a share below "
-                    "1, or use the QR method",
-                    centred.rows()));
-  }
-  Decomposition found;
-  found.total = centred.total();
-  found.mean = centred.mean();
-  found.snapshots = centred.cols();
-  if (is_constant(found.total, found.mean, found.snapshots)) {
-    fail_constant(found.snapshots, found.total, options.remove_mean);
-  }
-  Leading modes = wanted > 0 ? leading(centred, wanted) : leading_by_share(centred, found.total, options.choice.energy);
-  found.sigma = std::move(modes.sigma);
-  found.vectors = std::move(modes.vectors);
-  found.relative_error = 4.0 * std::sqrt(static_cast<double>(centred.rows()) * std::numeric_limits<double>::epsilon());
-  found.method = "Lanczos";
-  return found;
+  return decompose(gram_of(centred), options);
+}
+
+Decomposition decompose_lanczos(const SnapshotTriangle& sum, const PodOptions& options) {
+  return decompose(gram_of(sum), options);
 }
 
 }  // namespace slipmode::pod

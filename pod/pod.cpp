@@ -50,21 +50,21 @@ PodResult pod_by_qr(const Eigen::MatrixXd& snapshots, const PodOptions& options)
   return accumulator.finish();
 }
 
-PodMethod resolve(const Eigen::MatrixXd& snapshots, const PodOptions& options) {
+}  // namespace
+
+PodMethod resolved_method(Eigen::Index dofs, Eigen::Index snapshots, const PodOptions& options) {
   if (options.method != PodMethod::kAutomatic) return options.method;
-  const Eigen::Index small = std::min(snapshots.rows(), snapshots.cols());
+  const Eigen::Index small = std::min(dofs, snapshots);
   if (small <= kLargeProblem) return PodMethod::kQrSvd;
   const bool few = options.choice.modes > 0 ? 20 * options.choice.modes <= small : options.choice.energy < 1.0;
   return few ? PodMethod::kLanczos : PodMethod::kQrSvd;
 }
 
-}  // namespace
-
 PodResult pod(const Ensemble& ensemble, const PodOptions& options) {
   validate(ensemble);
   validate(options, ensemble.snapshots.rows());
   PodOptions resolved = options;
-  resolved.method = resolve(ensemble.snapshots, options);
+  resolved.method = resolved_method(ensemble.snapshots.rows(), ensemble.snapshots.cols(), options);
   switch (resolved.method) {
     case PodMethod::kLanczos:
       return assemble(decompose_lanczos(ensemble.snapshots, resolved), resolved);

@@ -129,9 +129,7 @@ std::optional<PodResult> pod_of_ranks(const Eigen::MatrixXd& share, Exchange& ex
     Ensemble all{.snapshots = Eigen::MatrixXd(share.rows(), shares.snapshots())};
     all.snapshots.leftCols(share.cols()) = share;
     all.snapshots.rightCols(more.cols()) = more;
-    PodOptions by_qr = options;
-    by_qr.method = PodMethod::kQrSvd;
-    return pod(all, by_qr);
+    return pod(all, options);
   }
 
   BlockStream blocks(share.rows(), options.remove_mean, shares.first_block(own));

@@ -45,6 +45,8 @@ PodResult PodAccumulator::finish() const {
 
 PodResult modes_of(const SnapshotTriangle& sum, const PodOptions& options) {
   const Eigen::Index n = sum.R.cols();
+  if (resolved_method(n, sum.count, options) == PodMethod::kLanczos)
+    return assemble(decompose_lanczos(sum, options), options);
   const RightSvd svd = right_svd(sum.R);
   const Eigen::Index count = std::min(n, sum.count);
 

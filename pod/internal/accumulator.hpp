@@ -39,7 +39,7 @@ class PodAccumulator {
   Eigen::Index snapshots_ = 0;
 };
 
-/// Modes of snapshots of which this is left.
+/// Modes of snapshots of which this is left, where kAutomatic says so by Lanczos on the triangle.
 /// @throws InvalidInput  as pod() does
 [[nodiscard]] PodResult modes_of(const SnapshotTriangle& sum, const PodOptions& options);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <slipmode/pod/pod.hpp>
+#include "pod/internal/snapshot_triangle.hpp"
 
 #include <string>
 
@@ -40,8 +41,12 @@ void validate(const PodOptions& options, Eigen::Index dofs);
 /// Rank, shares, choice of modes, signs, and the check that modes are orthonormal.
 [[nodiscard]] PodResult assemble(const Decomposition& decomposition, const PodOptions& options);
 
-/// Decompositions by the two methods that have a file of their own.
+/// The method that kAutomatic means for so many degrees of freedom and snapshots; another one as it is.
+[[nodiscard]] PodMethod resolved_method(Eigen::Index dofs, Eigen::Index snapshots, const PodOptions& options);
+
+/// Decompositions by the two methods that have a file of their own; Lanczos also of a triangle, where a step costs n².
 [[nodiscard]] Decomposition decompose_lanczos(const Eigen::MatrixXd& snapshots, const PodOptions& options);
+[[nodiscard]] Decomposition decompose_lanczos(const SnapshotTriangle& sum, const PodOptions& options);
 [[nodiscard]] Decomposition decompose_covariance(const Eigen::MatrixXd& snapshots, const PodOptions& options);
 
 }  // namespace slipmode::pod

@@ -91,6 +91,22 @@ TEST(PodOfRanks, OfManyDegreesOfFreedomHasTheBytesOfOneProcess) {
   expect_same(shared_pod(known.ensemble.snapshots, {3000, 3000, 4000}), one);
 }
 
+// Few modes of more than 1,000 degrees of freedom: one process takes Lanczos on the snapshots, ranks on their triangle.
+TEST(PodOfRanks, GivesFewModesOfManyDegreesOfFreedomAsOneProcessDoes) {
+  const auto known = known_ensemble(47, 1100, 5000, powers(0.6, 12), 3.0);
+  const PodOptions few{.choice = {.modes = 6}};
+  const PodResult one = pod(known.ensemble, few), found = shared_pod(known.ensemble.snapshots, {2000, 3000}, few);
+  EXPECT_THAT(one.basis.provenance, HasSubstr("Lanczos"));
+  EXPECT_EQ(found.basis.provenance, one.basis.provenance);
+  const auto apart = [](const auto& a, const auto& b) { return (a - b).cwiseAbs().maxCoeff(); };
+  EXPECT_LT(apart(found.singular_values, one.singular_values), 1e-12);
+  EXPECT_LT(apart(found.shares, one.shares), 1e-12);
+  EXPECT_LT(apart(found.basis.vectors, one.basis.vectors), 1e-12);
+  EXPECT_LT(apart(found.basis.mean, one.basis.mean), 1e-12);
+  EXPECT_NEAR(found.mean_square, one.mean_square, 1e-12);
+  EXPECT_LT(apart(found.singular_values, known.sigma.head(6)), 1e-12) << "the construction";
+}
+
 // Fewer snapshots than degrees of freedom, and a block of them: rank 0 gets them whole.
 TEST(PodOfRanks, OfFewSnapshotsHasTheBytesOfOneProcess) {
   const auto few = known_ensemble(42, 40, 9, powers(0.5, 6));
