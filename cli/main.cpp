@@ -88,14 +88,13 @@ std::string output_of(const Verb& verb, const std::string& option) {
   return output->as<std::string>();
 }
 
-/// What ranks compute together is what shards divide.
+/// What ranks compute together is what shards divide, and some more.
 void check_ranks(const Session& session, const Verb& verb) {
   const std::string name = verb.command->get_name();
-  if (!verb.divides) {
+  if (!verb.divides && !verb.takes_ranks) {
     throw InvalidInput(
         fmt::format("{}: is computed by one process; start it without mpirun, which is for sweep, orbit map, orbit "
-                    "basins, diagnose "
-                    "--over, trade and advise",
+                    "basins, diagnose --over, trade, advise and pod of a scene",
                     name));
   }
   if (session.shard || !session.slurm.empty()) {

@@ -12,7 +12,8 @@ namespace slipmode::cli {
 struct Verb {
   CLI::App* command = nullptr;
   std::function<Report(const Session&)> run;
-  bool divides = false;  ///< takes --shard: its values can be computed by several processes
+  bool divides = false;      ///< takes --shard: its values can be computed by several processes, ranks among them
+  bool takes_ranks = false;  ///< takes no shards, and yet can be computed by ranks
 };
 
 // Each adds one sub-command with its arguments, help and example; one file per verb.

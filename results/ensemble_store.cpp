@@ -17,12 +17,11 @@ namespace slipmode::results {
 void store_ensemble(StoreWriter& writer, const scene::Scene& scene, const diagnostics::EnsembleRun& run) {
   const Units units = Units::of(scene.units);
   Provenance provenance = provenance_of(scene, "slipmode simulate");
+  if (const auto* worst = run.worst()) provenance.audit = worst->audit;
   Table members{.description = "runs of the ensemble", .columns = {}};
   std::vector<double> parameter, start, columns, events, residual;
   std::vector<std::string> failure;
   for (const auto& member : run.members) {
-    const bool worse = !provenance.audit || std::abs(member.audit.residual()) > std::abs(provenance.audit->residual());
-    if (member.failure.empty() && worse) provenance.audit = member.audit;
     parameter.push_back(member.parameter);
     start.push_back(static_cast<double>(member.start));
     columns.push_back(static_cast<double>(member.columns));

@@ -1,5 +1,6 @@
 #include <slipmode/studies/ensemble.hpp>
 
+#include <slipmode/core/errors.hpp>
 #include <slipmode/results/ensemble_store.hpp>
 #include <slipmode/studies/family.hpp>
 
@@ -25,27 +26,57 @@ void append(diagnostics::EnsembleRun& all, diagnostics::EnsembleRun part) {
   for (auto& member : part.members) all.members.push_back(std::move(member));
 }
 
+/// What all members of an ensemble share.
+struct Members {
+  std::vector<double> parameters;
+  diagnostics::Model model;
+  std::vector<dynamics::State> starts;
+  Eigen::Index dofs;
+  dynamics::FlowOptions flow;
+
+  explicit Members(const scene::Scene& scene)
+      : parameters(scene.drive.shaker() != nullptr ? scene.ensemble.frequencies : scene.ensemble.speeds),
+        model(ensemble_model(scene)),
+        starts(scene::ensemble_states(scene, scene::build_system(scene))),
+        dofs(scene.size()),
+        flow(scene.flow) {
+    if (parameters.empty()) parameters.push_back(scene::drive_parameter(scene));
+  }
+
+  /// @param options  which part
+  [[nodiscard]] diagnostics::EnsembleRun run(const std::vector<double>& values, const scene::TimeSpec& time,
+                                             const ParallelOptions& parallel,
+                                             diagnostics::EnsembleOptions options = {}) const {
+    options.duration = time.duration;
+    options.transient = time.transient;
+    options.sample = time.sample;
+    options.flow = flow;
+    options.parallel = parallel;
+    return diagnostics::run_ensemble(model, values, starts, options);
+  }
+};
+
 }  // namespace
 
 diagnostics::EnsembleRun ensemble(const scene::Scene& scene, const RunOptions& run) {
-  const bool shaken = scene.drive.shaker() != nullptr;
-  std::vector<double> parameters = shaken ? scene.ensemble.frequencies : scene.ensemble.speeds;
-  if (parameters.empty()) parameters.push_back(scene::drive_parameter(scene));
-  const diagnostics::Model model = ensemble_model(scene);
-  const std::vector<dynamics::State> starts = scene::ensemble_states(scene, scene::build_system(scene));
-  const ParallelOptions parallel = run.parallel("ensemble");
-  const auto run_at = [&](const std::vector<double>& values, const scene::TimeSpec& time) {
-    return diagnostics::run_ensemble(model, values, starts,
-                                     {.duration = time.duration,
-                                      .transient = time.transient,
-                                      .sample = time.sample,
-                                      .flow = scene.flow,
-                                      .parallel = parallel});
-  };
-  if (!shaken) return run_at(parameters, scene.time);
+  const Members members(scene);
+  if (scene.drive.shaker() == nullptr) return members.run(members.parameters, scene.time, run.parallel("ensemble"));
   diagnostics::EnsembleRun all;  // a time in cycles is another one at each frequency
-  for (const double frequency : parameters) append(all, run_at({frequency}, scene::time_at(scene, frequency)));
+  const ParallelOptions parallel = run.parallel("ensemble");
+  for (const double frequency : members.parameters)
+    append(all, members.run({frequency}, scene::time_at(scene, frequency), parallel));
   return all;
+}
+
+diagnostics::EnsembleRun ensemble_part(const scene::Scene& scene, std::size_t part, std::size_t parts,
+                                       const RunOptions& run) {
+  if (scene.drive.shaker() != nullptr)
+    throw InvalidInput("ensemble: under a shaker it is computed by one process; expected a belt or a force");
+  const Members members(scene);
+  diagnostics::EnsembleRun own =
+      members.run(members.parameters, scene.time, run.parallel("ensemble"), {.part = part, .parts = parts});
+  if (own.ensemble.snapshots.cols() == 0) own.ensemble.snapshots.resize(members.dofs, 0);
+  return own;
 }
 
 results::Content content_of(const scene::Scene& scene,

@@ -14,6 +14,13 @@ namespace slipmode::studies {
 /// @throws as diagnostics::run_ensemble
 [[nodiscard]] diagnostics::EnsembleRun ensemble(const scene::Scene& scene, const RunOptions& run = {});
 
+/// The same as several processes: this one's part of the members, see diagnostics::EnsembleOptions. Side by side in
+/// order, their snapshots are the ensemble's; there may be none [n x 0].
+/// @param part  from 1 to parts
+/// @throws InvalidInput  also under a shaker
+[[nodiscard]] diagnostics::EnsembleRun ensemble_part(const scene::Scene& scene, std::size_t part, std::size_t parts,
+                                                     const RunOptions& run = {});
+
 /// What is kept of it. Shares its snapshots.
 [[nodiscard]] results::Content content_of(const scene::Scene& scene,
                                           const std::shared_ptr<const diagnostics::EnsembleRun>& ensemble);

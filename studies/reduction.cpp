@@ -12,36 +12,44 @@
 namespace slipmode::studies {
 namespace {
 
-/// The decomposition knows numbers only: a refusal is told with the file and the option it belongs to.
-pod::PodResult decompose(const pod::Ensemble& ensemble, Eigen::Index modes, const std::string& file) {
-  try {
-    return pod::pod(ensemble, {.choice = {.modes = modes, .energy = 1.0}});
-  } catch (const InvalidInput& refusal) {
-    throw InvalidInput(fmt::format("{}: --modes {}: {}", file, modes, refusal.what()));
-  }
-}
-
 void check_modes(Eigen::Index modes, const char* otherwise) {
   if (modes < 0) throw InvalidInput(fmt::format("modes = {}: expected 1 or more, or 0 for {}", modes, otherwise));
 }
 
 }  // namespace
 
+InvalidInput refused_modes(const std::string& source, Eigen::Index modes, const InvalidInput& refusal) {
+  return InvalidInput(fmt::format("{}: --modes {}: {}", source, modes, refusal.what()));
+}
+
 MotionModes motion_modes(const results::StoreReader& motion, Eigen::Index modes) {
-  check_modes(modes, "all there are");
-  MotionModes found{.scene = {}, .provenance = results::load_provenance(motion), .pod = {}, .shaken = {}};
   const pod::Ensemble ensemble = results::load_snapshots(motion);
-  found.scene = results::load_scene_of(motion);
+  MotionModes found = motion_modes(results::load_scene_of(motion), ensemble, modes, motion.path().string());
+  found.provenance = results::load_provenance(motion);
   found.provenance.command = "slipmode pod";
-  found.dofs = ensemble.snapshots.rows();
-  found.snapshots = ensemble.snapshots.cols();
-  if (!is_shaken(found.scene)) {
-    found.pod = decompose(ensemble, modes, motion.path().string());
+  return found;
+}
+
+MotionModes motion_modes(const scene::Scene& scene, const pod::Ensemble& snapshots, Eigen::Index modes,
+                         const std::string& source) {
+  check_modes(modes, "all there are");
+  MotionModes found{.scene = scene,
+                    .provenance = results::provenance_of(scene, "slipmode pod"),
+                    .dofs = snapshots.snapshots.rows(),
+                    .snapshots = snapshots.snapshots.cols(),
+                    .pod = {},
+                    .shaken = {}};
+  if (!is_shaken(scene)) {
+    try {
+      found.pod = pod::pod(snapshots, {.choice = {.modes = modes, .energy = 1.0}});
+    } catch (const InvalidInput& refusal) {
+      throw refused_modes(source, modes, refusal);
+    }
     return found;
   }
   if (modes > 0)
     throw InvalidInput(fmt::format("modes = {}: under a shaker all are kept, 'reduce' takes as many as wanted", modes));
-  found.shaken = shaken_modes(found.scene, scene::build_system(found.scene).structure(), ensemble);
+  found.shaken = shaken_modes(scene, scene::build_system(scene).structure(), snapshots);
   return found;
 }
 

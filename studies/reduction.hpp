@@ -1,5 +1,6 @@
 #pragma once
 
+#include <slipmode/core/errors.hpp>
 #include <slipmode/dynamics/system.hpp>
 #include <slipmode/pod/basis.hpp>
 #include <slipmode/pod/pod.hpp>
@@ -29,7 +30,13 @@ struct MotionModes {
 /// @throws InvalidInput  for another kind of result, modes < 0, more modes than there are, a number of modes under
 ///                       a shaker
 [[nodiscard]] MotionModes motion_modes(const results::StoreReader& motion, Eigen::Index modes = 0);
+/// The same of snapshots that are here. @param source  what they are from, for messages
+[[nodiscard]] MotionModes motion_modes(const scene::Scene& scene, const pod::Ensemble& snapshots, Eigen::Index modes,
+                                       const std::string& source);
 [[nodiscard]] results::Content content_of(const std::shared_ptr<const MotionModes>& modes);
+
+/// The words of a decomposition, which knows numbers only, with the file and the option that they belong to.
+[[nodiscard]] InvalidInput refused_modes(const std::string& source, Eigen::Index modes, const InvalidInput& refusal);
 
 /// A scene's model projected on a basis.
 struct Reduction {

@@ -60,6 +60,11 @@ std::vector<results::JournalRecord> all_records(const std::vector<results::Part>
 
 }  // namespace
 
+std::string fingerprint_of(const scene::Scene& scene, const std::string& command, const std::string& identity) {
+  return results::fingerprint(fmt::format("{}\n{}\n{}\n{}\n{}", results::version(), results::rounding(), command,
+                                          identity, scene::scene_to_toml(scene)));
+}
+
 ResultFile::ResultFile(std::filesystem::path path, scene::Scene scene, results::FileKind kind, std::string command,
                        const std::string& identity, const Division& division, const Pieces& pieces,
                        Unfinished unfinished)
@@ -67,8 +72,7 @@ ResultFile::ResultFile(std::filesystem::path path, scene::Scene scene, results::
       scene_(std::move(scene)),
       kind_(kind),
       command_(std::move(command)),
-      fingerprint_(results::fingerprint(fmt::format("{}\n{}\n{}\n{}\n{}", results::version(), results::rounding(),
-                                                    command_, identity, scene::scene_to_toml(scene_)))),
+      fingerprint_(fingerprint_of(scene_, command_, identity)),
       shard_(checked(division.shard, pieces, path_, fingerprint_)) {
   if (path_.empty()) {
     if (unfinished == Unfinished::kKept && division.joined.empty()) keep_in_cache();

@@ -100,6 +100,11 @@ class ResultFile {
   std::vector<Lack> lacks_;  ///< by shard
 };
 
+/// What decides a study's values, in short: version, kernels, scene, what was asked, and what else it was made from.
+/// @param command, identity  as for ResultFile
+[[nodiscard]] std::string fingerprint_of(const scene::Scene& scene, const std::string& command,
+                                         const std::string& identity = "");
+
 /// Short names of a file's bytes, and of a basis to the last bit.
 [[nodiscard]] std::string identity_of(const std::filesystem::path& file);
 [[nodiscard]] std::string identity_of(const pod::Basis& basis);

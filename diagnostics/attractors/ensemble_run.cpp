@@ -50,6 +50,10 @@ Eigen::MatrixXd run_member(const Model& model, const dynamics::State& start, con
 
 }  // namespace
 
+void fail_all(const std::string& first) {
+  throw NumericalFailure("ensemble: every member failed; the first with: " + first, std::nan(""), {}, std::nan(""));
+}
+
 std::vector<dynamics::State> random_states(const dynamics::HybridSystem& system, const RandomStateOptions& options) {
   if (options.count < 1 || !(options.spread >= 0.0) || !std::isfinite(options.spread)) {
     throw InvalidInput(fmt::format("initial states: expected count >= 1 and a finite spread >= 0, found {} and {}",
@@ -75,17 +79,19 @@ EnsembleRun run_ensemble(const Model& model, const std::vector<double>& paramete
       result.members.push_back({.parameter = parameter, .start = static_cast<Eigen::Index>(s)});
     }
   }
+  const auto begin_of = [&](std::size_t part) {
+    return result.members.begin() + static_cast<std::ptrdiff_t>(result.members.size() * part / options.parts);
+  };
+  result.members = std::vector<EnsembleMember>(begin_of(options.part - 1), begin_of(options.part));
   std::vector<Eigen::MatrixXd> snapshots(result.members.size());
   rethrow_first(parallel_for(snapshots.size(), options.parallel, [&](std::size_t i) {
-    snapshots[i] = run_member(model, starts[i % starts.size()], options, result.members[i]);
+    EnsembleMember& member = result.members[i];
+    snapshots[i] = run_member(model, starts[static_cast<std::size_t>(member.start)], options, member);
   }));
 
   Eigen::Index columns = 0;
   for (const EnsembleMember& member : result.members) columns += member.columns;
-  if (columns == 0) {
-    throw NumericalFailure("ensemble: every member failed; the first with: " + result.members.front().failure,
-                           std::nan(""), {}, std::nan(""));
-  }
+  if (columns == 0 && options.parts == 1) fail_all(result.members.front().failure);
   Eigen::MatrixXd& all = result.ensemble.snapshots;
   Eigen::Index begin = 0;
   for (Eigen::MatrixXd& part : snapshots) {
@@ -99,12 +105,18 @@ EnsembleRun run_ensemble(const Model& model, const std::vector<double>& paramete
   return result;
 }
 
-double EnsembleRun::worst_audit() const {
-  double worst = 0.0;
+const EnsembleMember* EnsembleRun::worst() const {
+  const EnsembleMember* worst = nullptr;
   for (const EnsembleMember& member : members) {
-    if (member.failure.empty()) worst = std::max(worst, std::abs(member.audit.residual()));
+    if (!member.failure.empty()) continue;
+    if (worst == nullptr || std::abs(member.audit.residual()) > std::abs(worst->audit.residual())) worst = &member;
   }
   return worst;
+}
+
+double EnsembleRun::worst_audit() const {
+  const EnsembleMember* member = worst();
+  return member == nullptr ? 0.0 : std::abs(member->audit.residual());
 }
 
 dynamics::FlowStatistics EnsembleRun::total() const {

@@ -28,6 +28,9 @@ struct EnsembleOptions {
   double sample = 0.5;        ///< snapshot interval, > 0 [s]
   dynamics::FlowOptions flow = {};
   ParallelOptions parallel = {};
+  /// Only this part of I/N of the members is run, those numbered M (I − 1)/N … M I/N − 1 of M, and may fail as a whole;
+  /// I from 1 to N.
+  std::size_t part = 1, parts = 1;
 };
 
 /// What one run of an ensemble did.
@@ -45,17 +48,23 @@ struct EnsembleRun {
   pod::Ensemble ensemble;               ///< n x T, member after member
   std::vector<EnsembleMember> members;  ///< parameter by parameter, within it start by start
 
-  /// Largest energy residual of the members that went well.
+  /// The one with the largest energy residual of the members that went well; null where none did.
+  [[nodiscard]] const EnsembleMember* worst() const;
+  /// That residual; 0 where there is none.
   [[nodiscard]] double worst_audit() const;
   /// What these counted together; no stick times.
   [[nodiscard]] dynamics::FlowStatistics total() const;
 };
 
+/// Ends with what an ensemble ends with of which every member failed. @param first  why the first did
+/// @throws NumericalFailure
+[[noreturn]] void fail_all(const std::string& first);
+
 /// Runs every initial state at every parameter value and concatenates the snapshots.
 ///
 /// A member that fails (NumericalFailure) is recorded and gives no snapshots. Same bytes for any number of threads.
 /// @throws InvalidInput      for no starts or parameters, sample ≤ 0, transient outside [0, duration)
-/// @throws NumericalFailure  if every member failed (the first one's)
+/// @throws NumericalFailure  if every member failed (the first one's), unless only a part was run
 /// @throws Interrupted       if the stop flag was set
 [[nodiscard]] EnsembleRun run_ensemble(const Model& model, const std::vector<double>& parameters,
                                        const std::vector<dynamics::State>& starts, const EnsembleOptions& options);

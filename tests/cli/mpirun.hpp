@@ -3,6 +3,8 @@
 #include "cli/slipmode_process.hpp"
 
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -26,6 +28,13 @@ inline SlipmodeProcess mpirun(int ranks, const std::vector<std::string>& argumen
   std::vector<std::string> launcher = {SLIPMODE_MPIRUN, "-n", std::to_string(ranks)};
   launcher.insert(launcher.end(), through.begin(), through.end());
   return {arguments, folder, launcher};
+}
+
+/// The processes that mpirun started so far, rank 0 first.
+inline std::vector<pid_t> ranks_of(pid_t launcher) {
+  const std::string id = std::to_string(launcher);
+  std::ifstream children("/proc/" + id + "/task/" + id + "/children");
+  return {std::istream_iterator<pid_t>(children), {}};
 }
 
 }  // namespace slipmode::tests

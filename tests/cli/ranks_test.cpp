@@ -39,12 +39,6 @@ class Ranks : public testing::Test {
     EXPECT_EQ(rest.json()["resumed"], kept);
     EXPECT_EQ(bytes_of(path("r.h5")) == expected(), true);
   }
-  /// The processes that mpirun started, rank 0 first.
-  static std::vector<pid_t> processes(pid_t launcher) {
-    const std::string id = std::to_string(launcher);
-    std::ifstream children("/proc/" + id + "/task/" + id + "/children");
-    return {std::istream_iterator<pid_t>(children), {}};
-  }
 
   TemporaryFolder folder;
   const Words sweep = {"sweep", "two.toml", "--over", "drive.speed=0.3:0.1:0.00004"};  // 5,001 values, about 5 s
@@ -77,7 +71,7 @@ TEST_F(Ranks, AreAllStoppedByASignalToOne) {
     SCOPED_TRACE(rank);
     SlipmodeProcess launched = mpirun(3, ranks_sweep, folder.path());
     ASSERT_TRUE(launched.signal_when([&] { return journal_size() > 3000; }, 0));
-    kill(processes(launched.id()).at(rank), SIGTERM);
+    kill(ranks_of(launched.id()).at(rank), SIGTERM);
     const Outcome stopped = launched.wait();
     EXPECT_EQ(stopped.exit_code, 130);
     EXPECT_THAT(stopped.err, HasSubstr("of 5001 values done"));
@@ -93,7 +87,7 @@ TEST_F(Ranks, KeepWhatIsFinishedWhenOneIsKilled) {
     SCOPED_TRACE(rank);
     SlipmodeProcess launched = mpirun(3, ranks_sweep, folder.path());
     ASSERT_TRUE(launched.signal_when([&] { return journal_size() > after; }, 0));
-    kill(processes(launched.id()).at(rank), SIGKILL);
+    kill(ranks_of(launched.id()).at(rank), SIGKILL);
     const Outcome ended = launched.wait();
     EXPECT_EQ(ended.exit_code, 137);
     EXPECT_THAT(ended.err, HasSubstr("exited on signal 9")) << "mpirun says which";

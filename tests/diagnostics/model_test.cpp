@@ -86,6 +86,33 @@ TEST(EnsembleRun, GivesTheSameBytesForAnyNumberOfThreads) {
             0);
 }
 
+TEST(EnsembleRun, InPartsIsTheWholeSideBySide) {
+  const dynamics::HybridSystem system = tests::chain10(0.2);
+  const auto starts = random_states(system, {.count = 3});
+  EnsembleOptions options{.duration = 50.0, .transient = 0.0, .sample = 0.5};
+  const EnsembleRun whole = run_ensemble(belt_model(system), {0.2, 0.3}, starts, options);
+  for (const std::size_t parts : {2U, 4U, 7U}) {
+    options.parts = parts;
+    Eigen::Index column = 0;
+    std::size_t member = 0;
+    for (options.part = 1; options.part <= parts; ++options.part) {
+      const EnsembleRun part = run_ensemble(belt_model(system), {0.2, 0.3}, starts, options);
+      const Eigen::MatrixXd& snapshots = part.ensemble.snapshots;
+      if (snapshots.cols() > 0) {
+        EXPECT_EQ(snapshots, whole.ensemble.snapshots.middleCols(column, snapshots.cols()));
+      }
+      column += snapshots.cols();
+      for (const EnsembleMember& one : part.members) {
+        EXPECT_EQ(one.start, whole.members[member].start);
+        EXPECT_EQ(one.parameter, whole.members[member].parameter);
+        EXPECT_EQ(one.audit.residual(), whole.members[member++].audit.residual());
+      }
+    }
+    EXPECT_EQ(member, 6U);
+    EXPECT_EQ(column, whole.ensemble.snapshots.cols());
+  }
+}
+
 TEST(EnsembleRun, RecordsAMemberThatFailsAndKeepsTheOthers) {
   const dynamics::HybridSystem system = tests::chain10(0.2);
   Model model = belt_model(system);
@@ -101,6 +128,10 @@ TEST(EnsembleRun, RecordsAMemberThatFailsAndKeepsTheOthers) {
   EXPECT_EQ(run.members[1].failure, "made to fail");
   EXPECT_EQ(run.members[1].columns, 0);
   EXPECT_THROW((void)run_ensemble(model, {0.3}, starts, options), NumericalFailure);
+  const EnsembleRun second = run_ensemble(model, {0.2, 0.3}, starts,
+                                          {.duration = 50.0, .transient = 0.0, .sample = 0.5, .part = 2, .parts = 2});
+  EXPECT_EQ(second.members.size(), 1U);
+  EXPECT_EQ(second.ensemble.snapshots.cols(), 0) << "a part may fail as a whole";
   EXPECT_THROW((void)run_ensemble(model, {}, starts, options), InvalidInput);
   EXPECT_THROW((void)run_ensemble(model, {0.2}, starts, {.duration = 10.0, .transient = 10.0}), InvalidInput);
 }
