@@ -30,18 +30,75 @@ std::string coefficient_table(const orbits::Balance& balance) {
   return table.str();
 }
 
+void add_certificate(const studies::Family& model, const orbits::Certificate& own, Report& out_report) {
+  out_report.data["certificate"] = {{"behind", own.behind},
+                                    {"verdict", own.verdict},
+                                    {"error", own.error},
+                                    {"relative", own.error.empty() ? Json(nullptr) : json_number(own.relative)}};
+  out_report.text += fmt::format("Certificate: {}\n", own.verdict);
+  if (own.found.converged()) {
+    const auto amplitudes = orbits::contact_amplitudes(model.own(), own.found.orbit);
+    out_report.data["certificate"]["orbit"] = orbit_json(model.own(), own.found.orbit, amplitudes);
+    out_report.text += fmt::format("  as good as the location of events is: docs/limits.md has what is open there\n{}",
+                                   orbit_text(model.own(), own.found.orbit, amplitudes));
+  }
+}
+
 }  // namespace
 
-void add_balance_options(CLI::App& command, BalanceArguments& out_arguments) {
+void add_balance_options(CLI::App& command, BalanceArguments& out_arguments, const std::vector<std::string>& ways) {
   command
-      .add_option("--by", out_arguments.by, "shooting (exact), or balance: truncated Fourier series of the contacts")
-      ->check(CLI::IsMember({"shooting", "balance"}));
+      .add_option("--by", out_arguments.by,
+                  "shooting (exact), balance: truncated Fourier series of the contacts, or mixed: contacts in the time "
+                  "domain, the rest in series (orbit find)")
+      ->check(CLI::IsMember(ways));
   add_fields(command, out_arguments.words);
 }
 
 void require_no_balance_options(const BalanceArguments& arguments) {
   if (arguments.words != studies::BalanceWords{})
-    throw InvalidInput("--harmonics, --error, --samples, --certify: of a balance; add --by balance");
+    throw InvalidInput(
+        "--harmonics, --error, --samples, --near, --certify: of an approximation; add --by balance or "
+        "--by mixed");
+}
+
+Report mixed_report(const studies::Family& model, const studies::MixedFound& found) {
+  const orbits::MixedOrbit& mixed = found.mixed;
+  const dynamics::HybridSystem& system = model.own();
+  Report report;
+  report.exit_code = mixed.converged ? kDone : kNumericalFailure;
+  report.data =
+      merged({{"verb", "orbit find"}, {"title", model.scene().title}, {"model", model.title()}}, fields_json(mixed));
+  report.data["by"] = "mixed";
+  Json near = Json::array();
+  for (const Eigen::Index i : mixed.near) near.push_back(system.structure().dof_names()[static_cast<std::size_t>(i)]);
+  report.data["near"] = near;
+  report.text = fmt::format(
+      "{}, {}: {} of {} degrees of freedom in the time domain, the rest in {} harmonics of {:.10g} rad/s\n"
+      "  residual {:.1e} after {} Newton steps\n",
+      model.scene().title, model.title(), mixed.near.size(), system.size(), mixed.harmonics, mixed.omega,
+      mixed.residual, mixed.iterations);
+  if (!mixed.converged) {
+    report.data["message"] = mixed.message;
+    report.text += mixed.message + "\n";
+    return report;
+  }
+  const std::vector<orbits::Amplitude> amplitudes = orbits::contact_amplitudes(*mixed.near_system, mixed.near_orbit);
+  report.data["word"] = mixed.near_orbit.word;
+  report.text += fmt::format("  word \"{}\", {} crossings\n", mixed.near_orbit.word, mixed.near_orbit.crossings);
+  Json contacts = Json::array();
+  for (std::size_t c = 0; c < amplitudes.size(); ++c) {
+    const orbits::Amplitude& own = amplitudes[c];
+    contacts.push_back(
+        {{"contact", system.contacts()[c].name}, {"min", own.min}, {"max", own.max}, {"mean", own.mean}});
+    report.text += fmt::format("  contact {}: from {:.9g} to {:.9g}, mean {:.9g}\n", c + 1, own.min, own.max, own.mean);
+  }
+  report.data["contacts"] = contacts;
+  if (found.certificate)
+    add_certificate(model, *found.certificate, report);
+  else
+    report.text += "  stability and true error: by --certify, which shoots on the whole structure\n";
+  return report;
 }
 
 Report balance_report(const std::string& verb, const studies::Family& model, const studies::BalanceFound& found) {
@@ -95,19 +152,7 @@ Report balance_report(const std::string& verb, const studies::Family& model, con
   } else if (!balance.converged) {
     report.data["message"] = balance.message;
   }
-  if (!found.certificate) return report;
-  const orbits::Certificate& own = *found.certificate;
-  report.data["certificate"] = {{"behind", own.behind},
-                                {"verdict", own.verdict},
-                                {"error", own.error},
-                                {"relative", own.error.empty() ? Json(nullptr) : json_number(own.relative)}};
-  report.text += fmt::format("Certificate: {}\n", own.verdict);
-  if (own.found.converged()) {
-    const auto amplitudes = orbits::contact_amplitudes(model.own(), own.found.orbit);
-    report.data["certificate"]["orbit"] = orbit_json(model.own(), own.found.orbit, amplitudes);
-    report.text += fmt::format("  as good as the location of events is: docs/limits.md has what is open there\n{}",
-                               orbit_text(model.own(), own.found.orbit, amplitudes));
-  }
+  if (found.certificate) add_certificate(model, *found.certificate, report);
   return report;
 }
 

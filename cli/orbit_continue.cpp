@@ -200,7 +200,7 @@ Verb add_orbit_continue(CLI::App& orbit) {
   CLI::App* command = orbit.add_subcommand("continue", "follow an orbit over one key of the scene");
   const auto arguments = std::make_shared<OrbitContinueArguments>();
   add_search_options(*command, arguments->search);
-  add_balance_options(*command, arguments->balance);
+  add_balance_options(*command, arguments->balance, {"shooting", "balance"});
   command->add_option("--every", arguments->every, "with --certify: every so many points, and the last")
       ->check(CLI::PositiveNumber);
   command->add_option("--over", arguments->over, "key and range: KEY=FROM:TO")->required();

@@ -35,11 +35,34 @@ Report run_balance(const OrbitFindArguments& arguments, const studies::Family& m
   return report;
 }
 
+Report run_mixed(const OrbitFindArguments& arguments, const studies::Family& model) {
+  const studies::OrbitSearch& search = arguments.search.search;
+  const studies::BalanceWords& words = arguments.balance.words;
+  if (!arguments.output.empty() && !words.certify)
+    throw InvalidInput(fmt::format("-o {}: what is kept of a mixed orbit is the exact orbit behind it; add --certify",
+                                   arguments.output));
+  const studies::MixedFound found =
+      studies::find_mixed(model, studies::mixed_options(words, arguments.search.start, search.order), words.certify,
+                          {.segments = search.segments, .tolerance = search.tolerance});
+  Report report = mixed_report(model, found);
+  if (arguments.output.empty()) return report;
+  if (!found.certificate || !found.certificate->behind) {
+    report.text += fmt::format("Nothing was kept in {}: no exact orbit was found\n", arguments.output);
+    return report;
+  }
+  studies::content_of(model, std::make_shared<const orbits::PeriodicOrbit>(found.certificate->found.orbit))
+      .save(arguments.output);
+  report.data["file"] = arguments.output;
+  report.text += fmt::format("Exact orbit: {}\n", arguments.output);
+  return report;
+}
+
 Report run(const Session& session, const OrbitFindArguments& arguments) {
   if (!arguments.output.empty()) require_writable(arguments.output);
   const scene::Scene scene = session.load(arguments.search.scene);
   const studies::Family model(scene, {}, studies::model_basis(scene, arguments.search.model, session.run_options()));
   if (arguments.balance.by == "balance") return run_balance(arguments, model);
+  if (arguments.balance.by == "mixed") return run_mixed(arguments, model);
   require_no_balance_options(arguments.balance);
   const dynamics::HybridSystem& system = model.own();
   const studies::OrbitSearch search = search_of(arguments.search, scene);
@@ -65,13 +88,14 @@ Verb add_orbit_find(CLI::App& orbit) {
   CLI::App* command = orbit.add_subcommand("find", "a periodic orbit, its multipliers and what it does");
   const auto arguments = std::make_shared<OrbitFindArguments>();
   add_search_options(*command, arguments->search);
-  add_balance_options(*command, arguments->balance);
+  add_balance_options(*command, arguments->balance, {"shooting", "balance", "mixed"});
   command->add_option("-o,--output", arguments->output, "also store the orbit and one period of it (HDF5)");
   command->footer(
       "Example:\n  slipmode orbit find datasets/backlash_sdof/scene.toml --json\n"
       "  slipmode orbit find datasets/backlash_sdof/scene.toml --start 1.2,0.1 -o orbit.h5\n"
       "  slipmode orbit find datasets/chain10/scene.toml --set drive.speed=0.45\n"
-      "  slipmode orbit find datasets/play_oscillator/scene.toml --by balance --harmonics auto --error 1e-4");
+      "  slipmode orbit find datasets/play_oscillator/scene.toml --by balance --harmonics auto --error 1e-4\n"
+      "  slipmode orbit find datasets/jenkins_chain/scene.toml --by mixed --harmonics 9 --certify");
   return {command, [arguments](const Session& session) { return run(session, *arguments); }};
 }
 

@@ -160,7 +160,7 @@ class TangentFlow {
   [[nodiscard]] TangentResult run(const State& start, double duration);
   /// Carries these alone: `monodromy` is what they have become [N x k].
   /// @param times   in order, within the run; `sample` is called at each
-  /// @throws InvalidInput  for tangents of wrong size; of forces, for a system without a force drive
+  /// @throws InvalidInput  for tangents of wrong size; of forces, for a system without a force drive; for other times
   [[nodiscard]] TangentResult run(const State& start, double duration, const Tangents& tangents,
                                   const std::vector<double>& times = {}, const TangentSample& sample = {});
 

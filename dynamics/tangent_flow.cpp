@@ -4,6 +4,7 @@
 #include "dynamics/internal/collocation_flow.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -88,6 +89,9 @@ TangentResult TangentFlow::run(const State& start, double duration, const Tangen
   if (!(duration >= 0 && std::isfinite(duration))) throw InvalidInput("duration must be finite and not negative");
   Implementation& own = *implementation_;
   own.check(tangents);
+  if (!std::ranges::is_sorted(times) ||
+      (!times.empty() && (!sample || !(times.front() >= start.time) || !(times.back() <= start.time + duration))))
+    throw InvalidInput("times to sample a run at must be in order and within it, with something to call at them");
   Prepared p = prepare(own.system, start, own.options, false);
   const ModalModel& m = p.tables.model;
   const double end = start.time + duration;

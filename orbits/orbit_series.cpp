@@ -84,6 +84,7 @@ class Cutter {
       if (stiffness > 0.0) q = std::max(q, run.lambda.row(c).cwiseAbs().maxCoeff() / stiffness);
     }
     const double v = q / radian;
+    motion = q;
     rounding_ = Eigen::VectorXd::Zero(size_.size());
     for (Eigen::Index c = 0; c < nc; ++c) {
       const double reach = system_.contacts()[static_cast<std::size_t>(c)].direction.lpNorm<1>();
@@ -100,7 +101,7 @@ class Cutter {
   State cut(const State& state, double length) { return add(state, length, 1e300); }
 
   std::vector<OrbitSeries::Panel> panels;
-  double defect = 0.0;
+  double defect = 0.0, motion = 0.0;
 
  private:
   [[nodiscard]] Eigen::VectorXd quantities(const dynamics::Trajectory& run, Eigen::Index k) const {
@@ -134,7 +135,7 @@ class Cutter {
     double last = 0.0;
     for (Eigen::Index r = 0; r < size_.size(); ++r)
       if (const double own = panel.terms.row(r).tail<2>().cwiseAbs().maxCoeff(); own > rounding_[r])
-        last = std::max(last, own / size_[r]);
+        last = std::max(last, own / std::max(size_[r], values.row(r).cwiseAbs().maxCoeff()));
     const bool noise = last < kNoise && last > 0.25 * before;
     if (last > kResolved && !noise) {
       if (length < shortest_)
@@ -179,6 +180,7 @@ OrbitSeries::OrbitSeries(const dynamics::HybridSystem& system, const PeriodicOrb
   }
   panels_ = std::move(cutter.panels);
   defect_ = cutter.defect;
+  motion_ = cutter.motion;
 }
 
 Eigen::VectorXd OrbitSeries::at(double time) const {

@@ -57,15 +57,16 @@ class Keywords {
     if constexpr (std::is_same_v<T, bool>) {
       if (!py::isinstance<py::bool_>(value)) refuse(field.name, value, "True or False");
       return value.cast<bool>();
-    } else if constexpr (std::is_integral_v<T>) {
+    } else if constexpr (std::is_integral_v<T> || std::is_same_v<T, std::optional<int>>) {
+      using Limit = std::conditional_t<std::is_integral_v<T>, T, int>;
       std::int64_t number = 0;
       const bool whole = PyIndex_Check(value.ptr()) != 0 && !py::isinstance<py::bool_>(value) &&
                          py::detail::make_caster<std::int64_t>().load(value, true);
       if (whole) number = value.cast<std::int64_t>();
-      const double high = std::min(field.limits.high, static_cast<double>(std::numeric_limits<T>::max()));
+      const double high = std::min(field.limits.high, static_cast<double>(std::numeric_limits<Limit>::max()));
       if (!whole || static_cast<double>(number) < field.limits.low || static_cast<double>(number) > high)
         refuse(field.name, value, integer_text(field.limits));
-      return static_cast<T>(number);
+      return static_cast<Limit>(number);
     } else if constexpr (std::is_same_v<T, std::optional<std::string>>) {
       if (py::isinstance<py::bool_>(value) || (!py::isinstance<py::str>(value) && PyIndex_Check(value.ptr()) == 0))
         refuse(field.name, value, "a number or a word");

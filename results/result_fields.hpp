@@ -9,7 +9,7 @@
 #include <slipmode/diagnostics/validation/driven_validation.hpp>
 #include <slipmode/diagnostics/validation/validate.hpp>
 #include <slipmode/dynamics/simulate.hpp>
-#include <slipmode/orbits/balance/certificate.hpp>
+#include <slipmode/orbits/certificate.hpp>
 #include <slipmode/orbits/continuation.hpp>
 #include <slipmode/orbits/skeleton_compare.hpp>
 #include <slipmode/orbits/spectrum.hpp>
@@ -93,6 +93,19 @@ inline constexpr auto kFields<orbits::Balance> = [] {
                     required("stuck", &Own::stuck, "", "contacts behind springs that never slide", kFromZero),
                     required("residual", &Own::residual, "1", "largest, as a share of the largest displacement"),
                     required("iterations", &Own::iterations, "", "Newton steps", kFromZero)};
+}();
+
+template <>
+inline constexpr auto kFields<orbits::MixedOrbit> = [] {
+  using Own = orbits::MixedOrbit;
+  return std::tuple{
+      required("converged", &Own::converged, "", "1: Newton's method arrived", kFromZero),
+      required("order", &Own::order, "", "period over that of the drive", kCount),
+      required("omega", &Own::omega, "rad/s", "2 pi / period: order 1", kPositive),
+      required("harmonics", &Own::harmonics, "", "highest order, far from the contacts", kCount),
+      required("coupled", &Own::coupled, "", "degrees of freedom near the contacts that the rest pulls at", kFromZero),
+      required("residual", &Own::residual, "1", "largest, in units of the motion"),
+      required("iterations", &Own::iterations, "", "Newton steps", kFromZero)};
 }();
 
 template <>

@@ -31,6 +31,7 @@ int whole_number(const char* option, const std::string& text, const char* word) 
 
 BalanceSearch balance_search(const BalanceWords& words, const std::string& start, int period_order) {
   BalanceSearch out;
+  if (words.near) throw InvalidInput(fmt::format("--near {}: of a mixed orbit; add --by mixed", *words.near));
   out.options.order = period_order;
   out.certify = words.certify;
   if (start != "settle" && start != "contact" && start != "gap") {
@@ -62,6 +63,23 @@ BalanceFound find_balance(const Family& model, const BalanceSearch& search, cons
     if (search.certify && out.balance.converged) out.certificate = orbits::certify(model.own(), out.balance, shooting);
   }
   add_exponents(model, out);
+  return out;
+}
+
+orbits::MixedOptions mixed_options(const BalanceWords& words, const std::string& start, int period_order) {
+  if (words.samples || words.error)
+    throw InvalidInput("--samples, --error: of a balance; leave them out, or use --by balance");
+  if (start != "settle")
+    throw InvalidInput(fmt::format("--start {}: a mixed orbit begins at the linear response; leave it out", start));
+  return {.order = period_order,
+          .harmonics = whole_number("--harmonics", words.harmonics.value_or("9"), "leave it out"),
+          .reach = words.near.value_or(0)};
+}
+
+MixedFound find_mixed(const Family& model, const orbits::MixedOptions& options, bool certify,
+                      const orbits::ShootingOptions& shooting) {
+  MixedFound out{.mixed = orbits::mixed_orbit(model.own(), options)};
+  if (certify && out.mixed.converged) out.certificate = orbits::certify(model.own(), out.mixed, shooting);
   return out;
 }
 

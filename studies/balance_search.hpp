@@ -24,6 +24,7 @@ struct BalanceWords {
   std::optional<std::string> harmonics = {}, samples = {};  ///< else 9, exact
   std::optional<double> error = {};
   bool certify = false;
+  std::optional<int> near = {};  ///< of a mixed orbit, else 0
 
   static constexpr auto fields() {
     using Own = BalanceWords;
@@ -33,12 +34,16 @@ struct BalanceWords {
                  "of harmonics auto: true error, a share of the half range of the displacement", kPositive),
         optional("samples", &Own::samples, "",
                  "of a balance: exact force integrals, or the alternating scheme with so many samples"),
-        optional("certify", &Own::certify, "", "shoot from the balance to the exact orbit: true error, multipliers")};
+        optional("certify", &Own::certify, "", "shoot from what was found to the exact orbit: true error, multipliers"),
+        optional(
+            "near", &Own::near, "",
+            "of a mixed orbit: degrees of freedom coupled to a contact within so many steps stay in the time domain",
+            kFromZero)};
   }
   bool operator==(const BalanceWords&) const = default;
 };
 /// @param start  "settle" (the default), "contact" or "gap" @param period_order  period in periods of the drive
-/// @throws InvalidInput  for words that are no numbers, auto without an error
+/// @throws InvalidInput  for words that are no numbers, auto without an error, and near
 [[nodiscard]] BalanceSearch balance_search(const BalanceWords& words, const std::string& start, int period_order);
 
 struct BalanceFound {
@@ -58,6 +63,19 @@ inline constexpr int kMostForHill = 400;
 /// @throws InvalidInput  as orbits::balance and orbits::balance_to_error
 [[nodiscard]] BalanceFound find_balance(const Family& model, const BalanceSearch& search,
                                         const orbits::ShootingOptions& shooting = {});
+
+/// The mixed method's options as a user says them. @param start  "settle": it begins by itself
+/// @throws InvalidInput  for words that are a balance's alone
+[[nodiscard]] orbits::MixedOptions mixed_options(const BalanceWords& words, const std::string& start, int period_order);
+
+struct MixedFound {
+  orbits::MixedOrbit mixed;
+  std::optional<orbits::Certificate> certificate = {};
+};
+/// @param certify  shoot from it on the whole structure
+/// @throws InvalidInput, NumericalFailure  as orbits::mixed_orbit
+[[nodiscard]] MixedFound find_mixed(const Family& model, const orbits::MixedOptions& options, bool certify,
+                                    const orbits::ShootingOptions& shooting = {});
 
 /// What is kept of one that converged: the balance and, where it is certified, the orbit behind.
 [[nodiscard]] results::Content content_of(const Family& model, std::shared_ptr<const BalanceFound> found);

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <optional>
 #include <utility>
 
 namespace slipmode::orbits {
@@ -39,11 +40,15 @@ MixedDescent search(MixedProblem& problem, const MixedPoint& from, double tolera
   const double T = problem.period(), start = d.best.point.start.time;
   if (!(distance_to_events(start, T, d.best.events) < 1e-6 * T)) return d;
   MixedPoint shifted = d.best.point;
-  const HybridSystem near = problem.system_at(shifted);
-  shifted.start = advanced(near, runnable(near, shifted.start), middle_of_longest_stretch(start, T, d.best.events));
+  try {
+    const HybridSystem near = problem.system_at(shifted);
+    shifted.start = advanced(near, runnable(near, shifted.start), middle_of_longest_stretch(start, T, d.best.events));
+  } catch (const NumericalFailure&) {
+    return d;
+  }
   MixedDescent again = descend(problem, shifted, tolerance, budget);
   budget -= again.iterations;
-  return again;
+  return again.begun && again.best.largest <= std::max(d.best.largest, tolerance) ? again : d;
 }
 
 /// The near part after some periods under its coupling forces.
@@ -85,6 +90,7 @@ MixedDescent search_cold(const HybridSystem& system, const Partition& partition,
   constexpr double kFirstShare = 0.02, kLeastStep = 1e-3, kEnough = 1e-6;
   MixedDescent best;
   const auto keep = [&](MixedDescent found) {
+    if (!found.begun && !best.begun) best.failure = found.failure;
     if (found.begun && (!best.begun || found.best.largest < best.best.largest)) best = std::move(found);
     return best.begun && best.best.largest <= options.tolerance;
   };
@@ -95,7 +101,16 @@ MixedDescent search_cold(const HybridSystem& system, const Partition& partition,
     budget += own;
     return found;
   };
-  if (at_full(settled(problem, linear, kPeriods), kDirect)) return best;
+  const auto guess = [&](const auto& make) -> std::optional<MixedPoint> {
+    try {
+      return make();
+    } catch (const NumericalFailure& failure) {
+      if (!best.begun) best.failure = failure.what();
+    }
+    return std::nullopt;
+  };
+  if (const auto near = guess([&] { return settled(problem, linear, kPeriods); }); near && at_full(*near, kDirect))
+    return best;
   MixedPoint now = linear;
   double share = 0.0, step = kFirstShare;
   int path = std::min(kPath, budget);
@@ -121,7 +136,8 @@ MixedDescent search_cold(const HybridSystem& system, const Partition& partition,
   }
   budget += path;
   problem.set_share(1.0);
-  keep(search(problem, settled_whole(system, partition, problem.period()), options.tolerance, budget));
+  if (const auto whole = guess([&] { return settled_whole(system, partition, problem.period()); }))
+    keep(search(problem, *whole, options.tolerance, budget));
   return best;
 }
 
@@ -174,6 +190,9 @@ MixedEquations mixed_equations(const HybridSystem& system, const MixedOptions& o
   check(system, options);
   const Partition partition(system, options.reach, options.order, options.harmonics);
   MixedProblem problem(partition, kFlow);
+  if (coupling.size() != partition.coupled() * partition.block())
+    throw InvalidInput(fmt::format("coupling: {} numbers; valid: {} for each of {} coupled degrees of freedom",
+                                   coupling.size(), partition.block(), partition.coupled()));
   MixedPoint point{near_start, coupling};
   point.start = advanced(problem.system_at(point), point.start, 0.0);
   MixedEvaluation at = problem.evaluate(point);
@@ -184,6 +203,7 @@ MixedEquations mixed_equations(const HybridSystem& system, const MixedOptions& o
 }
 
 State state_of(const HybridSystem& system, const MixedOrbit& orbit) {
+  if (!orbit.converged) throw InvalidInput("a mixed orbit that has not converged has no state");
   const State& near = orbit.near_orbit.start;
   std::vector<bool> is_near(static_cast<std::size_t>(system.size()), false);
   for (const Eigen::Index i : orbit.near) is_near[static_cast<std::size_t>(i)] = true;

@@ -50,24 +50,25 @@ struct MixedOrbit {
 /// by its periodic input. A step costs what the near part does, whatever the structure's size. Starts from the linear
 /// response without contact, settled near the contacts; else contacts' forces grow from nothing on the way.
 /// @return  `converged` false, with the best residual, when Newton's method does not arrive
-/// @throws InvalidInput  for harmonics < 1, order < 1, reach < 0, a drive that is no force or has harmonics beyond H
-/// far
-///                       from the contacts, laws the closed form does not hold
+/// @throws InvalidInput  for harmonics < 1, order < 1, reach < 0, a drive that is no force or whose harmonics beyond H
+///                       act away from the contacts, laws that the closed form does not hold
 /// @throws NumericalFailure  where the rest has no response: it floats, or an undamped mode of it is at a harmonic
 /// Source: S3 (3)-(8), coupling forces in place of the displacements q̂_2; docs/theory/mixed-orbits.md.
 [[nodiscard]] MixedOrbit mixed_orbit(const dynamics::HybridSystem& system, const MixedOptions& options = {});
 
 /// Newton's residual and Jacobian at a start of the near part and coupling forces, scaled as `mixed_orbit` solves them:
-/// for checks. @param point  (q_1, q̇_1, internal), then the forces at each coupled degree of freedom (constant, cosine
+/// for checks. `point`: (q_1, q̇_1, internal), then the forces at each coupled degree of freedom (constant, cosine
 /// 1 … H, sine 1 … H)
 struct MixedEquations {
   Eigen::VectorXd point, scale, residual;
   Eigen::MatrixXd jacobian;
 };
+/// @throws InvalidInput  as mixed_orbit, and for another number of forces
 [[nodiscard]] MixedEquations mixed_equations(const dynamics::HybridSystem& system, const MixedOptions& options,
                                              const dynamics::State& near_start, const Eigen::VectorXd& coupling);
 
 /// The state of the whole structure at the start of `near_orbit`.
+/// @throws InvalidInput  for one that has not converged
 [[nodiscard]] dynamics::State state_of(const dynamics::HybridSystem& system, const MixedOrbit& orbit);
 
 }  // namespace slipmode::orbits

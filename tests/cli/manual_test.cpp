@@ -107,7 +107,7 @@ TEST_F(Manual, CompletionOfEachShellKnowsEveryVerbAndOption) {
 TEST_F(Manual, BashCompletesVerbsOptionsAndChoices) {
   EXPECT_THAT(completed({"swe"}), ElementsAre("sweep"));
   EXPECT_THAT(completed({"orbit", "sp"}), ElementsAre("spectrum"));
-  EXPECT_THAT(completed({"orbit", "find", "--by", ""}), ElementsAre("shooting", "balance"));
+  EXPECT_THAT(completed({"orbit", "find", "--by", ""}), ElementsAre("shooting", "balance", "mixed"));
   EXPECT_THAT(completed({"orbit", "find", "--by", "b"}), ElementsAre("balance"));
   EXPECT_THAT(completed({"--json", "sweep", "scene.toml", "--ov"}), ElementsAre("--over"));
   EXPECT_THAT(completed({"modes", "--ov"}), ElementsAre("")) << "an option of other verbs";

@@ -152,9 +152,35 @@ TEST_F(OrbitVerbs, BalanceWithItsTrueError) {
   expect_refused(with({"--harmonics", "9", "--samples", "18"}), {"samples: 18", "more than 18"});
   expect_refused(with({"--harmonics", "auto"}), {"--error", "a true error > 0"});
   expect_refused(with({"--harmonics", "9", "--error", "1e-3"}), {"--harmonics auto and --error", "together"});
-  expect_refused({"find", play, "--harmonics", "9"}, {"--harmonics", "add --by balance"});
+  expect_refused({"find", play, "--harmonics", "9"}, {"--harmonics", "--by balance"});
   expect_refused(with({"--start", "1,0"}), {"--start 1,0", "contact", "gap"});
   expect_refused({"find", SLIPMODE_SOURCE_DIR "/datasets/chain10/scene.toml", "--by", "balance"},
+                 {"needs a force drive", "shooting"});
+}
+
+TEST_F(OrbitVerbs, MixedWithItsTrueError) {
+  const std::string chain = SLIPMODE_SOURCE_DIR "/datasets/jenkins_chain/scene.toml";
+  const std::vector<std::string> find = {"find", chain, "--by", "mixed"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), find.begin(), find.end());
+    return more;
+  };
+  const auto said = json_of(with({"--certify", "-o", "mixed.h5"}));
+  EXPECT_TRUE(said["converged"]);
+  EXPECT_EQ(said["harmonics"], 9);
+  EXPECT_EQ(said["near"], nlohmann::json({"x5", "x10"}));
+  EXPECT_LT(said["certificate"]["relative"], 1e-4);  // 2.2e-5; a balance of 9 harmonics has 1.1e-3
+  EXPECT_EQ(said["certificate"]["orbit"]["word"], said["word"]);
+  EXPECT_EQ(json_of({"spectrum", "mixed.h5"})["omega"], said["omega"]);  // what is kept is the exact orbit
+  const auto wider = json_of(with({"--near", "1", "--certify"}));
+  EXPECT_EQ(wider["near"].size(), 5U);
+  EXPECT_LT(wider["certificate"]["relative"], 0.1 * said["certificate"]["relative"].get<double>());
+  expect_refused(with({"-o", "mixed.h5"}), {"-o mixed.h5", "--certify"});
+  expect_refused(with({"--samples", "64"}), {"--samples", "--by balance"});
+  expect_refused(with({"--harmonics", "0"}), {"--harmonics 0"});
+  expect_refused(with({"--start", "gap"}), {"--start gap", "leave it out"});
+  expect_refused({"find", chain, "--by", "balance", "--near", "1"}, {"--near 1", "--by mixed"});
+  expect_refused({"find", SLIPMODE_SOURCE_DIR "/datasets/chain10/scene.toml", "--by", "mixed"},
                  {"needs a force drive", "shooting"});
 }
 

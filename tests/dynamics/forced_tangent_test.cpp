@@ -124,7 +124,7 @@ TEST(ForcedTangent, GoesOnFromASample) {
   for (const unsigned seed : {2U, 4U, 7U, 11U, 15U}) {
     const HybridSystem system = forced(seed);
     const std::optional<State> start = free_start(system);
-    if (!start) continue;
+    ASSERT_TRUE(start) << seed;
     const Eigen::Index N = stacked(*start).size(), rows = 2 * (2 * kOrders + 1);
     Random random(seed);
     Tangents tangents{Eigen::MatrixXd(N, 4), Eigen::MatrixXd(rows, 4)};
@@ -161,6 +161,10 @@ TEST(ForcedTangent, RefusesTangentsOfWrongSize) {
   EXPECT_THROW(run(2 * 4, 3), InvalidInput);
   EXPECT_THROW(run(7, 3), InvalidInput);
   EXPECT_THROW(run(2 * 5, 2), InvalidInput);
+  const auto nothing = [](const State&, const Eigen::MatrixXd&) {};
+  const Tangents none{.start = Eigen::MatrixXd(N, 0)};
+  EXPECT_THROW(static_cast<void>(flow.run(system.rest(), 1.0, none, {0.5, 0.2}, nothing)), InvalidInput);
+  EXPECT_THROW(static_cast<void>(flow.run(system.rest(), 1.0, none, {0.5, 1.2}, nothing)), InvalidInput);
   TangentFlow belt(random_piecewise_linear(3).with_drive(friction::Belt::constant(0.1)));
   const Eigen::Index own = 2 * random_piecewise_linear(3).size() + random_piecewise_linear(3).internal_size();
   EXPECT_THROW(static_cast<void>(belt.run(random_piecewise_linear(3).rest(), 1.0,

@@ -3,7 +3,7 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/fem/beam.hpp>
 #include <slipmode/fem/chain.hpp>
-#include <slipmode/orbits/mixed/mixed.hpp>
+#include <slipmode/orbits/certificate.hpp>
 #include <slipmode/orbits/shooting.hpp>
 #include "fixtures/cantilever_beam.hpp"
 #include "fixtures/scenes.hpp"
@@ -227,12 +227,13 @@ TEST(Mixed, OfABeamWithRigidFriction) {
     EXPECT_EQ(mixed.coupled, 2);
     error.push_back(contact_error(mixed, system, exact) / size);
   }
-  EXPECT_LT(error[0], 0.1);
-  EXPECT_LT(error[1], 0.05 * error[0]);
+  EXPECT_LT(error[0], 0.1);  // 0.03 measured, 4.4e-4 at 25
+  EXPECT_GT(std::log(error[0] / error[1]) / std::log(25.0 / 5.0), 2.0);
 }
 
 TEST(Mixed, RandomChainsConvergeFromNothing) {
-  int converged = 0, behind = 0;
+  // Of 1,000 such with 9 harmonics 989 converged from nothing, and one had no orbit behind.
+  std::vector<int> lost, bare;
   constexpr int kScenes = 60;
   for (int seed = 0; seed < kScenes; ++seed) {
     SCOPED_TRACE(seed);
@@ -254,14 +255,28 @@ TEST(Mixed, RandomChainsConvergeFromNothing) {
     const HybridSystem system = pushed_chain(n, std::move(contacts), random.uniform(0.2, 2.2),
                                              random.uniform(0.02, 0.2), random.uniform(0.5, 2.0));
     const MixedOrbit mixed = mixed_orbit(system, {.harmonics = 15});
-    if (!mixed.converged) continue;
-    ++converged;
-    const ShootingResult shot = shoot(system, state_of(system, mixed));
-    if (!shot.converged()) continue;
-    if (contact_error(mixed, system, shot.orbit) < 1e-2) ++behind;
+    if (!mixed.converged) {
+      lost.push_back(seed);
+      continue;
+    }
+    const Certificate certificate = certify(system, mixed);
+    if (!certificate.behind || certificate.relative > 0.01) bare.push_back(seed);
   }
-  EXPECT_GE(converged, kScenes - 2);
-  EXPECT_GE(behind, converged - 2);
+  EXPECT_LE(lost.size(), 1U) << ::testing::PrintToString(lost);
+  EXPECT_LE(bare.size(), 1U) << ::testing::PrintToString(bare);
+}
+
+TEST(Mixed, ItsCertificateIsTheDistanceFromTheOrbit) {
+  const HybridSystem system = rubbed_ten();
+  const PeriodicOrbit exact = exact_orbit(system);
+  const MixedOrbit mixed = mixed_orbit(system, {.harmonics = 5});
+  const Certificate certificate = certify(system, mixed);
+  ASSERT_TRUE(certificate.behind);
+  const double error = contact_error(mixed, system, exact);
+  EXPECT_NEAR(certificate.error[0], error, 0.01 * error);
+  EXPECT_NEAR(certificate.relative, error / contact_amplitudes(system, exact).front().alternating, 0.01 * error);
+  EXPECT_EQ(certificate.found.orbit.stability, Stability::kStable);
+  EXPECT_THAT(certificate.verdict, HasSubstr("true error"));
 }
 
 std::string refusal(const HybridSystem& system, const MixedOptions& options) {
@@ -297,6 +312,10 @@ TEST(Mixed, RefusesWhatItCannotHold) {
   };
   EXPECT_THAT(refusal(two(0.0, 0.7), {}), HasSubstr("floats"));
   EXPECT_THAT(refusal(two(4.0, 1.0), {}), HasSubstr("without damping at harmonic 2"));
+  // The same where the pivot is rounding: 3 (0.1)² is not 0.03.
+  EXPECT_THAT(refusal(two(0.1 * 0.1 * 9.0, 0.1), {}), HasSubstr("without damping at harmonic 3"));
+  EXPECT_THROW(static_cast<void>(mixed_equations(system, {}, system.rest(), Eigen::VectorXd::Zero(3))), InvalidInput);
+  EXPECT_THROW(static_cast<void>(state_of(system, MixedOrbit{})), InvalidInput);
 }
 
 }  // namespace

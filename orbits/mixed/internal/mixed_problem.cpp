@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -20,6 +20,7 @@ double largest_entry(const Eigen::VectorXd& x) { return x.lpNorm<Eigen::Infinity
 struct Quadrature {
   struct Panel {
     double from, length;
+    double before = 1e300;  ///< last terms of the panel that this is a half of
   };
   std::vector<Panel> panels;
   std::vector<double> time, weight;
@@ -30,7 +31,8 @@ struct Quadrature {
     const auto add_up_to = [&](double to) {
       if (!(to > from)) return;
       const int pieces = std::max(1, static_cast<int>(std::ceil((to - from) / longest)));
-      for (int k = 0; k < pieces; ++k) panels.push_back({from + (to - from) * k / pieces, (to - from) / pieces});
+      for (int k = 0; k < pieces; ++k)
+        panels.push_back({.from = from + (to - from) * k / pieces, .length = (to - from) / pieces});
       from = to;
     };
     for (const dynamics::Event& event : events) add_up_to(std::min(event.time, start + period));
@@ -38,16 +40,24 @@ struct Quadrature {
     place();
   }
 
-  /// Halves these panels. @param coarse  one flag per panel
-  void halve(const std::vector<bool>& coarse) {
+  /// Halves the panels whose last terms are above `resolved`, but for those where that did not help: what they have
+  /// left is the flow's own. True if there were any. @param last  one per panel
+  bool halve(const std::vector<double>& last, double resolved, double noise) {
     std::vector<Panel> finer;
     for (std::size_t k = 0; k < panels.size(); ++k) {
-      const auto [from, length] = panels[k];
-      finer.push_back({from, coarse[k] ? 0.5 * length : length});
-      if (coarse[k]) finer.push_back({from + 0.5 * length, 0.5 * length});
+      const auto [from, length, before] = panels[k];
+      const double own = last[k];
+      if (!(own > resolved) || (own < noise && own > 0.25 * before)) {
+        finer.push_back({from, length, own});
+        continue;
+      }
+      finer.push_back({from, 0.5 * length, own});
+      finer.push_back({from + 0.5 * length, 0.5 * length, own});
     }
+    const bool halved = finer.size() > panels.size();
     panels = std::move(finer);
     place();
+    return halved;
   }
 
  private:
@@ -55,7 +65,7 @@ struct Quadrature {
     time.clear();
     weight.clear();
     const LegendrePanel::Rule& rule = LegendrePanel::rule();
-    for (const auto& [from, length] : panels)
+    for (const auto& [from, length, before] : panels)
       for (std::size_t i = 0; i < rule.point.size(); ++i) {
         time.push_back(from + 0.5 * length * (1.0 + rule.point[i]));
         weight.push_back(length * rule.share[i]);
@@ -66,26 +76,25 @@ struct Quadrature {
 /// A rule that is exact to rounding for the displacements times the highest harmonic: on each panel their Legendre
 /// series end before their last terms.
 Quadrature quadrature(dynamics::TangentFlow& flow, const State& start, double period, double highest_rate) {
-  constexpr double kRadians = 3.0, kResolved = 1e-14;
-  constexpr int kHalvings = 20;
+  constexpr double kRadians = 3.0, kResolved = 1e-14, kNoise = 1e-9;
+  constexpr int kHalvings = 14;
   const Eigen::MatrixXd none(stacked(start).size(), 0);
   Quadrature rule(start.time, period, flow.run(start, period, {.start = none}).events, 2.0 * kRadians / highest_rate);
   for (int turn = 0; turn < kHalvings; ++turn) {
+    constexpr Eigen::Index kTerms = LegendrePanel::kTerms;
     Eigen::MatrixXd q(start.q.size(), std::ssize(rule.time));
     Eigen::Index next = 0;
     static_cast<void>(flow.run(start, period, {.start = none}, rule.time,
                                [&](const State& state, const Eigen::MatrixXd&) { q.col(next++) = state.q; }));
-    const double rounding = kResolved * q.cwiseAbs().maxCoeff();
-    std::vector<bool> coarse;
-    for (Eigen::Index k = 0; k < std::ssize(rule.panels); ++k) {
-      constexpr Eigen::Index kTerms = LegendrePanel::kTerms;
-      const Eigen::MatrixXd last = q.middleCols(k * kTerms, kTerms) * LegendrePanel::rule().to_terms.rightCols<2>();
-      coarse.push_back(last.cwiseAbs().maxCoeff() > rounding);
-    }
-    if (std::ranges::none_of(coarse, std::identity{})) break;
-    rule.halve(coarse);
+    const double size = q.cwiseAbs().maxCoeff();
+    std::vector<double> last;
+    for (Eigen::Index k = 0; k < std::ssize(rule.panels); ++k)
+      last.push_back(
+          (q.middleCols(k * kTerms, kTerms) * LegendrePanel::rule().to_terms.rightCols<2>()).cwiseAbs().maxCoeff());
+    if (!rule.halve(last, kResolved * size, kNoise * size)) return rule;
   }
-  return rule;
+  throw NumericalFailure("the motion near the contacts has no series on panels of a 16,384th of the period", start.time,
+                         stacked(start), std::numeric_limits<double>::quiet_NaN());
 }
 
 }  // namespace
@@ -151,6 +160,9 @@ MixedEvaluation MixedProblem::evaluate(const MixedPoint& point) {
     out.newton.J.bottomRightCorner(nb * block, nb * block).diagonal().array() += 1.0;
   }
   out.newton.J.topLeftCorner(N, N).diagonal().array() -= 1.0;
+  if (!out.newton.J.allFinite() || !out.newton.r.allFinite())
+    throw NumericalFailure("the tangent flow near the contacts is not finite", start.time, stacked(start),
+                           std::numeric_limits<double>::quiet_NaN());
   if (scale_.size() == 0) {
     scale_ = Eigen::VectorXd::Constant(unknown, force_size > 0.0 ? force_size : 1.0);
     scale_.head(N) = coordinate_scale(near, start, run.end, period());
@@ -159,9 +171,6 @@ MixedEvaluation MixedProblem::evaluate(const MixedPoint& point) {
   out.newton.J = scale_.cwiseInverse().asDiagonal() * out.newton.J * scale_.asDiagonal();
   out.norm = out.newton.r.norm();
   out.largest = largest_entry(out.newton.r);
-  if (!out.newton.J.allFinite() || !std::isfinite(out.norm))
-    throw NumericalFailure("the tangent flow near the contacts is not finite", start.time, stacked(start),
-                           std::numeric_limits<double>::quiet_NaN());
   return out;
 }
 

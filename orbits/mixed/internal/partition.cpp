@@ -66,6 +66,27 @@ friction::Law weakened(friction::Law law, double share) {
                          std::numeric_limits<double>::quiet_NaN());
 }
 
+/// The rest's answers to loads, columns, at order k: for these and one more that no mode is likely to be blind to, as a
+/// pivot of rounding is not zero.
+/// @throws NumericalFailure  where it has none
+Eigen::MatrixXcd answers_at(const Eigen::SparseMatrix<Complex>& stiffness, const Eigen::MatrixXcd& loads, int k,
+                            double omega) {
+  constexpr double kSingular = 1e15;
+  const Eigen::Index n = stiffness.rows();
+  if (n == 0) return loads;
+  Eigen::SparseLU<Eigen::SparseMatrix<Complex>> lu(stiffness);
+  if (lu.info() != Eigen::Success) fail_at(k, omega);
+  Eigen::VectorXcd probe(n);
+  for (Eigen::Index i = 0; i < n; ++i) probe[i] = std::polar(1.0, static_cast<double>(i) * static_cast<double>(i));
+  const Eigen::VectorXcd probed = lu.solve(probe);
+  double size = 0.0;
+  for (Eigen::Index j = 0; j < n; ++j)
+    for (Eigen::SparseMatrix<Complex>::InnerIterator it(stiffness, j); it; ++it)
+      size = std::max(size, std::abs(it.value()));
+  if (!probed.allFinite() || size * probed.lpNorm<Eigen::Infinity>() > kSingular) fail_at(k, omega);
+  return lu.solve(loads);
+}
+
 }  // namespace
 
 Complex phasor(const Eigen::VectorXd& blocks, Eigen::Index b, Eigen::Index harmonics, Eigen::Index k) {
@@ -99,12 +120,10 @@ Partition::Partition(const HybridSystem& system, int reach, int order, int harmo
   Indices coupled_dofs;
   for (Eigen::Index b = 0; b < coupled(); ++b) coupled_dofs.push_back(near_[static_cast<std::size_t>(boundary(b))]);
   for (int k = 0; coupled() > 0 && k <= harmonics; ++k) {
-    Eigen::SparseLU<SparseComplex> lu(stiffness(k, rest_, rest_));
-    if (lu.info() != Eigen::Success) fail_at(k, omega_);
     Eigen::MatrixXcd right(std::ssize(rest_), coupled() + 1);
     right << Eigen::MatrixXcd(stiffness(k, rest_, coupled_dofs)), loads(k, rest_);
-    const Eigen::MatrixXcd answer = stiffness(k, coupled_dofs, rest_) * lu.solve(right).eval();
-    if (!answer.allFinite()) fail_at(k, omega_);
+    const Eigen::MatrixXcd answer =
+        stiffness(k, coupled_dofs, rest_) * answers_at(stiffness(k, rest_, rest_), right, k, omega_);
     impedance_.emplace_back(answer.leftCols(coupled()));
     for (Eigen::Index b = 0; b < coupled(); ++b) put_phasor(-answer(b, coupled()), b, harmonics_, k, own_coupling_);
   }
@@ -211,8 +230,8 @@ Eigen::MatrixXcd Partition::rest_under(const Eigen::VectorXd& motion) const {
   for (int k = 0; k <= harmonics_ && !rest_.empty(); ++k) {
     Eigen::VectorXcd moved = Eigen::VectorXcd::Zero(std::ssize(near_));
     for (Eigen::Index b = 0; b < coupled(); ++b) moved[boundary(b)] = phasor(motion, b, harmonics_, k);
-    const Eigen::SparseLU<SparseComplex> lu(stiffness(k, rest_, rest_));
-    out.col(k) = lu.solve((loads(k, rest_) - stiffness(k, rest_, near_) * moved).eval());
+    out.col(k) =
+        answers_at(stiffness(k, rest_, rest_), loads(k, rest_) - stiffness(k, rest_, near_) * moved, k, omega_);
   }
   return out;
 }

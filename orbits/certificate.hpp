@@ -1,6 +1,7 @@
 #pragma once
 
 #include <slipmode/orbits/balance/balance.hpp>
+#include <slipmode/orbits/mixed/mixed.hpp>
 #include <slipmode/orbits/shooting.hpp>
 
 #include <string>
@@ -8,13 +9,13 @@
 
 namespace slipmode::orbits {
 
-/// What is true of a balance: the exact orbit that Newton's shooting reaches from it, and how far the series is from
-/// that.
+/// What is true of a balance or a mixed orbit: the exact orbit that Newton's shooting reaches from it, and how far the
+/// approximation is from that.
 struct Certificate {
-  /// An orbit was reached, and nowhere farther from the series than a quarter of a contact's half range.
+  /// An orbit was reached, and nowhere farther from it than a quarter of a contact's half range.
   bool behind = false;
   ShootingResult found;       ///< the exact orbit, with its multipliers, events and word
-  std::vector<double> error;  ///< sup over the period of |y_balance − y_orbit|, per contact [m]; empty without an orbit
+  std::vector<double> error;  ///< sup over the period of |y − y_orbit|, per contact [m]; empty without an orbit
   double relative = 0.0;      ///< the largest of them, each as a share of its contact's half range
   std::string verdict;        ///< in a sentence
 };
@@ -24,6 +25,10 @@ struct Certificate {
 /// The supremum is that of a grid of 2,000 points or 24 a harmonic, whichever is more, each local largest one improved
 /// by the parabola through three.
 [[nodiscard]] Certificate certify(const dynamics::HybridSystem& system, const Balance& balance,
+                                  const ShootingOptions& options = {});
+
+/// The same from a mixed orbit. Shooting carries tangents of the whole structure: their cost grows as n².
+[[nodiscard]] Certificate certify(const dynamics::HybridSystem& system, const MixedOrbit& mixed,
                                   const ShootingOptions& options = {});
 
 /// sup |y_balance − y_orbit| of each contact [m].

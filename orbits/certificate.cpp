@@ -1,0 +1,194 @@
+#include <slipmode/orbits/certificate.hpp>
+
+#include <slipmode/core/errors.hpp>
+#include "orbits/balance/internal/trigonometric.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+namespace slipmode::orbits {
+namespace {
+
+/// Farther from the series than this share of a half range, an orbit is another one.
+constexpr double kBehind = 0.25;
+/// Of the whole motion: what moves by less sticks.
+constexpr double kStill = 1e-12;
+
+std::vector<double> half_ranges(const OrbitSeries& orbit) {
+  constexpr int kLooks = 512;
+  Eigen::VectorXd low, high;
+  for (int k = 0; k < kLooks; ++k) {
+    const Eigen::VectorXd y = orbit.at(orbit.start() + orbit.period() * k / kLooks).head(orbit.contacts());
+    low = k == 0 ? y : Eigen::VectorXd(low.cwiseMin(y));
+    high = k == 0 ? y : Eigen::VectorXd(high.cwiseMax(y));
+  }
+  std::vector<double> half;
+  const Eigen::VectorXd ranges = high - low;
+  for (const double range : ranges) {  // of a contact that never moves: the whole motion's size
+    const bool still = 0.5 * range < kStill * orbit.motion();
+    half.push_back(still ? orbit.motion() : 0.5 * range);
+  }
+  return half;
+}
+
+/// The largest error over its contact's half range.
+double largest_share(const std::vector<double>& error, const std::vector<double>& half) {
+  double share = 0.0;
+  for (std::size_t c = 0; c < error.size(); ++c)
+    if (error[c] > 0.0) share = std::max(share, error[c] / half[c]);
+  return share;
+}
+
+/// A motion that an orbit is to lie behind.
+struct Claim {
+  const char* name;
+  int crossings = 0;
+  int points = 2000;                                ///< at which it is compared
+  std::function<Eigen::VectorXd(double)> contacts;  ///< their displacements at a time [nc]
+};
+
+Claim claim_of(const Balance& balance) {
+  std::vector<TrigonometricPolynomial> series;
+  for (const Harmonics& y : balance.displacement) series.push_back(polynomial_of(y));
+  return {"balance", balance.switches, std::max(2000, 24 * balance.harmonics),
+          [series = std::move(series), omega = balance.omega](double t) {
+            Eigen::VectorXd y(std::ssize(series));
+            for (std::size_t c = 0; c < series.size(); ++c) y[static_cast<Eigen::Index>(c)] = series[c].at(omega * t).y;
+            return y;
+          }};
+}
+
+Claim claim_of(const MixedOrbit& mixed) {
+  return {"mixed orbit", mixed.near_orbit.crossings, std::max(2000, 24 * mixed.harmonics),
+          [series = OrbitSeries(*mixed.near_system, mixed.near_orbit)](double t) -> Eigen::VectorXd {
+            return series.at(t).head(series.contacts());
+          }};
+}
+
+/// sup over the period of the distance of each contact's displacements.
+std::vector<double> distances(const Claim& claim, const OrbitSeries& orbit) {
+  const int points = claim.points;
+  const Eigen::Index contacts = orbit.contacts();
+  Eigen::MatrixXd error(contacts, points);
+  for (int k = 0; k < points; ++k) {
+    const double t = orbit.start() + orbit.period() * k / points;
+    error.col(k) = orbit.at(t).head(contacts) - claim.contacts(t);
+  }
+  std::vector<double> largest;
+  for (Eigen::Index c = 0; c < contacts; ++c) {
+    double most = 0.0;
+    for (int k = 0; k < points; ++k) {
+      const double here = error(c, k), sign = here < 0.0 ? -1.0 : 1.0;
+      const double a = sign * error(c, (k + points - 1) % points), b = std::abs(here),
+                   d = sign * error(c, (k + 1) % points);
+      most = std::max(most, b);
+      if (a > b || d > b) continue;
+      if (const double bend = a - 2.0 * b + d; bend < 0.0) most = std::max(most, b - (d - a) * (d - a) / (8.0 * bend));
+    }
+    largest.push_back(most);
+  }
+  return largest;
+}
+
+/// What motions are measured by.
+struct OrbitBehind {
+  OrbitSeries series;
+  std::vector<double> half;
+
+  OrbitBehind(const dynamics::HybridSystem& system, const PeriodicOrbit& orbit)
+      : series(system, orbit), half(half_ranges(series)) {}
+};
+
+void judge(const Claim& claim, const OrbitBehind& behind, Certificate& out) {
+  out.error = distances(claim, behind.series);
+  out.relative = largest_share(out.error, behind.half);
+  out.behind = out.relative <= kBehind;
+  const PeriodicOrbit& orbit = out.found.orbit;
+  if (!out.behind) {
+    out.verdict = fmt::format(
+        "no orbit lies behind this {}: Newton's shooting from it ends on the orbit \"{}\", {:.3g} of a half range away",
+        claim.name, orbit.word, out.relative);
+    return;
+  }
+  out.verdict = fmt::format("true error {:.3g} of a half range; the orbit behind it is \"{}\", {}", out.relative,
+                            orbit.word, to_string(orbit.stability));
+  if (orbit.crossings != claim.crossings)
+    out.verdict += fmt::format("; it has {} crossings and the {} {}", orbit.crossings, claim.name, claim.crossings);
+}
+
+/// @param out_behind  what shooting from the state ends on, near or not; empty where it does not end
+Certificate shoot_behind(const dynamics::HybridSystem& system, const dynamics::State& state, int order,
+                         const Claim& claim, const ShootingOptions& options, std::optional<OrbitBehind>& out_behind) {
+  ShootingOptions at_order = options;
+  at_order.order = order;
+  Certificate out;
+  out.found = shoot(system, state, at_order);
+  out_behind.reset();
+  if (!out.found.converged()) {
+    out.verdict = fmt::format("no orbit lies behind this {}: {}", claim.name, out.found.message);
+    return out;
+  }
+  out_behind.emplace(system, out.found.orbit);
+  judge(claim, *out_behind, out);
+  return out;
+}
+
+}  // namespace
+
+std::vector<double> true_errors(const Balance& balance, const OrbitSeries& orbit) {
+  return distances(claim_of(balance), orbit);
+}
+
+Certificate certify(const dynamics::HybridSystem& system, const Balance& balance, const ShootingOptions& options) {
+  std::optional<OrbitBehind> behind;
+  return shoot_behind(system, state_of(system, balance), balance.order, claim_of(balance), options, behind);
+}
+
+Certificate certify(const dynamics::HybridSystem& system, const MixedOrbit& mixed, const ShootingOptions& options) {
+  std::optional<OrbitBehind> behind;
+  return shoot_behind(system, state_of(system, mixed), mixed.order, claim_of(mixed), options, behind);
+}
+
+CertifiedBalance balance_to_error(const dynamics::HybridSystem& system, BalanceOptions options, double error, int most,
+                                  const ShootingOptions& shooting) {
+  if (!(error > 0.0 && std::isfinite(error)))
+    throw InvalidInput(fmt::format("error: {}; valid: a number > 0, a share of the half range", error));
+  constexpr int kFirst = 3;
+  constexpr double kGrowth = 1.3;
+  CertifiedBalance out;
+  std::optional<OrbitBehind> behind;
+  const auto look = [&] {  // the orbit of an order before serves as long as it is near
+    const Claim claim = claim_of(out.balance);
+    if (behind) judge(claim, *behind, out.certificate);
+    if (!out.certificate.behind)
+      out.certificate = shoot_behind(system, state_of(system, out.balance), out.balance.order, claim, shooting, behind);
+  };
+  for (int H = kFirst; H <= most; H = std::max(H + 1, static_cast<int>(kGrowth * H))) {
+    options.harmonics = H;
+    Balance next = balance(system, options);
+    if (!next.converged && !options.guess.empty()) {
+      options.guess.clear();
+      next = balance(system, options);
+    }
+    OrderTrial trial{.harmonics = H, .iterations = next.iterations, .error = std::numeric_limits<double>::quiet_NaN()};
+    out.balance = std::move(next);
+    if (out.balance.converged) {
+      look();
+      if (out.certificate.behind) {
+        trial.error = out.certificate.relative;
+        options.guess = out.balance.displacement;
+      }
+    }
+    out.trials.push_back(trial);
+    out.met = trial.error <= error;
+    if (out.met) break;
+  }
+  return out;
+}
+
+}  // namespace slipmode::orbits
