@@ -24,6 +24,8 @@ void check(const std::vector<double>& parameters, const std::vector<dynamics::St
     throw InvalidInput(fmt::format("ensemble: expected sample > 0 and 0 <= transient < duration, found {}, {}, {}",
                                    options.sample, options.transient, options.duration));
   }
+  if (options.part < 1 || options.part > options.parts)
+    throw InvalidInput(fmt::format("ensemble: expected part 1 to {}, found {}", options.parts, options.part));
 }
 
 /// One member: fills `member` and returns its snapshots.

@@ -63,7 +63,8 @@ struct EnsembleRun {
 /// Runs every initial state at every parameter value and concatenates the snapshots.
 ///
 /// A member that fails (NumericalFailure) is recorded and gives no snapshots. Same bytes for any number of threads.
-/// @throws InvalidInput      for no starts or parameters, sample ≤ 0, transient outside [0, duration)
+/// @throws InvalidInput      for no starts or parameters, sample ≤ 0, transient outside [0, duration), part outside 1 …
+/// parts
 /// @throws NumericalFailure  if every member failed (the first one's), unless only a part was run
 /// @throws Interrupted       if the stop flag was set
 [[nodiscard]] EnsembleRun run_ensemble(const Model& model, const std::vector<double>& parameters,

@@ -136,6 +136,17 @@ TEST(EnsembleRun, RecordsAMemberThatFailsAndKeepsTheOthers) {
   EXPECT_THROW((void)run_ensemble(model, {0.2}, starts, {.duration = 10.0, .transient = 10.0}), InvalidInput);
 }
 
+TEST(EnsembleRun, RefusesAPartThatThereIsNot) {
+  const dynamics::HybridSystem system = tests::chain10(0.2);
+  const auto starts = random_states(system, {.count = 3});
+  EnsembleOptions options{.duration = 50.0, .transient = 0.0, .sample = 0.5};
+  for (const auto& [part, parts] : {std::pair(0U, 2U), std::pair(3U, 2U), std::pair(0U, 0U), std::pair(1U, 0U)}) {
+    options.part = part;
+    options.parts = parts;
+    EXPECT_THROW((void)run_ensemble(belt_model(system), {0.2}, starts, options), InvalidInput);
+  }
+}
+
 TEST(Cost, BreaksEvenWhenTheSavedTimePaysTheBasis) {
   // 10 − 2 saved per run against 30 + 2 once: four runs.
   const Cost cost{.full_wall = 10.0, .reduced_wall = 2.0, .projection_wall = 2.0};
