@@ -1,7 +1,9 @@
 #include <slipmode/core/exchange.hpp>
 
+#include <fmt/format.h>
 #include <chrono>
 #include <cstring>
+#include <stdexcept>
 #include <thread>
 #include <utility>
 
@@ -39,6 +41,10 @@ std::string Exchange::bytes_from(int rank) {
       continue;
     }
     if (const auto failure = failure_in(*parcel)) failure->rethrow();
+    if (parcel->bytes.front() != kExchangeParcel) {
+      throw std::logic_error(fmt::format("exchange: rank {} got '{}' of rank {}, which is not for it", ranks_.own,
+                                         parcel->bytes.front(), parcel->from));
+    }
     arrived_[static_cast<std::size_t>(parcel->from)].push_back(parcel->bytes.substr(1));
   }
   std::string bytes = std::move(waiting.front());

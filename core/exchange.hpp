@@ -1,5 +1,6 @@
 #pragma once
 
+#include <slipmode/core/errors.hpp>
 #include <slipmode/core/parallel.hpp>
 #include <slipmode/core/ranks.hpp>
 
@@ -11,8 +12,16 @@
 
 namespace slipmode {
 
+/// Bad input of another rank, as RankFailure::rethrow() throws it: its words name what they are about.
+class InvalidInputOfRank : public InvalidInput {
+ public:
+  using InvalidInput::InvalidInput;
+};
+
 /// Parcels between ranks that compute something in steps which all know: who sends is waited for by name. A rank that
-/// waits sleeps, and notices when it is stopped; rank 0 also when another rank has failed.
+/// waits sleeps, and notices when it is stopped; rank 0 also when another rank has failed. Between two ranks parcels
+/// keep their order, not among three: rank 0 hears from all others that they wait no more before end_ranks() lets them
+/// go.
 class Exchange {
  public:
   /// @param ranks  outlives this
@@ -29,6 +38,7 @@ class Exchange {
   /// What that rank sent first of what has not been taken.
   /// @throws Interrupted  when this rank is stopped
   /// @throws              on rank 0 as RankFailure::rethrow() when another has failed
+  /// @throws std::logic_error  for a parcel that is no exchange's
   [[nodiscard]] std::string bytes_from(int rank);
   [[nodiscard]] std::vector<double> numbers_from(int rank);
 

@@ -1,6 +1,6 @@
 #include <slipmode/core/ranks.hpp>
 
-#include <slipmode/core/errors.hpp>
+#include <slipmode/core/exchange.hpp>
 #include <slipmode/core/numbers.hpp>
 #include <slipmode/core/parallel.hpp>
 
@@ -35,7 +35,7 @@ int end_ranks(const Ranks& ranks, int code, const std::string& message) {
 void RankFailure::rethrow() const {
   if (code == kStoppedCode) throw Interrupted();
   const std::string why = fmt::format("rank {}: {}", rank, message);
-  if (code == kBadInputCode) throw InvalidInput(why);
+  if (code == kBadInputCode) throw InvalidInputOfRank(why);
   throw std::runtime_error(why);
 }
 

@@ -113,6 +113,12 @@ void join_from(Exchange& exchange, int from, SnapshotTriangle& sum) {
   exchange.send(from, "");
 }
 
+/// Rank 0 goes on when no other waits for a parcel any more: what it sends next is not the exchange's.
+void wait_for_all(Exchange& exchange) {
+  if (exchange.own() != 0) exchange.send(0, "");
+  for (int rank = 1; exchange.own() == 0 && rank < exchange.count(); ++rank) (void)exchange.bytes_from(rank);
+}
+
 }  // namespace
 
 std::optional<PodResult> pod_of_ranks(const Eigen::MatrixXd& share, Exchange& exchange, const PodOptions& options) {
@@ -125,6 +131,7 @@ std::optional<PodResult> pod_of_ranks(const Eigen::MatrixXd& share, Exchange& ex
   validate(options, share.rows());
   const Eigen::MatrixXd more = exchange_heads(exchange, shares, share);
   if (shares.blocks() == 1) {
+    wait_for_all(exchange);
     if (own != 0) return std::nullopt;
     Ensemble all{.snapshots = Eigen::MatrixXd(share.rows(), shares.snapshots())};
     all.snapshots.leftCols(share.cols()) = share;
@@ -147,6 +154,7 @@ std::optional<PodResult> pod_of_ranks(const Eigen::MatrixXd& share, Exchange& ex
       triangles[one.from_place].sum.R.resize(0, 0);
     }
   }
+  wait_for_all(exchange);
   if (own != 0) return std::nullopt;
   return modes_of(triangles.front().sum, options);
 }

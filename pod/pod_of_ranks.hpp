@@ -20,7 +20,7 @@ namespace slipmode::pod {
 /// joining two triangles, one thread a rank. On the network n²/2 numbers for each triangle that is joined elsewhere.
 /// @param share     n x T_r, T_r ≥ 0 [m]; n is the same on all ranks
 /// @param options   method kAutomatic or kQrSvd
-/// @return          on rank 0; on others nothing
+/// @return          on rank 0, when no other waits for a parcel; on others nothing
 /// @throws InvalidInput      as pod(): for values that are not finite on the rank that has them; for another method, or
 ///                           other numbers of rows
 /// @throws NumericalFailure  on rank 0, as pod()

@@ -44,8 +44,21 @@ TEST(Exchange, EndsWaitingWhenStoppedOrWhenARankHasFailed) {
   try {
     failed_with("f2 its file is gone");
     FAIL() << "went on";
-  } catch (const InvalidInput& error) {
+  } catch (const InvalidInputOfRank& error) {
     EXPECT_STREQ(error.what(), "rank 2: its file is gone");
+  }
+}
+
+// As end_ranks() sends it: it must not be taken for an exchange's, or the rank waits for it for ever.
+TEST(Exchange, DoesNotTakeWhatIsNotItsOwn) {
+  Network network(3);
+  const Ranks two = network.rank(2);
+  network.rank(0).send(2, std::string(1, kGoParcel));
+  try {
+    (void)Exchange(two, nullptr).bytes_from(1);
+    FAIL() << "went on";
+  } catch (const std::logic_error& error) {
+    EXPECT_STREQ(error.what(), "exchange: rank 2 got 'G' of rank 0, which is not for it");
   }
 }
 

@@ -11,6 +11,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <chrono>
 #include <exception>
 #include <set>
 #include <thread>
@@ -24,8 +25,10 @@ using tests::powers;
 
 using Counts = std::vector<Eigen::Index>;
 
-/// What rank 0 finds of snapshots of which each rank has so many.
-PodResult shared_pod(const Eigen::MatrixXd& snapshots, const Counts& counts, const PodOptions& options = {}) {
+/// What rank 0 finds of snapshots of which each rank has so many. Then the ranks end.
+/// @param late  a rank that looks seldom for what has arrived; -1: none
+PodResult shared_pod(const Eigen::MatrixXd& snapshots, const Counts& counts, const PodOptions& options = {},
+                     int late = -1) {
   tests::Network network(static_cast<int>(counts.size()));
   std::optional<PodResult> found;
   std::vector<std::exception_ptr> errors(counts.size());
@@ -34,7 +37,13 @@ PodResult shared_pod(const Eigen::MatrixXd& snapshots, const Counts& counts, con
     Eigen::Index begin = 0;
     for (std::size_t r = 0; r < counts.size(); ++r) {
       ranks.emplace_back([&, r, share = Eigen::MatrixXd(snapshots.middleCols(begin, counts[r]))] {
-        const Ranks own = network.rank(static_cast<int>(r));
+        Ranks own = network.rank(static_cast<int>(r));
+        if (own.own == late) {
+          own.receive = [receive = own.receive] {
+            std::this_thread::sleep_for(std::chrono::milliseconds(4));
+            return receive();
+          };
+        }
         Exchange exchange(own, nullptr);
         try {
           auto result = pod_of_ranks(share, exchange, options);
@@ -44,6 +53,7 @@ PodResult shared_pod(const Eigen::MatrixXd& snapshots, const Counts& counts, con
           errors[r] = std::current_exception();
           if (r != 0) own.send(0, std::string("f2 ") + error.what());  // as end_ranks() does
         }
+        if (r == 0 || !errors[r]) end_ranks(own, 0, "");
       });
       begin += counts[r];
     }
@@ -81,6 +91,14 @@ TEST(PodOfRanks, HasTheBytesOfOneProcessHoweverSnapshotsAreShared) {
   }
   const PodOptions kept{.choice = {.modes = 3}, .remove_mean = false};
   expect_same(shared_pod(X, {11000, 8000, 11000}, kept), pod(known.ensemble, kept));
+}
+
+// Rank 3 gives to rank 2, and that to rank 0, which is done when rank 3 may not have seen yet that rank 2 has all.
+TEST(PodOfRanks, EndsAllRanksWhenOneIsLate) {
+  const auto known = known_ensemble(48, 5, 32768, powers(0.6, 5));
+  const PodResult one = pod(known.ensemble);
+  for (int run = 0; run < 10; ++run)
+    for (const int late : {1, 2, 3}) expect_same(shared_pod(known.ensemble.snapshots, Counts(4, 8192), {}, late), one);
 }
 
 // A triangle of 300 rows travels in two parts, and is decomposed as one of more than 256 columns.
