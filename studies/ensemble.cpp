@@ -4,6 +4,7 @@
 #include <slipmode/results/ensemble_store.hpp>
 #include <slipmode/studies/family.hpp>
 
+#include <fmt/format.h>
 #include <utility>
 
 namespace slipmode::studies {
@@ -70,8 +71,10 @@ diagnostics::EnsembleRun ensemble(const scene::Scene& scene, const RunOptions& r
 
 diagnostics::EnsembleRun ensemble_part(const scene::Scene& scene, std::size_t part, std::size_t parts,
                                        const RunOptions& run) {
-  if (scene.drive.shaker() != nullptr)
-    throw InvalidInput("ensemble: under a shaker it is computed by one process; expected a belt or a force");
+  if (scene.drive.shaker() != nullptr) {
+    throw InvalidInput(fmt::format(
+        "{}: drive.kind = \"shaker\": its modes are found by one process; start it without mpirun", scene.source.path));
+  }
   const Members members(scene);
   diagnostics::EnsembleRun own =
       members.run(members.parameters, scene.time, run.parallel("ensemble"), {.part = part, .parts = parts});

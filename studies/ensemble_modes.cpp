@@ -71,7 +71,11 @@ EnsembleModes modes_of_ranks(const scene::Scene& scene, Eigen::Index modes, cons
   Exchange exchange(ranks, run.stop);
   const std::string study = fingerprint_of(scene, fmt::format("slipmode pod --modes {}", modes));
   for (int rank = 1; ranks.own == 0 && rank < ranks.count; ++rank) exchange.send(rank, study);
-  if (ranks.own != 0) require_same_study(exchange.bytes_from(0), study);
+  if (ranks.own != 0) {
+    require_same_study(exchange.bytes_from(0), study);
+    exchange.send(0, "");
+  }
+  for (int rank = 1; ranks.own == 0 && rank < ranks.count; ++rank) (void)exchange.bytes_from(rank);
 
   const auto part = static_cast<std::size_t>(ranks.own) + 1, parts = static_cast<std::size_t>(ranks.count);
   const diagnostics::EnsembleRun own = ensemble_part(scene, part, parts, run);
@@ -82,6 +86,8 @@ EnsembleModes modes_of_ranks(const scene::Scene& scene, Eigen::Index modes, cons
   EnsembleModes all = modes_of(scene, course);
   try {
     all.found.pod = pod::pod_of_ranks(own.ensemble.snapshots, exchange, {.choice = {.modes = modes, .energy = 1.0}});
+  } catch (const InvalidInputOfRank&) {
+    throw;
   } catch (const InvalidInput& refusal) {
     throw refused_modes(scene.source.path, modes, refusal);
   }
@@ -96,6 +102,7 @@ EnsembleModes ensemble_modes(const scene::Scene& scene, Eigen::Index modes, cons
         fmt::format("{}: has no [ensemble]; add one, or give the trajectory that 'slipmode simulate' makes of it",
                     scene.source.path));
   }
+  require_modes(scene, modes, scene.source.path);
   if (ranks != nullptr) return modes_of_ranks(scene, modes, run, *ranks);
   const diagnostics::EnsembleRun run_of_all = ensemble(scene, run);
   EnsembleModes all = modes_of(scene, Course(run_of_all));

@@ -10,16 +10,19 @@
 #include <fmt/format.h>
 
 namespace slipmode::studies {
-namespace {
-
-void check_modes(Eigen::Index modes, const char* otherwise) {
-  if (modes < 0) throw InvalidInput(fmt::format("modes = {}: expected 1 or more, or 0 for {}", modes, otherwise));
-}
-
-}  // namespace
 
 InvalidInput refused_modes(const std::string& source, Eigen::Index modes, const InvalidInput& refusal) {
   return InvalidInput(fmt::format("{}: --modes {}: {}", source, modes, refusal.what()));
+}
+
+void require_modes(const scene::Scene& scene, Eigen::Index modes, const std::string& source) {
+  const auto refuse = [&](const std::string& why) { throw refused_modes(source, modes, InvalidInput(why)); };
+  if (modes < 0) refuse("expected 1 or more, or 0 for all there are");
+  if (modes > 0 && is_shaken(scene)) refuse("under a shaker all are kept, 'reduce' takes as many as wanted");
+  if (modes > scene.size()) {
+    refuse(fmt::format("the scene has {} degrees of freedom; expected 1 to {}, or 0 for all modes there are",
+                       scene.size(), scene.size()));
+  }
 }
 
 MotionModes motion_modes(const results::StoreReader& motion, Eigen::Index modes) {
@@ -32,7 +35,7 @@ MotionModes motion_modes(const results::StoreReader& motion, Eigen::Index modes)
 
 MotionModes motion_modes(const scene::Scene& scene, const pod::Ensemble& snapshots, Eigen::Index modes,
                          const std::string& source) {
-  check_modes(modes, "all there are");
+  require_modes(scene, modes, source);
   MotionModes found{.scene = scene,
                     .provenance = results::provenance_of(scene, "slipmode pod"),
                     .dofs = snapshots.snapshots.rows(),
@@ -47,8 +50,6 @@ MotionModes motion_modes(const scene::Scene& scene, const pod::Ensemble& snapsho
     }
     return found;
   }
-  if (modes > 0)
-    throw InvalidInput(fmt::format("modes = {}: under a shaker all are kept, 'reduce' takes as many as wanted", modes));
   found.shaken = shaken_modes(scene, scene::build_system(scene).structure(), snapshots);
   return found;
 }
@@ -65,7 +66,8 @@ results::Content content_of(const std::shared_ptr<const MotionModes>& modes) {
 
 Reduction reduce(const scene::Scene& scene, const dynamics::HybridSystem& full, const pod::NamedBasis& source,
                  const std::string& name, Eigen::Index modes) {
-  check_modes(modes, "as many as [reduction] says");
+  if (modes < 0)
+    throw InvalidInput(fmt::format("modes = {}: expected 1 or more, or 0 for as many as [reduction] says", modes));
   pod::ModeChoice choice = scene.reduction.choice;
   if (modes > 0) choice.modes = modes;
   if (choice.modes == 0 && source.captured.size() == 0) {  // LNMs have no energies of their own

@@ -38,6 +38,10 @@ struct MotionModes {
 /// The words of a decomposition, which knows numbers only, with the file and the option that they belong to.
 [[nodiscard]] InvalidInput refused_modes(const std::string& source, Eigen::Index modes, const InvalidInput& refusal);
 
+/// What can be said of a number of modes before there is a motion.
+/// @throws InvalidInput  for modes < 0, more than degrees of freedom, or a number of modes under a shaker
+void require_modes(const scene::Scene& scene, Eigen::Index modes, const std::string& source);
+
 /// A scene's model projected on a basis.
 struct Reduction {
   dynamics::HybridSystem full;
