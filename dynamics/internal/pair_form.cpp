@@ -116,8 +116,7 @@ void add_driven_pair(PairForm& form, const Eigen::Matrix2d& A, const Eigen::Matr
     S.bottomLeftCorner<2, 2>().diagonal().array() -= form.g12(i);
     const Eigen::JacobiSVD<Eigen::Matrix4d> svd(S, Eigen::ComputeFullU | Eigen::ComputeFullV);
     check_condition(svd.singularValues()(0) / svd.singularValues()(3));
-    const Eigen::Vector4d x =
-        -svd.matrixV() * (svd.matrixU().transpose() * driven).cwiseQuotient(svd.singularValues());
+    const Eigen::Vector4d x = -svd.matrixV() * (svd.matrixU().transpose() * driven).cwiseQuotient(svd.singularValues());
     for (Eigen::Index k = 0; k < 2; ++k) {
       X(k, i) = x(k);
       X(k, n + i) = x(k + 2);
