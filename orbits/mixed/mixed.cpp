@@ -32,10 +32,21 @@ void check(const HybridSystem& system, const MixedOptions& options) {
   static_cast<void>(dynamics::choose_method(system, dynamics::FlowMethod::kClosedForm));
 }
 
-/// Newton's method, taken up again from between events where the origin lies on one: there the derivative is none.
-MixedDescent search(MixedProblem& problem, const MixedPoint& from, double tolerance, int& budget) {
-  MixedDescent d = descend(problem, from, tolerance, budget);
+/// Newton's method. A start that the flow refuses is one of several, and no fault of the caller's.
+MixedDescent descend_from(MixedProblem& problem, const MixedPoint& from, double tolerance, int& budget) {
+  MixedDescent d;
+  try {
+    d = descend(problem, from, tolerance, budget);
+  } catch (const InvalidInput& refused) {
+    d.failure = refused.what();
+  }
   budget -= d.iterations;
+  return d;
+}
+
+/// The same, taken up again from between events where the origin lies on one: there the derivative is none.
+MixedDescent search(MixedProblem& problem, const MixedPoint& from, double tolerance, int& budget) {
+  MixedDescent d = descend_from(problem, from, tolerance, budget);
   if (!d.begun) return d;
   const double T = problem.period(), start = d.best.point.start.time;
   if (!(distance_to_events(start, T, d.best.events) < 1e-6 * T)) return d;
@@ -46,8 +57,7 @@ MixedDescent search(MixedProblem& problem, const MixedPoint& from, double tolera
   } catch (const NumericalFailure&) {
     return d;
   }
-  MixedDescent again = descend(problem, shifted, tolerance, budget);
-  budget -= again.iterations;
+  MixedDescent again = descend_from(problem, shifted, tolerance, budget);
   return again.begun && again.best.largest <= std::max(d.best.largest, tolerance) ? again : d;
 }
 
