@@ -16,12 +16,14 @@ InvalidInput refused_modes(const std::string& source, Eigen::Index modes, const 
 }
 
 void require_modes(const scene::Scene& scene, Eigen::Index modes, const std::string& source) {
-  const auto refuse = [&](const std::string& why) { throw refused_modes(source, modes, InvalidInput(why)); };
-  if (modes < 0) refuse("expected 1 or more, or 0 for all there are");
-  if (modes > 0 && is_shaken(scene)) refuse("under a shaker all are kept, 'reduce' takes as many as wanted");
+  if (modes < 0) throw InvalidInput(fmt::format("modes = {}: expected 1 or more, or 0 for all there are", modes));
+  if (modes > 0 && is_shaken(scene))
+    throw InvalidInput(fmt::format("modes = {}: under a shaker all are kept, 'reduce' takes as many as wanted", modes));
   if (modes > scene.size()) {
-    refuse(fmt::format("the scene has {} degrees of freedom; expected 1 to {}, or 0 for all modes there are",
-                       scene.size(), scene.size()));
+    const std::string why =
+        fmt::format("the scene has {} degrees of freedom; expected 1 to {}, or 0 for all modes there are", scene.size(),
+                    scene.size());
+    throw refused_modes(source, modes, InvalidInput(why));
   }
 }
 

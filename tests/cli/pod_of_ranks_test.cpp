@@ -140,7 +140,7 @@ TEST_F(RanksPod, RefusesOnceWhatItCannotDo) {
   refused({"pod", "kept.h5", "-o", "r.h5"}, "start it without mpirun, or give the scene (.toml)");
   refused({"pod", kShakenBeam, "-o", "r.h5"},
           "drive.kind = \"shaker\": its modes are found by one process; start it without mpirun");
-  refused({"pod", kShakenBeam, "-o", "r.h5", "--modes", "2"}, "--modes 2: under a shaker all are kept");
+  refused({"pod", kShakenBeam, "-o", "r.h5", "--modes", "2"}, "modes = 2: under a shaker all are kept");
   // Before the ensemble, which takes ten minutes.
   refused(pod(endless + Words{"--modes", "4"}), "free.toml: --modes 4: the scene has 3 degrees of freedom");
   refused(pod({"--set", "time.sample=-1.0"}), "time.sample");

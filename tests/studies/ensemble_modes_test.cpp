@@ -37,9 +37,9 @@ std::string refusal_of(const scene::Scene& scene, Eigen::Index modes, const Rank
 TEST(EnsembleModes, AreRefusedBeforeTheEnsembleIsSimulated) {
   EXPECT_EQ(refusal_of(free_ends(), 4),
             "free.toml: --modes 4: the scene has 3 degrees of freedom; expected 1 to 3, or 0 for all modes there are");
-  EXPECT_EQ(refusal_of(free_ends(), -1), "free.toml: --modes -1: expected 1 or more, or 0 for all there are");
+  EXPECT_EQ(refusal_of(free_ends(), -1), "modes = -1: expected 1 or more, or 0 for all there are");
   EXPECT_THAT(refusal_of(scene::load_scene(tests::kShakenBeam), 2),
-              HasSubstr("--modes 2: under a shaker all are kept"));
+              HasSubstr("modes = 2: under a shaker all are kept"));
 }
 
 // Rank 1 has the same study and no snapshot, and fails when modes are sought.
