@@ -62,6 +62,7 @@ void fill_proportional(ModalModel& m, const Eigen::VectorXd& omega, const Eigen:
   size_arrays(m);
   m.force_input = Eigen::MatrixXd::Zero(2 * m.np, modal_forces.cols());
   m.force_input.middleRows(m.np, m.n) = modal_forces;
+  m.force_row = m.force_input;
   m.omega = m.damping = Eigen::VectorXd::Zero(m.np);
   m.omega.head(m.n) = omega;
   m.damping.head(m.n) = damping;
@@ -117,6 +118,7 @@ void fill_general(ModalModel& m, const fem::Modes& modes, const Eigen::MatrixXd&
   m.input = spread_rows(from_eta_dot * rows.transpose());
   m.load = spread_rows(from_eta_dot * modal_load);
   m.force_input = spread_rows(from_eta_dot * modal_forces);
+  m.force_row = spread_rows((modal_forces.transpose() * eta_dot).transpose());
   m.displacement_row = spread_rows((rows * eta).transpose());
   m.velocity_row = spread_rows((rows * eta_dot).transpose());
   m.to_q = spread_rows((modes.shapes * eta).transpose()).transpose();
@@ -303,6 +305,29 @@ ModalModel build_modal_model(const HybridSystem& system, bool rows_only) {
     }
   }
   finish(m);
+  return m;
+}
+
+ModalModel with_given_forces(const ModalModel& model) {
+  ModalModel m;
+  m.n = model.n;
+  m.np = model.np;
+  m.given = static_cast<int>(model.force_input.cols());
+  m.contacts = model.contacts + m.given;
+  m.g11 = model.g11;
+  m.g12 = model.g12;
+  m.g21 = model.g21;
+  m.g22 = model.g22;
+  m.input.resize(2 * m.np, m.contacts);
+  m.input << model.input, model.force_input;
+  m.load = model.load;
+  m.velocity_row.resize(2 * m.np, m.contacts);
+  m.velocity_row << model.velocity_row, model.force_row;
+  m.fastest = model.fastest;
+  m.proportional = model.proportional;
+  m.omega = model.omega;
+  m.damping = model.damping;
+  m.dissipation_root = model.dissipation_root;
   return m;
 }
 

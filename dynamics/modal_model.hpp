@@ -35,11 +35,13 @@ struct ModalModel {
   Eigen::Index n = 0;   ///< pairs (= degrees of freedom)
   Eigen::Index np = 0;  ///< n padded to a multiple of 8
   int contacts = 0;
+  int given = 0;  ///< the last so many contacts are directions of a drive's forces, see `with_given_forces`
 
   Eigen::VectorXd g11, g12, g21, g22;  ///< blocks of G [np]
   Eigen::MatrixXd input;               ///< b_c, columns [2np x nc]
   Eigen::VectorXd load;                ///< p [2np]
   Eigen::MatrixXd force_input;         ///< what a unit force along d_k adds to ẋ, columns [2np x nk]
+  Eigen::MatrixXd force_row;           ///< d_kᵀq̇ = this·x, columns [2np x nk]
   Eigen::MatrixXd displacement_row;    ///< u_c, columns [2np x nc]
   Eigen::MatrixXd velocity_row;        ///< g_c, columns [2np x nc]
   Eigen::MatrixXd acceleration_row;    ///< Gᵀ g_c: wᵀq̈ = this·x + g_cᵀ(Σ b λ + p) [2np x nc]
@@ -89,5 +91,9 @@ void separate_rigid_modes(const Eigen::VectorXd& omega, Eigen::MatrixXd& shapes,
 /// Builds the model. Rows only: a long chain's frequencies and contact rows without mode shapes, O(n²).
 /// @throws NumericalFailure  when damping is not proportional and the state matrix is close to defective
 [[nodiscard]] ModalModel build_modal_model(const HybridSystem& system, bool rows_only);
+
+/// The same pairs with the directions of a drive's forces after the contacts, as contacts whose force is given: what a
+/// step sees. Without displacements, offsets and mode shapes.
+[[nodiscard]] ModalModel with_given_forces(const ModalModel& model);
 
 }  // namespace slipmode::dynamics

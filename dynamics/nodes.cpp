@@ -71,26 +71,31 @@ MatrixL bernstein_values(int degree, const VectorL& points) {
   return B;
 }
 
-/// Largest values on a grid so fine that what lies between adds less than the thousandth allowed for.
-void measure_remainders(const VectorL& with_start, RadauTables& t) {
-  VectorL power = VectorL::Zero(kNodes + 2);  // Ω by powers
+/// Largest values are taken on a grid so fine that what lies between adds less than the thousandth allowed for.
+constexpr int kGrid = 400;
+constexpr double kBetweenGrid = 1.001;
+
+/// max |Ω⁽ʲ⁾| on [0,1] over the factorial of the number of points, Ω = Π (t − point).
+std::array<double, 3> remainders(const VectorL& points) {
+  VectorL power = VectorL::Zero(points.size() + 1);  // Ω by powers
   power(0) = 1;
-  for (int k = 0; k <= kNodes; ++k)
-    for (int i = k + 1; i >= 0; --i) power(i) = (i > 0 ? power(i - 1) : Real(0)) - with_start(k) * power(i);
-  constexpr int kGrid = 400;
-  t.remainder = {};
-  const MatrixL basis = interpolation(with_start.tail(kNodes), VectorL::LinSpaced(kGrid + 1, 0, 1)).cwiseAbs();
-  t.lebesgue = 1.001 * static_cast<double>(basis.rowwise().sum().maxCoeff());
-  for (double& remainder : t.remainder) {
+  Real factorial = 1;
+  for (Eigen::Index k = 0; k < points.size(); ++k) {
+    factorial *= static_cast<Real>(k + 1);
+    for (Eigen::Index i = k + 1; i >= 0; --i) power(i) = (i > 0 ? power(i - 1) : Real(0)) - points(k) * power(i);
+  }
+  std::array<double, 3> out{};
+  for (double& remainder : out) {
     for (int i = 0; i <= kGrid; ++i) {
       Real value = 0;
       for (Eigen::Index k = power.size(); k-- > 0;) value = value * i / kGrid + power(k);
       remainder = std::max(remainder, static_cast<double>(std::abs(value)));
     }
-    remainder *= 1.001 / 362880.0;
+    remainder *= kBetweenGrid / static_cast<double>(factorial);
     for (Eigen::Index k = 1; k < power.size(); ++k) power(k - 1) = static_cast<Real>(k) * power(k);
     power(power.size() - 1) = 0;
   }
+  return out;
 }
 
 RadauTables build() {
@@ -133,7 +138,10 @@ RadauTables build() {
   t.chebyshev_start = to_chebyshev.col(0).tail(kNodes).cast<double>();
   t.chebyshev_mean = to_chebyshev.row(0).tail(kNodes).transpose().cast<double>();
   t.chebyshev_mean_start = static_cast<double>(to_chebyshev(0, 0));
-  measure_remainders(with_start, t);
+  t.remainder = remainders(with_start);
+  t.force_remainder = remainders(c);
+  const MatrixL basis = interpolation(c, VectorL::LinSpaced(kGrid + 1, 0, 1)).cwiseAbs();
+  t.lebesgue = kBetweenGrid * static_cast<double>(basis.rowwise().sum().maxCoeff());
   // b = p₇ + γ (P₈ − P₇)(2t − 1) by its value at 0, where that difference is 2; and ∫₀¹ P₇² dt = 1/15.
   const MatrixL at_start = interpolation(c, VectorL::Zero(1));
   for (int j = 0; j < kNodes; ++j) {

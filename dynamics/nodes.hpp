@@ -45,7 +45,8 @@ struct RadauTables {
   /// |f⁽ʲ⁾ − p⁽ʲ⁾| ≤ remainder[j] max |f⁽⁹⁾| on [0,1] for p of degree 8 through the nodes and f(0): max |Ω⁽ʲ⁾|/9! with
   /// Ω = t Π (t − c_k). Source: Shadrin, Error bounds for Lagrange interpolation, J. Approx. Theory 80 (1995).
   std::array<double, 3> remainder;
-  double lebesgue;  ///< largest Σ |ℓ_j| on [0,1]
+  std::array<double, 3> force_remainder;  ///< the same of degree 7 through the nodes alone, by max |f⁽⁸⁾|
+  double lebesgue;                        ///< largest Σ |ℓ_j| on [0,1]
 
   /// Lagrange basis of the eight nodes at t.
   [[nodiscard]] Vector8 lagrange(double t) const;

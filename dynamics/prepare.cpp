@@ -184,19 +184,12 @@ Eigen::VectorXd start_internal(const HybridSystem& system, const State& start) {
 
 FlowMethod choose_method(const HybridSystem& system, FlowMethod asked) {
   int special = 0, nonlinear = 0;  // the last such contact, counted from 1
-  const bool forced = system.drive().force() != nullptr;
   for (std::size_t c = 0; c < system.contacts().size(); ++c) {
     const ContactForces law = contact_forces(system.contacts()[c]);
     if (law.needs_closed_form()) special = static_cast<int>(c) + 1;
     if (!is_piecewise_linear(law.kind)) nonlinear = static_cast<int>(c) + 1;
   }
   const auto name = [](int contact) { return "contact " + std::to_string(contact); };
-  require_or_say(!forced || nonlinear == 0, [&] {
-    return "a force drive needs piecewise-linear laws, but " + name(nonlinear) +
-           " has a force that depends on the sliding speed: use Coulomb's law, rigid or compliant";
-  });
-  require_or_say(!forced || asked != FlowMethod::kCollocation,
-                 [&] { return std::string("a force drive needs the closed-form flow"); });
   require_or_say(special == 0 || nonlinear == 0, [&] {
     return name(special) +
            " has a contact spring, a clearance, a tilt or a varying load, for which "
@@ -211,7 +204,8 @@ FlowMethod choose_method(const HybridSystem& system, FlowMethod asked) {
            " has a force that depends on the sliding speed; use the collocation flow, or Coulomb's law";
   });
   if (asked != FlowMethod::kAutomatic) return asked;
-  if (forced || special > 0 || (nonlinear == 0 && system.size() <= kClosedFormSize)) return FlowMethod::kClosedForm;
+  const bool forced = system.drive().force() != nullptr;
+  if (special > 0 || (nonlinear == 0 && (forced || system.size() <= kClosedFormSize))) return FlowMethod::kClosedForm;
   return FlowMethod::kCollocation;
 }
 

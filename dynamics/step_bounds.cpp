@@ -40,7 +40,7 @@ double legendre_slope(int k, int m) {
 }  // namespace
 
 void StepTables::make(StepBounds& out, int level) const {
-  const ModalModel& m = model_;
+  const ModalModel& m = acted_on_;
   const double h = step(level);
   const Eigen::Index nc = m.contacts;
   out.ninth_by_state = out.second_row = out.third_by_state = Eigen::MatrixXd::Zero(2 * m.np, nc);
@@ -78,8 +78,9 @@ void StepTables::make(StepBounds& out, int level) const {
       }
     }
   }
+  const Eigen::Index own = model_.contacts;
   for (std::size_t k = 0; k < out.response.size(); ++k)
-    out.response[k] = nc > 0 ? most[k].leftCols(nc).rowwise().sum().maxCoeff() : 0.0;
+    out.response[k] = own > 0 ? most[k].topLeftCorner(own, nc).rowwise().sum().maxCoeff() : 0.0;
   out.response1 = at_start[1];
   out.response2 = at_start[2];
   out.third_by_force = most[3].leftCols(nc);

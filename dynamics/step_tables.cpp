@@ -43,6 +43,8 @@ int chebyshev_points(double phase) { return 14 + 2 * static_cast<int>(std::ceil(
 
 StepTables::StepTables(const ModalModel& model)
     : model_(model),
+      driven_(model.force_input.cols() > 0 ? std::optional(with_given_forces(model)) : std::nullopt),
+      acted_on_(driven_ ? *driven_ : model),
       motion_(model),
       top_(kLongestPhase / (model.fastest > 0 ? model.fastest : 1.0)),
       loaded_(!model.load.isZero(0.0)) {}
@@ -61,7 +63,7 @@ Eigen::MatrixXd StepTables::exponentials(const Eigen::VectorXd& times) const {
 }
 
 void StepTables::propagate_to(double end, double h, Propagator& out) const {
-  const auto& m = model_;
+  const auto& m = acted_on_;
   const auto np = m.np;
   const double length = end * h;
   const GaussRule gauss = gauss_rule(gauss_points(m.fastest * length));
@@ -101,7 +103,7 @@ void StepTables::make(NodeStates& out, int level) const {
 }
 
 void StepTables::make(Collocation& out, int level) const {
-  const auto& m = model_;
+  const auto& m = acted_on_;
   const auto np = m.np;
   const int nc = m.contacts;
   const double h = step(level);
@@ -150,18 +152,20 @@ void StepTables::make(Collocation& out, int level) const {
       }
     }
   }
-  if (nc > 0) out.kernel_norm = out.kernel.cwiseAbs().rowwise().sum().maxCoeff();
-  out.kernel_inverse = out.kernel.inverse();
+  const int own = kNodes * model_.contacts;
+  out.own_kernel = out.kernel.topLeftCorner(own, own);
+  if (own > 0) out.kernel_norm = out.own_kernel.cwiseAbs().rowwise().sum().maxCoeff();
+  out.kernel_inverse = out.own_kernel.inverse();
 }
 
-void Collocation::free_velocities(const double* x, double* out) const {
-  const Eigen::Index nc = load.cols(), columns = free.cols() / std::max<Eigen::Index>(nc, 1);
-  for (Eigen::Index c = 0; c < nc; ++c)
+void Collocation::free_velocities(const double* x, Eigen::Index contacts, double* out) const {
+  const Eigen::Index columns = free.cols() / std::max<Eigen::Index>(load.cols(), 1);
+  for (Eigen::Index c = 0; c < contacts; ++c)
     kernels::kernels().node_sums(free.data() + kNodes * columns * c, x, columns, load.col(c).data(), out + kNodes * c);
 }
 
 void Collocation::velocities(const double* x, const double* forces, double* out) const {
-  free_velocities(x, out);
+  free_velocities(x, load.cols(), out);
   Eigen::Map<Eigen::VectorXd>(out, kernel.rows()).noalias() +=
       kernel * Eigen::Map<const Eigen::VectorXd>(forces, kernel.rows());
 }

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace slipmode::dynamics {
@@ -27,16 +28,17 @@ struct Propagator {
 };
 
 /// The scalar Volterra equations of a step: contact velocities at the nodes,
-/// w = free x(0) + load + kernel λ, all exact for λ of degree 7.
+/// w = free x(0) + load + kernel λ, all exact for λ of degree 7. Contacts are those of StepTables::acted_on.
 struct Collocation {
   Eigen::MatrixXd free;    ///< rows are nodes: g_cᵀ e^{G c_j h}; contact c in columns [2np c, 2np (c+1)) [8 x 2np nc]
   Eigen::MatrixXd load;    ///< [8 x nc]
   Eigen::MatrixXd kernel;  ///< [8nc x 8nc]
-  double kernel_norm = 0.0;        ///< largest row sum of |kernel|
-  Eigen::MatrixXd kernel_inverse;  ///< used when every contact sticks [8nc x 8nc]
+  Eigen::MatrixXd own_kernel;      ///< of what are contacts, without a drive's forces
+  double kernel_norm = 0.0;        ///< largest row sum of |own_kernel|
+  Eigen::MatrixXd kernel_inverse;  ///< of own_kernel: used when every contact sticks
 
-  /// w without the forces' share [8nc].
-  void free_velocities(const double* x, double* out) const;
+  /// w without the forces' share, of the first so many contacts [8nc].
+  void free_velocities(const double* x, Eigen::Index contacts, double* out) const;
   /// w [8nc].
   void velocities(const double* x, const double* forces, double* out) const;
 };
@@ -110,11 +112,14 @@ class StepTables {
     return bounds_.get(level, [&](StepBounds& out) { make(out, level); });
   }
   [[nodiscard]] const ModalModel& model() const { return model_; }
+  /// The model whose contacts these tables' forces are of: with a drive's forces, where there are directions for them,
+  /// after the contacts' own (`with_given_forces`).
+  [[nodiscard]] const ModalModel& acted_on() const { return acted_on_; }
   /// A constant load acts.
   [[nodiscard]] bool loaded() const { return loaded_; }
-  /// Work of the contacts and viscous loss over a whole step. @param forces  at its nodes [8nc] @param velocities there
-  /// [8nc]. The contacts' work is exact for velocities of degree 8; what is beyond meets only the last, small terms of
-  /// λ.
+  /// Work of contacts and drive, and viscous loss, over a whole step. @param forces  at its nodes [8nc] @param
+  /// velocities there [8nc]. The contacts' work is exact for velocities of degree 8; what is beyond meets only the
+  /// last, small terms of λ.
   [[nodiscard]] kernels::Work work(int level, const double* x, const double* forces, const double* velocities) const;
 
  private:
@@ -129,6 +134,8 @@ class StepTables {
   void propagate_to(double end, double h, Propagator& out) const;
 
   const ModalModel& model_;
+  std::optional<ModalModel> driven_;
+  const ModalModel& acted_on_;
   PairMotion motion_;
   double top_;
   bool loaded_;

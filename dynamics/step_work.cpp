@@ -35,7 +35,7 @@ Eigen::MatrixXd running_integrals(const GaussRule& rule, const Eigen::VectorXd& 
 void StepTables::make(LossForm& out, int level) const {
   // ∫ damping η̇² dt by one rule. At each of its points the velocities that each force polynomial (and the load) causes,
   // those of e^{Gt} ∫₀ᵗ e^{−Gs} b ℓ_j(s/h) ds, from the points of another.
-  const ModalModel& m = model_;
+  const ModalModel& m = acted_on_;
   const kernels::Kernels& vector = kernels::kernels();
   const auto np = m.np;
   const int nc = m.contacts, sources = nc + (loaded_ ? 1 : 0);  // the last: the load
@@ -105,9 +105,10 @@ kernels::Work StepTables::work(int level, const double* x, const double* forces,
   const kernels::Kernels& k = kernels::kernels();
   const double h = step(level);
   kernels::Work sum;
-  for (int c = 0; c < model_.contacts; ++c) {
-    const double start = k.dot(model_.velocity_row.col(c).data(), x, 2 * model_.np);
-    sum.contact += h * k.product_integral(radau().product, forces + kNodes * c, velocities + kNodes * c, start);
+  for (int c = 0; c < acted_on_.contacts; ++c) {
+    const double start = k.dot(acted_on_.velocity_row.col(c).data(), x, 2 * model_.np);
+    (c < model_.contacts ? sum.contact : sum.force) +=
+        h * k.product_integral(radau().product, forces + kNodes * c, velocities + kNodes * c, start);
   }
   if (model_.proportional) {
     const LossForm& form = losses_.get(level, [&](LossForm& out) { make(out, level); });

@@ -46,6 +46,8 @@ void TangentFlow::Implementation::check(const Tangents& tangents) const {
   if (rows == 0) return;
   if (system.drive().force() == nullptr || directions == 0)
     throw InvalidInput("tangents of forces need a force drive with directions");
+  if (method == FlowMethod::kCollocation)
+    throw InvalidInput("tangents of forces need the closed-form flow, whose laws are piecewise linear");
   if (rows % directions != 0 || rows / directions % 2 == 0 || tangents.forces.cols() != tangents.start.cols())
     throw InvalidInput("tangents of forces are " + std::to_string(rows) + " x " +
                        std::to_string(tangents.forces.cols()) + "; valid: 2H + 1 rows for each of " +

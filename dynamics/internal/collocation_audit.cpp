@@ -6,9 +6,14 @@ namespace slipmode::dynamics {
 
 void CollocationFlow::account(int level, double tau) {
   const double h = tables_.step(level);
-  const kernels::Work done =
-      tau < h ? within_.work(tau) : tables_.work(level, x_begin_.data(), forces_.data(), velocity_.data());
-  work_.add(done.contact, driven_work(h, tau), done.loss);
+  const auto whole = [&] {
+    if (given_ == 0) return tables_.work(level, x_begin_.data(), forces_.data(), velocity_.data());
+    Eigen::VectorXd velocities(forces_.size());  // along the drive's forces too
+    tables_.collocation(level).velocities(x_begin_.data(), forces_.data(), velocities.data());
+    return tables_.work(level, x_begin_.data(), forces_.data(), velocities.data());
+  };
+  const kernels::Work done = tau < h ? within_.work(tau) : whole();
+  work_.add(done.contact, driven_work(h, tau), done.loss, done.force);
 }
 
 double CollocationFlow::driven_work(double h, double tau) const {

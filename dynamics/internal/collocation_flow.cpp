@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace slipmode::dynamics {
@@ -25,6 +26,8 @@ constexpr double kGrowthAtStart = 10.0;
 constexpr int kProofHalvings = 3;
 /// A step spans at most this phase of a shaker, so that all quadratures resolve it.
 constexpr double kLargestDrivePhase = 2.0;
+/// Of a force that is larger than friction by more than this, errors are held against the force.
+constexpr double kLeastForceShare = 1e-4;
 
 /// Of a step at once.
 constexpr int kMostHalvings = 4;
@@ -43,12 +46,28 @@ double largest_phase(double tolerance) {
   return std::min(kLargestDrivePhase, 2.0 * std::pow(tolerance * 128.0 * 40320.0, 1.0 / kNodes));
 }
 
-/// Level of the largest step that follows the drive's velocity.
-int coarsest_level(const friction::Drive& drive, const StepTables& tables, double tolerance) {
-  if (drive.shaker() == nullptr) return 0;
+/// Level of the largest step that follows a motion of this frequency.
+int coarsest_level(double omega, const StepTables& tables, double tolerance) {
   const double phase = largest_phase(tolerance);
   int level = 0;
-  while (level + 1 < StepTables::kLevels && tables.step(level) * drive.shaker()->omega() > phase) ++level;
+  while (level + 1 < StepTables::kLevels && tables.step(level) * omega > phase) ++level;
+  return level;
+}
+
+/// Level of the largest step that follows the drive's velocity, or each harmonic of its force to a share of the least
+/// friction limit, as contacts' forces are followed.
+int coarsest_level(const friction::Drive& drive, const StepTables& tables, const std::vector<ContactForces>& laws,
+                   double tolerance) {
+  if (const friction::Shaker* shaker = drive.shaker()) return coarsest_level(shaker->omega(), tables, tolerance);
+  const friction::Force* force = drive.force();
+  if (force == nullptr) return 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (const ContactForces& law : laws) least = std::min(least, law.static_limit);
+  int level = 0;
+  for (const friction::ForceHarmonic& h : force->harmonics) {
+    const double share = std::clamp(least / std::abs(h.amplitude), kLeastForceShare, 1.0);
+    level = std::max(level, coarsest_level(h.order * force->omega, tables, share * tolerance));
+  }
   return level;
 }
 
@@ -62,15 +81,17 @@ CollocationFlow::CollocationFlow(const HybridSystem& system, const StepTables& t
       options_(options),
       within_(tables, options.audit),
       nc_(model_.contacts),
+      given_(tables.acted_on().given),
       over_top_(1.0 / tables.step(0)),
       begin_(start.time),
       point_(std::move(start)),
       x_begin_(point_.x),
-      coarsest_(coarsest_level(system.drive(), tables, options.tolerance)),
+      coarsest_(coarsest_level(system.drive(), tables, resolver_.laws(), options.tolerance)),
       newton_change_(std::min(1e-3, std::sqrt(kNewtonShare * options.tolerance))),
       start_level_(static_cast<std::size_t>(nc_) + 1, std::max(3, coarsest_)) {
-  for (auto* v : {&free_, &velocity_, &forces_, &drive_nodes_, &bristle_nodes_, &guard_forms_})
+  for (auto* v : {&free_, &velocity_, &drive_nodes_, &bristle_nodes_, &guard_forms_})
     *v = Eigen::VectorXd::Zero(kNodes * nc_);
+  forces_ = Eigen::VectorXd::Zero(kNodes * (nc_ + given_));
   statistics_.stick_time.assign(static_cast<std::size_t>(nc_), 0.0);
   for (std::size_t c = 0; c < laws().size(); ++c) {
     const auto i = static_cast<Eigen::Index>(c);
@@ -130,6 +151,7 @@ bool CollocationFlow::step(double t_limit) {
     h = tables_.step(level);
     const Collocation& table = tables_.collocation(level);
     guess_forces(level, retry);
+    if (given_ > 0) give_forces(level);
     solved_ = solve_forces(table, h);
     step_level_ = level;
     if (any_bristle_ && solved_ && turn_resting_bristles()) solved_ = solve_forces(table, h);
@@ -223,7 +245,7 @@ bool CollocationFlow::step(double t_limit) {
     start_level_[stuck_count()] = level_;
     if (nc_ == 1 && point_.modes[0] != ContactMode::kStick && !bristled(0) && point_.force(0) != 0.0) {
       first_level_ = level;
-      first_shape_ = forces_ / point_.force(0);
+      first_shape_ = forces_.head<kNodes>() / point_.force(0);
     }
   }
   fresh_ = false;
@@ -285,6 +307,46 @@ RadauTables::Vector8 CollocationFlow::drive_velocities(double begin, double h) c
   const double omega = drive().shaker()->omega();
   const auto phase = (omega * h) * nodes_.node.array();
   return (V * phase.cos() + a / omega * phase.sin()).matrix();
+}
+
+void CollocationFlow::give_forces(int level) {
+  const friction::Force* force = drive().force();
+  forces_.tail(kNodes * given_).setZero();
+  if (force == nullptr) return;
+  turned_.resize(StepTables::kLevels);
+  Eigen::MatrixXd& turned = turned_[static_cast<std::size_t>(level)];
+  if (turned.size() == 0) {
+    turned.resize(2 * kNodes, static_cast<Eigen::Index>(force->harmonics.size()));
+    for (Eigen::Index k = 0; k < turned.cols(); ++k) {
+      const double omega = force->harmonics[static_cast<std::size_t>(k)].order * force->omega;
+      const auto phase = (omega * tables_.step(level)) * nodes_.node.array();
+      turned.col(k) << phase.cos(), phase.sin();
+    }
+  }
+  for (Eigen::Index k = 0; k < turned.cols(); ++k) {
+    const friction::ForceHarmonic& h = force->harmonics[static_cast<std::size_t>(k)];
+    const double phase = h.order * force->omega * begin_ + h.phase;
+    forces_.segment<kNodes>(kNodes * (nc_ + h.direction)) +=
+        h.amplitude * std::sin(phase) * turned.col(k).head<kNodes>() +
+        h.amplitude * std::cos(phase) * turned.col(k).tail<kNodes>();
+  }
+}
+
+Eigen::VectorXd CollocationFlow::given_force(double tau, int derivative) const {
+  // From the phase at the beginning, as drive_velocity.
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(given_);
+  if (const friction::Force* force = drive().force())
+    for (const friction::ForceHarmonic& h : force->harmonics) {
+      const double omega = h.order * force->omega, begin = omega * begin_ + h.phase,
+                   turned = omega * tau + derivative * (std::numbers::pi / 2.0);
+      out(h.direction) += h.amplitude * std::pow(omega, derivative) *
+                          (std::sin(begin) * std::cos(turned) + std::cos(begin) * std::sin(turned));
+    }
+  return out;
+}
+
+double CollocationFlow::given_acceleration(int c, double tau) const {
+  return given_ > 0 ? model_.force_acceleration.row(c).dot(given_force(tau)) : 0.0;
 }
 
 void CollocationFlow::restart_steps() {

@@ -69,7 +69,8 @@ class CollocationFlow {
   bool solve_forces(const Collocation& table, double h);
   /// One contact of a law the kernels know.
   bool solve_single(const Collocation& table);
-  bool solve_single_smooth(const Collocation& table);
+  /// @param load  what the load and a drive's forces add to the velocities at the nodes
+  bool solve_single_smooth(const Collocation& table, const double* load);
   bool solve_coupled(const Collocation& table, double h);
   [[nodiscard]] double force_error() const;
   /// Keeps the guards' Bernstein forms for the proof.
@@ -172,6 +173,21 @@ class CollocationFlow {
   [[nodiscard]] double drive_acceleration(double begin, double tau) const;
   [[nodiscard]] RadauTables::Vector8 drive_velocities(double begin, double h) const;
 
+  // A drive's forces follow those of the contacts, at the nodes as everywhere: docs/theory/flow.md, section 2.
+  /// At the nodes of a step of this level from `begin_` on.
+  void give_forces(int level);
+  /// At `begin_ + tau` [nk], the derivative of this order.
+  [[nodiscard]] Eigen::VectorXd given_force(double tau, int derivative = 0) const;
+  /// What it adds to the contact's acceleration there [m/s²].
+  [[nodiscard]] double given_acceleration(int c, double tau) const;
+  /// What the polynomials through the nodes of a step leave out of it at most; of its rate times the step [N].
+  struct LeftOut {
+    double value = 0.0, slope = 0.0;
+  };
+  [[nodiscard]] LeftOut given_left_out(double h) const;
+  /// A bound on each derivative [nk].
+  [[nodiscard]] Eigen::VectorXd given_most(int derivative) const;
+
   [[nodiscard]] std::size_t stuck_count() const;
   [[nodiscard]] const std::vector<ContactForces>& laws() const { return resolver_.laws(); }
   [[nodiscard]] const friction::Drive& drive() const { return resolver_.drive(); }
@@ -184,6 +200,7 @@ class CollocationFlow {
   FlowOptions options_;
   WithinStep within_;
   int nc_;
+  int given_;                        ///< directions of a drive's forces
   bool single_ = false;              ///< one contact, of a law the kernels know: no bristles, no characteristic
   const double* ahead_ = nullptr;    ///< takes the last step's velocities to this one's nodes, where that is the guess
   double over_top_;                  ///< 1 / the largest step [1/s]
@@ -211,13 +228,18 @@ class CollocationFlow {
   std::vector<int> start_level_;  ///< remembered first step size after an event, by number of sticking contacts
 
   // One step's scalars, contact after contact, eight nodes each.
-  Eigen::VectorXd free_, velocity_, forces_, drive_nodes_, bristle_nodes_;
+  Eigen::VectorXd free_, velocity_, drive_nodes_, bristle_nodes_;
+  Eigen::VectorXd forces_;        ///< a drive's after the contacts'
+  Eigen::VectorXd given_speeds_;  ///< what a drive's forces and the load add to one contact's velocity
 
   // Of the proof: what has guards, and whether they are of laws it knows.
   bool guarded_ = false, provable_ = false, halving_proves_ = false;
   Eigen::VectorXd guard_forms_, guard_start_,
       guard_least_;        ///< Bernstein form of each guard, its start and least [8nc]
   Eigen::VectorXd ninth_;  ///< h⁹ max |(V − v_c)⁽⁹⁾| [nc]
+
+  /// Of each level: cos and sin of a force's harmonics at the nodes, from the step's begin on [16 x harmonics].
+  std::vector<Eigen::MatrixXd> turned_;
 
   WorkSums work_;
   FlowStatistics statistics_;

@@ -131,8 +131,8 @@ void CollocationFlow::refine_event(const Guarded& guard, double& tau, Eigen::Vec
     } else {
       const double sign = sign_of(point_.modes[i]);
       value = sign * (V - resolver_.contact_velocity(c, x.data()));
-      double acceleration =
-          kernels_.dot(model_.acceleration_row.col(c).data(), x.data(), 2 * model_.np) + model_.load_acceleration(c);
+      double acceleration = kernels_.dot(model_.acceleration_row.col(c).data(), x.data(), 2 * model_.np) +
+                            model_.load_acceleration(c) + given_acceleration(c, tau);
       for (int d = 0; d < nc_; ++d)
         acceleration += model_.mobility(c, d) * forces_.segment<kNodes>(kNodes * d).dot(basis);
       rate = sign * (a - acceleration);
@@ -157,7 +157,8 @@ double CollocationFlow::stick_force(int c, const Eigen::VectorXd& x, double tau,
                                     const RadauTables::Vector8& basis) const {
   const double a = drive_acceleration(begin_, tau);
   if (nc_ == 1)
-    return (a - kernels_.dot(model_.acceleration_row.data(), x.data(), 2 * model_.np) - model_.load_acceleration(0)) /
+    return (a - kernels_.dot(model_.acceleration_row.data(), x.data(), 2 * model_.np) - model_.load_acceleration(0) -
+            given_acceleration(0, tau)) /
            model_.mobility(0, 0);
   Eigen::VectorXd force(nc_);
   std::vector<bool> stuck(point_.modes.size());
@@ -165,7 +166,9 @@ double CollocationFlow::stick_force(int c, const Eigen::VectorXd& x, double tau,
     stuck[static_cast<std::size_t>(d)] = point_.modes[static_cast<std::size_t>(d)] == ContactMode::kStick;
     force(d) = forces_.segment<kNodes>(kNodes * d).dot(basis);
   }
-  stick_forces({model_, laws(), x.data(), begin_ + tau, drive_velocity(begin_, tau), a}, stuck, force);
+  Instant now{model_, laws(), x.data(), begin_ + tau, drive_velocity(begin_, tau), a};
+  now.force = given_force(tau);
+  stick_forces(now, stuck, force);
   return force(c);
 }
 

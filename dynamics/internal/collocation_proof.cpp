@@ -57,6 +57,20 @@ double CollocationFlow::drive_ninth(double h) const {
   return std::pow(shaker->omega() * h, kNodes + 1) * drive().velocity_scale(begin_);
 }
 
+Eigen::VectorXd CollocationFlow::given_most(int derivative) const {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(given_);
+  if (const friction::Force* force = drive().force())
+    for (const friction::ForceHarmonic& h : force->harmonics)
+      out(h.direction) += std::abs(h.amplitude) * std::pow(h.order * force->omega, derivative);
+  return out;
+}
+
+CollocationFlow::LeftOut CollocationFlow::given_left_out(double h) const {
+  if (given_ == 0) return {};
+  const double eighth = std::pow(h, kNodes) * given_most(kNodes).maxCoeff();
+  return {nodes_.force_remainder[0] * eighth, nodes_.force_remainder[1] * eighth};
+}
+
 RadauTables::Vector8 CollocationFlow::scaled_speeds(int c) const {
   const auto i = static_cast<std::size_t>(c);
   return (sign_of(point_.modes[i]) * laws()[i].alpha) *
@@ -72,7 +86,8 @@ double CollocationFlow::between_nodes(int c) const {
 
 CollocationFlow::Deviation CollocationFlow::deviation(const StepBounds& bounds, double h, bool at_rest) const {
   const double between = nodes_.remainder[0] * ninth_.maxCoeff();
-  double defect = 0.0, slope = 0.0, cross = 0.0, rate = 0.0, curve = 0.0;
+  const LeftOut given = given_left_out(h);
+  double defect = given.value, slope = 0.0, cross = 0.0, rate = 0.0, curve = 0.0;
   std::vector<Eigen::Index> stuck;
   const auto& [reach, reach1, reach2] = bounds.response;
   Deviation out;
@@ -117,6 +132,11 @@ CollocationFlow::Deviation CollocationFlow::deviation(const StepBounds& bounds, 
         cross += model_.mobility(stuck, d).cwiseAbs().maxCoeff();
       }
     }
+    if (given_ > 0) {
+      const double by_given = model_.force_acceleration(stuck, Eigen::all).cwiseAbs().rowwise().sum().maxCoeff();
+      rate += by_given * given.value;
+      curve += by_given * given.slope / h;
+    }
   }
   const double first = std::max(defect, hold * (rate + cross * defect)),
                growth = std::max(slope * reach, hold * (cross * slope * reach + reach1));
@@ -147,11 +167,20 @@ double CollocationFlow::clear_after_release(const StepBounds& bounds, const Devi
   const double sign = sign_of(point_.modes[i]);
   const friction::Shaker* shaker = drive().shaker();
   const double omega = shaker != nullptr ? shaker->omega() : 0.0;
+  const Eigen::Index load = nc_ + given_;
   double now =
-      -omega * omega * drive().velocity(begin_) - bounds.second_row.col(c).dot(x_begin_) - bounds.response1(c, nc_);
+      -omega * omega * drive().velocity(begin_) - bounds.second_row.col(c).dot(x_begin_) - bounds.response1(c, load);
   double change = omega * omega * omega * drive().velocity_scale(begin_) +
                   bounds.third_by_state.col(c).dot(x_begin_.cwiseAbs()) + h * bounds.third_by_load(c) +
-                  std::abs(bounds.response2(c, nc_));
+                  std::abs(bounds.response2(c, load));
+  if (given_ > 0) {
+    const auto direct = model_.force_acceleration.row(c);
+    const auto later = bounds.response1.row(c).segment(nc_, given_);
+    now -= later.dot(given_force(0.0)) + direct.dot(given_force(0.0, 1));
+    change += (h * bounds.third_by_force.row(c).tail(given_) + bounds.response2.row(c).segment(nc_, given_).cwiseAbs())
+                  .dot(given_most(0)) +
+              later.cwiseAbs().dot(given_most(1)) + direct.cwiseAbs().dot(given_most(2));
+  }
   double by_rate = 0.0, others = 0.0;
   for (int d = 0; d < nc_; ++d) {
     const ContactForces& other = laws()[static_cast<std::size_t>(d)];
@@ -233,9 +262,9 @@ bool CollocationFlow::proves(const Guarded& found, double end) {
   const double by_drive = drive_ninth(h);
   for (int c = 0; c < nc_; ++c)
     ninth_(c) = bounds.ninth_by_load(c) + by_drive + bounds.ninth_by_state.col(c).dot(x_begin_.cwiseAbs());
-  if (nc_ == 1 && !any_bristle_ && found.contact < 0 && far_from_guards(bounds, h)) return true;
+  if (nc_ == 1 && given_ == 0 && !any_bristle_ && found.contact < 0 && far_from_guards(bounds, h)) return true;
   alignas(64) std::array<double, kNodes> series;
-  for (int d = 0; d < nc_; ++d) {
+  for (int d = 0; d < nc_ + given_; ++d) {
     kernels_.matrix8(nodes_.legendre.data(), forces_.data() + kNodes * d, series.data());
     for (int c = 0; c < nc_; ++c)
       ninth_(c) += bounds.ninth_by_force.col(c)

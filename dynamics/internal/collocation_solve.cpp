@@ -44,7 +44,7 @@ void CollocationFlow::guess_forces(int level, bool retry) {
       else
         kernels_.matrix8(ahead, forces, forces);
     } else if (fresh_ && !retry && nc_ == 1) {
-      forces_ = point_.force(0) * first_shape_;
+      forces_.head<kNodes>() = point_.force(0) * first_shape_;
       halve(level - first_level_);
     } else {
       Eigen::Map<RadauTables::Vector8>(forces).setConstant(point_.force(c));
@@ -83,19 +83,27 @@ bool CollocationFlow::solve_forces(const Collocation& table, double h) {
   const RadauTables::Vector8 drive_speed = drive_velocities(begin_, h);
   for (int c = 0; c < nc_; ++c) drive_nodes_.segment<kNodes>(kNodes * c) = drive_speed;
   if (single_) return solve_single(table);
-  table.free_velocities(x_begin_.data(), free_.data());
+  table.free_velocities(x_begin_.data(), nc_, free_.data());
+  if (given_ > 0)
+    free_.noalias() += table.kernel.topRightCorner(kNodes * nc_, kNodes * given_) * forces_.tail(kNodes * given_);
   return solve_coupled(table, h);
 }
 
 bool CollocationFlow::solve_single(const Collocation& table) {
   const ContactForces& law = laws()[0];
-  if (law.kind == LawKind::kSmooth) return solve_single_smooth(table);
+  const double* load = table.load.data();
+  if (given_ > 0) {
+    given_speeds_ = table.load.col(0);
+    given_speeds_.noalias() += table.kernel.topRightCorner(kNodes, kNodes * given_) * forces_.tail(kNodes * given_);
+    load = given_speeds_.data();
+  }
+  if (law.kind == LawKind::kSmooth) return solve_single_smooth(table, load);
   const double sign = sign_of(point_.modes[0]);
   const kernels::Trial trial{model_.n,
                              model_.np,
                              table.free.data(),
-                             table.load.data(),
-                             table.kernel.data(),
+                             load,
+                             table.own_kernel.data(),
                              table.kernel_norm,
                              x_begin_.data(),
                              drive_nodes_.data(),
@@ -112,29 +120,29 @@ bool CollocationFlow::solve_single(const Collocation& table) {
     return true;
   }
   if (!law.is_constant()) return kernels_.solve_stribeck(trial);
-  forces_.setConstant(sign * law.kinetic);
+  forces_.head<kNodes>().setConstant(sign * law.kinetic);
   kernels_.solve_sliding(trial);
   return true;
 }
 
-bool CollocationFlow::solve_single_smooth(const Collocation& table) {
+bool CollocationFlow::solve_single_smooth(const Collocation& table, const double* load) {
   const ContactForces& law = laws()[0];
-  table.free_velocities(x_begin_.data(), free_.data());
-  RadauTables::Vector8 force, slope, delta, residual, v = free_ + table.kernel * forces_;
+  const Eigen::MatrixXd& kernel = table.own_kernel;
+  kernels_.node_sums(table.free.data(), x_begin_.data(), 2 * model_.np, load, free_.data());
+  RadauTables::Vector8 force, slope, delta, residual, v = free_ + kernel * forces_.head<kNodes>();
   for (int iteration = 0; iteration < kNewtonLimit; ++iteration) {
     for (int j = 0; j < kNodes; ++j) {
       force(j) = law.smooth(drive_nodes_(j) - v(j), slope(j));
       slope(j) = -slope(j);
     }
-    residual = free_ + table.kernel * force - v;
-    if (!kernels_.solve_nodes(table.kernel.data(), slope.data(), residual.data(), delta.data()))
-      delta =
-          (RadauTables::Matrix8::Identity() - table.kernel * slope.asDiagonal()).eval().partialPivLu().solve(residual);
+    residual = free_ + kernel * force - v;
+    if (!kernels_.solve_nodes(kernel.data(), slope.data(), residual.data(), delta.data()))
+      delta = (RadauTables::Matrix8::Identity() - kernel * slope.asDiagonal()).eval().partialPivLu().solve(residual);
     v += delta;
     const double change = delta.cwiseAbs().maxCoeff();
     if (!(change < 1e12)) return false;
     if (change < newton_change_ * law.epsilon || change < 1e-14) {
-      forces_ = force + slope.cwiseProduct(delta);
+      forces_.head<kNodes>() = force + slope.cwiseProduct(delta);
       velocity_ = v;
       return true;
     }
@@ -144,6 +152,8 @@ bool CollocationFlow::solve_single_smooth(const Collocation& table) {
 
 bool CollocationFlow::solve_coupled(const Collocation& table, double h) {
   const Eigen::Index size = kNodes * nc_;
+  const Eigen::MatrixXd& kernel = table.own_kernel;
+  auto forces = forces_.head(size);
   const auto block = [](auto& vector, int c) { return vector.template segment<kNodes>(kNodes * c); };
   std::vector<bool> stuck(static_cast<std::size_t>(nc_));
   bool any_stuck = false, all_stuck = true, any_nonlinear = false;
@@ -154,7 +164,7 @@ bool CollocationFlow::solve_coupled(const Collocation& table, double h) {
     any_nonlinear |= !stuck[c] && !laws()[c].is_constant();
   }
   if (all_stuck) {
-    forces_.noalias() = table.kernel_inverse * (drive_nodes_ - free_);
+    forces.noalias() = table.kernel_inverse * (drive_nodes_ - free_);
     velocity_ = drive_nodes_;
     return true;
   }
@@ -166,7 +176,7 @@ bool CollocationFlow::solve_coupled(const Collocation& table, double h) {
                                                           : point_.force(c));
   }
   if (!any_stuck && !any_nonlinear) {
-    velocity_.noalias() = free_ + table.kernel * forces_;
+    velocity_.noalias() = free_ + kernel * forces;
     return true;
   }
 
@@ -174,7 +184,7 @@ bool CollocationFlow::solve_coupled(const Collocation& table, double h) {
   Eigen::VectorXd residual(size);
   for (int iteration = 0; iteration < kNewtonLimit; ++iteration) {
     // Sliding contacts: λ − law(v) = 0. Sticking ones: v − v_drive = 0.
-    velocity_.noalias() = free_ + table.kernel * forces_;
+    velocity_.noalias() = free_ + kernel * forces;
     double curvature = 0.0;
     for (int c = 0; c < nc_; ++c) {
       const auto i = static_cast<std::size_t>(c);
@@ -183,7 +193,7 @@ bool CollocationFlow::solve_coupled(const Collocation& table, double h) {
         const BristleStep step = solve_bristle(law.bristle, sign_of(point_.modes[i]), internal_begin_(bristle_at_[i]),
                                                h, block(drive_nodes_, c) - block(velocity_, c));
         block(residual, c) = step.force - block(forces_, c);
-        jacobian.middleRows<kNodes>(kNodes * c).noalias() = step.slope * table.kernel.middleRows<kNodes>(kNodes * c);
+        jacobian.middleRows<kNodes>(kNodes * c).noalias() = step.slope * kernel.middleRows<kNodes>(kNodes * c);
         jacobian.block<kNodes, kNodes>(kNodes * c, kNodes * c) += RadauTables::Matrix8::Identity();
         block(bristle_nodes_, c) = step.z;
         continue;
@@ -192,7 +202,7 @@ bool CollocationFlow::solve_coupled(const Collocation& table, double h) {
         const Eigen::Index row = kNodes * c + j;
         if (stuck[i]) {
           residual(row) = drive_nodes_(row) - velocity_(row);
-          jacobian.row(row) = table.kernel.row(row);
+          jacobian.row(row) = kernel.row(row);
           continue;
         }
         double lambda = 0.0, slope = 0.0;  // dλ/dv
@@ -211,14 +221,14 @@ bool CollocationFlow::solve_coupled(const Collocation& table, double h) {
           slope = inside ? law.alpha * e : 0.0;
         }
         residual(row) = lambda - forces_(row);
-        jacobian.row(row) = -slope * table.kernel.row(row);
+        jacobian.row(row) = -slope * kernel.row(row);
         jacobian(row, row) += 1.0;
       }
     }
     const Eigen::VectorXd delta = jacobian.partialPivLu().solve(residual);
     if (!delta.allFinite()) return false;
-    forces_ += delta;
-    const Eigen::VectorXd dv = table.kernel * delta;
+    forces += delta;
+    const Eigen::VectorXd dv = kernel * delta;
     velocity_ += dv;
     for (int c = 0; c < nc_; ++c) {
       const ContactForces& law = laws()[static_cast<std::size_t>(c)];

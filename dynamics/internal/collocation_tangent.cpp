@@ -32,6 +32,7 @@ void CollocationFlow::set_tangents(Eigen::MatrixXd tangents) {
 Eigen::VectorXd CollocationFlow::point_rate() const {
   Eigen::VectorXd rate(point_.x.size() + point_.internal.size());
   rate.head(point_.x.size()) = model_.rate(point_.x, point_.force);
+  if (given_ > 0) rate.head(point_.x.size()) += model_.force_input * resolver_.drive_force(point_.time);
   for (int c = 0; c < nc_; ++c) {
     if (!bristled(c)) continue;
     const auto i = static_cast<std::size_t>(c);
@@ -67,6 +68,7 @@ void CollocationFlow::push_tangents(int level, double tau) {
   // Linearised force equations of the step: δλ_i = slope_i δw_i in slip, δw_i = 0 in stick, a bristle's also by δz at
   // the start; δw = free δx + kernel δλ.
   const Collocation& table = tables_.collocation(level);
+  const Eigen::MatrixXd& kernel = table.own_kernel;
   const Eigen::Index size = kNodes * nc_, np = model_.np;
   const double h = tables_.step(level);
   Eigen::MatrixXd jacobian(size, size), free(size, 2 * np), speeds(size, tangents_.cols());
@@ -82,7 +84,7 @@ void CollocationFlow::push_tangents(int level, double tau) {
                                  drive_nodes_.segment<kNodes>(first) - velocity_.segment<kNodes>(first),
                                  bristle_nodes_.segment<kNodes>(first));
       const BristleVariation& by = bristles[i];
-      jacobian.middleRows<kNodes>(first).noalias() = by.force_by_speed * table.kernel.middleRows<kNodes>(first);
+      jacobian.middleRows<kNodes>(first).noalias() = by.force_by_speed * kernel.middleRows<kNodes>(first);
       jacobian.block<kNodes, kNodes>(first, first) += RadauTables::Matrix8::Identity();
       right.middleRows<kNodes>(first) = by.force_by_start * tangents_.row(2 * np + bristle_at_[i]) -
                                         by.force_by_speed * speeds.middleRows<kNodes>(first);
@@ -91,17 +93,18 @@ void CollocationFlow::push_tangents(int level, double tau) {
     for (int j = 0; j < kNodes; ++j) {
       const Eigen::Index row = kNodes * c + j;
       if (step_modes_[i] == ContactMode::kStick) {
-        jacobian.row(row) = -table.kernel.row(row);
+        jacobian.row(row) = -kernel.row(row);
         continue;
       }
       const double slope = force_slope(c, step_modes_[i], velocity_(row), drive_nodes_(row));
-      jacobian.row(row) = -slope * table.kernel.row(row);
+      jacobian.row(row) = -slope * kernel.row(row);
       jacobian(row, row) += 1.0;
       right.row(row) *= slope;
     }
   }
-  const Eigen::MatrixXd forces = jacobian.partialPivLu().solve(right);
-  if (any_bristle_) push_bristle_tangents(bristles, speeds + table.kernel * forces, tau / h);
+  Eigen::MatrixXd forces = Eigen::MatrixXd::Zero(forces_.size(), tangents_.cols());  // a drive's stay as they are
+  forces.topRows(size) = jacobian.partialPivLu().solve(right);
+  if (any_bristle_) push_bristle_tangents(bristles, speeds + kernel * forces.topRows(size), tau / h);
   WithinStep within(tables_, false, WithinStep::Load::kLeftOut);
   const kernels::StepArrays whole = tables_.propagator(level).arrays(false);
   Eigen::VectorXd to(2 * np);
@@ -141,7 +144,7 @@ void CollocationFlow::salt_tangents(const Eigen::VectorXd& force_before, int con
   if (step_modes_[static_cast<std::size_t>(contact)] != ContactMode::kStick) {
     gradient.head(size) = -model_.velocity_row.col(contact).transpose();
     rate = a - (model_.acceleration_row.col(contact).dot(point_.x) + model_.load_acceleration(contact) +
-                model_.mobility.row(contact).dot(force_before));
+                model_.mobility.row(contact).dot(force_before) + given_acceleration(contact, point_.time - begin_));
   } else {
     // g = ±μ_s N − λ_stick(x, z): λ of the sticking contacts from a = Gᵀrow x + mobility λ, the sliding ones following
     // their own laws.

@@ -54,7 +54,7 @@ const kernels::SeriesRule& rest_rule() {
 
 WithinStep::WithinStep(const StepTables& tables, bool audit, Load load)
     : tables_(tables),
-      model_(tables.model()),
+      model_(tables.acted_on()),
       audit_(audit),
       loaded_(load == Load::kIncluded && tables.loaded()),
       pairs_{model_.np,
@@ -69,6 +69,7 @@ WithinStep::WithinStep(const StepTables& tables, bool audit, Load load)
       next_(2 * model_.np),
       moments_(kernels::kMoments * model_.contacts),
       points_(audit && !model_.proportional ? 2 * model_.np * kernels::kWorkPoints : 0) {
+  pairs_.given = model_.given;
   for (auto* v : {&current_, &other_, &monomials_, &scaled_, &velocities_}) v->resize(kNodes * model_.contacts);
 }
 
@@ -94,6 +95,7 @@ void WithinStep::seek(double tau) {
       tables_.collocation(level).velocities(from, forces.data(), velocities_.data());
       const kernels::Work piece = tables_.work(level, from, forces.data(), velocities_.data());
       before_.contact += piece.contact;
+      before_.force += piece.force;
       before_.loss += piece.loss;
     }
     kernels_.propagate(tables_.propagator(level).arrays(loaded_), from, forces.data(), next_.data());
@@ -174,6 +176,7 @@ kernels::Work WithinStep::work(double tau) {
     for (int k = 0; k < kernels::kWorkPoints; ++k)
       sum.loss += rule.weight[k] * rest * model_.viscous_power(points_.segment(size * k, size));
   sum.contact += before_.contact;
+  sum.force += before_.force;
   sum.loss += before_.loss;
   return sum;
 }

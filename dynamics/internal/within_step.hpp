@@ -24,7 +24,7 @@ class WithinStep {
   void state(double tau, double* out_x);
   /// The state at tau becomes the one at tau + shift, which is cheap where the shift is small [2np].
   void shift(double tau, double shift, double* x);
-  /// Work of the contacts and viscous loss over [0, tau].
+  /// Work of contacts and drive, and viscous loss, over [0, tau].
   [[nodiscard]] kernels::Work work(double tau);
 
  private:

@@ -21,6 +21,7 @@ struct PairArrays {
   const double* load;                   ///< [2np]; null: none acts
   const double* input;                  ///< [2np x contacts]
   int powers = 8;                       ///< of t in the contacts' forces, from 0
+  int given = 0;                        ///< the last so many contacts are directions of a drive's forces
 };
 
 /// x(h) = E x + load + response · forces.
@@ -59,7 +60,7 @@ struct ProductRule {
   alignas(64) double weight[8], last_of_a[8], start_of_b[8];
 };
 struct Work {
-  double contact = 0.0, loss = 0.0;
+  double contact = 0.0, force = 0.0, loss = 0.0;  ///< done by contacts, by a drive's forces, and lost
 };
 
 /// One contact over one trial step: what is known, what is sought.

@@ -369,7 +369,8 @@ SLIPMODE_LANES_INLINE Work series_work(const PairArrays& m, const double* veloci
                                        const double* x, const double* coefficient, double tau, int terms,
                                        const SeriesRule& rule, const double* moments, double* out_x) {
   const Index np = m.np;
-  V8 contact = broadcast8(0.0), loss = contact;
+  const int own = m.contacts - m.given;
+  V8 contact = broadcast8(0.0), force = contact, loss = contact;
   for (Index i = 0; i < np; i += kLanes) {
     const V8 y1 = load8(x + i), y2 = load8(x + np + i);
     V8 place[kWorkPoints], speed[kWorkPoints];
@@ -377,12 +378,13 @@ SLIPMODE_LANES_INLINE Work series_work(const PairArrays& m, const double* veloci
       place[p] = y1;
       speed[p] = y2;
     }
+    const auto add = [&](int c, int l, V8 term1, V8 term2, V8& sum) __attribute__((always_inline)) {
+      const double* row = velocity_row + 2 * np * c + i;
+      sum = fma8(broadcast8(moments[kMoments * c + l]), fma8(load8(row), term1, load8(row + np) * term2), sum);
+    };
     const auto add_contacts = [&](int l, V8 term1, V8 term2) __attribute__((always_inline)) {
-      for (int c = 0; c < m.contacts; ++c) {
-        const double* row = velocity_row + 2 * np * c + i;
-        contact =
-            fma8(broadcast8(moments[kMoments * c + l]), fma8(load8(row), term1, load8(row + np) * term2), contact);
-      }
+      for (int c = 0; c < own; ++c) add(c, l, term1, term2, contact);
+      for (int c = own; c < m.contacts; ++c) add(c, l, term1, term2, force);
     };
     add_contacts(0, y1, y2);
     taylor_terms(
@@ -405,7 +407,7 @@ SLIPMODE_LANES_INLINE Work series_work(const PairArrays& m, const double* veloci
       loss = fma8(load8(damping + i), squares, loss);
     }
   }
-  return {sum8(contact), tau * sum8(loss)};
+  return {sum8(contact), sum8(force), tau * sum8(loss)};
 }
 
 }  // namespace

@@ -37,7 +37,10 @@ std::string random_law(slipmode::Random& r, bool bristle) {
       1.0 / alpha);
 }
 
-/// A chain with one or two contacts: any damping, belts, ramps and shakers.
+/// From here on random chains are driven by a force.
+constexpr std::uint64_t kForced = 60;
+
+/// A chain with one or two contacts: any damping, belts, ramps and shakers, and forces.
 std::string random_chain(std::uint64_t index, int contacts, Laws laws) {
   slipmode::Random r = slipmode::Random::stream(77, index);
   const int n = contacts + static_cast<int>(r.uniform() * 8);
@@ -50,7 +53,10 @@ std::string random_chain(std::uint64_t index, int contacts, Laws laws) {
     text += fmt::format("[[contact]]\nat = {}\n{}", n - c, random_law(r, bristle));
   }
   const double kind = r.uniform(), from = r.uniform(-0.6, 0.6), to = r.uniform(-0.6, 0.6);
-  if (kind < 0.5)
+  if (index >= kForced)
+    text += fmt::format("[drive]\nkind = \"force\"\nomega = {}\namplitude = {}\nat = {}\n", r.uniform(0.1, 3.0),
+                        r.uniform(0.1, 2.0), 1 + static_cast<int>(r.uniform() * n));
+  else if (kind < 0.5)
     text += fmt::format("[drive]\nkind = \"belt\"\nspeed = {}\n", kind < 0.1 ? 0.0 : from);
   else if (kind < 0.7)
     text +=
@@ -126,7 +132,7 @@ class CertifiedSteps : public testing::TestWithParam<std::tuple<int, Laws, doubl
 TEST_P(CertifiedSteps, PassNoEventAtAnyTolerance) {
   const auto [contacts, laws, tolerance] = GetParam();
   Judged all;
-  for (std::uint64_t index = 0; index < 60; ++index) {
+  for (std::uint64_t index = 0; index < kForced + 30; ++index) {
     const Judged one = judge_steps(index, contacts, laws, tolerance);
     all.steps += one.steps;
     all.certified += one.certified;

@@ -37,7 +37,7 @@ std::optional<scene::Scene> with_laws(const scene::Scene& scene, const Other& ot
   });
 }
 
-/// True when a flow can run the scene; some laws go with no tilt, no varying load, or no force drive.
+/// True when a flow can run the scene; some laws go with no tilt or no varying load.
 [[nodiscard]] bool can_run(const scene::Scene& scene);
 
 /// Contacts without springs and bristles: Coulomb's law or Stribeck's for regularised and bristle laws.
