@@ -30,6 +30,17 @@ std::string coefficient_table(const orbits::Balance& balance) {
   return table.str();
 }
 
+/// Orders that were tried, where one was chosen.
+void add_trials(const std::vector<orbits::OrderTrial>& trials, bool converged, bool met, Report& out_report) {
+  if (trials.empty()) return;
+  out_report.data["trials"] = Json::array();
+  for (const orbits::OrderTrial& trial : trials) out_report.data["trials"].push_back(fields_json(trial));
+  if (!converged || met) return;
+  out_report.exit_code = kNumericalFailure;
+  out_report.data["message"] = studies::not_met(trials);
+  out_report.text += studies::not_met(trials) + "\n";
+}
+
 void add_certificate(const studies::Family& model, const orbits::Certificate& own, Report& out_report) {
   out_report.data["certificate"] = {{"behind", own.behind},
                                     {"verdict", own.verdict},
@@ -70,9 +81,7 @@ Report mixed_report(const studies::Family& model, const studies::MixedFound& fou
   report.data =
       merged({{"verb", "orbit find"}, {"title", model.scene().title}, {"model", model.title()}}, fields_json(mixed));
   report.data["by"] = "mixed";
-  Json near = Json::array();
-  for (const Eigen::Index i : mixed.near) near.push_back(system.structure().dof_names()[static_cast<std::size_t>(i)]);
-  report.data["near"] = near;
+  report.data["near"] = studies::near_names(model, mixed);
   report.text = fmt::format(
       "{}, {}: {} of {} degrees of freedom in the time domain, the rest in {} harmonics of {:.10g} rad/s\n"
       "  residual {:.1e} after {} Newton steps\n",
@@ -94,6 +103,7 @@ Report mixed_report(const studies::Family& model, const studies::MixedFound& fou
     report.text += fmt::format("  contact {}: from {:.9g} to {:.9g}, mean {:.9g}\n", c + 1, own.min, own.max, own.mean);
   }
   report.data["contacts"] = contacts;
+  add_trials(found.trials, mixed.converged, found.met, report);
   if (found.certificate)
     add_certificate(model, *found.certificate, report);
   else
@@ -103,9 +113,8 @@ Report mixed_report(const studies::Family& model, const studies::MixedFound& fou
 
 Report balance_report(const std::string& verb, const studies::Family& model, const studies::BalanceFound& found) {
   const orbits::Balance& balance = found.balance;
-  const bool good = balance.converged && found.met;
   Report report;
-  report.exit_code = good ? kDone : kNumericalFailure;
+  report.exit_code = balance.converged ? kDone : kNumericalFailure;
   report.data =
       merged({{"verb", verb}, {"title", model.scene().title}, {"model", model.title()}}, fields_json(balance));
   report.data["by"] = "balance";
@@ -143,15 +152,8 @@ Report balance_report(const std::string& verb, const studies::Family& model, con
         "taken\n",
         balance.stuck, balance.displacement.size());
   }
-  Json trials = Json::array();
-  for (const orbits::OrderTrial& trial : found.trials) trials.push_back(fields_json(trial));
-  if (!trials.empty()) report.data["trials"] = trials;
-  if (balance.converged && !found.met) {
-    report.data["message"] = fmt::format("the error asked is not met up to {} harmonics", balance.harmonics);
-    report.text += report.data["message"].get<std::string>() + "\n";
-  } else if (!balance.converged) {
-    report.data["message"] = balance.message;
-  }
+  add_trials(found.trials, balance.converged, found.met, report);
+  if (!balance.converged) report.data["message"] = balance.message;
   if (found.certificate) add_certificate(model, *found.certificate, report);
   return report;
 }

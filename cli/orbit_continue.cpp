@@ -166,8 +166,7 @@ Report run_balance(const Session& session, const OrbitContinueArguments& argumen
   if (!trials.empty()) report.data["trials"] = trials;
   if (!found.found.met) {
     report.exit_code = kNumericalFailure;
-    report.text =
-        fmt::format("the error asked is not met up to {} harmonics; what was found is kept\n", harmonics) + report.text;
+    report.text = studies::not_met(found.trials) + "; what was found is kept\n" + report.text;
     report.data["message"] = report.text;
   }
   return report;

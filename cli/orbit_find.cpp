@@ -38,20 +38,19 @@ Report run_balance(const OrbitFindArguments& arguments, const studies::Family& m
 Report run_mixed(const OrbitFindArguments& arguments, const studies::Family& model) {
   const studies::OrbitSearch& search = arguments.search.search;
   const studies::BalanceWords& words = arguments.balance.words;
-  if (!arguments.output.empty() && !words.certify)
+  if (!arguments.output.empty() && !words.certify && !words.error)
     throw InvalidInput(fmt::format("-o {}: what is kept of a mixed orbit is the exact orbit behind it; add --certify",
                                    arguments.output));
-  const studies::MixedFound found =
-      studies::find_mixed(model, studies::mixed_options(words, arguments.search.start, search.order), words.certify,
-                          {.segments = search.segments, .tolerance = search.tolerance});
-  Report report = mixed_report(model, found);
+  const auto found = std::make_shared<const studies::MixedFound>(
+      studies::find_mixed(model, studies::mixed_search(words, arguments.search.start, search.order),
+                          {.segments = search.segments, .tolerance = search.tolerance}));
+  Report report = mixed_report(model, *found);
   if (arguments.output.empty()) return report;
-  if (!found.certificate || !found.certificate->behind) {
+  if (!found->certificate || !found->certificate->behind) {
     report.text += fmt::format("Nothing was kept in {}: no exact orbit was found\n", arguments.output);
     return report;
   }
-  studies::content_of(model, std::make_shared<const orbits::PeriodicOrbit>(found.certificate->found.orbit))
-      .save(arguments.output);
+  studies::content_of(model, found).save(arguments.output);
   report.data["file"] = arguments.output;
   report.text += fmt::format("Exact orbit: {}\n", arguments.output);
   return report;
@@ -95,7 +94,7 @@ Verb add_orbit_find(CLI::App& orbit) {
       "  slipmode orbit find datasets/backlash_sdof/scene.toml --start 1.2,0.1 -o orbit.h5\n"
       "  slipmode orbit find datasets/chain10/scene.toml --set drive.speed=0.45\n"
       "  slipmode orbit find datasets/play_oscillator/scene.toml --by balance --harmonics auto --error 1e-4\n"
-      "  slipmode orbit find datasets/jenkins_chain/scene.toml --by mixed --harmonics 9 --certify");
+      "  slipmode orbit find datasets/jenkins_chain/scene.toml --by mixed --harmonics auto --error 1e-6");
   return {command, [arguments](const Session& session) { return run(session, *arguments); }};
 }
 

@@ -138,6 +138,39 @@ Certificate shoot_behind(const dynamics::HybridSystem& system, const dynamics::S
   return out;
 }
 
+/// @param first  order @param solve  of an order, from the best so far that has an orbit behind, or nullptr
+template <class Approximation, class Solve>
+ToError<Approximation> to_error(const dynamics::HybridSystem& system, double error, int first, int most,
+                                const ShootingOptions& shooting, const Solve& solve) {
+  if (!(error > 0.0 && std::isfinite(error)))
+    throw InvalidInput(fmt::format("error: {}; valid: a number > 0, a share of the half range", error));
+  constexpr double kGrowth = 1.3;
+  ToError<Approximation> out, best;
+  std::optional<OrbitBehind> behind;
+  const auto look = [&] {  // the orbit of an order before serves as long as it is near
+    const Claim claim = claim_of(out.approximation);
+    if (behind) judge(claim, *behind, out.certificate);
+    if (!out.certificate.behind)
+      out.certificate =
+          shoot_behind(system, state_of(system, out.approximation), out.approximation.order, claim, shooting, behind);
+  };
+  for (int H = first; H <= most && !out.met; H = std::max(H + 1, static_cast<int>(kGrowth * H))) {
+    out.approximation = solve(H, best.certificate.behind ? &best.approximation : nullptr);
+    OrderTrial trial{
+        .harmonics = H, .iterations = out.approximation.iterations, .error = std::numeric_limits<double>::quiet_NaN()};
+    if (out.approximation.converged) {
+      look();
+      if (out.certificate.behind) trial.error = out.certificate.relative;
+    }
+    out.trials.push_back(trial);
+    out.met = trial.error <= error;
+    if (trial.error >= 0.0 && !(trial.error > best.certificate.relative && best.certificate.behind)) best = out;
+  }
+  if (out.met || !best.certificate.behind) return out;
+  best.trials = std::move(out.trials);
+  return best;
+}
+
 }  // namespace
 
 std::vector<double> true_errors(const Balance& balance, const OrbitSeries& orbit) {
@@ -156,39 +189,27 @@ Certificate certify(const dynamics::HybridSystem& system, const MixedOrbit& mixe
 
 CertifiedBalance balance_to_error(const dynamics::HybridSystem& system, BalanceOptions options, double error, int most,
                                   const ShootingOptions& shooting) {
-  if (!(error > 0.0 && std::isfinite(error)))
-    throw InvalidInput(fmt::format("error: {}; valid: a number > 0, a share of the half range", error));
   constexpr int kFirst = 3;
-  constexpr double kGrowth = 1.3;
-  CertifiedBalance out;
-  std::optional<OrbitBehind> behind;
-  const auto look = [&] {  // the orbit of an order before serves as long as it is near
-    const Claim claim = claim_of(out.balance);
-    if (behind) judge(claim, *behind, out.certificate);
-    if (!out.certificate.behind)
-      out.certificate = shoot_behind(system, state_of(system, out.balance), out.balance.order, claim, shooting, behind);
-  };
-  for (int H = kFirst; H <= most; H = std::max(H + 1, static_cast<int>(kGrowth * H))) {
-    options.harmonics = H;
+  return to_error<Balance>(system, error, kFirst, most, shooting, [&](int harmonics, const Balance* before) {
+    options.harmonics = harmonics;
+    if (before != nullptr) options.guess = before->displacement;
     Balance next = balance(system, options);
     if (!next.converged && !options.guess.empty()) {
       options.guess.clear();
       next = balance(system, options);
     }
-    OrderTrial trial{.harmonics = H, .iterations = next.iterations, .error = std::numeric_limits<double>::quiet_NaN()};
-    out.balance = std::move(next);
-    if (out.balance.converged) {
-      look();
-      if (out.certificate.behind) {
-        trial.error = out.certificate.relative;
-        options.guess = out.balance.displacement;
-      }
-    }
-    out.trials.push_back(trial);
-    out.met = trial.error <= error;
-    if (out.met) break;
-  }
-  return out;
+    return next;
+  });
+}
+
+CertifiedMixed mixed_to_error(const dynamics::HybridSystem& system, MixedOptions options, double error, int most,
+                              const ShootingOptions& shooting) {
+  const int first = least_harmonics(system, options);
+  return to_error<MixedOrbit>(system, error, first, most, shooting, [&](int harmonics, const MixedOrbit* before) {
+    options.harmonics = harmonics;
+    if (before != nullptr) options.guess = MixedStart{before->near_orbit.start, before->coupling};
+    return mixed_orbit(system, options);
+  });
 }
 
 }  // namespace slipmode::orbits

@@ -40,19 +40,30 @@ struct OrderTrial {
   double error = 0.0;  ///< Certificate::relative; NaN where no orbit lies behind
 };
 
-struct CertifiedBalance {
-  bool met = false;  ///< the error asked is met by `balance`
-  Balance balance;
+/// A balance or a mixed orbit whose order was chosen.
+template <class Approximation>
+struct ToError {
+  bool met = false;  ///< the error asked is, by this
+  /// Where it is not: the one of least true error; the last where no orbit lies behind any.
+  Approximation approximation;
   Certificate certificate;
   std::vector<OrderTrial> trials;
 };
+using CertifiedBalance = ToError<Balance>;
+using CertifiedMixed = ToError<MixedOrbit>;
 
-/// The lowest order, to within a factor of 1.5, whose true error is at most `error`: orders grow by at most 1.3 from
-/// one to the next, each begun from the one before.
+/// The lowest order, to within a factor of 1.5, whose true error is at most `error`: orders grow by at most 1.3, or by
+/// one, from one to the next, each begun from the best before.
 /// @param error  as a share of the half range of each contact's displacement, > 0
 /// @param most   orders that are tried at most
 /// @throws InvalidInput  for an error that is not positive; and as `balance`
 [[nodiscard]] CertifiedBalance balance_to_error(const dynamics::HybridSystem& system, BalanceOptions options,
                                                 double error, int most = 4000, const ShootingOptions& shooting = {});
+
+/// The same of the mixed method, whose steps cost the third power of orders. One shooting on the whole structure, as
+/// long as the orbit it ends on lies behind the orders that follow.
+/// @throws InvalidInput, NumericalFailure  likewise, and as `mixed_orbit`
+[[nodiscard]] CertifiedMixed mixed_to_error(const dynamics::HybridSystem& system, MixedOptions options, double error,
+                                            int most = 200, const ShootingOptions& shooting = {});
 
 }  // namespace slipmode::orbits

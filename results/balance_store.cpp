@@ -11,6 +11,15 @@ namespace {
 
 std::string path(const char* name) { return fmt::format("{}/{}", kBalanceGroup, name); }
 
+/// Orders tried and, where there is a certificate, what it says.
+void store_certified(StoreWriter& store, const std::string& group, const orbits::Certificate* certificate,
+                     const std::vector<orbits::OrderTrial>& trials, const Units& units) {
+  save(store, group + "/trials", Table{"orders tried, and their true errors", columns_of(trials)});
+  if (certificate == nullptr) return;
+  store.write(group + "/verdict", certificate->verdict, {"", "what shooting from it says"});
+  store.write(group + "/error", certificate->error, {units.length, "sup |y - exact| over the period, per contact"});
+}
+
 }  // namespace
 
 void store_balance(StoreWriter& store, const orbits::Balance& balance, const orbits::Certificate* certificate,
@@ -23,10 +32,18 @@ void store_balance(StoreWriter& store, const orbits::Balance& balance, const orb
   store.describe_group(kBalanceGroup, "a truncated Fourier series that balances the equations of motion");
   save_fields(store, kBalanceGroup, balance);
   save(store, path("coefficients"), harmonics_table(all));
-  save(store, path("trials"), Table{"orders tried, and their true errors", columns_of(trials)});
-  if (certificate == nullptr) return;
-  store.write(path("verdict"), certificate->verdict, {"", "what shooting from it says"});
-  store.write(path("error"), certificate->error, {units.length, "sup |y - exact| over the period, per contact"});
+  store_certified(store, kBalanceGroup, certificate, trials, units);
+}
+
+void store_mixed(StoreWriter& store, const orbits::MixedOrbit& mixed, const std::vector<std::string>& near,
+                 const orbits::Certificate& certificate, const std::vector<orbits::OrderTrial>& trials,
+                 const Units& units) {
+  store.describe_group(kMixedGroup, "the motion this orbit lies behind: exact near the contacts, harmonics elsewhere");
+  save_fields(store, kMixedGroup, mixed);
+  store.write(fmt::format("{}/near", kMixedGroup), near, {"", "degrees of freedom in the time domain"});
+  store.write(fmt::format("{}/relative", kMixedGroup), certificate.relative,
+              {"1", "largest error, a share of its contact's half range"});
+  store_certified(store, kMixedGroup, &certificate, trials, units);
 }
 
 StoredBalance load_balance(const StoreReader& store) {

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace slipmode::studies {
@@ -27,6 +28,25 @@ int whole_number(const char* option, const std::string& text, const char* word) 
   return value;
 }
 
+/// An order, or the error that chooses one.
+struct Order {
+  int harmonics = 9;
+  std::optional<double> error = {};
+};
+
+Order order_of(const BalanceWords& words) {
+  if ((words.harmonics == "auto") != words.error.has_value()) {
+    throw InvalidInput("--harmonics auto and --error, a true error > 0, go together");
+  }
+  Order out{.error = words.error};
+  if (words.error) {
+    if (!(*words.error > 0.0)) throw InvalidInput(fmt::format("--error {}: valid: > 0", *words.error));
+  } else if (words.harmonics) {
+    out.harmonics = whole_number("--harmonics", *words.harmonics, "auto");
+  }
+  return out;
+}
+
 }  // namespace
 
 BalanceSearch balance_search(const BalanceWords& words, const std::string& start, int period_order) {
@@ -38,16 +58,10 @@ BalanceSearch balance_search(const BalanceWords& words, const std::string& start
     throw InvalidInput(fmt::format("--start {}: a balance begins at contact (all stops pressing) or gap", start));
   }
   out.options.start = start == "gap" ? orbits::BalanceStart::kGap : orbits::BalanceStart::kContact;
-  const std::string harmonics = words.harmonics.value_or("9"), samples = words.samples.value_or("exact");
-  if ((harmonics == "auto") != words.error.has_value()) {
-    throw InvalidInput("--harmonics auto and --error, a true error > 0, go together");
-  }
-  if (words.error) {
-    if (!(*words.error > 0.0)) throw InvalidInput(fmt::format("--error {}: valid: > 0", *words.error));
-    out.error = *words.error;
-  } else {
-    out.options.harmonics = whole_number("--harmonics", harmonics, "auto");
-  }
+  const Order order = order_of(words);
+  out.error = order.error;
+  out.options.harmonics = order.harmonics;
+  const std::string samples = words.samples.value_or("exact");
   if (samples != "exact") out.options.samples = whole_number("--samples", samples, "exact");
   return out;
 }
@@ -57,7 +71,7 @@ BalanceFound find_balance(const Family& model, const BalanceSearch& search, cons
   if (search.error) {
     orbits::CertifiedBalance chosen =
         orbits::balance_to_error(model.own(), search.options, *search.error, 4000, shooting);
-    out = {std::move(chosen.balance), std::move(chosen.certificate), std::move(chosen.trials), chosen.met};
+    out = {std::move(chosen.approximation), std::move(chosen.certificate), std::move(chosen.trials), chosen.met};
   } else {
     out.balance = orbits::balance(model.own(), search.options);
     if (search.certify && out.balance.converged) out.certificate = orbits::certify(model.own(), out.balance, shooting);
@@ -66,21 +80,36 @@ BalanceFound find_balance(const Family& model, const BalanceSearch& search, cons
   return out;
 }
 
-orbits::MixedOptions mixed_options(const BalanceWords& words, const std::string& start, int period_order) {
-  if (words.samples || words.error)
-    throw InvalidInput("--samples, --error: of a balance; leave them out, or use --by balance");
+MixedSearch mixed_search(const BalanceWords& words, const std::string& start, int period_order) {
+  if (words.samples)
+    throw InvalidInput(fmt::format("--samples {}: of a balance; leave it out, or use --by balance", *words.samples));
   if (start != "settle")
     throw InvalidInput(fmt::format("--start {}: a mixed orbit begins at the linear response; leave it out", start));
-  return {.order = period_order,
-          .harmonics = whole_number("--harmonics", words.harmonics.value_or("9"), "leave it out"),
-          .reach = words.near.value_or(0)};
+  const Order order = order_of(words);
+  return {.options = {.order = period_order, .harmonics = order.harmonics, .reach = words.near.value_or(0)},
+          .error = order.error,
+          .certify = words.certify};
 }
 
-MixedFound find_mixed(const Family& model, const orbits::MixedOptions& options, bool certify,
-                      const orbits::ShootingOptions& shooting) {
-  MixedFound out{.mixed = orbits::mixed_orbit(model.own(), options)};
-  if (certify && out.mixed.converged) out.certificate = orbits::certify(model.own(), out.mixed, shooting);
+MixedFound find_mixed(const Family& model, const MixedSearch& search, const orbits::ShootingOptions& shooting) {
+  constexpr int kMostHarmonics = 200;  // a Newton step takes its third power, here seconds
+  if (search.error) {
+    orbits::CertifiedMixed chosen =
+        orbits::mixed_to_error(model.own(), search.options, *search.error, kMostHarmonics, shooting);
+    return {std::move(chosen.approximation), std::move(chosen.certificate), std::move(chosen.trials), chosen.met};
+  }
+  MixedFound out{.mixed = orbits::mixed_orbit(model.own(), search.options)};
+  if (search.certify && out.mixed.converged) out.certificate = orbits::certify(model.own(), out.mixed, shooting);
   return out;
+}
+
+std::string not_met(const std::vector<orbits::OrderTrial>& trials) {
+  const orbits::OrderTrial* best = nullptr;
+  for (const orbits::OrderTrial& trial : trials)
+    if (trial.error >= 0.0 && (best == nullptr || trial.error <= best->error)) best = &trial;
+  const std::string up_to = fmt::format("the error asked is not met up to {} harmonics: ", trials.back().harmonics);
+  if (best == nullptr) return up_to + "no orbit lies behind any";
+  return up_to + fmt::format("the least is {:.3g} of a half range, by {}", best->error, best->harmonics);
 }
 
 results::Content content_of(const Family& model, std::shared_ptr<const BalanceFound> found) {
@@ -91,6 +120,23 @@ results::Content content_of(const Family& model, std::shared_ptr<const BalanceFo
             store(writer, model, certificate != nullptr && certificate->behind ? &certificate->found.orbit : nullptr);
             results::store_balance(writer, found->balance, certificate, found->trials,
                                    results::Units::of(model.scene().units));
+          }};
+}
+
+std::vector<std::string> near_names(const Family& model, const orbits::MixedOrbit& mixed) {
+  std::vector<std::string> names;
+  for (const Eigen::Index i : mixed.near)
+    names.push_back(model.own().structure().dof_names()[static_cast<std::size_t>(i)]);
+  return names;
+}
+
+results::Content content_of(const Family& model, std::shared_ptr<const MixedFound> found) {
+  return {.kind = results::FileKind::kOrbit,
+          .unit_system = model.scene().units,
+          .write = [model, found = std::move(found)](results::StoreWriter& writer) {
+            store(writer, model, &found->certificate->found.orbit);
+            results::store_mixed(writer, found->mixed, near_names(model, found->mixed), *found->certificate,
+                                 found->trials, results::Units::of(model.scene().units));
           }};
 }
 
@@ -117,7 +163,9 @@ BalanceContinuation continue_balance(const scene::Scene& scene, const std::strin
     out.branch = orbits::continue_balance(over.systems, first, over.start, over.options);
     if (search.certify) out.certificate = orbits::certify_branch(over.systems, out.branch, every.value_or(1), shooting);
     if (!error) break;
-    out.trials.push_back({first.harmonics, first.iterations, out.certificate->worst});
+    out.trials.push_back(
+        {first.harmonics, first.iterations,
+         out.certificate->behind > 0 ? out.certificate->worst : std::numeric_limits<double>::quiet_NaN()});
     if (out.certificate->behind > 0 && out.certificate->worst <= *error) break;
     search.options.harmonics = std::max(first.harmonics + 1, static_cast<int>(kGrowth * first.harmonics));
     search.options.guess = first.displacement;

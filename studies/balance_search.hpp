@@ -29,7 +29,7 @@ struct BalanceWords {
   static constexpr auto fields() {
     using Own = BalanceWords;
     return std::tuple{
-        optional("harmonics", &Own::harmonics, "", "of a balance: highest order, or auto: the order that error needs"),
+        optional("harmonics", &Own::harmonics, "", "highest order, or auto: the order that error needs"),
         optional("error", &Own::error, "1",
                  "of harmonics auto: true error, a share of the half range of the displacement", kPositive),
         optional("samples", &Own::samples, "",
@@ -64,21 +64,35 @@ inline constexpr int kMostForHill = 400;
 [[nodiscard]] BalanceFound find_balance(const Family& model, const BalanceSearch& search,
                                         const orbits::ShootingOptions& shooting = {});
 
-/// The mixed method's options as a user says them. @param start  "settle": it begins by itself
-/// @throws InvalidInput  for words that are a balance's alone
-[[nodiscard]] orbits::MixedOptions mixed_options(const BalanceWords& words, const std::string& start, int period_order);
+/// Which mixed orbit is looked for.
+struct MixedSearch {
+  orbits::MixedOptions options;
+  std::optional<double> error = {};  ///< as BalanceSearch::error
+  bool certify = false;              ///< shoot from it on the whole structure; an order that is chosen is anyway
+};
+/// @param start  "settle": it begins by itself
+/// @throws InvalidInput  as balance_search, and for words that are a balance's alone
+[[nodiscard]] MixedSearch mixed_search(const BalanceWords& words, const std::string& start, int period_order);
 
 struct MixedFound {
   orbits::MixedOrbit mixed;
   std::optional<orbits::Certificate> certificate = {};
+  std::vector<orbits::OrderTrial> trials = {};  ///< of an order that is chosen
+  bool met = true;                              ///< the error asked is
 };
-/// @param certify  shoot from it on the whole structure
-/// @throws InvalidInput, NumericalFailure  as orbits::mixed_orbit
-[[nodiscard]] MixedFound find_mixed(const Family& model, const orbits::MixedOptions& options, bool certify,
+/// @throws InvalidInput, NumericalFailure  as orbits::mixed_orbit and orbits::mixed_to_error
+[[nodiscard]] MixedFound find_mixed(const Family& model, const MixedSearch& search,
                                     const orbits::ShootingOptions& shooting = {});
+
+/// That no order met the error asked, and how near the best came.
+[[nodiscard]] std::string not_met(const std::vector<orbits::OrderTrial>& trials);
 
 /// What is kept of one that converged: the balance and, where it is certified, the orbit behind.
 [[nodiscard]] results::Content content_of(const Family& model, std::shared_ptr<const BalanceFound> found);
+/// What is kept of a mixed orbit: the exact orbit behind, which there must be, and how far it is from that.
+[[nodiscard]] results::Content content_of(const Family& model, std::shared_ptr<const MixedFound> found);
+/// Names of its degrees of freedom in the time domain.
+[[nodiscard]] std::vector<std::string> near_names(const Family& model, const orbits::MixedOrbit& mixed);
 
 /// A branch of balances over a key, of one order throughout.
 struct BalanceContinuation {

@@ -92,6 +92,22 @@ MixedPoint settled_whole(const HybridSystem& system, const Partition& partition,
   return out;
 }
 
+/// The guess with its coupling forces in harmonics up to H. @throws InvalidInput  of another near part
+MixedPoint point_of(const MixedStart& guess, const Partition& partition) {
+  const Eigen::Index nb = partition.coupled(), n = std::ssize(partition.near());
+  const Eigen::Index own = nb == 0 ? 0 : (guess.coupling.size() / nb - 1) / 2;
+  if (guess.near.q.size() != n || guess.near.v.size() != n || guess.coupling.size() != nb * (2 * own + 1))
+    throw InvalidInput(
+        fmt::format("guess: {} displacements and {} numbers of coupling; valid: {}, and 2 H + 1 for each "
+                    "of {} coupled degrees of freedom",
+                    guess.near.q.size(), guess.coupling.size(), n, nb));
+  MixedPoint out{guess.near, partition.own_coupling()};
+  for (Eigen::Index b = 0; b < nb; ++b)
+    for (Eigen::Index k = 0; k <= std::min(own, partition.harmonics()); ++k)
+      put_phasor(phasor(guess.coupling, b, own, k), b, partition.harmonics(), k, out.coupling);
+  return out;
+}
+
 /// From the linear response, settled near the contacts; else with contacts' forces grown from nothing, by steps whose
 /// length follows Newton's method; else from what the whole structure settles to.
 MixedDescent search_cold(const HybridSystem& system, const Partition& partition, MixedProblem& problem,
@@ -161,12 +177,26 @@ MixedPoint linear_point(const Partition& partition, const MixedProblem& problem)
 
 }  // namespace
 
+int least_harmonics(const HybridSystem& system, const MixedOptions& options) {
+  check(system, options);
+  return highest_harmonic_on(system, parts_of(system, options.reach).rest, options.order);
+}
+
 MixedOrbit mixed_orbit(const HybridSystem& system, const MixedOptions& options) {
   check(system, options);
   const Partition partition(system, options.reach, options.order, options.harmonics);
   MixedProblem problem(partition, kFlow);
+  constexpr int kFromGuess = 12;
   int budget = options.max_iterations;
-  const MixedDescent found = search_cold(system, partition, problem, linear_point(partition, problem), options, budget);
+  MixedDescent found;
+  if (options.guess) {
+    int own = std::min(kFromGuess, budget);
+    budget -= own;
+    found = search(problem, point_of(*options.guess, partition), options.tolerance, own);
+    budget += own;
+  }
+  if (!found.begun || found.best.largest > options.tolerance)
+    found = search_cold(system, partition, problem, linear_point(partition, problem), options, budget);
   MixedOrbit out;
   out.order = options.order;
   out.omega = partition.omega();
@@ -191,6 +221,7 @@ MixedOrbit mixed_orbit(const HybridSystem& system, const MixedOptions& options) 
   const ShootingPoint start{.nodes = {found.best.point.start}, .period = problem.period()};
   out.near_orbit = describe_orbit(own, own.evaluate(start), shooting);
   out.near_system = near;
+  out.coupling = found.best.point.coupling;
   out.rest = partition.rest_under(found.best.motion);
   return out;
 }

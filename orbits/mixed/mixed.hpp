@@ -5,16 +5,25 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace slipmode::orbits {
+
+/// Where Newton's method begins.
+struct MixedStart {
+  dynamics::State near;      ///< of the part near the contacts
+  Eigen::VectorXd coupling;  ///< as MixedOrbit::coupling, of any order
+};
 
 struct MixedOptions {
   int order = 1;      ///< period = order × the drive's, ≥ 1
   int harmonics = 9;  ///< H ≥ 1, of that period: of what is far from the contacts
   /// Degrees of freedom coupled to a contact within so many steps are near it; 0: those that contacts act on, alone.
   int reach = 0;
+  /// Begun from here first.
+  std::optional<MixedStart> guess = {};
   double tolerance = 1e-11;  ///< on the residual, in units of the motion and of the coupling forces
   int max_iterations = 60;   ///< Newton steps in all
 };
@@ -35,6 +44,9 @@ struct MixedOrbit {
   /// Its periodic motion. Multipliers are those of this system alone, the rest held to its harmonics: they say nothing
   /// of stability.
   PeriodicOrbit near_orbit;
+  /// Forces of the rest on the near part: of each coupled degree of freedom the constant, cosines 1 … H, sines 1 … H
+  /// [N] [coupled · (2H + 1)]
+  Eigen::VectorXd coupling;
   Eigen::MatrixXcd rest;  ///< phasors of the other degrees of freedom, q = Re Σ_k rest.col(k) e^{ikΩt} [n − near x H+1]
   double residual = 0.0;  ///< largest
   int iterations = 0;     ///< Newton steps
@@ -48,13 +60,19 @@ struct MixedOrbit {
 ///
 /// solved for (x_1(0), ĝ) with x_1(T) = x_1(0). Newton's method with the exact derivatives of the flow by its start and
 /// by its periodic input. A step costs what the near part does, whatever the structure's size. Starts from the linear
-/// response without contact, settled near the contacts; else contacts' forces grow from nothing on the way.
+/// response without contact, settled near the contacts; else contacts' forces grow from nothing on the way. A guess is
+/// tried before.
 /// @return  `converged` false, with the best residual, when Newton's method does not arrive
 /// @throws InvalidInput  for harmonics < 1, order < 1, reach < 0, a drive that is no force or whose harmonics beyond H
-///                       act away from the contacts, laws that the closed form does not hold
+///                       act away from the contacts, laws that the closed form does not hold, a guess for
+///                       another near part
 /// @throws NumericalFailure  where the rest has no response: it floats, or an undamped mode of it is at a harmonic
 /// Source: S3 (3)-(8), coupling forces in place of the displacements q̂_2; docs/theory/mixed-orbits.md.
 [[nodiscard]] MixedOrbit mixed_orbit(const dynamics::HybridSystem& system, const MixedOptions& options = {});
+
+/// The lowest order there can be: that of the drive's highest harmonic away from the contacts; else 1.
+/// @throws InvalidInput  as mixed_orbit
+[[nodiscard]] int least_harmonics(const dynamics::HybridSystem& system, const MixedOptions& options);
 
 /// Newton's residual and Jacobian at a start of the near part and coupling forces, scaled as `mixed_orbit` solves them:
 /// for checks. `point`: (q_1, q̇_1, internal), then the forces at each coupled degree of freedom (constant, cosine

@@ -175,6 +175,21 @@ TEST_F(OrbitVerbs, MixedWithItsTrueError) {
   const auto wider = json_of(with({"--near", "1", "--certify"}));
   EXPECT_EQ(wider["near"].size(), 5U);
   EXPECT_LT(wider["certificate"]["relative"], 0.1 * said["certificate"]["relative"].get<double>());
+  const auto chosen = json_of(with({"--harmonics", "auto", "--error", "1e-6", "-o", "chosen.h5"}));
+  EXPECT_LE(chosen["certificate"]["relative"], 1e-6);
+  EXPECT_EQ(chosen["trials"].back()["harmonics"], chosen["harmonics"]);
+  EXPECT_EQ(chosen["trials"].back()["error"], chosen["certificate"]["relative"]);
+  EXPECT_GT(chosen["trials"][chosen["trials"].size() - 2]["error"], 1e-6) << "no order too many";
+  const auto kept = slipmode_in(folder, {"info", "chosen.h5", "--json"});
+  EXPECT_THAT(kept.out, AllOf(HasSubstr("mixed/trials/error"), HasSubstr("mixed/relative"), HasSubstr("orbit/")));
+  const auto missed = json_of({"find", SLIPMODE_SOURCE_DIR "/datasets/stop_2mass/scene.toml", "--by", "mixed",
+                               "--harmonics", "auto", "--error", "1e-300"},
+                              3);
+  EXPECT_THAT(missed["message"].get<std::string>(), HasSubstr("not met up to 175 harmonics: the least is"));
+  for (const auto& trial : missed["trials"]) EXPECT_LE(missed["certificate"]["relative"], trial["error"]);
+  expect_refused(with({"--harmonics", "auto"}), {"--error", "a true error > 0"});
+  expect_refused(with({"--error", "1e-3"}), {"--harmonics auto and --error", "together"});
+  expect_refused(with({"--harmonics", "auto", "--error", "0"}), {"--error", "a number > 0"});
   expect_refused(with({"-o", "mixed.h5"}), {"-o mixed.h5", "--certify"});
   expect_refused(with({"--samples", "64"}), {"--samples", "--by balance"});
   expect_refused(with({"--harmonics", "0"}), {"--harmonics 0"});

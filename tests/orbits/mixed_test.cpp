@@ -5,6 +5,7 @@
 #include <slipmode/fem/chain.hpp>
 #include <slipmode/orbits/certificate.hpp>
 #include <slipmode/orbits/shooting.hpp>
+#include <slipmode/scene/scene.hpp>
 #include "fixtures/cantilever_beam.hpp"
 #include "fixtures/scenes.hpp"
 #include "fixtures/stopping_oscillator.hpp"
@@ -115,24 +116,27 @@ TEST(Mixed, JacobianIsTheResidualsDerivative) {
   }
 }
 
+/// Den Hartog's mass hangs by a spring on one of 1e12 times its own, which the force moves as if alone: X cos ωt. Then
+/// the spring pushes with k_c X cos ωt, all of it through the harmonics.
+HybridSystem pushed_through_a_rest(const StoppingOscillator& o) {
+  constexpr double kHeavy = 1e12, kCoupling = 1.1;
+  const double way = o.push / kCoupling, omega = o.omega();
+  const Eigen::MatrixXd M = Eigen::Vector2d(o.mass, kHeavy).asDiagonal();
+  Eigen::MatrixXd K{{o.stiffness, -kCoupling}, {-kCoupling, kCoupling}};
+  return {fem::Structure(M, Eigen::MatrixXd(Eigen::MatrixXd::Zero(2, 2)), K),
+          {{Eigen::Vector2d::UnitX(), friction::Coulomb{0.5, 0.5}, o.limit() / 0.5}},
+          friction::Force{omega,
+                          {{.amplitude = way * (kCoupling - kHeavy * omega * omega), .phase = 0.5 * std::numbers::pi}}},
+          {},
+          Eigen::MatrixXd(Eigen::Vector2d::UnitY())};
+}
+
 TEST(Mixed, DenHartogsClosedFormThroughTheRest) {
-  // His mass hangs by a spring on one of 1e12 times its own, which the force moves as if alone: X cos ωt. Then the
-  // spring pushes with k_c X cos ωt, all of it through the harmonics.
   for (const auto& [friction, ratio, stops] :
        {std::tuple{0.5, 0.45, 1U}, std::tuple{0.2, 0.17, 1U}, std::tuple{0.3, 0.22, 2U}, std::tuple{0.5, 0.07, 4U}}) {
     SCOPED_TRACE(friction);
     const StoppingOscillator o{.friction = friction, .ratio = ratio};
-    constexpr double kHeavy = 1e12, kCoupling = 1.1;
-    const double way = o.push / kCoupling, omega = o.omega();
-    const Eigen::MatrixXd M = Eigen::Vector2d(o.mass, kHeavy).asDiagonal();
-    Eigen::MatrixXd K{{o.stiffness, -kCoupling}, {-kCoupling, kCoupling}};
-    const HybridSystem system(
-        fem::Structure(M, Eigen::MatrixXd(Eigen::MatrixXd::Zero(2, 2)), K),
-        {{Eigen::Vector2d::UnitX(), friction::Coulomb{0.5, 0.5}, o.limit() / 0.5}},
-        friction::Force{omega,
-                        {{.amplitude = way * (kCoupling - kHeavy * omega * omega), .phase = 0.5 * std::numbers::pi}}},
-        {}, Eigen::MatrixXd(Eigen::Vector2d::UnitY()));
-    const MixedOrbit mixed = mixed_orbit(system, {.harmonics = 3});
+    const MixedOrbit mixed = mixed_orbit(pushed_through_a_rest(o), {.harmonics = 3});
     ASSERT_TRUE(mixed.converged) << mixed.message;
     EXPECT_EQ(mixed.near.size(), 1U);
     const auto slides = o.cycle();
@@ -277,6 +281,83 @@ TEST(Mixed, ItsCertificateIsTheDistanceFromTheOrbit) {
   EXPECT_NEAR(certificate.relative, error / contact_amplitudes(system, exact).front().alternating, 0.01 * error);
   EXPECT_EQ(certificate.found.orbit.stability, Stability::kStable);
   EXPECT_THAT(certificate.verdict, HasSubstr("true error"));
+}
+
+/// The least order whose true error is at most this, all orders one by one, each from the one before.
+int least_order(const HybridSystem& system, double error) {
+  MixedOptions options{.harmonics = 1};
+  for (; options.harmonics < 100; ++options.harmonics) {
+    const MixedOrbit own = mixed_orbit(system, options);
+    if (!own.converged) continue;
+    options.guess = MixedStart{own.near_orbit.start, own.coupling};
+    const Certificate certificate = certify(system, own);
+    if (certificate.behind && certificate.relative <= error) break;
+  }
+  return options.harmonics;
+}
+
+TEST(Mixed, OrderIsChosenByTheTrueError) {
+  const HybridSystem springs =
+      scene::build_system(scene::load_scene(SLIPMODE_SOURCE_DIR "/datasets/jenkins_chain/scene.toml"));
+  const HybridSystem den_hartog = StoppingOscillator{.friction = 0.3, .ratio = 0.22}.system();
+  const HybridSystem through = pushed_through_a_rest(StoppingOscillator{.friction = 0.5, .ratio = 0.45});
+  for (const double error : {1e-3, 1e-6, 1e-9}) {
+    SCOPED_TRACE(error);
+    for (const HybridSystem& system : {springs, rubbed_ten(), den_hartog}) {
+      const CertifiedMixed chosen = mixed_to_error(system, {}, error);
+      ASSERT_TRUE(chosen.met) << chosen.certificate.verdict;
+      EXPECT_LE(chosen.certificate.relative, error);
+      const int least = least_order(system, error);
+      EXPECT_GE(chosen.approximation.harmonics, least);
+      EXPECT_LE(chosen.approximation.harmonics, 1.5 * least);
+      EXPECT_EQ(chosen.trials.back().harmonics, chosen.approximation.harmonics);
+      EXPECT_EQ(chosen.trials.back().error, chosen.certificate.relative);
+    }
+  }
+  EXPECT_EQ(mixed_to_error(den_hartog, {}, 1e-9).approximation.harmonics, 1) << "there is no rest";
+  // Known in closed form: the error told is the true one.
+  const CertifiedMixed chosen = mixed_to_error(through, {}, 1e-9);
+  ASSERT_TRUE(chosen.met) << chosen.certificate.verdict;
+  EXPECT_EQ(chosen.approximation.harmonics, 1) << "the rest moves in the first harmonic alone";
+}
+
+TEST(Mixed, AnErrorOutOfReachGivesTheBest) {
+  const CertifiedMixed found = mixed_to_error(rubbed_ten(), {}, 1e-9, 20);
+  EXPECT_FALSE(found.met);
+  ASSERT_TRUE(found.certificate.behind);
+  for (const OrderTrial& trial : found.trials) EXPECT_LE(found.certificate.relative, trial.error) << trial.harmonics;
+  EXPECT_LT(found.certificate.relative, 1e-6);
+  EXPECT_EQ(found.trials.back().harmonics, 18);  // 1, 2, ..., 7, 9, 11, 14, 18
+  EXPECT_THROW(static_cast<void>(mixed_to_error(rubbed_ten(), {}, 0.0)), InvalidInput);
+}
+
+TEST(Mixed, LeastOrderIsTheDrivesAwayFromTheContacts) {
+  const HybridSystem one = rubbed_ten();
+  const auto driven = [&](Eigen::Index at) {
+    return HybridSystem(one.structure(), one.contacts(),
+                        friction::Force{0.6, {{.amplitude = 1.0}, {.amplitude = 0.2, .order = 3}}}, {},
+                        Eigen::MatrixXd(Eigen::VectorXd::Unit(10, at)));
+  };
+  EXPECT_EQ(least_harmonics(driven(0), {}), 3);
+  EXPECT_EQ(least_harmonics(driven(0), {.order = 2}), 6);
+  EXPECT_EQ(least_harmonics(driven(5), {}), 1) << "it acts on the contact's mass";
+  const CertifiedMixed chosen = mixed_to_error(driven(0), {}, 1e-3);
+  EXPECT_TRUE(chosen.met);
+  EXPECT_EQ(chosen.trials.front().harmonics, 3);
+}
+
+TEST(Mixed, BeginsFromAGuess) {
+  const HybridSystem system = rubbed_ten();
+  const MixedOrbit coarse = mixed_orbit(system, {.harmonics = 9}), cold = mixed_orbit(system, {.harmonics = 15});
+  ASSERT_TRUE(coarse.converged && cold.converged);
+  const MixedOrbit warm =
+      mixed_orbit(system, {.harmonics = 15, .guess = MixedStart{coarse.near_orbit.start, coarse.coupling}});
+  ASSERT_TRUE(warm.converged) << warm.message;
+  EXPECT_LE(warm.iterations, 4);
+  EXPECT_LT(warm.iterations, cold.iterations);
+  EXPECT_LT((warm.coupling - cold.coupling).lpNorm<Eigen::Infinity>(), 1e-9);
+  EXPECT_THROW(static_cast<void>(mixed_orbit(system, {.guess = MixedStart{system.rest(), coarse.coupling}})),
+               InvalidInput);
 }
 
 std::string refusal(const HybridSystem& system, const MixedOptions& options) {

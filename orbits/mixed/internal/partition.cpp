@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <Eigen/SparseLU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -100,45 +101,19 @@ void put_phasor(Complex value, Eigen::Index b, Eigen::Index harmonics, Eigen::In
   if (k > 0) out_blocks[first + harmonics + k] = -value.imag();
 }
 
-Partition::Partition(const HybridSystem& system, int reach, int order, int harmonics)
-    : system_(system),
-      order_(order),
-      harmonics_(harmonics),
-      omega_(system.drive().force()->omega / order),
-      M_(fem::to_sparse(system.structure().M())),
-      C_(fem::to_sparse(system.structure().C())),
-      K_(fem::to_sparse(system.structure().K())) {
-  choose_near(reach);
-  make_near_part();
-  for (const friction::ForceHarmonic& h : system.drive().force()->harmonics)
-    if (h.order * order > harmonics && h.amplitude != 0.0 && !system.force_directions()(rest_, h.direction).isZero(0.0))
-      throw InvalidInput(
-          fmt::format("harmonics: {}; the force away from the contacts has harmonic {} of the orbit's "
-                      "period: valid: that or more",
-                      harmonics, h.order * order));
-  own_coupling_ = Eigen::VectorXd::Zero(coupled() * block());
-  Indices coupled_dofs;
-  for (Eigen::Index b = 0; b < coupled(); ++b) coupled_dofs.push_back(near_[static_cast<std::size_t>(boundary(b))]);
-  for (int k = 0; coupled() > 0 && k <= harmonics; ++k) {
-    Eigen::MatrixXcd right(std::ssize(rest_), coupled() + 1);
-    right << Eigen::MatrixXcd(stiffness(k, rest_, coupled_dofs)), loads(k, rest_);
-    const Eigen::MatrixXcd answer =
-        stiffness(k, coupled_dofs, rest_) * answers_at(stiffness(k, rest_, rest_), right, k, omega_);
-    impedance_.emplace_back(answer.leftCols(coupled()));
-    for (Eigen::Index b = 0; b < coupled(); ++b) put_phasor(-answer(b, coupled()), b, harmonics_, k, own_coupling_);
-  }
-}
-
-void Partition::choose_near(int reach) {
-  const Eigen::Index n = system_.size();
+Parts parts_of(const HybridSystem& system, int reach) {
+  const Eigen::Index n = system.size();
+  const std::array<fem::SparseMatrix, 3> matrices = {fem::to_sparse(system.structure().M()),
+                                                     fem::to_sparse(system.structure().C()),
+                                                     fem::to_sparse(system.structure().K())};
   std::vector<bool> is_near(static_cast<std::size_t>(n), false);
-  for (const friction::Contact& contact : system_.contacts())
+  for (const friction::Contact& contact : system.contacts())
     for (Eigen::Index i = 0; i < n; ++i)
       if (contact.direction[i] != 0.0) is_near[static_cast<std::size_t>(i)] = true;
   const auto each_coupling = [&](const auto& visit) {
-    for (const fem::SparseMatrix* A : {&M_, &C_, &K_})
+    for (const fem::SparseMatrix& A : matrices)
       for (Eigen::Index j = 0; j < n; ++j)
-        for (fem::SparseMatrix::InnerIterator it(*A, j); it; ++it)
+        for (fem::SparseMatrix::InnerIterator it(A, j); it; ++it)
           if (it.value() != 0.0) visit(static_cast<std::size_t>(it.row()), static_cast<std::size_t>(j));
   };
   for (int step = 0; step < reach; ++step) {
@@ -153,27 +128,66 @@ void Partition::choose_near(int reach) {
   each_coupling([&](std::size_t i, std::size_t j) {
     if (is_near[i] != is_near[j]) touches[i] = touches[j] = true;
   });
+  Parts out;
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto at = static_cast<std::size_t>(i);
-    if (is_near[at] && touches[at]) boundary_.push_back(std::ssize(near_));
-    (is_near[at] ? near_ : rest_).push_back(i);
+    if (is_near[at] && touches[at]) out.boundary.push_back(std::ssize(out.near));
+    (is_near[at] ? out.near : out.rest).push_back(i);
+  }
+  return out;
+}
+
+int highest_harmonic_on(const HybridSystem& system, const Indices& rest, int order) {
+  int highest = 1;
+  for (const friction::ForceHarmonic& h : system.drive().force()->harmonics)
+    if (h.amplitude != 0.0 && !system.force_directions()(rest, h.direction).isZero(0.0))
+      highest = std::max(highest, h.order * order);
+  return highest;
+}
+
+Partition::Partition(const HybridSystem& system, int reach, int order, int harmonics)
+    : system_(system),
+      order_(order),
+      harmonics_(harmonics),
+      omega_(system.drive().force()->omega / order),
+      M_(fem::to_sparse(system.structure().M())),
+      C_(fem::to_sparse(system.structure().C())),
+      K_(fem::to_sparse(system.structure().K())),
+      parts_(parts_of(system, reach)) {
+  make_near_part();
+  if (const int highest = highest_harmonic_on(system, parts_.rest, order); highest > harmonics)
+    throw InvalidInput(
+        fmt::format("harmonics: {}; the force away from the contacts has harmonic {} of the orbit's period: valid: "
+                    "that or more",
+                    harmonics, highest));
+  own_coupling_ = Eigen::VectorXd::Zero(coupled() * block());
+  Indices coupled_dofs;
+  for (Eigen::Index b = 0; b < coupled(); ++b)
+    coupled_dofs.push_back(parts_.near[static_cast<std::size_t>(boundary(b))]);
+  for (int k = 0; coupled() > 0 && k <= harmonics; ++k) {
+    Eigen::MatrixXcd right(std::ssize(parts_.rest), coupled() + 1);
+    right << Eigen::MatrixXcd(stiffness(k, parts_.rest, coupled_dofs)), loads(k, parts_.rest);
+    const Eigen::MatrixXcd answer =
+        stiffness(k, coupled_dofs, parts_.rest) * answers_at(stiffness(k, parts_.rest, parts_.rest), right, k, omega_);
+    impedance_.emplace_back(answer.leftCols(coupled()));
+    for (Eigen::Index b = 0; b < coupled(); ++b) put_phasor(-answer(b, coupled()), b, harmonics_, k, own_coupling_);
   }
 }
 
 void Partition::make_near_part() {
   const auto part = [&](const fem::SparseMatrix& A) -> Eigen::MatrixXd {
-    return Eigen::MatrixXcd(part_of(A.cast<Complex>(), near_, near_)).real();
+    return Eigen::MatrixXcd(part_of(A.cast<Complex>(), parts_.near, parts_.near)).real();
   };
   near_M_ = part(M_);
   near_C_ = part(C_);
   near_K_ = part(K_);
-  near_load_ = system_.load().size() > 0 ? Eigen::VectorXd(system_.load()(near_))
-                                         : Eigen::VectorXd::Zero(std::ssize(near_)).eval();
-  directions_ = Eigen::MatrixXd::Zero(std::ssize(near_), system_.force_directions().cols() + coupled());
-  directions_.leftCols(system_.force_directions().cols()) = system_.force_directions()(near_, Eigen::all);
+  near_load_ = system_.load().size() > 0 ? Eigen::VectorXd(system_.load()(parts_.near))
+                                         : Eigen::VectorXd::Zero(std::ssize(parts_.near)).eval();
+  directions_ = Eigen::MatrixXd::Zero(std::ssize(parts_.near), system_.force_directions().cols() + coupled());
+  directions_.leftCols(system_.force_directions().cols()) = system_.force_directions()(parts_.near, Eigen::all);
   for (Eigen::Index b = 0; b < coupled(); ++b) directions_(boundary(b), system_.force_directions().cols() + b) = 1.0;
   contacts_ = system_.contacts();
-  for (friction::Contact& contact : contacts_) contact.direction = contact.direction(near_).eval();
+  for (friction::Contact& contact : contacts_) contact.direction = contact.direction(parts_.near).eval();
 }
 
 HybridSystem Partition::system_under(const Eigen::VectorXd& coupling, double share) const {
@@ -197,7 +211,8 @@ HybridSystem Partition::system_under(const Eigen::VectorXd& coupling, double sha
   if (share < 1.0)
     for (friction::Contact& contact : contacts) contact.law = weakened(contact.law, share);
   std::vector<std::string> names;
-  for (const Eigen::Index i : near_) names.push_back(system_.structure().dof_names()[static_cast<std::size_t>(i)]);
+  for (const Eigen::Index i : parts_.near)
+    names.push_back(system_.structure().dof_names()[static_cast<std::size_t>(i)]);
   return {fem::Structure(near_M_, near_C_, near_K_, std::move(names), system_.structure().units()), std::move(contacts),
           std::move(force), std::move(load), directions_};
 }
@@ -226,12 +241,12 @@ Eigen::MatrixXd Partition::coupling_by(const Eigen::MatrixXd& motion) const {
 }
 
 Eigen::MatrixXcd Partition::rest_under(const Eigen::VectorXd& motion) const {
-  Eigen::MatrixXcd out(std::ssize(rest_), harmonics_ + 1);
-  for (int k = 0; k <= harmonics_ && !rest_.empty(); ++k) {
-    Eigen::VectorXcd moved = Eigen::VectorXcd::Zero(std::ssize(near_));
+  Eigen::MatrixXcd out(std::ssize(parts_.rest), harmonics_ + 1);
+  for (int k = 0; k <= harmonics_ && !parts_.rest.empty(); ++k) {
+    Eigen::VectorXcd moved = Eigen::VectorXcd::Zero(std::ssize(parts_.near));
     for (Eigen::Index b = 0; b < coupled(); ++b) moved[boundary(b)] = phasor(motion, b, harmonics_, k);
-    out.col(k) =
-        answers_at(stiffness(k, rest_, rest_), loads(k, rest_) - stiffness(k, rest_, near_) * moved, k, omega_);
+    out.col(k) = answers_at(stiffness(k, parts_.rest, parts_.rest),
+                            loads(k, parts_.rest) - stiffness(k, parts_.rest, parts_.near) * moved, k, omega_);
   }
   return out;
 }
@@ -239,7 +254,7 @@ Eigen::MatrixXcd Partition::rest_under(const Eigen::VectorXd& motion) const {
 Partition::Response Partition::without_contacts() const {
   Indices all(static_cast<std::size_t>(system_.size()));
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<Eigen::Index>(i);
-  Eigen::VectorXd q = Eigen::VectorXd::Zero(std::ssize(near_)), v = q;
+  Eigen::VectorXd q = Eigen::VectorXd::Zero(std::ssize(parts_.near)), v = q;
   Eigen::VectorXd motion = Eigen::VectorXd::Zero(coupled() * block());
   int highest = static_cast<int>(harmonics_);
   for (const friction::ForceHarmonic& h : system_.drive().force()->harmonics)
@@ -251,7 +266,7 @@ Partition::Response Partition::without_contacts() const {
     if (lu.info() != Eigen::Success) continue;  // floats, or resounds: the contacts hold it
     const Eigen::VectorXcd answer = lu.solve(load);
     if (!answer.allFinite()) continue;
-    const Eigen::VectorXcd near = answer(near_);
+    const Eigen::VectorXcd near = answer(parts_.near);
     q += near.real();
     v -= k * omega_ * near.imag();
     for (Eigen::Index b = 0; k <= harmonics_ && b < coupled(); ++b)

@@ -9,6 +9,18 @@
 
 namespace slipmode::orbits {
 
+/// Degrees of freedom, ascending.
+struct Parts {
+  std::vector<Eigen::Index> near, rest;
+  std::vector<Eigen::Index> boundary;  ///< places among the near ones of those that the rest is coupled to
+};
+/// @param reach  steps of coupling from a contact that are near it
+[[nodiscard]] Parts parts_of(const dynamics::HybridSystem& system, int reach);
+
+/// Highest harmonic of the drive, of an orbit over `order` of its periods, that acts on these; ≥ 1.
+[[nodiscard]] int highest_harmonic_on(const dynamics::HybridSystem& system, const std::vector<Eigen::Index>& rest,
+                                      int order);
+
 /// A structure parted into what is near its contacts and the rest, which is held to harmonics 0 … H of Ω.
 class Partition {
  public:
@@ -17,8 +29,8 @@ class Partition {
   /// @throws NumericalFailure  where the rest has no response at a harmonic
   Partition(const dynamics::HybridSystem& system, int reach, int order, int harmonics);
 
-  [[nodiscard]] const std::vector<Eigen::Index>& near() const { return near_; }
-  [[nodiscard]] Eigen::Index coupled() const { return std::ssize(boundary_); }
+  [[nodiscard]] const std::vector<Eigen::Index>& near() const { return parts_.near; }
+  [[nodiscard]] Eigen::Index coupled() const { return std::ssize(parts_.boundary); }
   [[nodiscard]] Eigen::Index harmonics() const { return harmonics_; }
   /// Real numbers per force: a constant, H cosines, H sines.
   [[nodiscard]] Eigen::Index block() const { return 2 * harmonics_ + 1; }
@@ -26,7 +38,7 @@ class Partition {
   /// Force directions of the near system before those of the coupling.
   [[nodiscard]] Eigen::Index own_directions() const { return directions_.cols() - coupled(); }
   /// Index of a coupled degree of freedom among the near ones.
-  [[nodiscard]] Eigen::Index boundary(Eigen::Index b) const { return boundary_[static_cast<std::size_t>(b)]; }
+  [[nodiscard]] Eigen::Index boundary(Eigen::Index b) const { return parts_.boundary[static_cast<std::size_t>(b)]; }
   /// The near part under these coupling forces, its contacts' forces in this share.
   /// @param coupling  blocks of the coupled degrees of freedom [coupled · block]
   [[nodiscard]] dynamics::HybridSystem system_under(const Eigen::VectorXd& coupling, double share = 1.0) const;
@@ -48,7 +60,6 @@ class Partition {
  private:
   using SparseComplex = Eigen::SparseMatrix<std::complex<double>>;
 
-  void choose_near(int reach);
   void make_near_part();
   /// (K + ikΩC − k²Ω²M)(rows, columns)
   [[nodiscard]] SparseComplex stiffness(int k, const std::vector<Eigen::Index>& rows,
@@ -61,7 +72,7 @@ class Partition {
   Eigen::Index harmonics_;
   double omega_;
   fem::SparseMatrix M_, C_, K_;
-  std::vector<Eigen::Index> near_, rest_, boundary_;
+  Parts parts_;
   std::vector<friction::Contact> contacts_;  ///< of the near part
   Eigen::MatrixXd directions_;               ///< of forces on it
   Eigen::MatrixXd near_M_, near_C_, near_K_;
