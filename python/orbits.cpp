@@ -12,8 +12,10 @@
 #include "python/result.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <pybind11/eigen.h>
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <optional>
@@ -65,20 +67,24 @@ struct BranchCertificates {
 
 /// How an orbit is looked for.
 struct Method {
-  bool balances = false;
+  bool balances = false, mixes = false;
   studies::OrbitSearch search;
-  studies::BalanceWords words;     ///< if so, as they were given, with
+  studies::BalanceWords words;     ///< of either, as they were given, with
   std::string start = "settle";    ///< and
   studies::BalanceSearch balance;  ///< what they say
+  studies::MixedSearch mixed;      ///< likewise
 };
 
-Method method_of(Keywords& keywords, const Scene& scene) {
+/// @param ways  words of `by`
+Method method_of(Keywords& keywords, const Scene& scene, const std::vector<std::string>& ways) {
   Method method;
   const std::string by = keywords.text("by", "shooting");
-  if (by != "shooting" && by != "balance") keywords.refuse("by", py::str(by), "\"shooting\" or \"balance\"");
+  if (std::ranges::find(ways, by) == ways.end())
+    keywords.refuse("by", py::str(by), fmt::format("one of {}", fmt::join(ways, ", ")));
   method.balances = by == "balance";
+  method.mixes = by == "mixed";
   keywords.read(method.search);
-  if (!method.balances) {
+  if (!method.balances && !method.mixes) {
     read_start(keywords, scene.size(), method.search);
     return method;
   }
@@ -87,7 +93,10 @@ Method method_of(Keywords& keywords, const Scene& scene) {
   const py::object start = keywords.take("start");
   if (start && !py::isinstance<py::str>(start)) keywords.refuse("start", start, "\"contact\" or \"gap\"");
   if (start) method.start = start.cast<std::string>();
-  method.balance = studies::balance_search(method.words, method.start, method.search.order);
+  if (method.balances)
+    method.balance = studies::balance_search(method.words, method.start, method.search.order);
+  else
+    method.mixed = studies::mixed_search(method.words, method.start, method.search.order);
   return method;
 }
 
@@ -96,11 +105,10 @@ orbits::ShootingOptions certifying(const studies::OrbitSearch& search) {
 }
 
 /// Newton's method found no balance, or none that meets the error.
-void require_balance(const studies::BalanceFound& found, const std::optional<Result>& kept) {
+void require_balance(const studies::BalanceFound& found, const std::vector<orbits::OrderTrial>& trials,
+                     const std::optional<Result>& kept) {
   if (found.balance.converged && found.met) return;
-  const std::string why = found.balance.converged
-                              ? fmt::format("the error asked is not met up to {} harmonics", found.balance.harmonics)
-                              : found.balance.message;
+  const std::string why = found.balance.converged ? studies::not_met(trials) : found.balance.message;
   raise(NumericalFailure(why, 0.0, {}, found.balance.residual), kept ? py::cast(*kept) : py::none());
 }
 
@@ -114,17 +122,37 @@ Result find_balance(const Scene& scene, const Method& method, const ModelChoice&
     if (own->balance.converged) kept.emplace(studies::content_of(family, own));
     return std::pair(own, std::move(kept));
   });
-  require_balance(*found, result);
+  require_balance(*found, found->trials, result);
   return *result;
+}
+
+Result find_mixed(const Scene& scene, const Method& method, const ModelChoice& choice, Call& call) {
+  if (!method.mixed.certify && !method.mixed.error)
+    throw InvalidInput(
+        "find_orbit: by = 'mixed': what is kept of a mixed orbit is the exact orbit behind it; add certify=True");
+  const auto [found, result] = call([&] {
+    const studies::Family family(scene, {}, choice.basis(scene, call.options()));
+    call.options().check_interrupt();
+    const auto own = std::make_shared<const studies::MixedFound>(
+        studies::find_mixed(family, method.mixed, certifying(method.search)));
+    std::optional<Result> kept;
+    if (own->certificate && own->certificate->behind) kept.emplace(studies::content_of(family, own));
+    return std::pair(own, std::move(kept));
+  });
+  if (result && found->met) return *result;
+  std::string why = found->mixed.message;
+  if (found->mixed.converged) why = found->met ? found->certificate->verdict : studies::not_met(found->trials);
+  raise(NumericalFailure(why, 0.0, {}, found->mixed.residual), result ? py::cast(*result) : py::none());
 }
 
 Result find_orbit(const Scene& scene, const py::kwargs& given) {
   Keywords keywords("find_orbit", given);
-  const Method method = method_of(keywords, scene);
+  const Method method = method_of(keywords, scene, {"shooting", "balance", "mixed"});
   const studies::OrbitSearch& search = method.search;
   const ModelChoice choice(keywords);
   Call call(keywords);
   if (method.balances) return find_balance(scene, method, choice, call);
+  if (method.mixes) return find_mixed(scene, method, choice, call);
   const auto [found, result] = call([&] {
     const studies::Family family(scene, {}, choice.basis(scene, call.options()));
     call.options().check_interrupt();
@@ -162,7 +190,7 @@ Result continue_balance(const Scene& scene, const std::string& over, const Metho
           call.options()));
     return std::pair(std::move(own), std::move(kept));
   });
-  require_balance(found.found, result);
+  require_balance(found.found, found.trials.empty() ? found.found.trials : found.trials, result);
   require_whole(found.branch, found.start, *result);
   return *result;
 }
@@ -170,7 +198,7 @@ Result continue_balance(const Scene& scene, const std::string& over, const Metho
 Result continue_orbit(const Scene& scene, const std::string& over, double to, const std::optional<double>& from,
                       const py::kwargs& given) {
   Keywords keywords("continue_orbit", given);
-  const Method method = method_of(keywords, scene);
+  const Method method = method_of(keywords, scene, {"shooting", "balance"});
   const studies::OrbitSearch& search = method.search;
   studies::ContinuationRequest request;
   keywords.read(request);
@@ -252,11 +280,14 @@ void add_orbits(py::module_& module) {
   const std::string search =
       "    start: \"settle\" (a run from [initial]), \"initial\", or displacements and velocities\n" + model_text() +
       options_text<studies::OrbitSearch>() +
-      "    by: \"shooting\" (exact), or \"balance\": truncated Fourier series of the contacts\n" +
+      "    by: \"shooting\" (exact), \"balance\": truncated Fourier series of the contacts, or \"mixed\" "
+      "(find_orbit):\n"
+      "        contacts in the time domain, the rest in series, and the exact orbit behind: with certify or error\n" +
       options_text<studies::BalanceWords>() + "    start of a balance: \"contact\" (all stops pressing), or \"gap\"\n";
-  module.def(
-      "find_orbit", &find_orbit, py::arg("scene"),
-      ("A periodic orbit, its multipliers and one period of it; or a balance.\n\n" + search + call_text()).c_str());
+  module.def("find_orbit", &find_orbit, py::arg("scene"),
+             ("A periodic orbit, its multipliers and one period of it; a balance; or a mixed orbit.\n\n" + search +
+              call_text())
+                 .c_str());
   module.def("continue_orbit", &continue_orbit, py::arg("scene"), py::arg("over"), py::arg("to"),
              py::arg("from_") = py::none(),
              ("Branches of periodic orbits over a key. They begin at the scene's own value of the key where the range\n"

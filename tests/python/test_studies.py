@@ -29,6 +29,8 @@ QUICK = {**SHORT, "validation.transient": 100.0, "validation.block": 200.0, "val
          "validation.speeds.from": 0.5, "validation.speeds.to": 0.3, "validation.speeds.step": 0.1}
 BACKLASH = DATASETS / "backlash_sdof/scene.toml"
 PLAY = DATASETS / "play_oscillator/scene.toml"
+JENKINS = DATASETS / "jenkins_chain/scene.toml"
+STOP = DATASETS / "stop_2mass/scene.toml"
 
 
 class BesideTheExecutable(unittest.TestCase):
@@ -163,6 +165,19 @@ class BesideTheExecutable(unittest.TestCase):
         self.assert_same(sm.continue_orbit(omega, over="drive.omega", from_=1.0, to=1.1, by="balance", certify=True,
                                            every=5), self.folder / "branch.h5", apart={"provenance/overrides"})
 
+    def test_mixed_orbits(self):
+        for flags, options in ((("--certify",), {"certify": True}),
+                               (("--harmonics", "auto", "--error", 1e-6), {"error": 1e-6}),
+                               (("--harmonics", 5, "--near", 1, "--certify"), {"harmonics": 5, "near": 1, "certify": True})):
+            with self.subTest(options):
+                self.executable("orbit", "find", JENKINS, "--by", "mixed", *flags, "-o", self.folder / "mixed.h5")
+                self.assert_same(sm.find_orbit(JENKINS, by="mixed", **options), self.folder / "mixed.h5")
+        chosen = sm.find_orbit(JENKINS, by="mixed", error=1e-6)
+        self.assertLessEqual(chosen["mixed/relative"], 1e-6)
+        self.assertEqual(chosen["mixed/trials"]["harmonics"][-1], chosen["mixed/harmonics"])
+        self.assertEqual(chosen["mixed/near"], ["x5", "x10"])
+        self.assertEqual(chosen.kind, "orbit")
+
     def test_sweep_of_full_and_reduced(self):
         scene = sm.Scene.load(CHAIN, set=QUICK)
         rom = sm.reduce(scene, sm.pod(sm.ensemble(scene)), modes=3)
@@ -252,6 +267,11 @@ class KnownValues(unittest.TestCase):
     def test_a_balance_that_is_not_found(self):
         with self.assertRaisesRegex(sm.NumericalFailure, "not met"):
             sm.find_orbit(PLAY, by="balance", error=1e-300)
+
+    def test_a_mixed_orbit_that_does_not_meet_the_error_says_how_near_it_came(self):
+        with self.assertRaisesRegex(sm.NumericalFailure, "not met up to 175 harmonics: the least is") as caught:
+            sm.find_orbit(STOP, by="mixed", error=1e-300)
+        self.assertLess(caught.exception.result["mixed/relative"], 1e-12)
 
     def test_all_modes_of_a_basis_move_as_the_full_model(self):
         scene = sm.Scene.load(CHAIN, set=SHORT)
@@ -345,6 +365,11 @@ class Refused(unittest.TestCase):
                 (lambda: sm.find_orbit(BACKLASH, by="balance", samples=3, harmonics=9), "more than 18"),
                 (lambda: sm.find_orbit(BACKLASH, by="balance", start=[1.0, 0.0]), "contact"),
                 (lambda: sm.find_orbit(scene, by="balance"), "balance"),
+                (lambda: sm.find_orbit(JENKINS, by="mixed"), "certify=True"),
+                (lambda: sm.find_orbit(JENKINS, by="mixed", samples=64), "samples"),
+                (lambda: sm.find_orbit(JENKINS, by="mixed", near=-1), "near = -1"),
+                (lambda: sm.find_orbit(JENKINS, by="other"), "shooting, balance, mixed"),
+                (lambda: sm.continue_orbit(JENKINS, over="drive.omega", to=1.0, by="mixed"), "shooting, balance"),
                 (lambda: sm.continue_orbit(BACKLASH, over="drive.omega", to=1.1, by="balance", switch=True), "shooting"),
                 (lambda: sm.find_orbit(BACKLASH, by="balance", harmonics=True), "a number or a word"),
                 (lambda: sm.continue_orbit(BACKLASH, over="drive.omega", to=1.1, by="balance", every=5), "certify"),
