@@ -1,13 +1,11 @@
 #include <slipmode/core/files.hpp>
-#include <slipmode/results/trade_store.hpp>
 #include <slipmode/scene/own_times.hpp>
 #include <slipmode/studies/advice.hpp>
 #include <slipmode/studies/result_file.hpp>
-#include <slipmode/trade/variants.hpp>
+#include "cli/field_options.hpp"
 #include "cli/json_values.hpp"
 #include "cli/text_table.hpp"
 #include "cli/trade_report.hpp"
-#include "cli/trade_request.hpp"
 #include "cli/verbs.hpp"
 
 #include <fmt/format.h>
@@ -19,35 +17,11 @@ namespace slipmode::cli {
 namespace {
 
 struct AdviseArguments {
-  std::string scene, output, question, measure, write, error = "2%";
+  std::string scene, output, write;
+  studies::AdviceWords words;
 };
 
 constexpr std::array kQuestions = {trade::Question::kMotion, trade::Question::kStatistics};
-
-studies::AdviceRequest request_of(const AdviseArguments& arguments) {
-  studies::AdviceRequest request{.bound = parse_percent("--error", arguments.error)};
-  if (!arguments.measure.empty()) request.only = parse_measure(arguments.measure);
-  if (arguments.question.empty()) return request;
-  for (const trade::Question question : kQuestions) {
-    if (trade::to_string(question) == arguments.question) request.question = question;
-  }
-  if (!request.question) {
-    throw InvalidInput(fmt::format("--question {}: no such question; valid: motion, statistics", arguments.question));
-  }
-  if (request.only && trade::question_of(*request.only) != *request.question) {
-    throw InvalidInput(fmt::format("--measure {}: answers the question {}, not {}; give one of the two options",
-                                   arguments.measure, trade::to_string(trade::question_of(*request.only)),
-                                   arguments.question));
-  }
-  return request;
-}
-
-/// The answer to one question alone, of every effect.
-trade::Judgement judged(const studies::Advice& advice, std::size_t effect, trade::Question question) {
-  const trade::Ask& asked = advice.asked.ask;
-  return trade::judge(advice.study.rows[advice.lean->alone[effect]],
-                      question == asked.question ? asked : trade::Ask{.question = question, .bound = asked.bound});
-}
 
 std::string error_cell(const trade::Judgement& judgement) {
   return std::isnan(judgement.error) ? "–" : trade::error_text(judgement);
@@ -84,7 +58,7 @@ std::string effects_text(const studies::Advice& advice) {
     const trade::Row& row = advice.study.rows[advice.lean->alone[e]];
     std::vector<std::string> cells = {row.variant.name};
     for (const trade::Question question : kQuestions) {
-      const trade::Judgement judgement = judged(advice, e, question);
+      const trade::Judgement judgement = studies::judged(advice, e, question);
       const bool nothing = judgement.verdict == trade::Verdict::kUnclear && std::isnan(judgement.error);
       cells.emplace_back(nothing ? "–" : trade::to_string(judgement.verdict));
       cells.push_back(error_cell(judgement));
@@ -110,10 +84,10 @@ Json effect_json(const studies::Advice& advice, std::size_t e) {
   const trade::Effect& effect = advice.effects[e];
   const trade::Row& row = advice.study.rows[advice.lean->alone[e]];
   Json out = merged({{"effect", effect.name}, {"kind", trade::to_string(effect.kind)}, {"row", row.variant.name}},
-                    judgement_json(judged(advice, e, advice.asked.ask.question)),
+                    judgement_json(studies::judged(advice, e, advice.asked.ask.question)),
                     Json{{"time_share", json_number(trade::time_share(advice.study, row))}});
   for (const trade::Question question : kQuestions) {
-    out[std::string(trade::to_string(question))] = judgement_json(judged(advice, e, question));
+    out[std::string(trade::to_string(question))] = judgement_json(studies::judged(advice, e, question));
   }
   return out;
 }
@@ -139,15 +113,14 @@ Json lean_json(const studies::Advice& advice) {
 
 Report report_of(const studies::Advice& advice, const scene::Scene& scene) {
   const studies::Asked& asked = advice.asked;
-  const std::string found = asked.sentence + '\n';
-  const std::string said = trade::lean_sentences(scene, *advice.lean, advice.effects, advice.study, asked.ask);
+  const std::string sentences = studies::advice_text(scene, advice);
   Report report;
-  report.text = fmt::format("{}\n{}{}\n{}\n{}", scene.title, found, said, steps_text(advice), effects_text(advice));
+  report.text = fmt::format("{}\n{}\n{}\n{}", scene.title, sentences, steps_text(advice), effects_text(advice));
   Json effects = Json::array(), steps = Json::array();
   for (std::size_t e = 0; e < advice.effects.size(); ++e) effects.push_back(effect_json(advice, e));
   for (const trade::Step& step : advice.lean->steps) steps.push_back(step_json(advice, step));
   report.data = {{"verb", "advise"},
-                 {"sentence", found + said},
+                 {"sentence", sentences},
                  {"question", trade::to_string(asked.ask.question)},
                  {"limit_percent", asked.ask.bound},
                  {"exponent", asked.exponent ? json_number(*asked.exponent) : Json()},
@@ -164,14 +137,14 @@ Report run(const Session& session, const AdviseArguments& arguments) {
   if (!arguments.output.empty()) require_writable(arguments.output);
   if (!arguments.write.empty()) require_writable(arguments.write);
   const scene::Scene scene = scene::with_own_times(session.load(arguments.scene));
-  const studies::AdviceRequest request = request_of(arguments);
+  const studies::AdviceRequest request = studies::advice_request(arguments.words);
   std::vector<trade::Effect> effects = trade::effects_of(scene);
-  studies::ResultFile file(arguments.output, scene, results::FileKind::kTrade, "slipmode advise",
-                           fmt::format("{}", request.bound), session.division(),
+  studies::ResultFile file(arguments.output, scene, results::FileKind::kTrade, studies::command_of(request),
+                           studies::identity_of(request), session.division(),
                            studies::Pieces{effects.size(), "effects"}, studies::Unfinished::kKept);
   const studies::Advice advice =
       studies::advise(scene, std::move(effects), request, session.run_options(), file.journal());
-  file.finish([&](results::StoreWriter& writer) { results::store_study(writer, advice.study, scene); });
+  file.finish([&](results::StoreWriter& writer) { studies::store(writer, scene, advice); });
   if (session.has_a_share()) return part_made(session, file, arguments.output, "configurations");
 
   Report report = report_of(advice, scene);
@@ -181,8 +154,7 @@ Report run(const Session& session, const AdviseArguments& arguments) {
     report.text += fmt::format("Result: {}\n", arguments.output);
   }
   if (arguments.write.empty()) return report;
-  const trade::Variant lean =
-      advice.lean->verified ? advice.study.rows[*advice.lean->verified].variant : trade::as_it_stands(scene);
+  const trade::Variant lean = studies::lean_variant(scene, advice);
   write_renamed(arguments.write, trade::scene_text(lean));
   report.data["scene"] = arguments.write;
   report.text += fmt::format("Scene: {}\n{}", arguments.write, how_to_run(lean, arguments.write));
@@ -196,13 +168,7 @@ Verb add_advise(CLI::App& app) {
   const auto arguments = std::make_shared<AdviseArguments>();
   command->add_option("SCENE", arguments->scene, "scene file (TOML)")->required();
   command->add_option("-o,--output", arguments->output, "result file (HDF5)");
-  command->add_option("--question", arguments->question,
-                      "motion: where everything is up to the horizon; statistics: of the settled motion; default: "
-                      "the one that the motion found can answer");
-  command->add_option(
-      "--measure", arguments->measure,
-      "the one measure that counts: dX, dE, points, spread, energy, stick; default: all of the question");
-  command->add_option("--error", arguments->error, "bound of what may change; default 2%");
+  add_fields(*command, arguments->words);
   command->add_option("--write", arguments->write, "write the scene with only what it requires (TOML)");
   command->footer(
       "Example:\n  slipmode advise datasets/chain10/scene.toml --error 2% --write lean.toml\n"

@@ -1,83 +1,41 @@
 #include <slipmode/core/files.hpp>
 #include <slipmode/figures/gnuplot.hpp>
 #include <slipmode/figures/trade_figures.hpp>
-#include <slipmode/results/provenance.hpp>
-#include <slipmode/results/trade_store.hpp>
 #include <slipmode/scene/own_times.hpp>
-#include <slipmode/studies/bases.hpp>
 #include <slipmode/studies/result_file.hpp>
-#include <slipmode/trade/variants.hpp>
+#include <slipmode/studies/trade_off.hpp>
+#include "cli/field_options.hpp"
 #include "cli/trade_report.hpp"
-#include "cli/trade_request.hpp"
 #include "cli/verbs.hpp"
 
 #include <fmt/format.h>
-#include <algorithm>
-#include <iterator>
 
 namespace slipmode::cli {
 namespace {
 
-constexpr double kLimit = 1.0;  // percent, where none is asked for
-
 struct TradeArguments {
-  std::string scene, output, figures, axes, budget, error, write;
-  std::string measure = "dE";
-  bool product = false;
+  std::string scene, output, figures, write;
+  studies::TradeWords words;
 };
-
-trade::Wish wish_of(const TradeArguments& arguments, const scene::Scene& scene) {
-  trade::Wish wish{.measure = parse_measure(arguments.measure), .duration = scene.time.duration};
-  if (!arguments.error.empty()) wish.limit = parse_percent("--error", arguments.error);
-  if (!arguments.budget.empty()) wish.budget = parse_duration("--budget", arguments.budget);
-  if (!arguments.write.empty() && !wish.limit && !wish.budget) wish.limit = kLimit;
-  return wish;
-}
-
-/// The scene as it stands first; --axes decides about the others.
-std::vector<trade::Variant> variants_of(const scene::Scene& scene, const std::vector<trade::Axis>& axes,
-                                        const std::vector<trade::OfferedBasis>& bases, bool product) {
-  std::vector<trade::Variant> all = {trade::as_it_stands(scene)};
-  for (const trade::Axis axis : axes) std::ranges::move(trade::along(axis, scene, bases), std::back_inserter(all));
-  if (product) std::ranges::move(trade::product(all), std::back_inserter(all));
-  return all;
-}
 
 Report run(const Session& session, const TradeArguments& arguments) {
   if (!arguments.output.empty()) require_writable(arguments.output);
   if (!arguments.write.empty()) require_writable(arguments.write);
   if (!arguments.figures.empty()) figures::require_gnuplot();
   const scene::Scene scene = scene::with_own_times(session.load(arguments.scene));
-  const trade::Wish wish = wish_of(arguments, scene);
-  const std::vector<trade::Axis> available = trade::axes_of(scene);
-  const std::vector<trade::Axis> axes =
-      arguments.axes.empty() ? available : trade::parse_axes(arguments.axes, available);
-  trade::Schedule schedule = trade::schedule_of(scene);
-  const bool reduces = std::ranges::find(axes, trade::Axis::kModes) != axes.end();
-  const auto bases =
-      reduces ? studies::offered_bases(scene, session.run_options()) : std::vector<trade::OfferedBasis>();
-  session.check_interrupt();
-  const double limit = wish.limit.value_or(kLimit);
-
-  const std::vector<trade::Variant> variants = variants_of(scene, axes, bases, arguments.product);
-  std::string identity;
-  for (const trade::Axis axis : axes) identity += trade::to_string(axis);
-  studies::ResultFile file(arguments.output, scene, results::FileKind::kTrade,
-                           fmt::format("slipmode trade{}", arguments.product ? " --product" : ""), identity,
-                           session.division(), studies::Pieces{variants.size(), "configurations known beforehand"},
+  studies::TradeRequest request = studies::trade_request(arguments.words, scene);
+  if (!arguments.write.empty() && !request.chooses()) request.wish.limit = request.limit();
+  const studies::TradePlan plan = studies::trade_plan(scene, request, session.run_options());
+  studies::ResultFile file(arguments.output, scene, results::FileKind::kTrade, studies::command_of(request),
+                           studies::identity_of(request), session.division(),
+                           studies::Pieces{plan.variants.size(), "configurations known beforehand"},
                            studies::Unfinished::kKept);
-  trade::StudyOptions options{.schedule = schedule};
-  options.parallel = session.run_options().parallel("trade");
-  if (file.journal() != nullptr) results::keep_in(*file.journal(), options);
-  if (!arguments.product) {
-    options.more = [&](const std::vector<trade::Row>& rows) { return trade::worth_combining(rows, limit); };
-  }
-  const trade::Study done = trade::study(scene, trade::reference_of(scene), variants, bases, options);
-  file.finish([&](results::StoreWriter& writer) { results::store_study(writer, done, scene); });
+  const trade::Study done = studies::trade_off(scene, request, plan, session.run_options(), file.journal());
+  file.finish([&](results::StoreWriter& writer) { studies::store(writer, scene, request, done); });
   if (session.has_a_share()) return part_made(session, file, arguments.output, "configurations");
 
   Report report;
-  const std::vector<std::string> advice = recommendations(done, limit);
+  const std::vector<std::string> advice = trade::recommendations(done, request.limit());
   report.data = {{"verb", "trade"}, {"trade", to_json(done, scene)}, {"recommendations", advice}};
   report.text = study_text(done, scene);
   for (const std::string& sentence : advice) report.text += sentence + '\n';
@@ -90,8 +48,8 @@ Report run(const Session& session, const TradeArguments& arguments) {
     report.data["figures"] = figures::save_trade_figures(done, scene, arguments.figures);
     report.text += fmt::format("Figures: {}\n", arguments.figures);
   }
-  if (!wish.limit && !wish.budget) return report;
-  const trade::Choice choice = trade::choose(done, wish);
+  if (!request.chooses()) return report;
+  const trade::Choice choice = trade::choose(done, request.wish);
   const trade::Row& row = done.rows[choice.row];
   report.data["choice"] = {{"name", row.variant.name}, {"sentence", choice.sentence}};
   report.text += choice.sentence + '\n';
@@ -110,14 +68,7 @@ Verb add_trade(CLI::App& app) {
   command->add_option("SCENE", arguments->scene, "scene file (TOML)")->required();
   command->add_option("-o,--output", arguments->output, "result file (HDF5)");
   command->add_option("--figures", arguments->figures, "folder for a Pareto front of each measure; made if missing");
-  command->add_option("--axes", arguments->axes,
-                      "what is varied: modes, flow, theory, elements, law, load; default: all the scene has");
-  command->add_flag("--product", arguments->product,
-                    "every reduced model with every flow, not only the promising ones");
-  command->add_option("--measure", arguments->measure, "what --error limits: dX, dE, points, spread, energy, stick");
-  command->add_option("--error", arguments->error, "pick the cheapest that keeps to it, e.g. 1%");
-  command->add_option("--budget", arguments->budget,
-                      "pick the most accurate whose run of [time] takes no more processor time, e.g. 10s");
+  add_fields(*command, arguments->words);
   command->add_option("--write", arguments->write, "write what was picked as a scene (TOML)");
   command->footer(
       "Example:\n  slipmode trade datasets/chain10/scene.toml -o trade.h5 --figures out/trade\n"

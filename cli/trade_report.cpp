@@ -47,14 +47,6 @@ std::string runs_text(double runs) {
 
 }  // namespace
 
-std::vector<std::string> recommendations(const Study& study, double limit) {
-  std::vector<std::string> out;
-  for (std::size_t m = 0; m < trade::kMeasures; ++m) {
-    out.push_back(trade::recommendation(study, static_cast<Measure>(m), limit));
-  }
-  return out;
-}
-
 Json to_json(const Study& study, const scene::Scene& scene) {
   Json rows = Json::array();
   for (const Row& row : study.rows) rows.push_back(row_json(study, row, scene.time.duration));

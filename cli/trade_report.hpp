@@ -5,12 +5,8 @@
 #include "cli/session.hpp"
 
 #include <string>
-#include <vector>
 
 namespace slipmode::cli {
-
-/// One sentence per measure, for the same limit [%].
-[[nodiscard]] std::vector<std::string> recommendations(const trade::Study& study, double limit);
 
 [[nodiscard]] Json to_json(const trade::Study& study, const scene::Scene& scene);
 /// The table for a terminal.

@@ -68,7 +68,8 @@ class Keywords {
         refuse(field.name, value, integer_text(field.limits));
       return static_cast<Limit>(number);
     } else if constexpr (std::is_same_v<T, std::optional<std::string>>) {
-      if (py::isinstance<py::bool_>(value) || (!py::isinstance<py::str>(value) && PyIndex_Check(value.ptr()) == 0))
+      const bool number = PyIndex_Check(value.ptr()) != 0 || py::isinstance<py::float_>(value);
+      if (py::isinstance<py::bool_>(value) || (!py::isinstance<py::str>(value) && !number))
         refuse(field.name, value, "a number or a word");
       return py::str(value).cast<std::string>();
     } else {

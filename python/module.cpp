@@ -15,5 +15,6 @@ PYBIND11_MODULE(_slipmode, module) {
   slipmode::python::add_motions(module);
   slipmode::python::add_orbits(module);
   slipmode::python::add_sweeps(module);
+  slipmode::python::add_trades(module);
   slipmode::python::add_diagnoses(module);
 }

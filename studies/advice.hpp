@@ -1,22 +1,47 @@
 #pragma once
 
+#include <slipmode/core/fields.hpp>
 #include <slipmode/results/journal.hpp>
+#include <slipmode/results/store.hpp>
 #include <slipmode/scene/scene.hpp>
 #include <slipmode/studies/run_options.hpp>
 #include <slipmode/trade/lean.hpp>
 
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace slipmode::studies {
 
-/// What is asked of `advise`.
+/// What is asked of `advise`, as a user says it.
+struct AdviceWords {
+  std::optional<std::string> question = {}, measure = {}, error = {};
+
+  static constexpr auto fields() {
+    using Own = AdviceWords;
+    return std::tuple{
+        optional("question", &Own::question, "",
+                 "motion: where everything is up to the horizon; statistics: of the settled motion; default: the one "
+                 "that the motion found can answer"),
+        optional("measure", &Own::measure, "",
+                 "the one measure that counts: dX, dE, points, spread, energy, stick; default: all of the question"),
+        optional("error", &Own::error, "", "bound of what may change; default 2%")};
+  }
+};
+
+/// The same, understood.
 struct AdviceRequest {
   std::optional<trade::Question> question = {};  ///< empty: the one that the motion found can answer
   double bound = 2.0;                            ///< largest change of a measure [%]
   std::optional<trade::Measure> only = {};       ///< the one measure that counts
 };
+
+/// @throws InvalidInput  for words that are none, and a measure that does not answer the question
+[[nodiscard]] AdviceRequest advice_request(const AdviceWords& words);
+/// As the executable would be asked, for provenance; and what else decides what is measured.
+[[nodiscard]] std::string command_of(const AdviceRequest& request);
+[[nodiscard]] std::string identity_of(const AdviceRequest& request);
 
 /// Which question is answered, and why.
 struct Asked {
@@ -55,5 +80,15 @@ struct Advice {
 /// @throws as trade::study
 [[nodiscard]] Advice advise(const scene::Scene& scene, std::vector<trade::Effect> effects, const AdviceRequest& request,
                             const RunOptions& run = {}, results::Journal* journal = nullptr);
+
+/// What was found and what follows, in sentences, a line each. @param advice  with a lean scene
+[[nodiscard]] std::string advice_text(const scene::Scene& scene, const Advice& advice);
+/// The answer to one question alone, of every effect.
+[[nodiscard]] trade::Judgement judged(const Advice& advice, std::size_t effect, trade::Question question);
+/// With only what the scene requires; itself where nothing can be left out.
+[[nodiscard]] trade::Variant lean_variant(const scene::Scene& scene, const Advice& advice);
+
+/// What is kept: every row, the sentences, a verdict for each effect, the steps, and the lean scene.
+void store(results::StoreWriter& writer, const scene::Scene& scene, const Advice& advice);
 
 }  // namespace slipmode::studies

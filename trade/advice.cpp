@@ -151,6 +151,12 @@ Choice choose(const Study& study, const Wish& wish) {
   return {.row = *picked, .sentence = fmt::format("{} {}", asked, use_text(study, study.rows[*picked], wish.measure))};
 }
 
+std::vector<std::string> recommendations(const Study& study, double limit) {
+  std::vector<std::string> out;
+  for (std::size_t m = 0; m < kMeasures; ++m) out.push_back(recommendation(study, static_cast<Measure>(m), limit));
+  return out;
+}
+
 std::vector<Variant> worth_combining(const std::vector<Row>& rows, double limit) {
   constexpr std::size_t kLoosest = 2;
   std::vector<Variant> all;

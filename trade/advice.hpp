@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace slipmode::trade {
 
@@ -33,6 +34,9 @@ struct Choice {
 
 /// One sentence for a limit, whether or not it can be met.
 [[nodiscard]] std::string recommendation(const Study& study, Measure measure, double limit);
+
+/// One sentence per measure, for the same limit [%].
+[[nodiscard]] std::vector<std::string> recommendations(const Study& study, double limit);
 
 /// Reduced models with a looser flow, worth trying: for each measure and each basis the smallest model that is assured
 /// to keep to the limit, with the two loosest flows that do. Each once; with all modes there is nothing to combine.

@@ -105,6 +105,18 @@ def contact(at, law, **numbers):
 # ---------------------------------------------------------------- results
 
 
+def _aligned(rows):
+    """Rows of texts, column below column."""
+    width = [max(map(len, column)) for column in zip(*rows)]
+    return "\n".join("  ".join(map(str.ljust, row, width)).rstrip() for row in rows)
+
+
+def _html_table(header, rows):
+    lines = ("".join(f"<td>{html.escape(cell)}</td>" for cell in row) for row in rows)
+    return "<table><tr>" + "".join(f"<th>{name}</th>" for name in header) + "</tr>" + "".join(
+        f"<tr>{line}</tr>" for line in lines) + "</table>"
+
+
 def _is_complex(value, description):
     return isinstance(value, np.ndarray) and value.shape[-1:] == (2,) and description.endswith("(real, imaginary)")
 
@@ -193,13 +205,10 @@ class _Branch:
             yield name, said if len(said) <= 40 else said[:37] + "...", unit, meaning
 
     def __repr__(self):
-        rows = list(self._rows())
-        width = [max((len(row[k]) for row in rows), default=0) for k in range(3)]
-        return "\n".join("  ".join([*(row[k].ljust(width[k]) for k in range(3)), row[3]]).rstrip() for row in rows)
+        return _aligned(list(self._rows()))
 
     def _repr_html_(self):
-        rows = "".join("<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>" for row in self._rows())
-        return f"<table><tr><th>name</th><th>value</th><th>unit</th><th>meaning</th></tr>{rows}</table>"
+        return _html_table(("name", "value", "unit", "meaning"), self._rows())
 
 
 class Result(_Branch):
@@ -324,10 +333,82 @@ class Run(Result):
         return [*super().__dir__(), "t", "lambda_"]
 
 
+class Trade(Result):
+    """Speed against accuracy: rows is a structured array with a row for each configuration, the reference first; printed it
+    is a table."""
+
+    _table_name = "trade/candidates"
+    _shown = ("name", "dX", "dE", "points", "spread", "energy", "stick", "time", "failure")
+
+    @property
+    def rows(self):
+        """A row each."""
+        return self[self._table_name]
+
+    @property
+    def sentences(self):
+        """What follows, a line each."""
+        said = list(self["trade/recommendations"])
+        return "\n".join([*said, self["trade/choice/sentence"]] if "trade/choice/sentence" in self else said)
+
+    @property
+    def chosen(self):
+        """The scene of the configuration that error or budget picked."""
+        if "trade/choice/scene" not in self:
+            raise InvalidInput("trade: nothing was to be chosen; give error or budget")
+        if not self["trade/choice/scene"]:
+            raise InvalidInput(self["trade/choice/sentence"])
+        return _slipmode.parse_scene(self["trade/choice/scene"], [], "<chosen>")
+
+    def _cells(self):
+        """Header, then the rows, as texts."""
+        rows = self.rows
+        columns = []
+        for name in self._shown:
+            unit = self.unit(f"{self._table_name}/{name}")
+            said = [("-" if np.isnan(value) else f"{value:.3g}") if isinstance(value, float) else str(value)
+                    for value in rows[name].tolist()]
+            columns.append([f"{name} [{unit}]" if unit not in ("", "1") else name, *said])
+        return list(zip(*columns))
+
+    def __repr__(self):
+        return f"<slipmode {self.kind}>\n{self.sentences}\n{_aligned(self._cells())}"
+
+    def _repr_html_(self):
+        header, *rows = self._cells()
+        said = html.escape(self.sentences).replace("\n", "<br>")
+        return f"<p>{said}</p>{_html_table(header, rows)}"
+
+
+class Advice(Trade):
+    """What a scene requires: rows is a structured array with the verdict of each effect; printed it is a table."""
+
+    _table_name = "advice/effects"
+    _shown = ("effect", "verdict", "measure", "error", "noise")
+
+    @property
+    def sentences(self):
+        return self["advice/sentences"].rstrip()
+
+    @property
+    def lean(self):
+        """The scene with only what it requires."""
+        return _slipmode.parse_scene(self["advice/scene"], [], "<lean>")
+
+
+def _kind_of(store):
+    if store.kind == "trade":
+        names = store.names()
+        if "advice/sentences" in names:
+            return Advice
+        return Trade if "trade/recommendations" in names else Result
+    return Run if store.kind in ("trajectory", "orbit") else Result
+
+
 def read(path):
     """A result file, all of it in memory. Kinds, names and units are those the file gives itself."""
     store = _slipmode.read(os.fspath(path))
-    return (Run if store.kind in ("trajectory", "orbit") else Result)(store)
+    return _kind_of(store)(store)
 
 
 # ---------------------------------------------------------------- studies
@@ -429,6 +510,8 @@ sweep = _study("sweep")
 orbit_map = _study("orbit_map")
 basins = _study("basins")
 exponents = _study("exponents")
+_trade = _study("trade", Trade)
+advise = _study("advise", Advice)
 run = _study("run", list)
 values = _slipmode.values
 
@@ -458,5 +541,9 @@ def diagnose(record, **options):
     return _diagnose(record, **options)
 
 
-for _function in (modes, pod, reduce, spectrum, diagnose):
+def trade(scene, axes=None, **options):
+    return _trade(scene, axes=",".join(axes) if isinstance(axes, (list, tuple)) else axes, **options)
+
+
+for _function in (modes, pod, reduce, spectrum, diagnose, trade):
     _named(_function, _function.__name__)

@@ -1,6 +1,7 @@
 """Studies from Python beside the executable's files and known values."""
 
 import io
+import json
 import os
 import pathlib
 import shutil
@@ -237,6 +238,109 @@ class BesideTheExecutable(unittest.TestCase):
             sm.read(self.folder / "own.h5")
 
 
+# Three masses between free ends: a study takes a second.
+FREE = {
+    "title": "free ends", "units": "dimensionless",
+    "structure": {"kind": "chain", "masses": 3, "stiffness": 1.0, "ground_stiffness": 0.3, "damping": 0.01,
+                  "ends": "free-free"},
+    "contact": [{"at": 2, "law": "stribeck", "mu_s": 0.4, "mu_k": 0.2, "alpha": 5.0, "normal_load": 2.0}],
+    "drive": {"kind": "belt", "speed": 0.2},
+    "time": {"duration": 300.0, "transient": 100.0, "sample": 0.5},
+    "ensemble": {"members": 3, "seed": 7, "spread": 0.1},
+    "reduction": {"basis": "pom", "energy": 0.99},
+    "validation": {"speeds": {"from": 0.4, "to": 0.2, "step": 0.05}, "transient": 100.0, "block": 400.0, "limit": 800.0,
+                   "sweep_limit": 800.0, "horizon": 10.0, "horizon_starts": 2, "orbits": [0.3],
+                   "lyapunov_duration": 400.0, "cost_duration": 100.0, "cost_repeats": 1},
+}
+
+
+class Trades(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.scene = self.folder / "free.toml"
+        self.scene.write_text(sm.Scene.load(FREE).toml())
+
+    def executable(self, verb, *options):
+        done = subprocess.run([EXECUTABLE, verb, self.scene, *options, "--json", "--quiet"], capture_output=True,
+                              text=True, check=True)
+        return json.loads(done.stdout)
+
+    def assert_measured_alike(self, rows, candidates):
+        """What no clock decides: names, errors, scatter, to the last bit."""
+        self.assertEqual(list(rows["name"][1:]), [one["name"] for one in candidates])
+        for measure in ("dX", "dE", "points", "spread", "energy", "stick"):
+            for column, key in ((measure, "error_percent"), (f"{measure}_noise", "noise_percent")):
+                theirs = [np.nan if one[key][measure] is None else one[key][measure] for one in candidates]
+                np.testing.assert_array_equal(rows[column][1:], theirs, err_msg=column)
+
+    def test_trade_measures_what_the_executable_does(self):
+        theirs = self.executable("trade", "--axes", "modes,flow", "--error", "5%")
+        ours = sm.trade(self.scene, axes=["modes", "flow"], error="5%", output=self.folder / "trade.h5")
+        self.assert_measured_alike(ours.rows, theirs["trade"]["candidates"])
+        self.assertEqual(len(ours["trade/recommendations"]), 6)
+        self.assertEqual(ours["trade/reference"], theirs["trade"]["reference"]["name"])
+        picked = ours.rows[ours.rows["name"] == ours["trade/choice/name"]]
+        self.assertLessEqual(picked["dE"][0], 5.0)
+        self.assertIn("for dE under 5 % use", ours["trade/choice/sentence"])
+        self.assertIsInstance(ours.chosen, sm.Scene)
+        text = repr(ours)
+        self.assertIn("dE [%]", text)
+        for name in ours.rows["name"]:
+            self.assertIn(f"\n{name}  ", text)
+        self.assertIn("<td>", ours._repr_html_())
+        self.assertIsInstance(sm.read(self.folder / "trade.h5"), sm.Trade)
+        self.assertEqual(list(sm.read(self.folder / "trade.h5").rows["dE"]), list(ours.rows["dE"]))
+
+    def test_what_nothing_keeps_to_says_so_and_gives_the_rows(self):
+        done = sm.trade(self.scene, axes="flow", budget="0.0001ms")
+        self.assertGreater(len(done.rows), 5)
+        with self.assertRaisesRegex(sm.InvalidInput, "the cheapest that exists: "):
+            done.chosen
+        self.assertIn("the cheapest that exists: ", str(done))
+        with self.assertRaisesRegex(sm.InvalidInput, "give error or budget"):
+            sm.trade(self.scene, axes="flow").chosen
+
+    def test_advice_is_the_executables(self):
+        theirs = self.executable("advise", "--question", "statistics", "--error", "5%")
+        ours = sm.advise(self.scene, question="statistics", error=5)
+        self.assert_measured_alike(ours["trade/candidates"], theirs["study"]["candidates"])
+        self.assertEqual([(row["effect"], row["verdict"], row["measure"]) for row in ours.rows],
+                         [(one["effect"], one["verdict"], one["measure"]) for one in theirs["effects"]])
+        np.testing.assert_array_equal(ours.rows["error"], [one["error_percent"] for one in theirs["effects"]])
+        self.assertEqual([(row["effect"], bool(row["left_out"])) for row in ours["advice/steps"]],
+                         [(one["effect"], one["left_out"]) for one in theirs["steps"]])
+        self.assertEqual(ours["advice/left_out"], theirs["lean"]["left_out"])
+        self.assertEqual(ours.lean.get("flow.tolerance"), 1e-3)
+        self.assertTrue(ours.sentences.startswith("The motion is "))
+        self.assertIn("static friction peak", repr(ours))
+
+    def test_an_interrupted_trade_goes_on_in_the_executable(self):
+        changes = {"validation.limit": 4e4, "validation.block": 4e4}
+        for verb in ("trade", "advise"):
+            with self.subTest(verb):
+                output = self.folder / f"{verb}.h5"
+                journal = pathlib.Path(f"{output}.journal")
+                others = []
+
+                def interrupt():
+                    while not journal.exists() or journal.stat().st_size < 500:
+                        others.append(time.sleep(1e-3))  # beside the study: it does not hold Python's lock
+                    os.kill(os.getpid(), signal.SIGINT)
+
+                thread = threading.Thread(target=interrupt)
+                with self.assertRaises(KeyboardInterrupt):
+                    thread.start()
+                    getattr(sm, verb)(sm.Scene.load(self.scene, set=changes), output=output, threads=1)
+                thread.join()
+                self.assertGreater(len(others), 10)
+                self.assertTrue(journal.exists() and not output.exists())
+                options = [word for key, value in changes.items() for word in ("--set", f"{key}={value!r}")]
+                self.assertGreater(self.executable(verb, "-o", output, *options)["resumed"], 0)
+                self.assertTrue(output.exists() and not journal.exists())
+
+
 class KnownValues(unittest.TestCase):
     def test_multipliers_of_a_linear_oscillator(self):
         # In the gap the mass is free but for c = 0.05: multipliers 1 and exp(-c T), T = 2 pi / 1.4.
@@ -366,6 +470,14 @@ class Refused(unittest.TestCase):
                 (lambda: sm.find_orbit(BACKLASH, by="balance", start=[1.0, 0.0]), "contact"),
                 (lambda: sm.find_orbit(scene, by="balance"), "balance"),
                 (lambda: sm.find_orbit(JENKINS, by="mixed"), "certify=True"),
+                (lambda: sm.trade(scene, axes=["modes", "colour"]), "no axis 'colour'; valid: modes"),
+                (lambda: sm.trade(scene, error="much"), "expected a share in percent"),
+                (lambda: sm.trade(scene, budget=-1), "expected a time in s"),
+                (lambda: sm.trade(scene, product=1), "True or False"),
+                (lambda: sm.trade(scene, modes=3), "valid: axes, product, measure, error, budget"),
+                (lambda: sm.advise(scene, question="colour"), "valid: motion, statistics"),
+                (lambda: sm.advise(scene, question="motion", measure="energy"), "answers the question statistics"),
+                (lambda: sm.advise(scene, error=True), "a number or a word"),
                 (lambda: sm.find_orbit(JENKINS, by="mixed", samples=64), "samples"),
                 (lambda: sm.find_orbit(JENKINS, by="mixed", near=-1), "near = -1"),
                 (lambda: sm.find_orbit(JENKINS, by="other"), "shooting, balance, mixed"),

@@ -1,13 +1,12 @@
 #pragma once
 
-#include <slipmode/scene/scene.hpp>
 #include <slipmode/trade/measures.hpp>
-#include "cli/session.hpp"
 
 #include <string>
-#include <vector>
 
-namespace slipmode::cli {
+// Words that `trade` and `advise` share.
+
+namespace slipmode::studies {
 
 /// "1%", "0.5 %", "2": percent. @throws InvalidInput  for anything else, or a number that is not positive
 [[nodiscard]] double parse_percent(const std::string& option, const std::string& text);
@@ -16,4 +15,4 @@ namespace slipmode::cli {
 /// @throws InvalidInput  for an unknown word, naming the valid ones
 [[nodiscard]] trade::Measure parse_measure(const std::string& word);
 
-}  // namespace slipmode::cli
+}  // namespace slipmode::studies

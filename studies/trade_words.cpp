@@ -1,9 +1,12 @@
-#include "cli/trade_request.hpp"
+#include <slipmode/studies/trade_words.hpp>
+
+#include <slipmode/core/errors.hpp>
 
 #include <fmt/format.h>
 #include <charconv>
+#include <optional>
 
-namespace slipmode::cli {
+namespace slipmode::studies {
 namespace {
 
 /// A positive number and what follows it, blanks in between left out.
@@ -47,4 +50,4 @@ trade::Measure parse_measure(const std::string& word) {
   throw InvalidInput(fmt::format("--measure {}: no such measure; valid: {}", word, valid));
 }
 
-}  // namespace slipmode::cli
+}  // namespace slipmode::studies
