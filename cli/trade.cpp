@@ -30,14 +30,19 @@ Report run(const Session& session, const TradeArguments& arguments) {
                            studies::identity_of(request), session.division(),
                            studies::Pieces{plan.variants.size(), "configurations known beforehand"},
                            studies::Unfinished::kKept);
-  const trade::Study done = studies::trade_off(scene, request, plan, session.run_options(), file.journal());
-  file.finish([&](results::StoreWriter& writer) { studies::store(writer, scene, request, done); });
+  const studies::TradeFound found = studies::trade_off(scene, request, plan, session.run_options(), file.journal());
+  file.finish([&](results::StoreWriter& writer) { studies::store(writer, scene, request, found); });
   if (session.has_a_share()) return part_made(session, file, arguments.output, "configurations");
 
+  const trade::Study& done = found.study;
   Report report;
-  const std::vector<std::string> advice = trade::recommendations(done, request.limit());
+  const std::vector<std::string> advice = found.recommendations(request.limit());
   report.data = {{"verb", "trade"}, {"trade", to_json(done, scene)}, {"recommendations", advice}};
   report.text = study_text(done, scene);
+  if (found.orbits) {
+    report.data["orbits"] = to_json(*found.orbits);
+    report.text += orbits_text(*found.orbits);
+  }
   for (const std::string& sentence : advice) report.text += sentence + '\n';
   tell_resumed(session, file.resumed(), "configurations", report);
   if (!arguments.output.empty()) {

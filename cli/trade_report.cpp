@@ -90,6 +90,37 @@ std::string study_text(const Study& study, const scene::Scene& scene) {
       study.schedule.duration, study.schedule.timed, table.str(), failures_text(study));
 }
 
+Json to_json(const trade::OrbitStudy& study) {
+  const auto row_of = [](const trade::OrbitRow& row) {
+    return merged(fields_json(row), Json{{"axis", trade::to_string(row.axis)}});
+  };
+  Json rows = Json::array();
+  for (const trade::OrbitRow& row : study.rows) rows.push_back(row_of(row));
+  return {{"regimes", study.word}, {"reference", row_of(study.reference)}, {"rows", rows}};
+}
+
+std::string orbits_text(const trade::OrbitStudy& study) {
+  TextTable table({"way to the periodic orbit", "error %", "time ms", "faster", ""});
+  const auto add = [&](const trade::OrbitRow& row) {
+    table.add({row.name, trade::percent_text(row.error),
+               milliseconds({.cpu = row.cpu, .cpu_low = row.cpu_low, .cpu_high = row.cpu_high}),
+               fixed(study.reference.cpu / row.cpu, 2), row.other.empty() ? "" : "another orbit: " + row.other});
+  };
+  add(study.reference);
+  std::string failures;
+  for (const trade::OrbitRow& row : study.rows) {
+    if (row.failure.empty())
+      add(row);
+    else
+      failures += fmt::format("  {}: {}\n", row.name, row.failure);
+  }
+  if (!study.reference.failure.empty()) failures += "  shooting: " + study.reference.failure + "\n";
+  return fmt::format(
+      "Periodic orbit \"{}\": error of the contacts' displacements over a period, of a half range; times from "
+      "nothing.\n{}{}",
+      study.word, table.str(), failures.empty() ? "" : "Without an error:\n" + failures);
+}
+
 std::string failures_text(const Study& study) {
   std::string text;
   for (const Row& row : study.rows) {

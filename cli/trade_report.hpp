@@ -1,6 +1,7 @@
 #pragma once
 
 #include <slipmode/trade/advice.hpp>
+#include <slipmode/trade/orbit_methods.hpp>
 #include <slipmode/trade/study.hpp>
 #include "cli/session.hpp"
 
@@ -11,6 +12,9 @@ namespace slipmode::cli {
 [[nodiscard]] Json to_json(const trade::Study& study, const scene::Scene& scene);
 /// The table for a terminal.
 [[nodiscard]] std::string study_text(const trade::Study& study, const scene::Scene& scene);
+
+[[nodiscard]] Json to_json(const trade::OrbitStudy& study);
+[[nodiscard]] std::string orbits_text(const trade::OrbitStudy& study);
 
 /// Why rows have no errors; empty where all have.
 [[nodiscard]] std::string failures_text(const trade::Study& study);

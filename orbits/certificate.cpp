@@ -138,6 +138,13 @@ Certificate shoot_behind(const dynamics::HybridSystem& system, const dynamics::S
   return out;
 }
 
+Certificate distance_from(const ShootingResult& known, const Claim& claim, const dynamics::HybridSystem& system) {
+  Certificate out;
+  out.found = known;
+  judge(claim, OrbitBehind(system, known.orbit), out);
+  return out;
+}
+
 /// @param first  order @param solve  of an order, from the best so far that has an orbit behind, or nullptr
 template <class Approximation, class Solve>
 ToError<Approximation> to_error(const dynamics::HybridSystem& system, double error, int first, int most,
@@ -185,6 +192,14 @@ Certificate certify(const dynamics::HybridSystem& system, const Balance& balance
 Certificate certify(const dynamics::HybridSystem& system, const MixedOrbit& mixed, const ShootingOptions& options) {
   std::optional<OrbitBehind> behind;
   return shoot_behind(system, state_of(system, mixed), mixed.order, claim_of(mixed), options, behind);
+}
+
+Certificate compare(const dynamics::HybridSystem& system, const Balance& balance, const ShootingResult& known) {
+  return distance_from(known, claim_of(balance), system);
+}
+
+Certificate compare(const dynamics::HybridSystem& system, const MixedOrbit& mixed, const ShootingResult& known) {
+  return distance_from(known, claim_of(mixed), system);
 }
 
 CertifiedBalance balance_to_error(const dynamics::HybridSystem& system, BalanceOptions options, double error, int most,

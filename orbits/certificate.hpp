@@ -31,6 +31,12 @@ struct Certificate {
 [[nodiscard]] Certificate certify(const dynamics::HybridSystem& system, const MixedOrbit& mixed,
                                   const ShootingOptions& options = {});
 
+/// The distance from an orbit that is known, without shooting. @param known  has converged
+[[nodiscard]] Certificate compare(const dynamics::HybridSystem& system, const Balance& balance,
+                                  const ShootingResult& known);
+[[nodiscard]] Certificate compare(const dynamics::HybridSystem& system, const MixedOrbit& mixed,
+                                  const ShootingResult& known);
+
 /// sup |y_balance − y_orbit| of each contact [m].
 [[nodiscard]] std::vector<double> true_errors(const Balance& balance, const OrbitSeries& orbit);
 

@@ -26,8 +26,8 @@ Result trade_off(const Scene& given_scene, const py::kwargs& given) {
     const studies::TradePlan plan = studies::trade_plan(scene, request, call.options());
     studies::ResultFile file(output, scene, results::FileKind::kTrade, studies::command_of(request),
                              studies::identity_of(request), {}, {}, studies::Unfinished::kKept);
-    const auto done =
-        std::make_shared<const trade::Study>(studies::trade_off(scene, request, plan, call.options(), file.journal()));
+    const auto done = std::make_shared<const studies::TradeFound>(
+        studies::trade_off(scene, request, plan, call.options(), file.journal()));
     return Result(file.finish(
         [scene, request, done](results::StoreWriter& writer) { studies::store(writer, scene, request, *done); }));
   });

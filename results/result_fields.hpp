@@ -14,6 +14,7 @@
 #include <slipmode/orbits/skeleton_compare.hpp>
 #include <slipmode/orbits/spectrum.hpp>
 #include <slipmode/trade/clock.hpp>
+#include <slipmode/trade/orbit_methods.hpp>
 #include <slipmode/trade/schedule.hpp>
 
 namespace slipmode {
@@ -275,6 +276,21 @@ inline constexpr auto kFields<trade::RunCost> = [] {
                     timed("time_high_s", &Own::cpu_high, "time_high", "its largest"),
                     timed("wall_s", &Own::wall, "wall", "time of the clock, median"),
                     timed("setup_s", &Own::setup, "setup", "building, projection and modal data, once")};
+}();
+
+template <>
+inline constexpr auto kFields<trade::OrbitRow> = [] {
+  using Own = trade::OrbitRow;
+  using results::timed;
+  return std::tuple{
+      required("name", &Own::name, "", "the way"),
+      required("options", &Own::options, "", "of slipmode orbit find"),
+      required("error_percent", &Own::error, "%", "sup over the period, of a contact's half range").stored_as("error"),
+      timed("time_s", &Own::cpu, "time", "processor time of finding it, median"),
+      timed("time_low_s", &Own::cpu_low, "time_low", "its least"),
+      timed("time_high_s", &Own::cpu_high, "time_high", "its largest"),
+      required("other", &Own::other, "", "regimes of the orbit behind, where it is another one"),
+      required("failure", &Own::failure, "", "why it has no error; empty: it has")};
 }();
 
 template <>

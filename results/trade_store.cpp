@@ -5,6 +5,7 @@
 #include <slipmode/trade/advice.hpp>
 #include "results/internal/field_record.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <iterator>
 #include <optional>
@@ -32,10 +33,10 @@ std::vector<double> numbers(const std::vector<Row>& rows, const Value& value) {
   return out;
 }
 
-template <class Value>
-std::vector<std::string> texts(const std::vector<Row>& rows, const Value& value) {
+template <class Own, class Value>
+std::vector<std::string> texts(const std::vector<Own>& rows, const Value& value) {
   std::vector<std::string> out;
-  for (const Row& row : rows) out.push_back(std::string(value(row)));
+  for (const Own& row : rows) out.push_back(std::string(value(row)));
   return out;
 }
 
@@ -114,6 +115,17 @@ void store_study(StoreWriter& writer, const trade::Study& study, const scene::Sc
   save(writer, group + "/candidates", candidate_table(study, scene));
   writer.write(group + "/reference", study.reference.variant.name, {"", "what errors are measured against"});
   save_fields(writer, group, study.schedule);
+}
+
+void store_orbits(StoreWriter& writer, const trade::OrbitStudy& study) {
+  std::vector<trade::OrbitRow> rows = {study.reference};
+  rows.insert(rows.end(), study.rows.begin(), study.rows.end());
+  Table table{"ways to the periodic orbit: errors against the first one, shooting, and times", columns_of(rows)};
+  table.columns.push_back({"axis", {"", "in what it differs"}, texts(rows, [](const trade::OrbitRow& row) {
+                             return trade::to_string(row.axis);
+                           })});
+  save(writer, fmt::format("{}/orbits", kTradeGroup), table);
+  writer.write(fmt::format("{}/regimes", kTradeGroup), study.word, {"", "of the periodic orbit"});
 }
 
 }  // namespace slipmode::results

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 namespace slipmode::studies {
@@ -33,8 +34,14 @@ TradePlan trade_plan(const scene::Scene& scene, const TradeRequest& request, con
   return out;
 }
 
-trade::Study trade_off(const scene::Scene& scene, const TradeRequest& request, const TradePlan& plan,
-                       const RunOptions& run, results::Journal* journal) {
+std::vector<std::string> TradeFound::recommendations(double limit) const {
+  std::vector<std::string> out = trade::recommendations(study, limit);
+  if (orbits) out.push_back(trade::recommendation(*orbits, limit));
+  return out;
+}
+
+TradeFound trade_off(const scene::Scene& scene, const TradeRequest& request, const TradePlan& plan,
+                     const RunOptions& run, results::Journal* journal) {
   trade::StudyOptions options{.schedule = trade::schedule_of(scene)};
   options.parallel = run.parallel("trade");
   if (journal != nullptr) results::keep_in(*journal, options);
@@ -43,7 +50,14 @@ trade::Study trade_off(const scene::Scene& scene, const TradeRequest& request, c
       return trade::worth_combining(rows, limit);
     };
   }
-  return trade::study(scene, trade::reference_of(scene), plan.variants, plan.bases, options);
+  TradeFound out{.study = trade::study(scene, trade::reference_of(scene), plan.variants, plan.bases, options)};
+  std::vector<trade::OrbitMethod> methods;
+  for (const trade::Axis axis : request.axes)
+    std::ranges::move(trade::orbit_methods(axis, scene), std::back_inserter(methods));
+  const bool timed = !std::isnan(out.study.reference.cost.cpu);
+  if (timed && !methods.empty())
+    out.orbits = trade::study_orbits(scene, methods, options.schedule.repeats, run.parallel("orbits"));
+  return out;
 }
 
 std::string command_of(const TradeRequest& request) {
@@ -57,11 +71,12 @@ std::string identity_of(const TradeRequest& request) {
 }
 
 void store(results::StoreWriter& writer, const scene::Scene& scene, const TradeRequest& request,
-           const trade::Study& study) {
+           const TradeFound& found) {
   const std::string group = results::kTradeGroup;
+  const trade::Study& study = found.study;
   results::store_study(writer, study, scene);
-  writer.write(group + "/recommendations", trade::recommendations(study, request.limit()),
-               {"", "a sentence for each measure"});
+  if (found.orbits) results::store_orbits(writer, *found.orbits);
+  writer.write(group + "/recommendations", found.recommendations(request.limit()), {"", "a sentence for each measure"});
   if (!request.chooses()) return;
   std::string name, sentence, text;
   try {

@@ -5,6 +5,7 @@
 #include <slipmode/scene/scene.hpp>
 #include <slipmode/studies/run_options.hpp>
 #include <slipmode/trade/advice.hpp>
+#include <slipmode/trade/orbit_methods.hpp>
 #include <slipmode/trade/study.hpp>
 
 #include <optional>
@@ -24,7 +25,9 @@ struct TradeWords {
     using Own = TradeWords;
     return std::tuple{
         optional("axes", &Own::axes, "",
-                 "what is varied: modes, flow, theory, elements, law, load; default: all the scene has"),
+                 "what is varied: modes, flow, theory, elements, law, load; of the periodic orbit under a force "
+                 "harmonics, samples, "
+                 "mixed; default: all the scene has"),
         optional("product", &Own::product, "", "every reduced model with every flow, not only the promising ones"),
         optional("measure", &Own::measure, "", "what error limits: dX, dE, points, spread, energy, stick; default dE"),
         optional("error", &Own::error, "", "pick the cheapest that keeps to it, e.g. 1%"),
@@ -56,12 +59,21 @@ struct TradePlan {
 /// @throws Interrupted  when the stop flag was set
 [[nodiscard]] TradePlan trade_plan(const scene::Scene& scene, const TradeRequest& request, const RunOptions& run = {});
 
+struct TradeFound {
+  trade::Study study;
+  /// Where an axis is of periodic orbits, and times were taken.
+  std::optional<trade::OrbitStudy> orbits = {};
+
+  /// A sentence for each measure, and for the orbit. @param limit  [%]
+  [[nodiscard]] std::vector<std::string> recommendations(double limit) const;
+};
+
 /// Configurations along the axes against the best affordable model of the scene; reduced models and flows that are
-/// promising together too.
+/// promising together too. Then ways to the scene's periodic orbit, along the axes of those.
 /// @param journal  keeps what is measured and gives back what was; nullptr: in memory only
 /// @throws as trade::study
-[[nodiscard]] trade::Study trade_off(const scene::Scene& scene, const TradeRequest& request, const TradePlan& plan,
-                                     const RunOptions& run = {}, results::Journal* journal = nullptr);
+[[nodiscard]] TradeFound trade_off(const scene::Scene& scene, const TradeRequest& request, const TradePlan& plan,
+                                   const RunOptions& run = {}, results::Journal* journal = nullptr);
 
 /// As the executable would be asked, for provenance; and what else decides what is measured.
 [[nodiscard]] std::string command_of(const TradeRequest& request);
@@ -70,6 +82,6 @@ struct TradePlan {
 /// What is kept: every row, a sentence for each measure and, where one was to be picked, the choice and its scene, or
 /// why there is none.
 void store(results::StoreWriter& writer, const scene::Scene& scene, const TradeRequest& request,
-           const trade::Study& study);
+           const TradeFound& found);
 
 }  // namespace slipmode::studies

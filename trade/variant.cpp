@@ -12,8 +12,9 @@ namespace slipmode::trade {
 
 namespace {
 
-constexpr std::array<std::string_view, 10> kAxes = {"scene", "modes", "flow",     "theory", "elements",
-                                                    "law",   "load",  "combined", "effect", "lean"};
+constexpr std::array<std::string_view, 13> kAxes = {"scene",    "modes",  "flow",      "theory",  "elements",
+                                                    "law",      "load",   "harmonics", "samples", "mixed",
+                                                    "combined", "effect", "lean"};
 
 /// True when the scene, or an override of it, has that table, be it a seed alone.
 bool has_table(const scene::Scene& scene, const std::string& name) {

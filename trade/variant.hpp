@@ -15,19 +15,23 @@ namespace slipmode::trade {
 
 /// In what a configuration differs from its scene.
 enum class Axis : std::uint8_t {
-  kScene,     ///< in nothing
-  kModes,     ///< a reduced model: basis and number of modes
-  kFlow,      ///< method and tolerance of the flow
-  kTheory,    ///< beam theory
-  kElements,  ///< elements of the beam
-  kLaw,       ///< contact law: rigid, compliant, regularised
-  kLoad,      ///< model of the normal load
-  kCombined,  ///< a reduced model and a tolerance
-  kEffect,    ///< effects left out, or one put in
-  kLean,      ///< all that can be left out together, as it is written
+  kScene,      ///< in nothing
+  kModes,      ///< a reduced model: basis and number of modes
+  kFlow,       ///< method and tolerance of the flow
+  kTheory,     ///< beam theory
+  kElements,   ///< elements of the beam
+  kLaw,        ///< contact law: rigid, compliant, regularised
+  kLoad,       ///< model of the normal load
+  kHarmonics,  ///< of a periodic orbit: order of a balance
+  kSamples,    ///< likewise: samples of the alternating scheme
+  kMixed,      ///< likewise: order, and reach, of the mixed method
+  kCombined,   ///< a reduced model and a tolerance
+  kEffect,     ///< effects left out, or one put in
+  kLean,       ///< all that can be left out together, as it is written
 };
 
-/// "scene", "modes", "flow", "theory", "elements", "law", "load", "combined", "effect", "lean".
+/// "scene", "modes", "flow", "theory", "elements", "law", "load", "harmonics", "samples", "mixed", "combined",
+/// "effect", "lean".
 [[nodiscard]] std::string_view to_string(Axis axis);
 
 /// A reduced model as [reduction] says it.

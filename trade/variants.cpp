@@ -2,6 +2,7 @@
 
 #include <slipmode/core/errors.hpp>
 #include <slipmode/dynamics/prepare.hpp>
+#include <slipmode/trade/orbit_methods.hpp>
 #include "trade/internal/laws.hpp"
 
 #include <fmt/format.h>
@@ -170,6 +171,9 @@ std::vector<Axis> axes_of(const scene::Scene& scene) {
   for (const Axis axis : {Axis::kFlow, Axis::kTheory, Axis::kElements, Axis::kLaw, Axis::kLoad}) {
     if (!along(axis, scene, {}).empty()) axes.push_back(axis);
   }
+  for (const Axis axis : {Axis::kHarmonics, Axis::kSamples, Axis::kMixed}) {
+    if (!orbit_methods(axis, scene).empty()) axes.push_back(axis);
+  }
   return axes;
 }
 
@@ -205,6 +209,9 @@ std::vector<Variant> along(Axis axis, const scene::Scene& scene, const std::vect
     case Axis::kLoad:
       return of(axis, other_loads(scene));
     case Axis::kScene:
+    case Axis::kHarmonics:
+    case Axis::kSamples:
+    case Axis::kMixed:
     case Axis::kCombined:
     case Axis::kEffect:
     case Axis::kLean:

@@ -25,9 +25,9 @@ inline constexpr double kReferenceTolerance = 1e-12;
 /// Words of --axes. @throws InvalidInput  for an unknown one, or one that the scene does not have; both name the valid
 [[nodiscard]] std::vector<Axis> parse_axes(const std::string& words, const std::vector<Axis>& available);
 
-/// The configurations along one axis, the scene's own value left out. Flows, laws and loads are those that the contacts
-/// can have: a tilted contact has no regularised law. On kModes every basis with every number of modes asked for in
-/// [validation], by default 1 to its size, thinned to at most twelve.
+/// The configurations along one axis, the scene's own value left out; none on those of periodic orbits (orbit_methods).
+/// Flows, laws and loads are those that the contacts can have: a tilted contact has no regularised law. On kModes every
+/// basis with every number of modes asked for in [validation], by default 1 to its size, thinned to at most twelve.
 [[nodiscard]] std::vector<Variant> along(Axis axis, const scene::Scene& scene, const std::vector<OfferedBasis>& bases);
 
 /// 1 to `size`, thinned evenly by ratio to at most twelve numbers, ascending. None for a size below 1.

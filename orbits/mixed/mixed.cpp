@@ -182,6 +182,8 @@ int least_harmonics(const HybridSystem& system, const MixedOptions& options) {
   return highest_harmonic_on(system, parts_of(system, options.reach).rest, options.order);
 }
 
+std::vector<Eigen::Index> near_dofs(const HybridSystem& system, int reach) { return parts_of(system, reach).near; }
+
 MixedOrbit mixed_orbit(const HybridSystem& system, const MixedOptions& options) {
   check(system, options);
   const Partition partition(system, options.reach, options.order, options.harmonics);

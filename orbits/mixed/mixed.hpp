@@ -74,6 +74,9 @@ struct MixedOrbit {
 /// @throws InvalidInput  as mixed_orbit
 [[nodiscard]] int least_harmonics(const dynamics::HybridSystem& system, const MixedOptions& options);
 
+/// Degrees of freedom that contacts act on, and those coupled to them within `reach` steps; ascending.
+[[nodiscard]] std::vector<Eigen::Index> near_dofs(const dynamics::HybridSystem& system, int reach);
+
 /// Newton's residual and Jacobian at a start of the near part and coupling forces, scaled as `mixed_orbit` solves them:
 /// for checks. `point`: (q_1, q̇_1, internal), then the forces at each coupled degree of freedom (constant, cosine
 /// 1 … H, sine 1 … H)

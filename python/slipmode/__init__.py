@@ -334,8 +334,8 @@ class Run(Result):
 
 
 class Trade(Result):
-    """Speed against accuracy: rows is a structured array with a row for each configuration, the reference first; printed it
-    is a table."""
+    """Speed against accuracy: rows is a structured array with a row for each configuration, the reference first; of a scene
+    under a force orbits is one too, of ways to its periodic orbit. Printed they are tables."""
 
     _table_name = "trade/candidates"
     _shown = ("name", "dX", "dE", "points", "spread", "energy", "stick", "time", "failure")
@@ -360,24 +360,32 @@ class Trade(Result):
             raise InvalidInput(self["trade/choice/sentence"])
         return _slipmode.parse_scene(self["trade/choice/scene"], [], "<chosen>")
 
-    def _cells(self):
+    @property
+    def _tables(self):
+        """Names of the tables that are printed, and of their columns."""
+        yield self._table_name, self._shown
+        if "trade/orbits/name" in self:
+            yield "trade/orbits", ("name", "error", "time", "other", "failure")
+
+    def _cells(self, table, shown):
         """Header, then the rows, as texts."""
-        rows = self.rows
+        rows = self[table]
         columns = []
-        for name in self._shown:
-            unit = self.unit(f"{self._table_name}/{name}")
+        for name in shown:
+            unit = self.unit(f"{table}/{name}")
             said = [("-" if np.isnan(value) else f"{value:.3g}") if isinstance(value, float) else str(value)
                     for value in rows[name].tolist()]
             columns.append([f"{name} [{unit}]" if unit not in ("", "1") else name, *said])
         return list(zip(*columns))
 
     def __repr__(self):
-        return f"<slipmode {self.kind}>\n{self.sentences}\n{_aligned(self._cells())}"
+        tables = [_aligned(self._cells(*table)) for table in self._tables]
+        return "\n".join([f"<slipmode {self.kind}>", self.sentences, *tables])
 
     def _repr_html_(self):
-        header, *rows = self._cells()
         said = html.escape(self.sentences).replace("\n", "<br>")
-        return f"<p>{said}</p>{_html_table(header, rows)}"
+        tables = (self._cells(*table) for table in self._tables)
+        return f"<p>{said}</p>" + "".join(_html_table(header, rows) for header, *rows in tables)
 
 
 class Advice(Trade):

@@ -71,7 +71,34 @@ TEST_F(TradeVerbs, TableFileFiguresAndSceneSayTheSame) {
   EXPECT_TRUE(is_figure(folder.path() / "front.svg"));
 }
 
+TEST_F(TradeVerbs, WaysToThePeriodicOrbitBesideTheExactOne) {
+  const std::string chain = SLIPMODE_SOURCE_DIR "/datasets/jenkins_chain/scene.toml";
+  const Outcome outcome = call({"trade", chain, "--axes", "harmonics,mixed", "--error", "0.2%", "-o", "trade.h5"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto json = outcome.json();
+  const auto& rows = json["orbits"]["rows"];
+  const slipmode::results::Table table =
+      slipmode::results::load_table(slipmode::results::StoreReader(folder.path() / "trade.h5"), "trade/orbits");
+  ASSERT_EQ(table.rows(), rows.size() + 1) << "shooting is the first row";
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(table.texts("name")[i + 1], rows[i]["name"]);
+    EXPECT_EQ(table.numbers("time")[i + 1], rows[i]["time_s"].get<double>());
+  }
+  // An error is what the command that a row names says itself.
+  const auto row = std::ranges::find_if(rows, [](const auto& one) { return one["name"] == "mixed, 9 harmonics"; });
+  ASSERT_NE(row, rows.end());
+  EXPECT_EQ((*row)["options"], "--by mixed --harmonics 9");
+  const auto found = call({"orbit", "find", chain, "--by", "mixed", "--harmonics", "9", "--certify"}).json();
+  const double certified = 100.0 * found["certificate"]["relative"].get<double>();
+  EXPECT_NEAR((*row)["error_percent"].get<double>(), certified, 1e-3 * certified);
+  EXPECT_EQ(json["orbits"]["regimes"], found["word"]);
+  ASSERT_EQ(json["recommendations"].size(), 7U) << "one sentence per measure, and the orbit's";
+  EXPECT_TRUE(json["recommendations"][6].get<std::string>().starts_with("for the periodic orbit under 0.2 % use --by"));
+  EXPECT_FALSE(call({"trade", "free.toml", "--axes", "flow"}).json().contains("orbits"));
+}
+
 TEST_F(TradeVerbs, BadInputIsRefusedAndSaysWhatIsValid) {
+  refused({"trade", "free.toml", "--axes", "mixed"}, "valid: modes, flow, law");
   refused({"trade", "free.toml", "--axes", "modes,colour"}, "valid: modes, flow, law");
   refused({"trade", "free.toml", "--measure", "dY"}, "valid: dX, dE, points, spread, energy, stick");
   refused({"trade", "free.toml", "--error", "much"}, "--error much: expected a share in percent");

@@ -293,6 +293,21 @@ class Trades(unittest.TestCase):
         self.assertIsInstance(sm.read(self.folder / "trade.h5"), sm.Trade)
         self.assertEqual(list(sm.read(self.folder / "trade.h5").rows["dE"]), list(ours.rows["dE"]))
 
+    def test_ways_to_the_orbit_are_the_executables(self):
+        done = subprocess.run([EXECUTABLE, "trade", JENKINS, "--axes", "harmonics,samples,mixed", "--json", "--quiet"],
+                              capture_output=True, text=True, check=True)
+        theirs = json.loads(done.stdout)["orbits"]
+        ours = sm.trade(JENKINS, axes=["harmonics", "samples", "mixed"])
+        self.assertEqual(list(ours.orbits["name"][1:]), [row["name"] for row in theirs["rows"]])
+        self.assertEqual(list(ours.orbits["options"][1:]), [row["options"] for row in theirs["rows"]])
+        np.testing.assert_array_equal(
+            ours.orbits["error"][1:],
+            [np.nan if row["error_percent"] is None else row["error_percent"] for row in theirs["rows"]])
+        self.assertEqual(ours["trade/regimes"], theirs["regimes"])
+        self.assertIn("\nmixed, 9 harmonics  ", repr(ours))
+        self.assertIn("trade/orbits/name", ours)
+        self.assertNotIn("trade/orbits/name", sm.trade(self.scene, axes="flow"))
+
     def test_what_nothing_keeps_to_says_so_and_gives_the_rows(self):
         done = sm.trade(self.scene, axes="flow", budget="0.0001ms")
         self.assertGreater(len(done.rows), 5)
