@@ -89,6 +89,7 @@ Report mixed_report(const studies::Family& model, const studies::MixedFound& fou
       mixed.residual, mixed.iterations);
   if (!mixed.converged) {
     report.data["message"] = mixed.message;
+    add_trials(found.trials, mixed.converged, found.met, report);
     report.text += mixed.message + "\n";
     return report;
   }
