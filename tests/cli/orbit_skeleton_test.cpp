@@ -29,11 +29,13 @@ class OrbitSkeleton : public testing::Test {
 };
 
 // S4 section 3.5.4: unstable orbits in the chaotic attractor at belt speed 0.2. Each stored orbit is an orbit record.
+// How many of them a record of this length passes is chance (2 to 6 in twelve records a hair apart), that its dozen
+// closest returns lead to one is not.
 TEST_F(OrbitSkeleton, OfTheChainHoldsUnstableOrbits) {
   const Outcome outcome = slipmode_in(folder, short_search("skeleton.h5"));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json full = outcome.json()["full"];
-  ASSERT_GE(full["orbits"].size(), 3U);
+  ASSERT_FALSE(full["orbits"].empty());
   for (const auto& orbit : full["orbits"]) {
     EXPECT_EQ(orbit["stability"], "unstable");
     EXPECT_GT(orbit["leading_modulus"], 1.0);
