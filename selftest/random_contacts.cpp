@@ -183,7 +183,7 @@ void write_contacts(SceneDraft& d) {
 void write_drive(SceneDraft& d) {
   d.line("\n[drive]");
   const double kind = d.uniform(0.0, 1.0);
-  if (kind < (d.linear ? 0.4 : 0.7)) {
+  if (kind < (d.linear ? 0.4 : 0.55)) {
     d.belt = true;
     d.line("kind = \"belt\"");
     d.counterpart = d.chance(0.15) ? 0.0 : d.uniform(-1.0, 1.0) * d.speed();
@@ -193,7 +193,7 @@ void write_drive(SceneDraft& d) {
     else
       d.fill("speed = { from = #, to = #, begin = #, end = # }",
              {d.counterpart, d.uniform(-1.0, 1.0) * d.speed(), begin, begin + d.uniform(0.5, 10.0) / d.rate});
-  } else if (!d.linear || kind < 0.7) {
+  } else if (kind < (d.linear ? 0.7 : 0.8)) {
     shaker(d);
   } else {
     force(d);

@@ -21,7 +21,7 @@ namespace slipmode::selftest {
 ///   all are Coulomb's;
 /// - drive: a belt (at rest, constant, ramp), a shaker (amplitude a number or a curve), a force of up to six harmonics
 /// in
-///   several places with a mean (piecewise-linear laws);
+///   several places with a mean;
 /// - start: rest (but for stops without a gap), static, random, or contacts exactly on their guards.
 [[nodiscard]] std::string random_scene_text(std::uint64_t seed, std::uint64_t index);
 
