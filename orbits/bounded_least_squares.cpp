@@ -1,4 +1,5 @@
 #include <slipmode/core/decompositions.hpp>
+#include "orbits/internal/dense_lapack.hpp"
 #include "orbits/internal/shooting_problem.hpp"
 
 #include <cmath>
@@ -9,25 +10,16 @@ namespace {
 /// Below this share of the largest singular value a direction counts as lost.
 constexpr double kRankTolerance = 1e-12;
 
-struct Decomposition {
-  Eigen::MatrixXd U, V;
-  Eigen::VectorXd sigma;
-};
-
-Decomposition decompose(const Eigen::MatrixXd& J) {
-  constexpr unsigned kThin = Eigen::ComputeThinU | Eigen::ComputeThinV;
-  if (J.cols() <= 24) {
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(J, kThin);
-    return {svd.matrixU(), svd.matrixV(), svd.singularValues()};
-  }
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(J, kThin);
+SingularValues decompose(const Eigen::MatrixXd& J) {
+  if (J.cols() > 24) return singular_values(J);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(J, Eigen::ComputeThinU | Eigen::ComputeThinV);
   return {svd.matrixU(), svd.matrixV(), svd.singularValues()};
 }
 
 }  // namespace
 
 BoundedLeastSquares bounded_least_squares(const Eigen::MatrixXd& J, const Eigen::VectorXd& r, double radius) {
-  const Decomposition d = decompose(J);
+  const SingularValues d = decompose(J);
   const Eigen::VectorXd beta = -d.U.transpose() * r;
   const Eigen::Index count = d.sigma.size();
   BoundedLeastSquares out;

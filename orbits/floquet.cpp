@@ -1,7 +1,6 @@
 #include <slipmode/orbits/floquet.hpp>
 
-#include <slipmode/core/decompositions.hpp>
-#include <slipmode/core/errors.hpp>
+#include "orbits/internal/dense_lapack.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -22,34 +21,24 @@ std::vector<Eigen::Index> order_by_modulus(const Eigen::VectorXcd& values) {
   return order;
 }
 
-void require_solved(bool solved) {
-  if (!solved)
-    throw NumericalFailure("the eigenvalues of a fundamental matrix were not found",
-                           std::numeric_limits<double>::quiet_NaN(), {}, std::numeric_limits<double>::quiet_NaN());
-}
-
 }  // namespace
 
 Eigen::VectorXcd sorted_by_modulus(const Eigen::VectorXcd& values) { return values(order_by_modulus(values)); }
 
 Eigen::VectorXcd sorted_eigenvalues(const Eigen::MatrixXd& matrix) {
   if (matrix.size() == 0) return {};
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(matrix, false);
-  require_solved(solver.info() == Eigen::Success);
-  return sorted_by_modulus(solver.eigenvalues());
+  return sorted_by_modulus(eigenpairs(matrix, false).values);
 }
 
 std::vector<FloquetMode> floquet_modes(const Eigen::MatrixXd& matrix) {
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(matrix, true);
-  require_solved(solver.info() == Eigen::Success);
-  const Eigen::MatrixXcd vectors = solver.eigenvectors();
+  const Eigenpairs pairs = eigenpairs(matrix, true);
   std::vector<FloquetMode> modes;
-  for (const Eigen::Index i : order_by_modulus(solver.eigenvalues())) {
-    Eigen::VectorXcd direction = vectors.col(i).normalized();
+  for (const Eigen::Index i : order_by_modulus(pairs.values)) {
+    Eigen::VectorXcd direction = pairs.vectors.col(i).normalized();
     Eigen::Index at;
     direction.cwiseAbs().maxCoeff(&at);
     direction *= std::conj(direction[at]) / std::abs(direction[at]);
-    modes.push_back({solver.eigenvalues()[i], std::move(direction)});
+    modes.push_back({pairs.values[i], std::move(direction)});
   }
   return modes;
 }
