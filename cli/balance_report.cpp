@@ -1,5 +1,6 @@
 #include "cli/balance_report.hpp"
 
+#include <slipmode/friction/places.hpp>
 #include "cli/field_options.hpp"
 #include "cli/json_values.hpp"
 #include "cli/orbit_report.hpp"
@@ -11,19 +12,21 @@
 namespace slipmode::cli {
 namespace {
 
-std::string coefficient_table(const orbits::Balance& balance) {
+std::string coefficient_table(const std::vector<friction::Contact>& contacts, const orbits::Balance& balance) {
   constexpr int kShown = 15;
+  const std::vector<std::vector<std::size_t>> places = friction::by_place(contacts);
   std::vector<std::string> header = {"order"};
-  for (std::size_t c = 1; c <= balance.displacement.size(); ++c) {
-    header.push_back(fmt::format("cosine {}", c));
-    header.push_back(fmt::format("sine {}", c));
+  for (const std::vector<std::size_t>& place : places) {
+    header.push_back(fmt::format("cosine {}", place.front() + 1));
+    header.push_back(fmt::format("sine {}", place.front() + 1));
   }
   TextTable table(header);
   for (int k = 0; k <= std::min(balance.harmonics, kShown); ++k) {
     std::vector<std::string> row = {std::to_string(k)};
-    for (const orbits::Harmonics& own : balance.displacement) {
-      row.push_back(fmt::format("{:.8f}", own.cosine[k]));
-      row.push_back(fmt::format("{:.8f}", own.sine[k]));
+    for (const std::vector<std::size_t>& place : places) {
+      const orbits::Harmonics& own = balance.displacement[place.front()];
+      row.push_back(fmt::format("{:.8g}", own.cosine[k]));
+      row.push_back(fmt::format("{:.8g}", own.sine[k]));
     }
     table.add(std::move(row));
   }
@@ -95,7 +98,8 @@ Report mixed_report(const studies::Family& model, const studies::MixedFound& fou
   }
   const std::vector<orbits::Amplitude> amplitudes = orbits::contact_amplitudes(*mixed.near_system, mixed.near_orbit);
   report.data["word"] = mixed.near_orbit.word;
-  report.text += fmt::format("  word \"{}\", {} crossings\n", mixed.near_orbit.word, mixed.near_orbit.crossings);
+  report.text +=
+      fmt::format("  word \"{}\", {} crossings\n", orbits::abridged(mixed.near_orbit.word), mixed.near_orbit.crossings);
   Json contacts = Json::array();
   for (std::size_t c = 0; c < amplitudes.size(); ++c) {
     const orbits::Amplitude& own = amplitudes[c];
@@ -134,7 +138,7 @@ Report balance_report(const std::string& verb, const studies::Family& model, con
       balance.family ? ", one of a family that nothing holds" : "", balance.switches, balance.residual,
       balance.iterations);
   if (!balance.converged) report.text += balance.message + "\n";
-  if (balance.converged) report.text += coefficient_table(balance);
+  if (balance.converged) report.text += coefficient_table(model.own().contacts(), balance);
   if (found.hill.size() > 0) {
     report.data["hill"] = {{"multipliers", complex_json(found.hill)},
                            {"without_jumps", complex_json(found.hill_without_jumps)}};

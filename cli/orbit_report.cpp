@@ -1,5 +1,6 @@
 #include "cli/orbit_report.hpp"
 
+#include <slipmode/friction/places.hpp>
 #include <slipmode/results/table.hpp>
 #include "cli/json_values.hpp"
 #include "cli/text_table.hpp"
@@ -44,18 +45,17 @@ std::string stability_text(const PeriodicOrbit& orbit) {
 }
 
 std::string word_text(const PeriodicOrbit& orbit) {
-  constexpr std::size_t kLongest = 80;
-  std::string word = orbit.word;
-  if (word.size() > kLongest) word = word.substr(0, kLongest - 3) + "...";
-  return fmt::format("{} ({} crossings{}{})", word, orbit.crossings, orbit.symmetric ? ", symmetric" : "",
-                     orbit.has_grazing ? ", grazing" : "");
+  return fmt::format("{} ({} crossings{}{})", orbits::abridged(orbit.word), orbit.crossings,
+                     orbit.symmetric ? ", symmetric" : "", orbit.has_grazing ? ", grazing" : "");
 }
 
 std::string amplitude_table(const dynamics::HybridSystem& system, const std::vector<orbits::Amplitude>& amplitudes) {
   TextTable table({"contact", "least", "greatest", "mean", "alternating", "effective"});
-  for (std::size_t c = 0; c < amplitudes.size(); ++c) {
-    const orbits::Amplitude& own = amplitudes[c];
-    std::vector<std::string> row = {contact_name(system, c)};
+  for (const std::vector<std::size_t>& place : friction::by_place(system.contacts())) {
+    const orbits::Amplitude& own = amplitudes[place.front()];
+    std::string name = contact_name(system, place.front());
+    if (place.size() > 1) name += fmt::format(", and {} more there", place.size() - 1);
+    std::vector<std::string> row = {std::move(name)};
     for (const double value : {own.min, own.max, own.mean, own.alternating, own.effective}) {
       row.push_back(fmt::format("{:.10g}", value));
     }

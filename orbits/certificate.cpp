@@ -112,11 +112,11 @@ void judge(const Claim& claim, const OrbitBehind& behind, Certificate& out) {
   if (!out.behind) {
     out.verdict = fmt::format(
         "no orbit lies behind this {}: Newton's shooting from it ends on the orbit \"{}\", {:.3g} of a half range away",
-        claim.name, orbit.word, out.relative);
+        claim.name, abridged(orbit.word), out.relative);
     return;
   }
   out.verdict = fmt::format("true error {:.3g} of a half range; the orbit behind it is \"{}\", {}", out.relative,
-                            orbit.word, to_string(orbit.stability));
+                            abridged(orbit.word), to_string(orbit.stability));
   if (orbit.crossings != claim.crossings)
     out.verdict += fmt::format("; it has {} crossings and the {} {}", orbit.crossings, claim.name, claim.crossings);
 }
@@ -154,12 +154,13 @@ ToError<Approximation> to_error(const dynamics::HybridSystem& system, double err
   constexpr double kGrowth = 1.3;
   ToError<Approximation> out, best;
   std::optional<OrbitBehind> behind;
-  const auto look = [&] {  // the orbit of an order before serves as long as it is near
+  const auto look = [&] {  // the orbit of an order before serves as long as it is near and no other is beside it
     const Claim claim = claim_of(out.approximation);
     if (behind) judge(claim, *behind, out.certificate);
-    if (!out.certificate.behind)
-      out.certificate =
-          shoot_behind(system, state_of(system, out.approximation), out.approximation.order, claim, shooting, behind);
+    if (behind && out.certificate.behind) return;
+    out.certificate =
+        shoot_behind(system, state_of(system, out.approximation), out.approximation.order, claim, shooting, behind);
+    if (out.certificate.found.orbit.family.cols() > 0) behind.reset();
   };
   for (int H = first; H <= most && !out.met; H = std::max(H + 1, static_cast<int>(kGrowth * H))) {
     out.approximation = solve(H, best.certificate.behind ? &best.approximation : nullptr);

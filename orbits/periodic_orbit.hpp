@@ -96,6 +96,8 @@ struct PeriodicOrbit {
 
 /// The word of a closed sequence of regimes: consecutive equal ones merged, also last with first, then rotated.
 [[nodiscard]] std::string word_of(std::span<const RegimeSpan> regimes);
+/// A word for a line of text: its end is left out where it is long.
+[[nodiscard]] std::string abridged(const std::string& word);
 
 /// (q, q̇, internal) of a state as one vector [N], and back.
 [[nodiscard]] Eigen::VectorXd stacked(const dynamics::State& state);

@@ -1,11 +1,15 @@
 #include <slipmode/orbits/periodic_orbit.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace slipmode::orbits {
 namespace {
 
 using dynamics::ContactMode;
+
+constexpr double kClock = 4.0 * std::numeric_limits<double>::epsilon();
 
 /// True where a clearance exerts no force.
 bool is_free(ContactMode mode) {
@@ -55,8 +59,10 @@ std::vector<RegimeSpan> regime_sequence(double start_time, std::vector<ContactMo
     if (event.contact < 0 || event.before == event.after) continue;
     RegimeSpan next{event.time, result.back().modes};
     next.modes[static_cast<std::size_t>(event.contact)] = event.after;
-    if (event.time == result.back().time && result.size() > 1) {
-      result.back() = std::move(next);  // contacts that change together
+    const double apart = event.time - result.back().time;
+    if (apart <= kClock * std::abs(event.time) && result.size() > 1) {
+      next.time = result.back().time;  // contacts that change together, to the clock's rounding
+      result.back() = std::move(next);
     } else {
       result.push_back(std::move(next));
     }
@@ -79,6 +85,11 @@ std::string word_of(std::span<const RegimeSpan> regimes) {
   std::string word;
   for (const std::string& letter : smallest) word += (word.empty() ? "" : " ") + letter;
   return word;
+}
+
+std::string abridged(const std::string& word) {
+  constexpr std::size_t kLongest = 80;
+  return word.size() > kLongest ? word.substr(0, kLongest - 3) + "..." : word;
 }
 
 }  // namespace slipmode::orbits

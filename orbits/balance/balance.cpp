@@ -54,7 +54,7 @@ void check(const HybridSystem& system, const BalanceOptions& options) {
 
 /// The linear response with all contacts pressing and sticking from gap zero on, or without any force of theirs.
 Eigen::VectorXd linear_response(const HybridSystem& system, const ContactResponse& response, bool pressed) {
-  const Eigen::Index nc = response.contacts(), H = response.harmonics(), B = response.block();
+  const Eigen::Index nc = response.places(), H = response.harmonics(), B = response.block();
   const std::vector<BalancedLaw> laws = balanced_laws(system);
   Eigen::VectorXd x = Eigen::VectorXd::Zero(response.unknowns());
   const Eigen::Index nr = response.rigid_rows.cols();
@@ -69,7 +69,9 @@ Eigen::VectorXd linear_response(const HybridSystem& system, const ContactRespons
       b.tail(nr) = -response.rigid_load.cast<Complex>();
     }
     for (Eigen::Index c = 0; pressed && c < nc; ++c) {
-      const Complex own = impedance(laws[static_cast<std::size_t>(c)], static_cast<double>(k) * response.omega());
+      Complex own = 0.0;
+      for (const std::size_t contact : response.contacts_at[static_cast<std::size_t>(c)])
+        own += impedance(laws[contact], static_cast<double>(k) * response.omega());
       A.col(c).head(nc) += response.receptance[at].col(c) * own;
       if (k == 0 && nr > 0) A.col(c).tail(nr) = -own * response.rigid_rows.row(c).transpose().cast<Complex>();
     }

@@ -40,9 +40,10 @@ BalanceBranchSolver::BalanceBranchSolver(dynamics::SystemFamily family, const Ba
       symmetric_(symmetric),
       range_(std::abs(options.to - options.from)) {
   const Eigen::VectorXd x = unknowns_of({.parameter = parameter, .orbit = {}, .balance = from}).x;
-  const Eigen::Index H = from.harmonics, B = 2 * H + 1, nc = std::ssize(from.displacement);
+  const Eigen::Index H = from.harmonics, B = 2 * H + 1;
+  displacements_ = x.size() - from.rigid.size();
   for (Eigen::Index i = 0; i < x.size(); ++i) {
-    const Eigen::Index own = i < nc * B ? i % B : 0, order = own <= H ? own : own - H;
+    const Eigen::Index own = i < displacements_ ? i % B : 0, order = own <= H ? own : own - H;
     if (order % 2 == 0) even_.push_back(i);
     if (order % 2 == 1 || !symmetric) solved_.push_back(i);
   }
@@ -67,9 +68,8 @@ void BalanceBranchSolver::clear_even(Eigen::VectorXd& x) const {
 
 Eigen::VectorXd BalanceBranchSolver::scaled(const Eigen::VectorXd& column) const {
   Eigen::VectorXd out = picked(column, solved_);
-  const Eigen::Index displacements = std::ssize(first_.displacement) * (2 * first_.harmonics + 1);
   for (Eigen::Index i = 0; i < out.size(); ++i)
-    if (solved_[static_cast<std::size_t>(i)] >= displacements) out[i] /= stiffness_;
+    if (solved_[static_cast<std::size_t>(i)] >= displacements_) out[i] /= stiffness_;
   return out / size_;
 }
 

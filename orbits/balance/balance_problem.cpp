@@ -2,6 +2,7 @@
 
 #include <slipmode/dynamics/cache.hpp>
 #include <slipmode/dynamics/receptance.hpp>
+#include <slipmode/friction/places.hpp>
 
 #include <Eigen/LU>
 #include <Eigen/QR>
@@ -45,40 +46,49 @@ Eigen::VectorXcd drive_phasors(const HybridSystem& system, Eigen::Index order, E
 }
 
 ContactResponse::ContactResponse(const HybridSystem& system, int order, Eigen::Index harmonics)
-    : contacts_(static_cast<Eigen::Index>(system.contacts().size())),
+    : contacts_at(friction::by_place(system.contacts())),
       harmonics_(harmonics),
       omega_(system.drive().force()->omega / order) {
   const dynamics::ModalModel& model = system.cache().tables(system, false).model;
   const dynamics::ModalCoordinates& modal = model.modal;
   const Eigen::Index n = modal.omega.size();
-  Eigen::MatrixXd R = Eigen::MatrixXd::Zero(contacts_, contacts_);
-  Eigen::VectorXd e(contacts_);
-  for (Eigen::Index c = 0; c < contacts_; ++c) e[c] = system.contacts()[static_cast<std::size_t>(c)].offset;
+  const Eigen::Index np = places();
+  Eigen::MatrixXd R = Eigen::MatrixXd::Zero(np, np), directions(n, np), model_inputs(model.input.rows(), np),
+                  rows(model.displacement_row.rows(), np);
+  Eigen::VectorXd e(np);
+  for (Eigen::Index p = 0; p < np; ++p) {
+    const std::size_t first = contacts_at[static_cast<std::size_t>(p)].front();
+    const auto c = static_cast<Eigen::Index>(first);
+    e[p] = system.contacts()[first].offset;
+    directions.col(p) = modal.directions.col(c);
+    model_inputs.col(p) = model.input.col(c);
+    rows.col(p) = model.displacement_row.col(c);
+  }
   std::vector<Eigen::Index> floating;
   for (Eigen::Index i = 0; i < n; ++i) {
     if (modal.omega[i] == 0.0) {
       floating.push_back(i);
       continue;
     }
-    const Eigen::VectorXd row = modal.directions.row(i).transpose() / modal.omega[i];
+    const Eigen::VectorXd row = directions.row(i).transpose() / modal.omega[i];
     R += row * row.transpose();
     e += row * (modal.load[i] / modal.omega[i]);
   }
-  rigid_rows.resize(contacts_, static_cast<Eigen::Index>(floating.size()));
+  rigid_rows.resize(np, static_cast<Eigen::Index>(floating.size()));
   rigid_load.resize(rigid_rows.cols());
   for (Eigen::Index r = 0; r < rigid_rows.cols(); ++r) {
-    rigid_rows.col(r) = modal.directions.row(floating[static_cast<std::size_t>(r)]).transpose();
+    rigid_rows.col(r) = directions.row(floating[static_cast<std::size_t>(r)]).transpose();
     rigid_load[r] = modal.load[floating[static_cast<std::size_t>(r)]];
   }
   receptance.emplace_back(R.cast<Complex>());
   own.emplace_back(e.cast<Complex>());
   for (Eigen::Index k = 1; k <= harmonics; ++k) {
-    Eigen::MatrixXcd inputs(2 * model.np, contacts_ + 1);
-    inputs << model.input.cast<Complex>(), model.force_input * drive_phasors(system, order, k);
+    Eigen::MatrixXcd inputs(2 * model.np, np + 1);
+    inputs << model_inputs.cast<Complex>(), model.force_input * drive_phasors(system, order, k);
     const Eigen::MatrixXcd answers =
-        model.displacement_row.transpose() * pair_receptances(model, static_cast<double>(k) * omega_, inputs);
-    receptance.emplace_back(answers.leftCols(contacts_));
-    own.emplace_back(answers.col(contacts_));
+        rows.transpose() * pair_receptances(model, static_cast<double>(k) * omega_, inputs);
+    receptance.emplace_back(answers.leftCols(np));
+    own.emplace_back(answers.col(np));
   }
 }
 
@@ -89,9 +99,12 @@ Eigen::Index ContactResponse::lead(const HybridSystem& system) const {
   const std::vector<BalancedLaw> laws = balanced_laws(system);
   for (Eigen::Index k = harmonics_; k > kFew / 2; --k) {
     double most = 0.0;
-    for (Eigen::Index c = 0; c < contacts_; ++c)
-      most = std::max(most, receptance[static_cast<std::size_t>(k)].col(c).cwiseAbs().sum() *
-                                strongest(laws[static_cast<std::size_t>(c)], static_cast<double>(k) * omega_));
+    for (Eigen::Index p = 0; p < places(); ++p) {
+      double strength = 0.0;
+      for (const std::size_t c : contacts_at[static_cast<std::size_t>(p)])
+        strength += strongest(laws[c], static_cast<double>(k) * omega_);
+      most = std::max(most, receptance[static_cast<std::size_t>(k)].col(p).cwiseAbs().sum() * strength);
+    }
     if (most > kWeak) return k;
   }
   return kFew / 2;
@@ -106,20 +119,27 @@ void BalanceProblem::set_share(double share) {
 }
 
 BalanceEvaluation BalanceProblem::evaluate(const Eigen::VectorXd& x) const {
-  const Eigen::Index nc = response_.contacts(), H = response_.harmonics(), B = response_.block();
+  const Eigen::Index nc = response_.places(), H = response_.harmonics(), B = response_.block();
   const Eigen::Index nr = response_.rigid_rows.cols();
   const Eigen::Index own = 2 * lead_ + 1, N = nc * own + nr;
-  BalanceEvaluation out{x, Eigen::VectorXd(x.size()), Eigen::MatrixXd::Identity(N, N), {}, 0.0};
-  for (Eigen::Index c = 0; c < nc; ++c)
-    out.forces.push_back(balanced_force(laws_[static_cast<std::size_t>(c)], {phasors_of(x.segment(c * B, B), H)},
-                                        response_.omega(), samples_, lead_));
+  BalanceEvaluation out{x, Eigen::VectorXd(x.size()), Eigen::MatrixXd::Identity(N, N), {}, {}, 0.0};
+  out.forces.resize(laws_.size(), BalancedForce(H, lead_));
+  for (Eigen::Index p = 0; p < nc; ++p) {
+    const TrigonometricPolynomial y{phasors_of(x.segment(p * B, B), H)};
+    BalancedForce& sum = out.sums.emplace_back(H, lead_);
+    for (const std::size_t c : response_.contacts_at[static_cast<std::size_t>(p)]) {
+      out.forces[c] = balanced_force(laws_[c], y, response_.omega(), samples_, lead_);
+      sum.phasors += out.forces[c].phasors;
+      sum.jacobian += out.forces[c].jacobian;
+    }
+  }
   for (Eigen::Index c = 0; c < nc; ++c) {
     Eigen::VectorXcd missing = phasors_of(x.segment(c * B, B), H);
     for (Eigen::Index k = 0; k <= H; ++k) {
       const auto at = static_cast<std::size_t>(k);
       missing[k] -= response_.own[at][c];
       for (Eigen::Index d = 0; d < nc; ++d)
-        missing[k] -= response_.receptance[at](c, d) * out.forces[static_cast<std::size_t>(d)].phasors[k];
+        missing[k] -= response_.receptance[at](c, d) * out.sums[static_cast<std::size_t>(d)].phasors[k];
     }
     if (nr > 0) missing[0] -= response_.rigid_rows.row(c).dot(x.tail(nr));
     out.residual.segment(c * B, B) = numbers_of(missing);
@@ -130,7 +150,7 @@ BalanceEvaluation BalanceProblem::evaluate(const Eigen::VectorXd& x) const {
   out.relative = out.residual.head(nc * B).cwiseAbs().maxCoeff() / size_of(x);
   if (nr > 0) {  // forces in units of those that the displacements' size makes
     double force = response_.rigid_load.cwiseAbs().maxCoeff();
-    for (const BalancedForce& f : out.forces) force = std::max(force, f.phasors.cwiseAbs().maxCoeff());
+    for (const BalancedForce& f : out.sums) force = std::max(force, f.phasors.cwiseAbs().maxCoeff());
     if (force > 0.0) out.relative = std::max(out.relative, out.residual.tail(nr).cwiseAbs().maxCoeff() / force);
   }
   return out;
@@ -138,14 +158,14 @@ BalanceEvaluation BalanceProblem::evaluate(const Eigen::VectorXd& x) const {
 
 bool BalanceProblem::leaves_means_open(const BalanceEvaluation& at) const {
   constexpr double kNothing = 1e-12;
-  return std::ranges::all_of(at.forces, [](const BalancedForce& force) {
+  return std::ranges::all_of(at.sums, [](const BalancedForce& force) {
     return force.jacobian.col(0).norm() <= kNothing * force.jacobian.norm();
   });
 }
 
 Eigen::VectorXd BalanceProblem::step(const BalanceEvaluation& at, bool& out_open) const {
   const Eigen::Index H = response_.harmonics(), B = response_.block(), own = 2 * lead_ + 1;
-  const Eigen::Index nc = response_.contacts(), nr = response_.rigid_rows.cols();
+  const Eigen::Index nc = response_.places(), nr = response_.rigid_rows.cols();
   std::vector<Eigen::Index> leading;
   for (Eigen::Index c = 0; c < nc; ++c)
     for (Eigen::Index i = 0; i < own; ++i) leading.push_back(c * B + (i <= lead_ ? i : H + i - lead_));
@@ -159,14 +179,14 @@ Eigen::VectorXd BalanceProblem::step(const BalanceEvaluation& at, bool& out_open
 }
 
 double BalanceProblem::size_of(const Eigen::VectorXd& x) const {
-  double size = x.head(response_.contacts() * response_.block()).cwiseAbs().maxCoeff();
+  double size = x.head(response_.places() * response_.block()).cwiseAbs().maxCoeff();
   for (const Eigen::VectorXcd& e : response_.own) size = std::max(size, e.cwiseAbs().maxCoeff());
   return size > 0.0 ? size : 1.0;
 }
 
 void BalanceProblem::take_off(Eigen::Index c, Eigen::Index d, BalanceEvaluation& out) const {
   const Eigen::Index H = lead_, B = 2 * lead_ + 1;
-  const Eigen::MatrixXd& J = out.forces[static_cast<std::size_t>(d)].jacobian;
+  const Eigen::MatrixXd& J = out.sums[static_cast<std::size_t>(d)].jacobian;
   auto block = out.jacobian.block(c * B, d * B, B, B);
   for (Eigen::Index k = 0; k <= H; ++k) {
     const Complex R = response_.receptance[static_cast<std::size_t>(k)](c, d);
@@ -178,12 +198,12 @@ void BalanceProblem::take_off(Eigen::Index c, Eigen::Index d, BalanceEvaluation&
 }
 
 void BalanceProblem::add_equilibrium(BalanceEvaluation& out) const {
-  const Eigen::Index nc = response_.contacts(), B = 2 * lead_ + 1, nr = response_.rigid_rows.cols();
+  const Eigen::Index nc = response_.places(), B = 2 * lead_ + 1, nr = response_.rigid_rows.cols();
   if (nr == 0) return;
   out.residual.tail(nr) = response_.rigid_load;
   out.jacobian.bottomRightCorner(nr, nr).setZero();
   for (Eigen::Index d = 0; d < nc; ++d) {
-    const BalancedForce& force = out.forces[static_cast<std::size_t>(d)];
+    const BalancedForce& force = out.sums[static_cast<std::size_t>(d)];
     const Eigen::VectorXd z = response_.rigid_rows.row(d).transpose();
     out.residual.tail(nr) += z * force.phasors[0].real();
     out.jacobian.block(nc * B, d * B, nr, B) = z * force.jacobian.row(0);
@@ -197,9 +217,12 @@ Balance BalanceProblem::series_of(const BalanceEvaluation& at, int order) const 
   out.harmonics = static_cast<int>(response_.harmonics());
   out.samples = samples_;
   const Eigen::Index B = response_.block();
-  for (Eigen::Index c = 0; c < response_.contacts(); ++c) {
-    const BalancedForce& force = at.forces[static_cast<std::size_t>(c)];
-    out.displacement.push_back(harmonics_of(phasors_of(at.x.segment(c * B, B), response_.harmonics())));
+  out.displacement.resize(at.forces.size());
+  for (Eigen::Index p = 0; p < response_.places(); ++p) {
+    const Harmonics y = harmonics_of(phasors_of(at.x.segment(p * B, B), response_.harmonics()));
+    for (const std::size_t c : response_.contacts_at[static_cast<std::size_t>(p)]) out.displacement[c] = y;
+  }
+  for (const BalancedForce& force : at.forces) {
     out.force.push_back(harmonics_of(force.phasors));
     out.switches += force.switches;
     out.stuck += force.stuck ? 1 : 0;
@@ -222,9 +245,9 @@ Eigen::VectorXd least_norm_solution(const Eigen::MatrixXd& A, const Eigen::Vecto
 Eigen::VectorXd unknowns_of(const std::vector<Harmonics>& guess, const ContactResponse& response) {
   const Eigen::Index H = response.harmonics(), B = response.block();
   Eigen::VectorXd x = Eigen::VectorXd::Zero(response.unknowns());
-  Eigen::VectorXd mean(response.contacts());
-  for (Eigen::Index c = 0; c < response.contacts(); ++c) {
-    const Harmonics& y = guess[static_cast<std::size_t>(c)];
+  Eigen::VectorXd mean(response.places());
+  for (Eigen::Index c = 0; c < response.places(); ++c) {
+    const Harmonics& y = guess[response.contacts_at[static_cast<std::size_t>(c)].front()];
     const Eigen::Index common = std::min<Eigen::Index>(H, y.order());
     x.segment(c * B, common + 1) = y.cosine.head(common + 1);
     x.segment(c * B + H + 1, common) = y.sine.segment(1, common);

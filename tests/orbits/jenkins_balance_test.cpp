@@ -258,10 +258,31 @@ TEST(JenkinsBalance, OfElementsOnOneDegreeOfFreedomIsThatOfTheirSum) {
   EXPECT_LT((parts.displacement[1].cosine - whole.displacement[0].cosine).norm(), 1e-11);
   EXPECT_LT((parts.force[0].sine + parts.force[1].sine - whole.force[0].sine).norm(), 1e-11);
   const HybridSystem iwan = on({{0.05, 0.3}, {0.1, 0.3}, {0.2, 0.4}});
-  const Certificate certificate = certify(iwan, balance(iwan, {.harmonics = 49}));
+  const Balance joint = balance(iwan, {.harmonics = 49});
+  EXPECT_EQ(balance_equations(iwan, joint).residual.size(), 2 * 49 + 1);  // one displacement is solved for once
+  const Certificate certificate = certify(iwan, joint);
   ASSERT_TRUE(certificate.behind) << certificate.verdict;
   EXPECT_LT(certificate.relative, 1e-6);
   EXPECT_EQ(certificate.found.orbit.crossings, 12);
+}
+
+TEST(JenkinsBalance, MeetsItsErrorBesideAFamilyOfOrbits) {
+  // The last element never slides and may be stretched by any mean, and each order has an orbit of its own behind it.
+  const HybridSystem one = rubbed_mass(0.7);
+  const HybridSystem joint(one.structure(),
+                           {jenkins(Eigen::VectorXd::Ones(1), 0.05, 0.3), jenkins(Eigen::VectorXd::Ones(1), 0.1, 0.3),
+                            jenkins(Eigen::VectorXd::Ones(1), 50.0, 0.4)},
+                           one.drive(), {}, one.force_directions());
+  for (const double error : {1e-4, 1e-6}) {
+    const CertifiedBalance found = balance_to_error(joint, {}, error, 400);
+    ASSERT_TRUE(found.met) << found.certificate.verdict;
+    EXPECT_GT(found.certificate.found.orbit.family.cols(), 0);
+    // The least sufficient order, each by itself.
+    int least = found.approximation.harmonics;
+    for (int H = 3; H < least; ++H)
+      if (certify(joint, balance(joint, {.harmonics = H})).relative <= error) least = H;
+    EXPECT_LE(found.approximation.harmonics, 1.5 * least);
+  }
 }
 
 TEST(JenkinsBalance, WhereNothingSlidesIsTheLinearResponseOfTheSpring) {

@@ -98,6 +98,7 @@ class BalanceBranchSolver {
   Balance first_;  ///< order, harmonics, family
   bool symmetric_;
   double range_ = 1.0, size_ = 1.0, stiffness_ = 0.0;
+  Eigen::Index displacements_ = 0;           ///< so many unknowns first; forces balance the others
   std::vector<Eigen::Index> solved_, even_;  ///< entries of x: those that are unknown, and those of even order
 };
 

@@ -11,41 +11,44 @@ namespace slipmode::orbits {
 /// The pairs' inputs of the force drive at order k of the orbit's period, as phasors. @param order  Balance::order
 [[nodiscard]] Eigen::VectorXcd drive_phasors(const dynamics::HybridSystem& system, Eigen::Index order, Eigen::Index k);
 
-/// How the structure answers at its contacts, order by order.
+/// How the structure answers at its contacts, order by order. Contacts of one displacement are one place: their forces
+/// add up, and it is solved for once.
 class ContactResponse {
  public:
   /// @param order  periods of the drive in one of the balance
   ContactResponse(const dynamics::HybridSystem& system, int order, Eigen::Index harmonics);
 
   [[nodiscard]] double omega() const { return omega_; }
-  [[nodiscard]] Eigen::Index contacts() const { return contacts_; }
+  [[nodiscard]] Eigen::Index places() const { return std::ssize(contacts_at); }
   [[nodiscard]] Eigen::Index harmonics() const { return harmonics_; }
   [[nodiscard]] Eigen::Index block() const { return 2 * harmonics_ + 1; }
-  [[nodiscard]] Eigen::Index unknowns() const { return contacts_ * block() + rigid_rows.cols(); }
+  [[nodiscard]] Eigen::Index unknowns() const { return places() * block() + rigid_rows.cols(); }
 
   /// The orders that Newton's method solves together: those beyond answer their forces by less than a share of their
   /// motion, and follow by substitution.
   [[nodiscard]] Eigen::Index lead(const dynamics::HybridSystem& system) const;
 
-  std::vector<Eigen::MatrixXcd> receptance;  ///< R_k [nc x nc]
-  std::vector<Eigen::VectorXcd> own;         ///< e_k
-  Eigen::MatrixXd rigid_rows;                ///< Z [nc x nr]
-  Eigen::VectorXd rigid_load;                ///< of the modes that float [nr]
+  std::vector<std::vector<std::size_t>> contacts_at;  ///< of each place [np]
+  std::vector<Eigen::MatrixXcd> receptance;           ///< R_k [np x np]
+  std::vector<Eigen::VectorXcd> own;                  ///< e_k
+  Eigen::MatrixXd rigid_rows;                         ///< Z [np x nr]
+  Eigen::VectorXd rigid_load;                         ///< of the modes that float [nr]
 
  private:
-  Eigen::Index contacts_, harmonics_;
+  Eigen::Index harmonics_;
   double omega_;
 };
 
 /// Newton's equations at a point.
 struct BalanceEvaluation {
   Eigen::VectorXd x, residual;
-  Eigen::MatrixXd jacobian;  ///< of the leading orders
-  std::vector<BalancedForce> forces;
+  Eigen::MatrixXd jacobian;           ///< of the leading orders
+  std::vector<BalancedForce> forces;  ///< of each contact
+  std::vector<BalancedForce> sums;    ///< of each place
   double relative = 0.0;
 };
 
-/// The equations of `balance`. Unknowns contact after contact (cosine_0 … cosine_H, sine_1 … sine_H), then what floats.
+/// The equations of `balance`. Unknowns place after place (cosine_0 … cosine_H, sine_1 … sine_H), then what floats.
 class BalanceProblem {
  public:
   /// @param response  outlives this
@@ -69,7 +72,7 @@ class BalanceProblem {
 
  private:
   [[nodiscard]] double size_of(const Eigen::VectorXd& x) const;
-  /// Jacobian's block of contact c by contact d: less R_k times the force's derivative.
+  /// Jacobian's block of place c by place d: less R_k times the force's derivative.
   void take_off(Eigen::Index c, Eigen::Index d, BalanceEvaluation& out) const;
   /// Zᵀλ_0 + p = 0 for what floats.
   void add_equilibrium(BalanceEvaluation& out) const;
