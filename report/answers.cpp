@@ -180,9 +180,12 @@ Json accuracy(const Levels& levels, const StoreReader& store) {
 
 std::string model_text(const scene::Scene& scene) {
   std::string contacts;
-  for (const scene::ContactSpec& contact : scene.contacts)
-    contacts +=
-        fmt::format("; {} at {} ({})", contact.name, scene::to_string(contact.at), friction::law_word(contact.law));
+  for (const scene::ContactSpec& contact : scene.contacts) {
+    const auto& joint = contact.joint;
+    if (joint && joint->element > 0) continue;
+    contacts += fmt::format("; {} at {} ({})", joint ? joint->name : contact.name, scene::to_string(contact.at),
+                            joint ? friction::Iwan::word : friction::law_word(contact.law));
+  }
   return fmt::format("{}, {}{}.", structure_text(scene), drive_text(scene), contacts);
 }
 

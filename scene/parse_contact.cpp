@@ -32,6 +32,19 @@ double read_tilt(TomlReader& in) {
   return tilt;
 }
 
+/// The contacts of one [[contact]] whose place and name are read.
+std::vector<ContactSpec> elements_of(const friction::Iwan& joint, const ContactSpec& whole) {
+  std::vector<ContactSpec> contacts;
+  for (const friction::JenkinsElement& own : friction::elements_of(joint)) {
+    ContactSpec& contact = contacts.emplace_back(whole);
+    contact.law = friction::CompliantCoulomb{.mu_s = 1.0, .mu_k = 1.0, .stiffness = own.stiffness};
+    contact.normal_load = {own.slip_force};
+    contact.name = fmt::format("{}, element {}", whole.name, contacts.size());
+    contact.joint = JointShare{.law = joint, .name = whole.name, .element = contacts.size() - 1};
+  }
+  return contacts;
+}
+
 /// What a law does not go with: a tilt, a varying load.
 void check_combination(TomlReader& in, const ContactSpec& spec) {
   if (!friction::is_piecewise_linear(spec.law)) {
@@ -104,20 +117,29 @@ ContactPlace read_place(TomlReader& in, const Scene& scene) {
 }
 
 std::vector<ContactSpec> read_contacts(TomlReader& in, const Scene& scene) {
-  std::vector<ContactSpec> contacts;
+  std::vector<ContactSpec> contacts, firsts;  // firsts: of each table
   for (TomlReader& table : in.tables("contact")) {
     ContactSpec contact;
     contact.at = read_place(table, scene);
-    contact.name = table.text_or("name", fmt::format("contact {}", contacts.size() + 1));
-    contact.law = read_law(table);
-    check_alone(table, contact, contacts, scene);
-    if (friction::clearance(contact.law) == nullptr) {
-      contact.normal_load = read_load(table);
-      contact.tilt_deg = read_tilt(table);
-      check_combination(table, contact);
+    contact.name = table.text_or("name", fmt::format("contact {}", firsts.size() + 1));
+    const LawSpec law = read_law(table);
+    const auto* joint = std::get_if<friction::Iwan>(&law);
+    std::vector<ContactSpec> own;
+    if (joint != nullptr) {
+      own = elements_of(*joint, contact);
+    } else {
+      contact.law = std::get<friction::Law>(law);
+      own = {contact};
+    }
+    check_alone(table, own.front(), firsts, scene);
+    if (joint == nullptr && friction::clearance(contact.law) == nullptr) {
+      own.front().normal_load = read_load(table);
+      own.front().tilt_deg = read_tilt(table);
+      check_combination(table, own.front());
     }
     table.finish();
-    contacts.push_back(std::move(contact));
+    firsts.push_back(own.front());
+    contacts.insert(contacts.end(), own.begin(), own.end());
   }
   return contacts;
 }

@@ -10,6 +10,8 @@ namespace slipmode::scene {
 namespace {
 
 constexpr const char* kNoFriction = "a clearance has no friction";
+constexpr const char* kJoint = "a joint says at which force it slides";
+constexpr const char* kSlipForce = "slip_force";
 constexpr const char* kStops = "stop, or left and right, each { stiffness, damping, gap }";
 
 /// Keys of other laws that somebody may expect here too.
@@ -19,7 +21,7 @@ struct Stranger {
   const char* why;
   const char* valid;
 };
-constexpr std::array<Stranger, 11> kStrangers = {
+constexpr std::array<Stranger, 14> kStrangers = {
     {{"coulomb", "alpha", "law \"coulomb\" does not depend on the sliding speed", "no alpha"},
      {"table", "mu_k", "law \"table\" slides by its points", "coefficients"},
      {"coulomb", "stiffness", "law \"coulomb\" is rigid", "no stiffness, or law = \"compliant\""},
@@ -30,7 +32,10 @@ constexpr std::array<Stranger, 11> kStrangers = {
      {"clearance", "mu_k", kNoFriction, kStops},
      {"clearance", "mu", kNoFriction, kStops},
      {"clearance", "alpha", kNoFriction, kStops},
-     {"clearance", "tilt_deg", kNoFriction, kStops}}};
+     {"clearance", "tilt_deg", kNoFriction, kStops},
+     {"iwan", "normal_load", kJoint, kSlipForce},
+     {"iwan", "mu_s", kJoint, kSlipForce},
+     {"iwan", "mu_k", kJoint, kSlipForce}}};
 
 void check_coefficients(TomlReader& in, const auto& law) {
   if constexpr (requires { law.mu_s < law.mu_k; }) {
@@ -76,11 +81,22 @@ void read(TomlReader& in, friction::Clearance& law) {
 
 }  // namespace
 
-friction::Law read_law(TomlReader& in) {
-  const std::vector<std::string> words = friction::law_words();
+std::vector<std::string> law_spec_words() {
+  std::vector<std::string> words = friction::law_words();
+  words.emplace_back(friction::Iwan::word);
+  return words;
+}
+
+LawSpec read_law(TomlReader& in) {
+  const std::vector<std::string> words = law_spec_words();
   const std::size_t index = in.choice("law", words);
   for (const Stranger& own : kStrangers) {
     if (own.law == words[index]) in.refuse(own.key, own.why, own.valid);
+  }
+  if (words[index] == friction::Iwan::word) {
+    friction::Iwan joint;
+    read(in, joint);
+    return joint;
   }
   auto law = alternative<friction::Law>(index);
   std::visit([&in](auto& own) { read(in, own); }, law);

@@ -3,6 +3,7 @@
 #include <slipmode/friction/amplitude_curve.hpp>
 #include "scene/internal/field_schema.hpp"
 #include "scene/internal/periods.hpp"
+#include "scene/internal/scene_parts.hpp"
 #include "scene/internal/scene_words.hpp"
 
 #include <fmt/format.h>
@@ -99,12 +100,16 @@ Json load_schema() { return any_of({number_schema(kPositive), TableSchema().fiel
 
 Json contact_schema() {
   std::vector<Json> laws;
-  const std::vector<std::string> words = friction::law_words();
-  for (std::size_t i = 0; i < words.size(); ++i) {
+  const std::vector<std::string> words = law_spec_words();
+  const auto contact_of = [&words](const std::string& word) {
     TableSchema table;
     add_place(table).one_of({"at", "between"});
     table.key("name", kText, "in tables and figures; default: \"contact 1\", ...");
-    table.word("law", words[i], fmt::format("of the contact force: {}", fmt::join(words, ", ")));
+    table.word("law", word, fmt::format("of the contact force: {}", fmt::join(words, ", ")));
+    return table;
+  };
+  for (std::size_t i = 0; i < friction::law_words().size(); ++i) {
+    TableSchema table = contact_of(words[i]);
     std::visit(
         [&table]<class Own>(const Own&) {
           table.fields<Own>({.without = {"left", "right"}});
@@ -122,6 +127,7 @@ Json contact_schema() {
     }
     laws.push_back(table.json());
   }
+  laws.push_back(contact_of(friction::Iwan::word).fields<friction::Iwan>().json());
   return array_schema(any_of(laws), 1);
 }
 

@@ -57,7 +57,7 @@ std::string quoted_text(const std::string& text) {
 std::string scene_to_toml(const Scene& scene) {
   std::string out = fmt::format("title = {}\nunits = \"{}\"\n", quoted_text(scene.title), scene.units);
   out += structure_toml(scene);
-  for (const ContactSpec& contact : scene.contacts) out += contact_toml(contact, scene);
+  out += contacts_toml(scene);
   out += drive_toml(scene);
   out += scene.time.cycles ? table_toml("time", *scene.time.cycles) : table_toml("time", scene.time);
   out += initial_toml(scene.initial) + table_toml("ensemble", scene.ensemble, without_other_drives(scene.drive));

@@ -2,6 +2,7 @@
 
 #include <slipmode/core/fields.hpp>
 #include <slipmode/friction/contact.hpp>
+#include <slipmode/friction/iwan.hpp>
 #include <slipmode/pod/pomf.hpp>
 #include <slipmode/pod/sensors.hpp>
 
@@ -37,13 +38,21 @@ struct MatricesSpec {
   std::string units = "dimensionless";
 };
 
-/// A contact ([[contact]]).
+/// A joint ([[contact]] with law = "iwan") of which a contact is one element.
+struct JointShare {
+  friction::Iwan law;
+  std::string name;
+  std::size_t element = 0;  ///< in friction::elements_of
+};
+
+/// A contact of the model: one [[contact]], or one element of a joint.
 struct ContactSpec {
   ContactPlace at = 1;
-  friction::Law law;                 ///< law and its keys
-  friction::NormalLoad normal_load;  ///< constant part > 0 [N]; a clearance has none
-  double tilt_deg = 0.0;             ///< of the slider's face (friction::Contact::tilt), |tilt| < 90
-  std::string name;                  ///< default "contact 1", "contact 2", ...
+  friction::Law law;                     ///< law and its keys
+  friction::NormalLoad normal_load;      ///< constant part > 0 [N]; a clearance has none
+  double tilt_deg = 0.0;                 ///< of the slider's face (friction::Contact::tilt), |tilt| < 90
+  std::string name;                      ///< default "contact 1", "contact 2", ...
+  std::optional<JointShare> joint = {};  ///< where it is an element of one
 };
 
 /// What a force acts along: a place, or one number per degree of freedom.

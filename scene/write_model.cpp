@@ -65,6 +65,26 @@ std::string matrices_toml(const MatricesSpec& spec) {
                      matrix_text(spec.mass), matrix_text(spec.damping), matrix_text(spec.stiffness));
 }
 
+std::string head_toml(const std::string& name, const ContactPlace& at, const std::string& law) {
+  return fmt::format("\n[[contact]]\nname = {}\n{}law = \"{}\"\n", quoted_text(name), place_toml(at), law);
+}
+
+/// How many contacts from c on are a joint as the scene said it, none of them changed; 0 where c begins none.
+std::size_t elements_from(const std::vector<ContactSpec>& contacts, std::size_t c) {
+  if (!contacts[c].joint) return 0;
+  const std::vector<friction::JenkinsElement> elements = friction::elements_of(contacts[c].joint->law);
+  for (std::size_t k = 0; k < elements.size(); ++k) {
+    if (c + k >= contacts.size()) return 0;
+    const ContactSpec& own = contacts[c + k];
+    const auto* law = std::get_if<friction::CompliantCoulomb>(&own.law);
+    const bool same = own.joint && own.joint->element == k && own.joint->name == contacts[c].joint->name &&
+                      law != nullptr && law->stiffness == elements[k].stiffness && own.normal_load.is_constant() &&
+                      own.normal_load.constant == elements[k].slip_force;
+    if (!same) return 0;
+  }
+  return elements.size();
+}
+
 std::string load_toml(const friction::NormalLoad& load) {
   if (load.is_constant()) return number_text(load.constant);
   return inline_table(load, load.oscillator ? Without{"slope"} : Without{});
@@ -89,14 +109,29 @@ std::string structure_toml(const Scene& scene) {
                     scene.structure);
 }
 
+namespace {
+
 std::string contact_toml(const ContactSpec& contact, const Scene& scene) {
-  std::string out = fmt::format("\n[[contact]]\nname = {}\n{}law = \"{}\"\n", quoted_text(contact.name),
-                                place_toml(contact.at), friction::law_word(contact.law));
+  std::string out = head_toml(contact.name, contact.at, friction::law_word(contact.law));
   const bool clearance = friction::clearance(contact.law) != nullptr;
   if (!clearance) out += fmt::format("normal_load = {}\n", load_toml(contact.normal_load));
   out += std::visit([](const auto& law) { return law_toml(law); }, contact.law);
   if (clearance) return out;
   if (contact.tilt_deg != 0.0 || scene.beam() != nullptr) out += number_line("tilt_deg", contact.tilt_deg);
+  return out;
+}
+
+}  // namespace
+
+std::string contacts_toml(const Scene& scene) {
+  std::string out;
+  for (std::size_t c = 0; c < scene.contacts.size();) {
+    const ContactSpec& own = scene.contacts[c];
+    const std::size_t elements = elements_from(scene.contacts, c);
+    out += elements == 0 ? contact_toml(own, scene)
+                         : head_toml(own.joint->name, own.at, friction::Iwan::word) + lines_toml(own.joint->law);
+    c += std::max<std::size_t>(elements, 1);
+  }
   return out;
 }
 

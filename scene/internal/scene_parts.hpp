@@ -32,8 +32,12 @@ inline constexpr double kEndSlack = 1e-12;
 [[nodiscard]] ContactPlace read_place(TomlReader& in, const Scene& scene);
 /// [[contact]] on the structure of `scene`.
 [[nodiscard]] std::vector<ContactSpec> read_contacts(TomlReader& in, const Scene& scene);
+/// What `law` of a [[contact]] may be: a law, or a joint, which is contacts of another law side by side. Its words are
+/// those of friction::law_words and, last, the joint's.
+using LawSpec = std::variant<friction::Law, friction::Iwan>;
+[[nodiscard]] std::vector<std::string> law_spec_words();
 /// The law of one [[contact]] and its keys.
-[[nodiscard]] friction::Law read_law(TomlReader& in);
+[[nodiscard]] LawSpec read_law(TomlReader& in);
 /// [drive] into drive and amplitude of `scene`.
 void read_drive(TomlReader in, Scene& scene);
 /// [drive] kind = "force", the kind read already.

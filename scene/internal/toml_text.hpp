@@ -22,9 +22,9 @@ namespace slipmode::scene {
 /// A place as its line of keys, `at` or `between`.
 [[nodiscard]] std::string place_toml(const ContactPlace& place);
 
-/// [structure] with its sub-tables; one [[contact]]; [drive].
+/// [structure] with its sub-tables; every [[contact]]; [drive].
 [[nodiscard]] std::string structure_toml(const Scene& scene);
-[[nodiscard]] std::string contact_toml(const ContactSpec& contact, const Scene& scene);
+[[nodiscard]] std::string contacts_toml(const Scene& scene);
 [[nodiscard]] std::string drive_toml(const Scene& scene);
 
 }  // namespace slipmode::scene
