@@ -19,6 +19,7 @@ struct OrbitSpectrumArguments {
 };
 
 Report run(const Session& session, const OrbitSpectrumArguments& arguments) {
+  constexpr std::size_t kShown = 9;  // columns of the table: three contacts
   if (!arguments.output.empty()) require_writable(arguments.output);
   const results::StoreReader store(arguments.orbit);
   require_kind(store, std::array{results::FileKind::kOrbit});
@@ -34,8 +35,9 @@ Report run(const Session& session, const OrbitSpectrumArguments& arguments) {
   std::vector<Eigen::VectorXd> amplitudes;
   Json quantities = Json::array();
   for (const results::NamedHarmonics& own : found->quantities) {
-    header.push_back(own.name);
     quantities.push_back(merged({{"name", own.name}}, harmonics_json(*own.harmonics)));
+    if (amplitudes.size() == kShown) continue;
+    header.push_back(own.name);
     amplitudes.push_back(own.harmonics->amplitude());
   }
   report.data["quantities"] = quantities;
@@ -49,6 +51,8 @@ Report run(const Session& session, const OrbitSpectrumArguments& arguments) {
       "{}, {}: amplitudes of the orbit's harmonics, order 1 at {:.10g} rad/s; error below {:.0e} "
       "of each quantity\n{}",
       scene.title, model.title(), spectrum.omega, std::max(spectrum.defect, 1e-15), table.str());
+  if (const std::size_t all = found->quantities.size(); all > kShown)
+    report.text += fmt::format("{} of {} quantities; the others are in --json and in the file of -o\n", kShown, all);
   if (!arguments.output.empty()) {
     studies::content_of(model, found, arguments.request).save(arguments.output);
     report.data["file"] = arguments.output;
