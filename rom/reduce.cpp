@@ -2,6 +2,7 @@
 
 #include <slipmode/core/decompositions.hpp>
 #include <slipmode/core/errors.hpp>
+#include <slipmode/friction/places.hpp>
 #include "rom/internal/check.hpp"
 
 #include <fmt/format.h>
@@ -33,14 +34,16 @@ std::string label(const friction::Contact& contact, std::size_t index) {
                               : fmt::format("contact '{}'", contact.name);
 }
 
-/// Every contact must have a component in the span of the basis, and those components must be independent: otherwise
-/// sticking would ask the basis for a motion it does not hold.
+/// Every contact must have a component in the span of the basis, and those of different places must be independent:
+/// otherwise sticking would ask the basis for a motion it does not hold.
 void check_contacts(const std::vector<friction::Contact>& contacts, const Eigen::MatrixXd& Phi) {
   if (contacts.empty()) return;
   const Eigen::MatrixXd Q = orthonormal_columns(Phi);
-  Eigen::MatrixXd seen(Phi.cols(), static_cast<Eigen::Index>(contacts.size()));
-  for (std::size_t c = 0; c < contacts.size(); ++c) {
-    auto column = seen.col(static_cast<Eigen::Index>(c));
+  const std::vector<std::vector<std::size_t>> places = friction::by_place(contacts);
+  Eigen::MatrixXd seen(Phi.cols(), std::ssize(places));
+  for (Eigen::Index p = 0; p < seen.cols(); ++p) {
+    const std::size_t c = places[static_cast<std::size_t>(p)].front();
+    auto column = seen.col(p);
     column = Q.transpose() * contacts[c].direction.normalized();
     const double cosine = column.norm();
     if (!(cosine >= kVisible)) {
@@ -58,7 +61,7 @@ void check_contacts(const std::vector<friction::Contact>& contacts, const Eigen:
         "reduce: a basis of {} vectors cannot tell its {} contacts apart (smallest to largest "
         "singular value of their projections {:.3g}, at least {:.0e} needed). Keep more vectors: {} or more by --modes "
         "or reduction.modes",
-        Phi.cols(), contacts.size(), independence, kVisible, std::max<Eigen::Index>(Phi.cols() + 1, seen.cols())));
+        Phi.cols(), seen.cols(), independence, kVisible, std::max<Eigen::Index>(Phi.cols() + 1, seen.cols())));
   }
 }
 

@@ -2,6 +2,7 @@
 #include <slipmode/rom/reduce.hpp>
 
 #include <slipmode/core/errors.hpp>
+#include <slipmode/dynamics/simulate.hpp>
 #include <slipmode/fem/chain.hpp>
 #include <slipmode/fem/modes.hpp>
 #include "random_model.hpp"
@@ -170,6 +171,25 @@ TEST(Reduce, NamesContactsTheBasisCannotTellApart) {
   const std::string message = message_of([&] { (void)reduce(full, lnm_basis(chain, 1)); });
   EXPECT_NE(message.find("cannot tell its 2 contacts apart"), std::string::npos) << message;
   EXPECT_EQ(reduce(full, lnm_basis(chain, 2)).size(), 2);
+}
+
+TEST(Reduce, TakesSeveralContactsAtOnePlaceForOne) {
+  // Two Jenkins elements side by side are one of their sums, in a reduced model as in the full one.
+  const auto on = [](const std::vector<std::pair<double, double>>& elements) {
+    std::vector<friction::Contact> contacts;
+    for (const auto& [limit, stiffness] : elements)
+      contacts.push_back({Eigen::VectorXd::Unit(4, 3), friction::CompliantCoulomb{limit, limit, stiffness}});
+    return HybridSystem(fem::chain({.masses = 4}), contacts, friction::Belt::constant(0.2));
+  };
+  const HybridSystem parts = on({{0.1, 0.4}, {0.15, 0.6}}), whole = on({{0.25, 1.0}});
+  for (const Eigen::Index modes : {1, 2, 4}) {
+    const auto end = [&](const HybridSystem& full) {
+      const HybridSystem reduced = reduce(full, lnm_basis(full.structure(), modes));
+      return dynamics::simulate(reduced, reduced.rest(), {.duration = 60.0}).final_state;
+    };
+    const dynamics::State a = end(parts), b = end(whole);
+    EXPECT_LT((a.q - b.q).norm() + (a.v - b.v).norm(), 1e-11) << modes;
+  }
 }
 
 TEST(Reduce, RefusesBasesThatDoNotFitWithTheFigure) {
