@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <array>
+#include <utility>
 
 namespace slipmode::scene {
 
@@ -64,7 +65,7 @@ void read(TomlReader& in, friction::Measured& law) {
 
 /// A side takes what it does not say from `stop`, when there is one.
 friction::Stop read_side(TomlReader in, const std::optional<friction::Stop>& stop) {
-  return read_table(in, stop.value_or(friction::Stop{}), {.all_optional = stop.has_value()});
+  return read_table(std::move(in), stop.value_or(friction::Stop{}), {.all_optional = stop.has_value()});
 }
 
 void read(TomlReader& in, friction::Clearance& law) {
