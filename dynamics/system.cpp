@@ -3,6 +3,7 @@
 #include <slipmode/core/decompositions.hpp>
 #include <slipmode/core/errors.hpp>
 #include <slipmode/dynamics/cache.hpp>
+#include <slipmode/friction/places.hpp>
 #include "dynamics/internal/drive_cache.hpp"
 
 #include <algorithm>
@@ -83,10 +84,7 @@ HybridSystem HybridSystem::with_drive(friction::Drive drive) const {
 }
 
 HybridSystem HybridSystem::with_laws(std::vector<friction::Contact> contacts) const {
-  const auto same_place = [](const friction::Contact& a, const friction::Contact& b) {
-    return a.direction == b.direction && a.offset == b.offset;
-  };
-  if (!std::ranges::equal(contacts, contacts_, same_place))
+  if (!std::ranges::equal(contacts, contacts_, friction::same_place))
     throw InvalidInput("other laws: expected the same contacts in the same places, found others");
   for (const friction::Contact& contact : contacts) friction::validate(contact);
   check_independence(contacts);

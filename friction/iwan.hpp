@@ -41,7 +41,7 @@ struct JenkinsElement {
 /// φ_max, the slip displacement of what slides last [m].
 [[nodiscard]] double largest_slip(const Iwan& law);
 
-/// The joint as Jenkins elements, softest limit first. The density is divided at slip displacements whose ratio is the
+/// The joint as Jenkins elements, first to slide first. The density is divided at slip displacements whose ratio is the
 /// same from `finest` φ_max to φ_max; an element has the stiffness and the limit force of its part, so that those of
 /// the joint are kept exactly, and lost energy to second order in the logarithm of the ratio.
 [[nodiscard]] std::vector<JenkinsElement> elements_of(const Iwan& law);

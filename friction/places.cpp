@@ -4,15 +4,16 @@
 
 namespace slipmode::friction {
 
+bool same_place(const Contact& a, const Contact& b) { return a.offset == b.offset && a.direction == b.direction; }
+
 std::vector<std::vector<std::size_t>> by_place(const std::vector<Contact>& contacts) {
   std::vector<std::vector<std::size_t>> places;
   for (std::size_t c = 0; c < contacts.size(); ++c) {
-    const auto same = std::ranges::find_if(places, [&](const std::vector<std::size_t>& place) {
-      const Contact& other = contacts[place.front()];
-      return other.offset == contacts[c].offset && other.direction == contacts[c].direction;
+    const auto own = std::ranges::find_if(places, [&](const std::vector<std::size_t>& place) {
+      return same_place(contacts[place.front()], contacts[c]);
     });
-    if (same != places.end())
-      same->push_back(c);
+    if (own != places.end())
+      own->push_back(c);
     else
       places.push_back({c});
   }

@@ -23,7 +23,7 @@ namespace {
 void require(bool found, const char* what) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   if (!found)
-    throw NumericalFailure(std::string("the ") + what + " of a fundamental matrix were not found", kNone, {}, kNone);
+    throw NumericalFailure(std::string("the ") + what + " of a matrix of the orbit were not found", kNone, {}, kNone);
 }
 
 }  // namespace

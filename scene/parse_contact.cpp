@@ -1,4 +1,5 @@
 #include <slipmode/core/errors.hpp>
+#include <slipmode/core/overloaded.hpp>
 #include "scene/internal/scene_parts.hpp"
 #include "scene/internal/scene_words.hpp"
 #include "scene/internal/toml_fields.hpp"
@@ -64,6 +65,16 @@ void check_combination(TomlReader& in, const ContactSpec& spec) {
   }
 }
 
+/// The contact of one [[contact]] whose place and name are read.
+ContactSpec with_law(TomlReader& in, ContactSpec contact, const friction::Law& law) {
+  contact.law = law;
+  if (friction::clearance(law) != nullptr) return contact;
+  contact.normal_load = read_load(in);
+  contact.tilt_deg = read_tilt(in);
+  check_combination(in, contact);
+  return contact;
+}
+
 /// Whether two contacts have the same displacement but for its sign.
 bool same_place(const ContactPlace& a, const ContactPlace& b, const Scene& scene) {
   constexpr double kClosest = 1e-9;  // of the position
@@ -119,24 +130,14 @@ ContactPlace read_place(TomlReader& in, const Scene& scene) {
 std::vector<ContactSpec> read_contacts(TomlReader& in, const Scene& scene) {
   std::vector<ContactSpec> contacts, firsts;  // firsts: of each table
   for (TomlReader& table : in.tables("contact")) {
-    ContactSpec contact;
-    contact.at = read_place(table, scene);
-    contact.name = table.text_or("name", fmt::format("contact {}", firsts.size() + 1));
-    const LawSpec law = read_law(table);
-    const auto* joint = std::get_if<friction::Iwan>(&law);
-    std::vector<ContactSpec> own;
-    if (joint != nullptr) {
-      own = elements_of(*joint, contact);
-    } else {
-      contact.law = std::get<friction::Law>(law);
-      own = {contact};
-    }
+    ContactSpec whole;
+    whole.at = read_place(table, scene);
+    whole.name = table.text_or("name", fmt::format("contact {}", firsts.size() + 1));
+    const std::vector<ContactSpec> own =
+        std::visit(Overloaded{[&](const friction::Iwan& joint) { return elements_of(joint, whole); },
+                              [&](const friction::Law& law) { return std::vector{with_law(table, whole, law)}; }},
+                   read_law(table));
     check_alone(table, own.front(), firsts, scene);
-    if (joint == nullptr && friction::clearance(contact.law) == nullptr) {
-      own.front().normal_load = read_load(table);
-      own.front().tilt_deg = read_tilt(table);
-      check_combination(table, own.front());
-    }
     table.finish();
     firsts.push_back(own.front());
     contacts.insert(contacts.end(), own.begin(), own.end());

@@ -99,18 +99,6 @@ std::string law_toml(const friction::Clearance& law) {
   return lines_toml(law, {"left", "right"}) + fmt::format("stop = {}\n", inline_table(*law.left));
 }
 
-}  // namespace
-
-std::string structure_toml(const Scene& scene) {
-  return std::visit(Overloaded{[](const fem::ChainOptions& own) { return chain_toml(own); },
-                               [](const fem::BeamOptions& own) { return beam_toml(own); },
-                               [](const fem::MassesOptions& own) { return masses_toml(own); },
-                               [](const MatricesSpec& own) { return matrices_toml(own); }},
-                    scene.structure);
-}
-
-namespace {
-
 std::string contact_toml(const ContactSpec& contact, const Scene& scene) {
   std::string out = head_toml(contact.name, contact.at, friction::law_word(contact.law));
   const bool clearance = friction::clearance(contact.law) != nullptr;
@@ -122,6 +110,14 @@ std::string contact_toml(const ContactSpec& contact, const Scene& scene) {
 }
 
 }  // namespace
+
+std::string structure_toml(const Scene& scene) {
+  return std::visit(Overloaded{[](const fem::ChainOptions& own) { return chain_toml(own); },
+                               [](const fem::BeamOptions& own) { return beam_toml(own); },
+                               [](const fem::MassesOptions& own) { return masses_toml(own); },
+                               [](const MatricesSpec& own) { return matrices_toml(own); }},
+                    scene.structure);
+}
 
 std::string contacts_toml(const Scene& scene) {
   std::string out;

@@ -123,14 +123,19 @@ BalanceEvaluation BalanceProblem::evaluate(const Eigen::VectorXd& x) const {
   const Eigen::Index nr = response_.rigid_rows.cols();
   const Eigen::Index own = 2 * lead_ + 1, N = nc * own + nr;
   BalanceEvaluation out{x, Eigen::VectorXd(x.size()), Eigen::MatrixXd::Identity(N, N), {}, {}, 0.0};
-  out.forces.resize(laws_.size(), BalancedForce(H, lead_));
+  out.forces.resize(laws_.size(), BalancedForce(0, 0));
   for (Eigen::Index p = 0; p < nc; ++p) {
     const TrigonometricPolynomial y{phasors_of(x.segment(p * B, B), H)};
-    BalancedForce& sum = out.sums.emplace_back(H, lead_);
-    for (const std::size_t c : response_.contacts_at[static_cast<std::size_t>(p)]) {
-      out.forces[c] = balanced_force(laws_[c], y, response_.omega(), samples_, lead_);
-      sum.phasors += out.forces[c].phasors;
-      sum.jacobian += out.forces[c].jacobian;
+    const std::vector<std::size_t>& here = response_.contacts_at[static_cast<std::size_t>(p)];
+    for (const std::size_t c : here) {
+      BalancedForce& force = out.forces[c] = balanced_force(laws_[c], y, response_.omega(), samples_, lead_);
+      if (c == here.front()) {
+        out.sums.push_back(force);
+      } else {
+        out.sums.back().phasors += force.phasors;
+        out.sums.back().jacobian += force.jacobian;
+      }
+      force.jacobian.resize(0, 0);
     }
   }
   for (Eigen::Index c = 0; c < nc; ++c) {

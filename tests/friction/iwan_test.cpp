@@ -1,5 +1,6 @@
 // The joint of an Iwan law as Jenkins elements, beside the closed forms of its density.
 #include <slipmode/friction/iwan.hpp>
+#include "fixtures/iwan_reference.hpp"
 
 #include <gtest/gtest.h>
 #include <algorithm>
@@ -20,27 +21,13 @@ Iwan divided(Iwan joint, int elements, double finest) {
   return joint;
 }
 
-/// Energy lost in a cycle of displacements from −u to u: each element slides 2 (u − φ) twice, against k φ.
-double lost_by_elements(const Iwan& joint, double u) {
-  double lost = 0.0;
-  for (const JenkinsElement& own : elements_of(joint))
-    lost += 4.0 * own.slip_force * std::max(0.0, u - own.slip_force / own.stiffness);
-  return lost;
-}
-
-/// The same of the density, 4 ∫ φ (u − φ) ρ dφ from 0 to u ≤ φ_max.
-double lost(const Iwan& joint, double u) {
-  const double chi = joint.chi, reach = largest_slip(joint);
-  const double R = joint.stiffness / (1.0 + joint.beta) * (chi + 1.0) / std::pow(reach, chi + 1.0);
-  return 4.0 * R * std::pow(u, chi + 3.0) / ((chi + 2.0) * (chi + 3.0));
-}
-
 /// Over amplitudes from this share of φ_max on.
 double worst_error(const Iwan& joint, double from) {
+  const std::vector<JenkinsElement> elements = elements_of(joint);
   double worst = 0.0;
   for (double share = from; share <= 1.0; share *= 1.003) {
     const double u = share * largest_slip(joint);
-    worst = std::max(worst, std::abs(lost_by_elements(joint, u) / lost(joint, u) - 1.0));
+    worst = std::max(worst, std::abs(tests::lost_by_elements(elements, u) / tests::lost_by_density(joint, u) - 1.0));
   }
   return worst;
 }

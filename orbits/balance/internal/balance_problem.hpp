@@ -43,7 +43,7 @@ class ContactResponse {
 struct BalanceEvaluation {
   Eigen::VectorXd x, residual;
   Eigen::MatrixXd jacobian;           ///< of the leading orders
-  std::vector<BalancedForce> forces;  ///< of each contact
+  std::vector<BalancedForce> forces;  ///< of each contact, without derivatives
   std::vector<BalancedForce> sums;    ///< of each place
   double relative = 0.0;
 };
