@@ -3,7 +3,9 @@
 #include <slipmode/core/decompositions.hpp>
 #include <slipmode/core/errors.hpp>
 #include <slipmode/dynamics/kernels/kernels.hpp>
+#include <slipmode/friction/places.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace slipmode::dynamics {
@@ -39,6 +41,16 @@ EventResolver::EventResolver(const HybridSystem& system, const ModalModel& model
     loads_.emplace_back(contact);
     internal_.push_back(system.internal_begin(c));
     oscillator_.push_back(internal_.back() + friction::internal_states(contact) - 2);
+  }
+  for (std::size_t c = 0; c < laws_.size(); ++c) {
+    const auto alike = [&](int first) {
+      const auto d = static_cast<std::size_t>(first);
+      return laws_[d].kind == LawKind::kCompliant && !laws_[d].varies &&
+             friction::same_place(system.contacts()[c], system.contacts()[d]);
+    };
+    const bool springs = laws_[c].kind == LawKind::kCompliant && !laws_[c].varies;
+    const auto first = springs ? std::ranges::find_if(slides_as_, alike) : slides_as_.end();
+    slides_as_.push_back(first == slides_as_.end() ? static_cast<int>(c) : *first);
   }
   for (const ContactForces& law : laws_) clearances_only_ &= law.kind == LawKind::kClearance;
   lone_spring_ = laws_.size() == 1 && laws_[0].kind == LawKind::kCompliant;

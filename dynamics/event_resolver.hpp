@@ -62,6 +62,10 @@ class EventResolver {
   /// wᵀq̇ of contact c.
   [[nodiscard]] double contact_velocity(int c, const double* x) const;
 
+  /// The first contact that slides as c does: behind springs at one place, under constant loads. All that slide the
+  /// same way turn at the same instant. c itself where there is none before it.
+  [[nodiscard]] int slides_as(int c) const { return slides_as_[static_cast<std::size_t>(c)]; }
+
   /// Takes the velocity error of sticking contacts out of a state, by the impulse that their friction would exert.
   void hold(double time, const std::vector<ContactMode>& modes, double* x) const;
 
@@ -111,6 +115,8 @@ class EventResolver {
   void settle_coupled(HybridPoint& point, const Reached& reached);
   /// A contact spring whose contact point starts or ceases to slide.
   void turn_compliant(HybridPoint& point, int c) const;
+  /// The same, and of all that cease to slide with it.
+  void turn_together(HybridPoint& point, int c) const;
   /// Contact lost or regained.
   void turn_load(HybridPoint& point, int c) const;
   /// The laws at this instant's normal loads.
@@ -134,6 +140,7 @@ class EventResolver {
   bool plain_ = true;                     ///< one rigid contact, untilted, under constant load
   bool clearances_only_ = true;
   bool lone_spring_ = false;  ///< one contact, compliant
+  std::vector<int> slides_as_;
   int max_events_per_window_;
   double zeno_window_;
   std::vector<Event> events_;

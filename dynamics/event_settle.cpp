@@ -105,6 +105,14 @@ void EventResolver::turn_compliant(HybridPoint& point, int c) const {
   if (sign_of(slip) * slide_velocity(point, c, sign_of(slip)) > 0.0) point.modes[i] = slip;
 }
 
+void EventResolver::turn_together(HybridPoint& point, int c) const {
+  const ContactMode before = point.modes[static_cast<std::size_t>(c)];
+  turn_compliant(point, c);
+  if (before == ContactMode::kStick) return;
+  for (int d = 0; d < model_.contacts; ++d)
+    if (slides_as(d) == slides_as(c) && point.modes[static_cast<std::size_t>(d)] == before) turn_compliant(point, d);
+}
+
 bool EventResolver::has_event(int c) const {
   return std::any_of(events_.begin(), events_.end(), [c](const Event& e) { return e.contact == c; });
 }
@@ -148,7 +156,7 @@ void EventResolver::settle_coupled(HybridPoint& point, const Reached& reached) {
   else if (contact >= 0 && kind == GuardKind::kStop)
     point.modes[static_cast<std::size_t>(contact)] = next;
   else if (contact >= 0 && laws_[static_cast<std::size_t>(contact)].kind == LawKind::kCompliant)
-    turn_compliant(point, contact);
+    turn_together(point, contact);
 
   // Rigid contacts at rest on the drive, to be decided together: the sticking ones, the one whose guard was reached,
   // and any other whose sliding speed is zero to rounding.

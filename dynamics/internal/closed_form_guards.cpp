@@ -25,6 +25,7 @@ constexpr int kHalvings = 3;
 
 void ClosedFormFlow::set_guards() {
   guards_.clear();
+  std::vector<bool> guarded(static_cast<std::size_t>(nc_));  // one of a group that turns together
   const std::vector<RegimeOutput>& outputs = tables_->regime().outputs;
   for (std::size_t k = 0; k < outputs.size(); ++k) {
     const int c = outputs[k].contact;
@@ -32,9 +33,13 @@ void ClosedFormFlow::set_guards() {
     const ContactForces& law = resolver_.laws()[i];
     Guard guard{static_cast<Eigen::Index>(k), c};
     switch (outputs[k].kind) {
-      case RegimeOutput::Kind::kSpeed:
+      case RegimeOutput::Kind::kSpeed: {
+        const auto group = static_cast<std::size_t>(resolver_.slides_as(c));
+        if (guarded[group]) continue;
+        guarded[group] = true;
         guard.sign = sign_of(point_.modes[i]);
         break;
+      }
       case RegimeOutput::Kind::kForce:
         guard.constant = law.limit(-1.0);
         guards_.push_back(guard);

@@ -1,12 +1,14 @@
 // Scenes with law = "iwan": what a joint becomes, and what it loses in a cycle beside the closed form.
 #include <slipmode/dynamics/simulate.hpp>
 #include <slipmode/scene/scene.hpp>
+#include "fixtures/iwan_reference.hpp"
 #include "scene/messages.hpp"
 
 #include <gtest/gtest.h>
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 namespace slipmode::scene {
 namespace {
@@ -79,22 +81,12 @@ TEST(JointScene, WithAnElementChangedIsWrittenElementByElement) {
   EXPECT_EQ(again.contacts[8].normal_load.constant, scene.contacts[8].normal_load.constant);
 }
 
-/// Energy the joint loses in a cycle whose displacement has this half range, by elements; closed form, Masing's rule.
-double lost_by_elements(const Scene& scene, double half) {
-  double lost = 0.0;
-  for (const ContactSpec& own : scene.contacts) {
-    if (!own.joint) continue;
-    const double slip = own.normal_load.constant / friction::spring_stiffness(own.law);
-    lost += 4.0 * own.normal_load.constant * std::max(0.0, half - slip);
-  }
-  return lost;
-}
-
-/// The same of the density the elements stand for (Segalman's (15)).
-double lost_by_density(const friction::Iwan& joint, double half) {
-  const double reach = friction::largest_slip(joint);
-  const double R = joint.stiffness / (1.0 + joint.beta) * (joint.chi + 1.0) / std::pow(reach, joint.chi + 1.0);
-  return 4.0 * R * std::pow(half, joint.chi + 3.0) / ((joint.chi + 2.0) * (joint.chi + 3.0));
+/// The joint's elements as the scene has them.
+std::vector<friction::JenkinsElement> elements_of(const Scene& scene) {
+  std::vector<friction::JenkinsElement> elements;
+  for (const ContactSpec& own : scene.contacts)
+    if (own.joint) elements.push_back({friction::spring_stiffness(own.law), own.normal_load.constant});
+  return elements;
 }
 
 TEST(JointScene, LosesInACycleWhatItsClosedFormSays) {
@@ -111,11 +103,37 @@ TEST(JointScene, LosesInACycleWhatItsClosedFormSays) {
     const double half = 0.5 * (y.maxCoeff() - y.minCoeff());
     ASSERT_LT(half, friction::largest_slip(scene.contacts.front().joint->law));
     // Samples miss the largest displacement by up to (π / 4096)² / 2 of it.
-    const double expected = lost_by_elements(scene, half);
+    const double expected = lost_by_elements(elements_of(scene), half);
     EXPECT_NEAR(cycle.audit.friction_loss, expected, 3e-6 * expected);
     EXPECT_NEAR(expected, lost_by_density(scene.contacts.front().joint->law, half), 0.03 * expected);
     EXPECT_LT(std::abs(cycle.audit.residual()), 1e-9);
   }
+}
+
+TEST(JointScene, ElementsThatSlideTurnTogetherAndEveryStepIsCertified) {
+  const Scene scene = parse_scene(kJoint);
+  const dynamics::HybridSystem system = build_system(scene);
+  const dynamics::Trajectory run = dynamics::simulate(system, system.rest(), {.duration = 300.0});
+  EXPECT_EQ(run.statistics.certified, run.statistics.steps);
+  // Those that slide when their place turns do so at one instant, the others hold: from one turn to the next each
+  // element slides at most once.
+  std::vector<bool> slides(scene.contacts.size());
+  int turns = 0, most = 0;
+  for (std::size_t k = 0; k < run.events.size();) {
+    int stuck = 0;
+    const double time = run.events[k].time;
+    for (; k < run.events.size() && run.events[k].time == time; ++k) {
+      const dynamics::Event& event = run.events[k];
+      slides[static_cast<std::size_t>(event.contact)] = event.kind == dynamics::EventKind::kRelease;
+      stuck += event.kind == dynamics::EventKind::kStick ? 1 : 0;
+    }
+    if (stuck == 0) continue;
+    EXPECT_EQ(std::ranges::count(slides, true), 0) << "t = " << time;
+    ++turns;
+    most = std::max(most, stuck);
+  }
+  EXPECT_GT(turns, 50);
+  EXPECT_GT(most, 5);
 }
 
 class JointScenes : public testing::TestWithParam<BadValue> {};
