@@ -50,8 +50,11 @@ Branch continue_orbit(const dynamics::SystemFamily& family, const PeriodicOrbit&
   if (orbit.monodromy.size() == 0)
     throw InvalidInput("continuation starts from an orbit that was found, with monodromy");
   ContinuationOptions own = options;
-  own.shooting.half_period = orbit.symmetric;  // regular where the symmetry breaks
-  return walk_branch(BranchSolver(family, orbit, parameter, own), own, {parameter, orbit});
+  own.shooting.half_period = false;
+  const PeriodicOrbit first =
+      orbit.family.cols() > 0 ? BranchSolver(family, orbit, parameter, own).in_the_middle(orbit, parameter) : orbit;
+  own.shooting.half_period = first.symmetric;  // regular where the symmetry breaks
+  return walk_branch(BranchSolver(family, first, parameter, own), own, {parameter, first});
 }
 
 }  // namespace slipmode::orbits

@@ -40,7 +40,8 @@ struct ContinuationOptions {
   /// Which way to go first: towards the upper end of the range (+1) or the lower (−1).
   int direction = 1;
   bool both_ways = false;  ///< then also the other way; points are put in order along the branch
-  /// Steps are lengths along the branch; 1 is the orbit's size, and the whole range of the parameter.
+  /// Steps are lengths along the branch; 1 is the first orbit's size, and the whole range of the parameter. Where the
+  /// orbit grows, max_step grows with it, but not what of it is the parameter's.
   double step = 0.01, min_step = 1e-9, max_step = 0.05;
   int max_points = 2000;
   /// Pseudo-arclength follows folds. Without, the parameter itself is stepped, and a fold ends the branch.

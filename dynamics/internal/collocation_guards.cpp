@@ -82,12 +82,14 @@ bool CollocationFlow::unmoved(int c) const {
 }
 
 double CollocationFlow::velocity_scale(int c, const Eigen::VectorXd& x) const {
-  // Rounding of the time changes V; and where a bristle comes to rest, speeds are what forces in balance leave.
-  const double by_time = std::abs(drive().acceleration(begin_) * begin_);
-  const double by_way =
-      bristled(c) ? model_.fastest * model_.displacement_row.col(c).cwiseAbs().dot(x.cwiseAbs()) : 0.0;
-  return std::abs(drive().velocity(begin_)) + by_time + by_way +
-         model_.velocity_row.col(c).cwiseAbs().dot(x.cwiseAbs());
+  // Rounding of the time changes V.
+  const double scale = std::abs(drive().velocity(begin_)) + std::abs(drive().acceleration(begin_) * begin_) +
+                       model_.velocity_row.col(c).cwiseAbs().dot(x.cwiseAbs());
+  if (!bristled(c)) return scale;
+  // Where a bristle is at rest, speeds are what forces in balance leave: those of the structure, and of the contacts.
+  const double way = model_.displacement_row.col(c).cwiseAbs().dot(x.cwiseAbs());
+  const auto reach = (model_.mobility(c, c) * model_.mobility.diagonal()).cwiseSqrt();
+  return scale + model_.fastest * way + reach.dot(point_.force.cwiseAbs()) * tables_.step(0);
 }
 
 bool CollocationFlow::too_early(const Guarded& guard) const {

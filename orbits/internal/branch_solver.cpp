@@ -2,9 +2,12 @@
 
 #include <slipmode/core/decompositions.hpp>
 #include <slipmode/core/errors.hpp>
+#include <slipmode/dynamics/simulate.hpp>
 #include "orbits/internal/describe_orbit.hpp"
 
 #include <fmt/format.h>
+#include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 
 namespace slipmode::orbits {
@@ -17,6 +20,52 @@ constexpr double kRoundingOfPass = 1e-12;
 /// Step of the difference in the parameter, of its range, where Φ stretches nothing. Second derivatives grow like ‖Φ‖²,
 /// what rounding leaves like ‖Φ‖: the step is divided by √‖Φ‖.
 constexpr double kDifferenceStep = 1e-6;
+
+/// Springs' forces that reach this much further to one side, of their largest, need not be moved.
+constexpr double kMiddle = 1e-6;
+/// Of an orbit, to tell how far forces reach: their largest values to 1e-4.
+constexpr int kSamples = 256;
+
+/// Middles of the ranges of rows.
+Eigen::VectorXd middles(const Eigen::MatrixXd& values) {
+  return 0.5 * (values.rowwise().maxCoeff() + values.rowwise().minCoeff());
+}
+
+/// What takes an orbit along its family to where the springs that never slide reach as far to either side, and beyond
+/// that contacts move about zero; stacked. Empty where it is there, or no such spring makes the family.
+Eigen::VectorXd way_to_middle(const dynamics::HybridSystem& system, const PeriodicOrbit& orbit) {
+  std::vector<Eigen::Index> held, own_states;
+  for (Eigen::Index c = 0; c < std::ssize(system.contacts()); ++c) {
+    const auto i = static_cast<std::size_t>(c);
+    const bool moves = std::ranges::any_of(orbit.events, [&](const dynamics::Event& e) { return e.contact == c; });
+    const bool springs = friction::spring_stiffness(system.contacts()[i].law) > 0.0;
+    if (!springs || moves || orbit.start.modes[i] != dynamics::ContactMode::kStick) continue;
+    held.push_back(c);
+    own_states.push_back(2 * system.size() + system.internal_begin(static_cast<int>(c)));
+  }
+  if (held.empty()) return {};
+  dynamics::SimulateOptions options{.duration = orbit.period, .sample = orbit.period / kSamples, .keep_events = false};
+  options.output = dynamics::SimulateOptions::Output::kContacts;
+  options.flow.audit = false;
+  const dynamics::Trajectory run = dynamics::simulate(system, orbit.start, options);
+  Eigen::MatrixXd stretch = run.lambda(held, Eigen::all), directions(system.size(), std::ssize(system.contacts()));
+  for (Eigen::Index c = 0; c < directions.cols(); ++c)
+    directions.col(c) = system.contacts()[static_cast<std::size_t>(c)].direction;
+  for (Eigen::Index k = 0; k < stretch.rows(); ++k)
+    stretch.row(k) /= friction::spring_stiffness(system.contacts()[static_cast<std::size_t>(held[k])].law);
+  const Eigen::VectorXd off = middles(stretch), aside = middles(run.contact_q);
+  if (off.cwiseAbs().maxCoeff() <= kMiddle * stretch.cwiseAbs().maxCoeff() &&
+      aside.cwiseAbs().maxCoeff() <= kMiddle * run.contact_q.cwiseAbs().maxCoeff())
+    return {};
+  const Eigen::MatrixXd stretched = orbit.family(own_states, Eigen::all),
+                        moved = directions.transpose() * orbit.family.topRows(system.size());
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(stretched, Eigen::ComputeThinU | Eigen::ComputeFullV);
+  const Eigen::VectorXd shift = -svd.solve(off);
+  const Eigen::MatrixXd open = svd.matrixV().rightCols(orbit.family.cols() - svd.rank());
+  if (open.cols() == 0) return orbit.family * shift;
+  const Eigen::MatrixXd rest = moved * open;
+  return orbit.family * (shift - open * rest.completeOrthogonalDecomposition().solve(aside + moved * shift));
+}
 
 /// time / period without whole periods.
 double share_of(double time, double period) { return time / period - std::floor(time / period); }
@@ -202,6 +251,25 @@ BranchEvaluation BranchSolver::shifted(const BranchEvaluation& at, double share)
     node = advanced(system, runnable(system, node), share * at.at.point.period);
   if (kind_ == OrbitKind::kDriven) later.phase = share_of(later.phase + share * options_.shooting.order, 1.0);
   return evaluate(later);
+}
+
+std::optional<BranchEvaluation> BranchSolver::middle_of_family(const BranchEvaluation& at,
+                                                               const PeriodicOrbit& orbit) const {
+  if (orbit.family.cols() == 0 || half_period()) return std::nullopt;
+  const Eigen::VectorXd way = way_to_middle(at.problem->system(), orbit);
+  if (way.size() == 0) return std::nullopt;
+  Eigen::VectorXd step = Eigen::VectorXd::Zero(parameter_row().size());
+  step.head(way.size()) = way.cwiseQuotient(scale_);
+  std::optional<Corrected> middle = correct(moved(at, step, 0.0), parameter_row());
+  if (!middle) return std::nullopt;
+  return std::move(middle->at);
+}
+
+PeriodicOrbit BranchSolver::in_the_middle(const PeriodicOrbit& orbit, double parameter) const {
+  const std::optional<Corrected> closed = correct(unknowns_of(orbit, parameter), parameter_row());
+  if (!closed) return orbit;
+  const std::optional<BranchEvaluation> middle = middle_of_family(closed->at, orbit);
+  return middle ? describe(*middle) : orbit;
 }
 
 Eigen::VectorXd BranchSolver::difference(const BranchUnknowns& b, const BranchUnknowns& a) const {

@@ -31,7 +31,7 @@ class BranchSolver {
  public:
   using Unknowns = BranchUnknowns;
   using Evaluation = BranchEvaluation;
-  static constexpr bool kMovesOrigin = true;  ///< an orbit's origin is a choice, and kept off events
+  static constexpr bool kByShooting = true;  ///< an orbit's origin, and its place in a family, are choices
 
   /// @param orbit  fixes kind, order and scales
   BranchSolver(dynamics::SystemFamily family, const PeriodicOrbit& orbit, double parameter,
@@ -66,6 +66,14 @@ class BranchSolver {
   /// The same orbit with its origin a share of its period later.
   [[nodiscard]] BranchEvaluation shifted(const BranchEvaluation& at, double share) const;
 
+  /// Of a family of orbits, held by contacts behind springs that never slide: the one whose springs' forces reach as
+  /// far to one side as to the other, which is there as long as the family is. Nothing where `at` is it, or alone.
+  [[nodiscard]] std::optional<BranchEvaluation> middle_of_family(const BranchEvaluation& at,
+                                                                 const PeriodicOrbit& orbit) const;
+
+  /// The same of an orbit at the parameter; the orbit itself where none is found.
+  [[nodiscard]] PeriodicOrbit in_the_middle(const PeriodicOrbit& orbit, double parameter) const;
+
   /// b − a, scaled [N + e]; both at the same phase of the drive.
   [[nodiscard]] Eigen::VectorXd difference(const BranchUnknowns& b, const BranchUnknowns& a) const;
 
@@ -74,6 +82,10 @@ class BranchSolver {
   struct Symmetric;
   [[nodiscard]] Symmetric symmetric_beside(const BranchEvaluation& near, const PeriodicOrbit& orbit) const;
 
+  /// Largest coordinate of the start, scaled.
+  [[nodiscard]] double size(const BranchEvaluation& at) const {
+    return stacked(at.at.point.nodes[0]).cwiseQuotient(scale_).cwiseAbs().maxCoeff();
+  }
   [[nodiscard]] PeriodicOrbit describe(const BranchEvaluation& at) const;
   /// What describes a point beside its orbit: nothing.
   [[nodiscard]] std::optional<Balance> balance_of(const BranchEvaluation& /*at*/) const { return std::nullopt; }

@@ -151,7 +151,7 @@ void add_smooth(const Solver& solver, const WatchedPoint<Solver>& a, const Watch
   if (jumps && critical.distance > 1e-3) {
     if (kind != SpecialKind::kFold) return;  // the multiplier jumps with the word, which is reported as such
     special.kind = SpecialKind::kNonSmoothFold;
-    special.note += fmt::format("word \"{}\" before, \"{}\" after", at.low.orbit.word, at.high.orbit.word);
+    special.note += word_change(at.low.orbit, at.high.orbit);
   } else {
     special.multiplier = critical.multiplier;
     special.direction = critical_direction(at.low, kind, critical.multiplier);
@@ -217,6 +217,11 @@ void add_turning_over(const Solver& solver, const WatchedPoint<Solver>& a, const
 
 }  // namespace
 
+std::string word_change(const PeriodicOrbit& before, const PeriodicOrbit& after) {
+  return fmt::format("word \"{}\" before ({} crossings), \"{}\" after ({})", abridged(before.word), before.crossings,
+                     abridged(after.word), after.crossings);
+}
+
 SpecialKind kind_of_word_change(const std::string& before, const std::string& after) {
   const auto count = [](const std::string& word, char letter) { return std::count(word.begin(), word.end(), letter); };
   if (count(before, '0') != count(after, '0')) return SpecialKind::kStickChange;
@@ -267,7 +272,7 @@ std::vector<SpecialPoint> special_points_between(const Solver& solver, const Wat
     const Located<Solver> at = narrow<Solver>(
         solver, a, b, s, tolerance, [&](const Point& p) { return p.orbit.word == a.orbit.word ? -1.0 : 1.0; }, false);
     SpecialPoint special = special_of(at, kind_of_word_change(at.low.orbit.word, at.high.orbit.word), tolerance);
-    special.note += fmt::format("word \"{}\" before, \"{}\" after", at.low.orbit.word, at.high.orbit.word);
+    special.note += word_change(at.low.orbit, at.high.orbit);
     found.push_back({at.s, std::move(special)});
   }
   std::stable_sort(found.begin(), found.end(), [](const Found& x, const Found& y) { return x.s < y.s; });

@@ -34,6 +34,8 @@ template <class Solver>
 [[nodiscard]] WatchedPoint<Solver> watch(const Solver& solver, typename Solver::Evaluation at,
                                          const Eigen::VectorXd& along);
 
+/// A change of word in words.
+[[nodiscard]] std::string word_change(const PeriodicOrbit& before, const PeriodicOrbit& after);
 /// What a change of word is: sticks that come or go, touches, or reversals.
 [[nodiscard]] SpecialKind kind_of_word_change(const std::string& before, const std::string& after);
 

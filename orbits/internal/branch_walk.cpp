@@ -40,8 +40,9 @@ class Walk {
           fmt::format("the orbit handed in does not close at parameter {:.8g}: solve it there first", from.parameter);
       return std::move(branch_);
     }
-    current_ = watch(solver_, first->at, static_cast<double>(direction) * solver_.parameter_row());
+    current_ = watched(first->at, static_cast<double>(direction) * solver_.parameter_row());
     add(current_, 0.0);
+    first_size_ = solver_.size(current_.at);
     step_ = options_.step;
     try {
       while (!ended_) advance();
@@ -55,6 +56,14 @@ class Walk {
   }
 
  private:
+  /// A point with all that is watched; of a family of orbits the middle one.
+  [[nodiscard]] Point watched(const typename Solver::Evaluation& at, const Eigen::VectorXd& along) const {
+    Point point = watch(solver_, at, along);
+    if constexpr (Solver::kByShooting)
+      if (const auto middle = solver_.middle_of_family(at, point.orbit)) return watch(solver_, *middle, along);
+    return point;
+  }
+
   void add(const Point& point, double step) {
     const double arclength = branch_.points.empty() ? 0.0 : branch_.points.back().arclength + step;
     branch_.points.push_back({point.at.at.parameter, point.orbit, arclength, point.balance});
@@ -75,7 +84,7 @@ class Walk {
       int iterations = 0;
       std::optional<Point> next = attempt(step_, iterations);
       if (next) {
-        step_ = std::min((iterations <= 4 ? 1.6 : 1.1) * step_, options_.max_step);
+        step_ = std::min((iterations <= 4 ? 1.6 : 1.1) * step_, longest_step());
         return accept(std::move(*next));
       }
       step_ *= 0.4;
@@ -92,7 +101,7 @@ class Walk {
     out_iterations = corrected->iterations;
     const Eigen::VectorXd way = solver_.difference(corrected->at.at, current_.at.at);
     if ((way - length * current_.tangent).norm() > 0.5 * length + 1e-7) return std::nullopt;  // another branch
-    Point next = watch(solver_, corrected->at, way);
+    Point next = watched(corrected->at, way);
     const bool lands = !current_.orbit.symmetric && next.orbit.symmetric;
     if (lands && length > kLandingStep) return std::nullopt;  // symmetric orbits are joined in small steps
     const bool kink = next.orbit.word != current_.orbit.word && length < 1e-3;
@@ -105,6 +114,13 @@ class Walk {
   /// The step in the tangent's length.
   [[nodiscard]] double length_of(double s) const {
     return options_.arclength ? s : s / std::max(std::abs(share()), 1e-9);
+  }
+
+  /// Where the orbit has outgrown its first size, steps grow with it, as far as the parameter's share in them allows.
+  [[nodiscard]] double longest_step() const {
+    if (!options_.arclength) return options_.max_step;
+    const double grown = solver_.size(current_.at) / first_size_;
+    return options_.max_step * std::max(1.0, std::min(grown, 1.0 / std::abs(share())));
   }
 
   [[nodiscard]] bool leaves_range(double s) const {
@@ -123,7 +139,7 @@ class Walk {
                              "of symmetric orbits there",
                              next.at.at.parameter));
     current_ = std::move(next);
-    if constexpr (Solver::kMovesOrigin) keep_off_guards();
+    if constexpr (Solver::kByShooting) keep_off_guards();
     if (branch_.points.size() > 10 && back_at_start(taken))
       end(BranchEnd::kClosed, "the branch is back where it began");
   }
@@ -152,7 +168,7 @@ class Walk {
       if (!corrected) return false;
       const Eigen::VectorXd way = solver_.difference(corrected->at.at, current_.at.at);
       if ((way - length * current_.tangent).norm() > 0.5 * length + 1e-7) return false;
-      Point last = watch(solver_, corrected->at, way);
+      Point last = watched(corrected->at, way);
       if (options_.locate) locate(last, current_.tangent.dot(way));
       add(last, way.norm());
     }
@@ -176,7 +192,7 @@ class Walk {
         corner.orbit = current_.orbit;
         corner.balance = current_.balance;
         corner.before = branch_.points.size() - 1;
-        corner.note = fmt::format("word \"{}\" before, \"{}\" after", current_.orbit.word, next->orbit.word);
+        corner.note = word_change(current_.orbit, next->orbit);
         branch_.special.push_back(std::move(corner));
         add(*next, s);
         current_ = std::move(*next);
@@ -203,7 +219,7 @@ class Walk {
       const Eigen::VectorXd tangent = sign * solver_.tangent(across, current_.tangent);
       const auto corrected = solver_.correct(solver_.moved(current_.at, s * tangent, 0.0), tangent);
       if (!corrected) return std::nullopt;
-      Point next = watch(solver_, corrected->at, solver_.difference(corrected->at.at, current_.at.at));
+      Point next = watched(corrected->at, solver_.difference(corrected->at.at, current_.at.at));
       const bool near = solver_.difference(next.at.at, current_.at.at).norm() < 3.0 * s;
       const bool goes_on = near && next.orbit.word != current_.orbit.word && !was_here(next, s);
       return goes_on ? std::optional(std::move(next)) : std::nullopt;
@@ -239,7 +255,7 @@ class Walk {
       const typename Solver::Evaluation later = solver_.shifted(current_.at, share);
       typename Solver::Evaluation ahead = solver_.evaluate(solver_.moved(current_.at, 1e-4 * current_.tangent, 0.0));
       ahead = solver_.shifted(ahead, share);
-      current_ = watch(solver_, later, solver_.difference(ahead.at, later.at));
+      current_ = watched(later, solver_.difference(ahead.at, later.at));
     } catch (const NumericalFailure&) {
       return;  // the origin stays where it is
     }
@@ -254,7 +270,7 @@ class Walk {
 
   /// The current point with its origin at another one's phase of the drive, where origins move.
   [[nodiscard]] typename Solver::Evaluation with_origin_of(const typename Solver::Unknowns& other) const {
-    if constexpr (Solver::kMovesOrigin) {
+    if constexpr (Solver::kByShooting) {
       double share = (other.phase - current_.at.at.phase) / current_.orbit.order;
       if (share < 0) share += 1.0 / current_.orbit.order;
       if (share > 0) return solver_.shifted(current_.at, share);
@@ -267,7 +283,7 @@ class Walk {
   double low_, high_;
   Branch branch_;
   Point current_;
-  double step_ = 0.0;
+  double step_ = 0.0, first_size_ = 0.0;
   bool ended_ = false;
 };
 

@@ -45,7 +45,7 @@ class BalanceBranchSolver {
  public:
   using Unknowns = BalanceUnknowns;
   using Evaluation = BalanceBranchEvaluation;
-  static constexpr bool kMovesOrigin = false;
+  static constexpr bool kByShooting = false;
 
   /// @param from       a balance at its parameter
   /// @param symmetric  odd orders alone
@@ -53,6 +53,8 @@ class BalanceBranchSolver {
                       const ContinuationOptions& options, bool symmetric);
 
   [[nodiscard]] BalanceUnknowns unknowns_of(const BranchPoint& point) const;
+  /// Largest coefficient [m].
+  [[nodiscard]] double size(const BalanceBranchEvaluation& at) const { return at.at.x.cwiseAbs().maxCoeff(); }
   /// @throws NumericalFailure  outside the range; InvalidInput when the family refuses
   [[nodiscard]] BalanceBranchEvaluation evaluate(const BalanceUnknowns& at) const;
   /// Unit vector along the branch, with a positive product with `along`.
