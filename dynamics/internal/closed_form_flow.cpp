@@ -282,10 +282,11 @@ bool ClosedFormFlow::settle(int guard, bool touching) {
 }
 
 bool ClosedFormFlow::cancels(const Visited& in, double t, const Eigen::VectorXd& x) const {
-  if (in.overlay == nullptr || in.overlay->resonant_size == 0.0 || t < in.entered) return false;
+  if (in.overlay == nullptr || t < in.entered) return false;
   Eigen::VectorXd sum = x;
   in.overlay->state.add(phase_at(t), 1.0, sum);
-  return scaled_size(in.tables->regime(), sum) < kLittleLeft * in.overlay->resonant_size;
+  const Regime& r = in.tables->regime();
+  return scaled_size(r, sum) < kLittleLeft * scaled_size(r, x);
 }
 
 void ClosedFormFlow::anew(const Visited& in, double t, Eigen::VectorXd& out_x, Eigen::VectorXd& out_inputs) const {

@@ -17,9 +17,6 @@ namespace {
 /// Closer to an eigenvalue than this share of the drive's frequency there is no telling resonance from damping.
 constexpr double kResonance = 1e-13;
 
-/// A steady response this many times what its inputs hold at rest is one near resonance.
-constexpr double kResonant = 5.0;
-
 using Amplitudes = DriveOverlay::Amplitudes;
 using Complex = std::complex<double>;
 
@@ -169,9 +166,6 @@ DriveOverlay::DriveOverlay(const Regime& r, const ModalModel& slipping_model, co
     forces.col(j) = response.force;
   }
   state = {own.real(), -own.imag()};
-  if (const Eigen::VectorXd all = state.magnitude.rowwise().sum();
-      scaled_size(r, all) > kResonant * scaled_size(r, r.particular.cwiseAbs() * inputs.magnitude.rowwise().sum()))
-    resonant_size = scaled_size(r, all);
   slipping = {lifted.real(), -lifted.imag()};
   force = {forces.real(), -forces.imag()};
   displacement = through(r.displacement_row, r.displacement_coefficient, state, inputs);

@@ -64,15 +64,14 @@ class DriveOverlay {
   [[nodiscard]] double omega() const { return omega_; }
   [[nodiscard]] Eigen::Index orders() const { return state.c.cols(); }
 
-  Amplitudes state;            ///< X [2np]
-  Amplitudes inputs;           ///< J [ni]
-  Amplitudes outputs;          ///< [no]
-  Amplitudes force;            ///< λ of each contact [nc]
-  Amplitudes velocity;         ///< wᵀq̇ of each contact [nc]
-  Amplitudes displacement;     ///< wᵀq of each contact [nc]
-  Amplitudes driven;           ///< d_kᵀq̇ of each force direction [nk]
-  Amplitudes slipping;         ///< the state in the slipping model [2np_s]
-  double resonant_size = 0.0;  ///< near resonance, of `state` at most, as `scaled_size` has it; else 0
+  Amplitudes state;         ///< X [2np]
+  Amplitudes inputs;        ///< J [ni]
+  Amplitudes outputs;       ///< [no]
+  Amplitudes force;         ///< λ of each contact [nc]
+  Amplitudes velocity;      ///< wᵀq̇ of each contact [nc]
+  Amplitudes displacement;  ///< wᵀq of each contact [nc]
+  Amplitudes driven;        ///< d_kᵀq̇ of each force direction [nk]
+  Amplitudes slipping;      ///< the state in the slipping model [2np_s]
 
   /// Bernstein coefficients of cos jωτ and sin jωτ over a window 0 ≤ τ ≤ h of this level, and the share of their size
   /// that interpolation leaves out.

@@ -91,14 +91,15 @@ TEST(RandomScenes, OfTenSeedsThatOnceFailedHold) {
   // of 1e-9 without end; 4_6523: Zeno); what a step may err by, held against a mass that hardly moves (6_18840); a
   // steady answer 1e5 times what a record of 15 us has of motion (13_1240); extrapolation to an event whose
   // last two orders happened to agree (14_6290); a bristle beside a pressed stick that never moves, whose speeds of
-  // 1e-33 were told apart (35_9548: a run without end).
+  // 1e-33 were told apart (35_9548: a run without end); beams so soon after rest that the state is a small difference
+  // of the steady answer and of what dies out (13_6712, 35_9272).
   std::vector<std::pair<std::uint64_t, std::uint64_t>> scenes;
   for (const auto& file : std::filesystem::directory_iterator(SLIPMODE_SOURCE_DIR "/tests/selftest/scenes")) {
     const std::string name = file.path().stem();
     if (const auto at = name.find('_'); at != std::string::npos)
       scenes.emplace_back(std::stoull(name), std::stoull(name.substr(at + 1)));
   }
-  EXPECT_GE(scenes.size(), 30U);
+  EXPECT_GE(scenes.size(), 32U);
   std::ranges::sort(scenes);
   for (const auto& [seed, index] : scenes)
     expect_holds(std::to_string(seed) + "_" + std::to_string(index), seed, index);
