@@ -128,10 +128,14 @@ class OrbitWork {
       return;
     }
     orbits::Certificate certificate;
-    if (known_) certificate = orbits::compare(system_, own, *known_);
+    // Of a family of orbits a method need not find the same one.
+    const bool family = known_ && known_->orbit.family.cols() > 0;
+    if (known_ && !family) certificate = orbits::compare(system_, own, *known_);
     if (!certificate.behind) {
       certificate = orbits::certify(system_, own);
-      if (certificate.behind && known_) out_row.other = certificate.found.orbit.word;
+      const orbits::PeriodicOrbit& behind = certificate.found.orbit;
+      const bool same = !known_ || (family && behind.word == known_->orbit.word);
+      if (certificate.behind && !same) out_row.other = behind.word;
     }
     if (certificate.behind)
       out_row.error = 100.0 * certificate.relative;

@@ -46,7 +46,7 @@ struct OrbitStudy {
 };
 
 /// Solves with each method and measures its distance from the exact orbit: the reference's, or, where that is another
-/// one, the one behind. Then all are timed by turns.
+/// one or one of a family, the one behind. Then all are timed by turns.
 /// @param repeats  timed runs of each, ≥ 1
 /// @throws Interrupted  if the stop flag was set
 [[nodiscard]] OrbitStudy study_orbits(const scene::Scene& scene, const std::vector<OrbitMethod>& methods, int repeats,

@@ -77,6 +77,15 @@ TEST(OrbitMethods, ErrorsAreThoseOfTheirCertificates) {
   EXPECT_THROW((void)study_orbits(scene, {}, 0), InvalidInput);
 }
 
+TEST(OrbitMethods, OfAFamilyEachIsMeasuredFromTheOrbitBehindIt) {
+  // Nothing slides: a linear system of one harmonic, at any mean that the contact springs hold.
+  const OrbitStudy study =
+      study_orbits(dataset("jenkins_chain", {"drive.amplitude=0.05"}), {{.axis = Axis::kHarmonics, .harmonics = 3}}, 1);
+  EXPECT_EQ(study.word, "00");
+  EXPECT_LT(study.rows.front().error, 1e-9);
+  EXPECT_TRUE(study.rows.front().other.empty());
+}
+
 TEST(OrbitMethods, WhatIsNotFoundIsSaid) {
   // One-sided stiff stop well below resonance: no orbit lies behind five harmonics (SaysThatNoOrbitLiesBehind).
   const scene::Scene scene = dataset("backlash_sdof", {"drive.omega=0.4"});
