@@ -212,7 +212,9 @@ void ClosedFormFlow::leave_tangents(const Guard* guard) {
       for (Eigen::Index d = 0; d < r.forces; ++d)
         delay_ += r.coefficient(r.force_input(d), guard->output) * force_tangents_.row(d * block);
     }
-    delay_ *= guard->sign / evaluate(*guard, point_.time).rate;
+    // Reached at rest, as where a motion starts on a stop: when is nobody's, and forces do not jump there.
+    const double rate = evaluate(*guard, point_.time).rate;
+    delay_ *= rate != 0.0 ? guard->sign / rate : 0.0;
   }
   static_cast<void>(tangents());
   rate_before_ = point_rate();

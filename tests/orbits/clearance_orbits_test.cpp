@@ -53,6 +53,16 @@ TEST(ClearanceOrbits, WithoutContactTheOscillatorIsLinear) {
   EXPECT_NEAR(a.mean, 0.0, 1e-12);
 }
 
+TEST(ClearanceOrbits, AGuessAtRestOnAStopIsAGuess) {
+  // Its stop is reached at once and at rest: what that adds to tangents is 0/0.
+  const HybridSystem system = play(0.02, 1.2, 1.0);
+  for (const double side : {1.0, -1.0}) {
+    const PeriodicOrbit orbit = find_orbit(system, displaced(system, 0, side));
+    EXPECT_EQ(orbit.word, "g l g r");
+    EXPECT_NEAR(orbit.leading_modulus, std::exp(-0.02 * orbit.period), 1e-12);  // a pair: its product is e^{−cT}
+  }
+}
+
 TEST(ClearanceOrbits, FloatingInTheGapIsAFamily) {
   // S0 orbit A: a sine of amplitude A/(ω √(ω² + c²)); any shift that keeps clear of the stops is an orbit too.
   // Multipliers 1 and e^{−cT}; single shooting is singular as well as multiple (S0 section 3.2 excepts it).
