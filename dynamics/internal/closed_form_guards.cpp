@@ -179,7 +179,10 @@ void ClosedFormFlow::foresee_starts() {
       }
     }
     const bool simple = rigid_speed ? point_.multiplicity[i] == 1 : g1 > kRising * r.rate * size;
-    const bool flat = rigid_speed ? point_.multiplicity[i] == 2 : std::abs(g1) <= kSimpleStart * r.rate * size;
+    // Flat, too, where it falls by rounding, and no further below zero than can be told.
+    const bool flat = rigid_speed
+                          ? point_.multiplicity[i] == 2
+                          : std::abs(g1) <= kSimpleStart * r.rate * size || g1 * g1 <= 2.0 * g2 * kTouching * size;
     double clear = 0.0;
     if (simple && g1 > 0) clear = g1 / m2;
     if (flat && g2 > 0) clear = std::max(clear, 1.5 * g2 / m3);
