@@ -160,6 +160,7 @@ bool CollocationFlow::step(double t_limit) {
       continue;
     }
     error = force_error() * h * over_top_;
+    if (error > options_.tolerance) error = std::max(options_.tolerance, error - rounding_of_sticks());
     const bool smallest = level + 1 == StepTables::kLevels;
     if (!(error <= options_.tolerance / kEndNodeGain) && !smallest) {
       level += halvings(error * kEndNodeGain / options_.tolerance);
@@ -282,6 +283,16 @@ bool CollocationFlow::step(double t_limit) {
     if (tangents_.size() > 0) salt_tangents(force_before, contact);
   }
   return true;
+}
+
+double CollocationFlow::rounding_of_sticks() const {
+  constexpr double kRoundsBy = 64.0 * std::numeric_limits<double>::epsilon();
+  double most = 0.0;
+  for (int c = 0; c < nc_; ++c)
+    if (point_.modes[static_cast<std::size_t>(c)] == ContactMode::kStick)
+      most = std::max(most,
+                      velocity_scale(c, x_begin_) / model_.mobility(c, c) * over_limit_[static_cast<std::size_t>(c)]);
+  return kRoundsBy * most * over_top_;
 }
 
 bool CollocationFlow::too_steep(int c, double speed, int level) const {

@@ -73,6 +73,9 @@ class CollocationFlow {
   bool solve_single_smooth(const Collocation& table, const double* load);
   bool solve_coupled(const Collocation& table, double h);
   [[nodiscard]] double force_error() const;
+  /// What of that is the rounding of speeds, which sticks' forces hold within a step, whatever its length: by the time
+  /// of a step it is the same, and shorter steps do not lower it.
+  [[nodiscard]] double rounding_of_sticks() const;
   /// Keeps the guards' Bernstein forms for the proof.
   [[nodiscard]] Guarded first_guard();
 

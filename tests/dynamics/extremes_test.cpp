@@ -222,6 +222,31 @@ TEST(Extremes, TooManyEventsInTooShortATimeAreReportedWithTimeAndState) {
   }
 }
 
+TEST(Extremes, AStickOnAMassOfAStiffPairHoldsUntilASoftSpringReachesItsLimit) {
+  // The first mass moves with the belt, the other behind the stiff spring too, and rings: the ground spring pulls with
+  // k V (t − sin(ωt)/ω), which never falls. Steps are a millionth of a second, in which the stick's force is told by
+  // speeds to 1e-10 of its limit, and worse in shorter ones.
+  const double stiff = 1e13, soft = 1e3, limit = 1.0, omega = std::sqrt(stiff + soft);
+  const Eigen::Matrix2d pair{{1.0, -1.0}, {-1.0, 1.0}}, ground{{0.0, 0.0}, {0.0, 1.0}};
+  const HybridSystem system(fem::Structure(Eigen::MatrixXd::Identity(2, 2), Eigen::MatrixXd::Zero(2, 2),
+                                           Eigen::MatrixXd(stiff * pair + soft * ground)),
+                            {{Eigen::Vector2d(1.0, 0.0), Stribeck{1.0, 0.5, 3.0}, limit}}, Belt::constant(1.0));
+  double before = 0.0, release = 2e-3;
+  while (release - before > 1e-15) {
+    const double t = 0.5 * (before + release);
+    (soft * (t - std::sin(omega * t) / omega) < limit ? before : release) = t;
+  }
+  for (const double tolerance : {1e-7, 1e-9, 1e-12}) {
+    const FlowOptions flow{.method = FlowMethod::kCollocation, .tolerance = tolerance};
+    const Trajectory run =
+        simulate(system, state(Eigen::Vector2d::Zero(), Eigen::Vector2d::Ones()), {.duration = 1.2e-3, .flow = flow});
+    ASSERT_EQ(run.events.size(), 1U) << tolerance;
+    EXPECT_EQ(run.events[0].kind, EventKind::kRelease);
+    EXPECT_NEAR(run.events[0].time, release, 1e-8);  // K's rounding: 2e-16 · stiff/soft of the time
+    EXPECT_LT(run.statistics.steps, 50'000);
+  }
+}
+
 TEST(Extremes, ALooseToleranceMakesNoEventStormOfARelease) {
   // Sliding starts as a double root of v_rel: an error of the first step must not be taken for its end.
   // Slips per unit of time: 0.098 by an independent fixed-step program; records this long scatter by 0.0018 (standard
