@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace slipmode::dynamics {
 namespace {
@@ -42,15 +43,13 @@ EventResolver::EventResolver(const HybridSystem& system, const ModalModel& model
     internal_.push_back(system.internal_begin(c));
     oscillator_.push_back(internal_.back() + friction::internal_states(contact) - 2);
   }
-  for (std::size_t c = 0; c < laws_.size(); ++c) {
-    const auto alike = [&](int first) {
-      const auto d = static_cast<std::size_t>(first);
-      return laws_[d].kind == LawKind::kCompliant && !laws_[d].varies &&
-             friction::same_place(system.contacts()[c], system.contacts()[d]);
-    };
-    const bool springs = laws_[c].kind == LawKind::kCompliant && !laws_[c].varies;
-    const auto first = springs ? std::ranges::find_if(slides_as_, alike) : slides_as_.end();
-    slides_as_.push_back(first == slides_as_.end() ? static_cast<int>(c) : *first);
+  slides_as_.resize(laws_.size());
+  std::iota(slides_as_.begin(), slides_as_.end(), 0);
+  for (const std::vector<std::size_t>& place : friction::by_place(system.contacts())) {
+    const auto alike = [&](std::size_t c) { return laws_[c].kind == LawKind::kCompliant && !laws_[c].varies; };
+    const auto first = std::ranges::find_if(place, alike);
+    for (const std::size_t c : place)
+      if (alike(c)) slides_as_[c] = static_cast<int>(*first);
   }
   for (const ContactForces& law : laws_) clearances_only_ &= law.kind == LawKind::kClearance;
   lone_spring_ = laws_.size() == 1 && laws_[0].kind == LawKind::kCompliant;

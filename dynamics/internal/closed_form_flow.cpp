@@ -23,6 +23,11 @@ constexpr double kSameInstant = 1e-6;
 /// A sum of which no more than this share of its terms is left is made anew.
 constexpr double kLittleLeft = 1e-3;
 
+/// Of a regime's state, in the scales in which free motion does not grow.
+double scaled_size(const Regime& r, const Eigen::VectorXd& x) {
+  return std::hypot(r.scale1.cwiseProduct(x.head(r.pairs.np)).norm(), r.scale2.cwiseProduct(x.tail(r.pairs.np)).norm());
+}
+
 }  // namespace
 
 ClosedFormFlow::ClosedFormFlow(const HybridSystem& system, HybridPoint start, const FlowOptions& options)

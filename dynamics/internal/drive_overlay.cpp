@@ -91,10 +91,6 @@ double force_share(RegimeOutput::Kind kind) {
 
 }  // namespace
 
-double scaled_size(const Regime& r, const Eigen::VectorXd& x) {
-  return std::hypot(r.scale1.cwiseProduct(x.head(r.pairs.np)).norm(), r.scale2.cwiseProduct(x.tail(r.pairs.np)).norm());
-}
-
 double Amplitudes::at(Eigen::Index k, DrivePhase first) const {
   double sum = c(k, 0) * first.cosine + s(k, 0) * first.sine;
   DrivePhase p = first;

@@ -21,9 +21,6 @@ struct DrivePhase {
   }
 };
 
-/// Of a regime's state, in the scales in which free motion does not grow.
-[[nodiscard]] double scaled_size(const Regime& regime, const Eigen::VectorXd& x);
-
 /// The steady response of a regime to a periodic drive with harmonics of θ = ωt + phase: a shaker d = A sin θ, or
 /// forces. The state of the closed-form flow is what is left beside it, x − Σ_j X_cj cos jθ + X_sj sin jθ, and moves
 /// freely: tables of a regime serve every frequency and amplitude.
