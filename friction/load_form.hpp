@@ -27,10 +27,10 @@ struct LoadForm {
 
   [[nodiscard]] bool varies() const { return y != 0.0 || v != 0.0 || z != 0.0 || z_rate != 0.0; }
   [[nodiscard]] bool oscillates() const { return stiffness > 0.0; }
-  /// N. @param displacement, velocity  wᵀq and wᵀq̇;  @param own  ζ, ζ̇, not read without an oscillator
+  /// N. @param displacement, velocity  wᵀq and wᵀq̇;  @param own  ζ, ζ̇; null without an oscillator
   [[nodiscard]] double load(double displacement, double velocity, const double* own) const {
     double N = constant + y * displacement + v * velocity;
-    if (oscillates()) N += z * own[0] + z_rate * own[1];
+    if (own != nullptr) N += z * own[0] + z_rate * own[1];
     return N;
   }
 
