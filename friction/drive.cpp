@@ -65,6 +65,11 @@ std::optional<double> Drive::period() const {
   return std::nullopt;
 }
 
+double Drive::omega() const {
+  if (shaker()) return shaker()->omega();
+  return force() ? force()->omega : 0.0;
+}
+
 double Drive::way(double t0, double t1) const {
   if (force()) return 0.0;
   if (shaker()) return shaker()->displacement(t1) - shaker()->displacement(t0);

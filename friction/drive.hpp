@@ -103,6 +103,8 @@ class Drive {
   [[nodiscard]] const Force* force() const { return std::get_if<Force>(&kind_); }
   /// Period of a shaker or a force; a belt has none [s].
   [[nodiscard]] std::optional<double> period() const;
+  /// Angular frequency of a shaker or a force; 0 for a belt [rad/s].
+  [[nodiscard]] double omega() const;
 
   /// True for a belt of constant speed.
   [[nodiscard]] bool is_constant() const { return belt() != nullptr && belt()->is_constant(); }

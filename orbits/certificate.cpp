@@ -160,7 +160,8 @@ ToError<Approximation> to_error(const dynamics::HybridSystem& system, double err
     if (behind && out.certificate.behind) return;
     out.certificate =
         shoot_behind(system, state_of(system, out.approximation), out.approximation.order, claim, shooting, behind);
-    if (out.certificate.found.orbit.family.cols() > 0) behind.reset();
+    const PeriodicOrbit& found = out.certificate.found.orbit;  // neighbours of a family that curves are told by a 1 alone
+    if (found.family.cols() > 0 || found.stability == Stability::kMarginal) behind.reset();
   };
   for (int H = first; H <= most && !out.met; H = std::max(H + 1, static_cast<int>(kGrowth * H))) {
     out.approximation = solve(H, best.certificate.behind ? &best.approximation : nullptr);

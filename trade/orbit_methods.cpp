@@ -182,7 +182,7 @@ std::vector<OrbitMethod> orbit_methods(Axis axis, const scene::Scene& scene) {
   constexpr std::array kSampleCounts = {64, 128, 256, 512, 1024};
   constexpr int kSampledOrder = 25, kMostMixed = 25, kMostWide = 9;  // a step costs the third power
   const bool is_one = axis == Axis::kHarmonics || axis == Axis::kSamples || axis == Axis::kMixed;
-  if (!is_one || scene.drive.force() == nullptr || scene.size() > kAffordableSize) return {};
+  if (!is_one || !scene.drive.period() || scene.size() > kAffordableSize) return {};
   const HybridSystem system = scene::build_system(scene);
   std::vector<OrbitMethod> all;
   if (axis == Axis::kMixed) {

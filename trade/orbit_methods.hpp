@@ -23,8 +23,8 @@ struct OrbitMethod {
 };
 
 /// The methods along an axis. Empty where the scene's contacts, drive or size have none: balances hold stops and
-/// friction behind springs; the mixed method what the closed form does, and needs a rest away from the contacts; both a
-/// force drive; and the exact orbit at most kAffordableSize degrees of freedom.
+/// friction behind springs, under a force or a shaker; the mixed method what the closed form does, under a force, and
+/// needs a rest away from the contacts; and the exact orbit at most kAffordableSize degrees of freedom.
 [[nodiscard]] std::vector<OrbitMethod> orbit_methods(Axis axis, const scene::Scene& scene);
 
 /// One method, measured.

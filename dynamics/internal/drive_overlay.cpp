@@ -147,7 +147,7 @@ Eigen::VectorXd Amplitudes::rates(DrivePhase first) const {
 
 DriveOverlay::DriveOverlay(const Regime& r, const ModalModel& slipping_model, const friction::Drive& drive)
     : inputs(driven_inputs(r, drive)) {
-  omega_ = drive.shaker() ? drive.shaker()->omega() : drive.force()->omega;
+  omega_ = drive.omega();
   phase_ = drive.shaker() ? drive.shaker()->phase : 0.0;
   const Complex way = drive.shaker() ? Complex(0.0, -drive.shaker()->amplitude) : 0.0;
   const auto used = inputs.c.cols();

@@ -45,8 +45,13 @@ void check(const HybridSystem& system, const BalanceOptions& options) {
   if (options.samples != 0 && options.samples <= 2 * options.harmonics)
     refuse(fmt::format("samples: {}; {} harmonics need more than {}, or exact", options.samples, options.harmonics,
                        2 * options.harmonics));
-  if (system.drive().force() == nullptr)
-    refuse("harmonic balance needs a force drive (drive.kind = \"force\"); find this orbit by shooting");
+  if (!system.drive().period())
+    refuse(
+        "harmonic balance needs a drive with a period (drive.kind = \"force\" or \"shaker\"); find this orbit by "
+        "shooting");
+  if (system.drive().shaker() != nullptr && options.harmonics < options.order)
+    refuse(fmt::format("harmonics: {}; of {} periods the shaker is harmonic {}: valid: that or more", options.harmonics,
+                       options.order, options.order));
   static_cast<void>(balanced_laws(system));
   if (!options.guess.empty() && options.guess.size() != system.contacts().size())
     refuse(fmt::format("the guess has {} contacts and the system {}", options.guess.size(), system.contacts().size()));
@@ -69,10 +74,14 @@ Eigen::VectorXd linear_response(const HybridSystem& system, const ContactRespons
       b.tail(nr) = -response.rigid_load.cast<Complex>();
     }
     for (Eigen::Index c = 0; pressed && c < nc; ++c) {
-      Complex own = 0.0;
-      for (const std::size_t contact : response.contacts_at[static_cast<std::size_t>(c)])
-        own += impedance(laws[contact], static_cast<double>(k) * response.omega());
+      Complex own = 0.0, following = 0.0;
+      for (const std::size_t contact : response.contacts_at[static_cast<std::size_t>(c)]) {
+        const Complex here = impedance(laws[contact], static_cast<double>(k) * response.omega());
+        own += here;
+        if (follows_drive(laws[contact])) following += here;
+      }
       A.col(c).head(nc) += response.receptance[at].col(c) * own;
+      b.head(nc) += response.receptance[at].col(c) * (following * response.counterpart.phasors[k]);
       if (k == 0 && nr > 0) A.col(c).tail(nr) = -own * response.rigid_rows.row(c).transpose().cast<Complex>();
     }
     const Eigen::VectorXcd y = A.completeOrthogonalDecomposition().solve(b);
@@ -196,9 +205,11 @@ dynamics::State state_of(const HybridSystem& system, const Balance& balance) {
   state.q = model.to_q * x;
   state.v = model.to_v * x;
   const std::vector<BalancedLaw> laws = balanced_laws(system);
+  const TrigonometricPolynomial d = counterpart_motion(system.drive(), balance.order, balance.harmonics);
   std::vector<double> internal;
   for (std::size_t c = 0; c < laws.size(); ++c)
-    if (const auto own = own_state(laws[c], polynomial_of(balance.displacement[c]))) internal.push_back(*own);
+    if (const auto own = own_state(laws[c], seen_by(laws[c], polynomial_of(balance.displacement[c]), d)))
+      internal.push_back(*own);
   state.internal = Eigen::Map<const Eigen::VectorXd>(internal.data(), std::ssize(internal));
   return state;
 }

@@ -51,13 +51,14 @@ struct Balance {
 ///
 ///     y_k = e_k + R_k λ_k(y),    R_k = Wᵀ(K + ikΩC − k²Ω²M)⁻¹W,   k = 0 … H,
 ///
-/// with e_k the response to loads and drive, and the mean of what floats free beside them (Zᵀλ_0 + p = 0). Newton's
+/// with e_k the response to loads and forces, and the mean of what floats free beside them (Zᵀλ_0 + p = 0). Under a
+/// shaker friction sees y less the counterpart's displacement. Newton's
 /// method with the exact Jacobian; starts that do not converge are led there by growing the gaps and lowering the
 /// limits of friction. Cost of a step O((nc H)³), whatever the structure's size; receptances O(n nc² H), once.
 /// @return  `converged` false, with the best residual, when Newton's method does not arrive
 /// @throws InvalidInput  for harmonics < 1, samples from 1 to 2H, order < 1, a guess for another number of contacts, a
-///                       drive that is no periodic force, and laws other than clearances and Coulomb friction behind
-///                       contact springs under constant limits, with what to do instead
+///                       drive without a period, a shaker whose order is above H, and laws other than clearances and
+///                       Coulomb friction behind contact springs under constant limits, with what to do instead
 /// Source: docs/theory/harmonic-balance.md, sections 2 and 3; S2's schemes are the exact and the sampled one.
 [[nodiscard]] Balance balance(const dynamics::HybridSystem& system, const BalanceOptions& options = {});
 

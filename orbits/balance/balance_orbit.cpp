@@ -22,9 +22,10 @@ std::vector<RegimeSpan> balance_regimes(const dynamics::HybridSystem& system, co
   };
   std::vector<Switch> switches;
   std::vector<RegimeSpan> out(1);
+  const TrigonometricPolynomial d = counterpart_motion(system.drive(), balance.order, balance.harmonics);
   for (std::size_t c = 0; c < system.contacts().size(); ++c) {
-    const Passage own =
-        passage(balanced_law(system.contacts()[c], c), polynomial_of(balance.displacement[c]), balance.omega);
+    const BalancedLaw law = balanced_law(system.contacts()[c], c);
+    const Passage own = passage(law, seen_by(law, polynomial_of(balance.displacement[c]), d), balance.omega);
     out.front().modes.push_back(own.first);
     for (const Passage::Switch& at : own.switches) switches.push_back({at.theta, c, at.after});
   }

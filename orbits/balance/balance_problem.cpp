@@ -40,15 +40,18 @@ Harmonics harmonics_of(const Eigen::VectorXcd& phasors) {
 
 Eigen::VectorXcd drive_phasors(const HybridSystem& system, Eigen::Index order, Eigen::Index k) {
   Eigen::VectorXcd forces = Eigen::VectorXcd::Zero(system.force_directions().cols());
-  for (const friction::ForceHarmonic& h : system.drive().force()->harmonics)
+  const friction::Force* force = system.drive().force();
+  if (force == nullptr) return forces;
+  for (const friction::ForceHarmonic& h : force->harmonics)
     if (h.order * order == k) forces[h.direction] += h.amplitude * Complex(std::sin(h.phase), -std::cos(h.phase));
   return forces;
 }
 
 ContactResponse::ContactResponse(const HybridSystem& system, int order, Eigen::Index harmonics)
     : contacts_at(friction::by_place(system.contacts())),
+      counterpart(counterpart_motion(system.drive(), order, harmonics)),
       harmonics_(harmonics),
-      omega_(system.drive().force()->omega / order) {
+      omega_(system.drive().omega() / order) {
   const dynamics::ModalModel& model = system.cache().tables(system, false).model;
   const dynamics::ModalCoordinates& modal = model.modal;
   const Eigen::Index n = modal.omega.size();
@@ -128,7 +131,8 @@ BalanceEvaluation BalanceProblem::evaluate(const Eigen::VectorXd& x) const {
     const TrigonometricPolynomial y{phasors_of(x.segment(p * B, B), H)};
     const std::vector<std::size_t>& here = response_.contacts_at[static_cast<std::size_t>(p)];
     for (const std::size_t c : here) {
-      BalancedForce& force = out.forces[c] = balanced_force(laws_[c], y, response_.omega(), samples_, lead_);
+      BalancedForce& force = out.forces[c] =
+          balanced_force(laws_[c], seen_by(laws_[c], y, response_.counterpart), response_.omega(), samples_, lead_);
       if (c == here.front()) {
         out.sums.push_back(force);
       } else {
@@ -184,7 +188,8 @@ Eigen::VectorXd BalanceProblem::step(const BalanceEvaluation& at, bool& out_open
 }
 
 double BalanceProblem::size_of(const Eigen::VectorXd& x) const {
-  double size = x.head(response_.places() * response_.block()).cwiseAbs().maxCoeff();
+  double size = std::max(x.head(response_.places() * response_.block()).cwiseAbs().maxCoeff(),
+                         response_.counterpart.phasors.cwiseAbs().maxCoeff());
   for (const Eigen::VectorXcd& e : response_.own) size = std::max(size, e.cwiseAbs().maxCoeff());
   return size > 0.0 ? size : 1.0;
 }

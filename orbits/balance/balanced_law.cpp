@@ -3,6 +3,8 @@
 #include <slipmode/core/errors.hpp>
 
 #include <fmt/format.h>
+#include <cmath>
+#include <complex>
 
 namespace slipmode::orbits {
 namespace {
@@ -44,6 +46,18 @@ std::vector<BalancedLaw> balanced_laws(const dynamics::HybridSystem& system) {
   std::vector<BalancedLaw> out;
   for (std::size_t c = 0; c < system.contacts().size(); ++c) out.push_back(balanced_law(system.contacts()[c], c));
   return out;
+}
+
+TrigonometricPolynomial counterpart_motion(const friction::Drive& drive, int order, Eigen::Index harmonics) {
+  TrigonometricPolynomial d{Eigen::VectorXcd::Zero(harmonics + 1)};
+  if (const friction::Shaker* shaker = drive.shaker(); shaker != nullptr && order <= harmonics)
+    d.phasors[order] = shaker->amplitude * std::complex<double>(std::sin(shaker->phase), -std::cos(shaker->phase));
+  return d;
+}
+
+TrigonometricPolynomial seen_by(const BalancedLaw& law, const TrigonometricPolynomial& y,
+                                const TrigonometricPolynomial& d) {
+  return follows_drive(law) ? TrigonometricPolynomial{y.phasors - d.phasors} : y;
 }
 
 }  // namespace slipmode::orbits

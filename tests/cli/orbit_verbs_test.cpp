@@ -229,6 +229,31 @@ TEST_F(OrbitVerbs, BalanceOfFrictionBehindContactSprings) {
   expect_refused({"find", chain, "--by", "balance", "--set", "contact.1.mu_s=0.3"}, {"contact.1.mu_s", "shooting"});
 }
 
+TEST_F(OrbitVerbs, BalanceUnderAShaker) {
+  const std::string beam = SLIPMODE_SOURCE_DIR "/datasets/beam_12hz/scene.toml";
+  const auto with = [&](const char* verb, const std::vector<std::string>& more) {
+    std::vector<std::string> all = {verb,    beam,
+                                    "--set", "structure.elements=5",
+                                    "--set", "contact.0.mu_s=0.55",
+                                    "--set", "contact.0.normal_load.slope=0",
+                                    "--set", "contact.0.tilt_deg=0",
+                                    "--by",  "balance"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  const auto said = json_of(with("find", {"--harmonics", "auto", "--error", "1e-2", "-o", "b.h5"}));
+  EXPECT_LE(said["certificate"]["relative"], 1e-2);
+  EXPECT_EQ(said["certificate"]["orbit"]["crossings"], said["switches"]);
+  EXPECT_EQ(slipmode_in(folder, {"plot", "b.h5", "-o", "portrait.svg"}).exit_code, 0);
+  const auto branch =
+      json_of(with("continue", {"--harmonics", "9", "--over", "drive.frequency=13:13.3", "--certify", "-o", "c.h5"}));
+  EXPECT_EQ(branch["branches"][0]["end"], "range");
+  // Next to a change of the word shooting may end elsewhere.
+  EXPECT_GE(branch["certificate"]["behind"].get<int>(), 0.9 * branch["certificate"]["certified"].get<int>());
+  expect_refused({"find", beam, "--by", "balance"}, {"contact.0.mu_s = 0.748", "shooting"});
+  expect_refused({"find", SLIPMODE_SOURCE_DIR "/datasets/chain10/scene.toml", "--by", "balance"}, {"drive.kind"});
+}
+
 TEST_F(OrbitVerbs, ContinueByBalanceWithItsTrueError) {
   const std::string two = SLIPMODE_SOURCE_DIR "/datasets/stop_2mass/scene.toml";
   const auto with = [&](std::vector<std::string> more) {

@@ -280,7 +280,7 @@ TEST(Balance, RefusesWhatItCannotHold) {
   const HybridSystem rubbed(system.structure(), {{Eigen::VectorXd::Ones(1), friction::Coulomb{0.3, 0.3}, 1.0}},
                             Backlash::drive(1.0, 1.0), {}, Eigen::MatrixXd::Ones(1, 1));
   EXPECT_THROW((void)balance(rubbed), InvalidInput);
-  EXPECT_THROW((void)balance(system.with_drive(friction::Shaker{.amplitude = 1.0})), InvalidInput);
+  EXPECT_THROW((void)balance(system.with_drive(friction::Belt::constant(1.0))), InvalidInput);
 }
 
 }  // namespace

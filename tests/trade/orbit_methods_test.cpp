@@ -42,6 +42,9 @@ TEST(OrbitMethods, AreThoseThatHoldTheScene) {
   EXPECT_EQ(orbit_axes(dataset("jenkins_chain", {"contact.0.mu_s=0.4"})), Words{"mixed"});
   EXPECT_EQ(orbit_axes(dataset("chain10")), Words{}) << "the period on a belt is not known";
   EXPECT_TRUE(orbit_methods(Axis::kFlow, dataset("jenkins_chain")).empty());
+  const std::vector<std::string> held = {"contact.0.mu_s=0.55", "contact.0.normal_load.slope=0"};
+  EXPECT_EQ(orbit_axes(dataset("beam_12hz", held)), (Words{"harmonics", "samples"})) << "under a shaker";
+  EXPECT_EQ(orbit_axes(dataset("beam_12hz")), Words{});
 }
 
 TEST(OrbitMethods, ErrorsAreThoseOfTheirCertificates) {

@@ -8,7 +8,8 @@
 
 namespace slipmode::orbits {
 
-/// The pairs' inputs of the force drive at order k of the orbit's period, as phasors. @param order  Balance::order
+/// The pairs' inputs of a force drive at order k of the orbit's period, as phasors; zeros under a shaker.
+/// @param order  Balance::order
 [[nodiscard]] Eigen::VectorXcd drive_phasors(const dynamics::HybridSystem& system, Eigen::Index order, Eigen::Index k);
 
 /// How the structure answers at its contacts, order by order. Contacts of one displacement are one place: their forces
@@ -29,6 +30,7 @@ class ContactResponse {
   [[nodiscard]] Eigen::Index lead(const dynamics::HybridSystem& system) const;
 
   std::vector<std::vector<std::size_t>> contacts_at;  ///< of each place [np]
+  TrigonometricPolynomial counterpart;                ///< d, what a shaker moves the contacts' counterpart by
   std::vector<Eigen::MatrixXcd> receptance;           ///< R_k [np x np]
   std::vector<Eigen::VectorXcd> own;                  ///< e_k
   Eigen::MatrixXd rigid_rows;                         ///< Z [np x nr]

@@ -11,6 +11,7 @@ namespace slipmode::orbits {
 /// The laws that balance holds. Each is a struct with its numbers and
 ///
 ///     kRemembers                       the force depends on the motion before, too
+///     kFollowsDrive                    y is seen from the counterpart: less the displacement of a shaker
 ///     at_share(share)                  the law on the way from a linear one, share → 0, to its own, 1
 ///     force(y, omega, samples, lead)   Fourier coefficients along y, and their derivatives
 ///     passage(y, omega)                what the contact does over a period
@@ -27,6 +28,9 @@ using BalancedLaw = std::variant<BalancedClearance, BalancedJenkins>;
 
 [[nodiscard]] inline bool remembers(const BalancedLaw& law) {
   return std::visit([](const auto& own) { return own.kRemembers; }, law);
+}
+[[nodiscard]] inline bool follows_drive(const BalancedLaw& law) {
+  return std::visit([](const auto& own) { return own.kFollowsDrive; }, law);
 }
 [[nodiscard]] inline BalancedLaw at_share(const BalancedLaw& law, double share) {
   return std::visit([&](const auto& own) -> BalancedLaw { return own.at_share(share); }, law);
@@ -52,5 +56,14 @@ using BalancedLaw = std::variant<BalancedClearance, BalancedJenkins>;
 
 /// Of a system's contacts.
 [[nodiscard]] std::vector<BalancedLaw> balanced_laws(const dynamics::HybridSystem& system);
+
+/// What the contacts' counterpart does under a shaker, d = Re(p e^{i order θ}); at rest under a force.
+/// @param order  periods of the drive in one of the series
+[[nodiscard]] TrigonometricPolynomial counterpart_motion(const friction::Drive& drive, int order,
+                                                         Eigen::Index harmonics);
+
+/// A place's displacement as a law sees it, y or y − d. @param d  of as many orders
+[[nodiscard]] TrigonometricPolynomial seen_by(const BalancedLaw& law, const TrigonometricPolynomial& y,
+                                              const TrigonometricPolynomial& d);
 
 }  // namespace slipmode::orbits

@@ -25,7 +25,7 @@ struct StopTangent {
 /// there that is of second order, a damped stop that is reached, or let go at its gap, makes it jump. By samples g_m is
 /// a mean over them instead, and there are no jumps. Source: docs/theory/harmonic-balance.md, section 2.
 struct BalancedClearance {
-  static constexpr bool kRemembers = false;
+  static constexpr bool kRemembers = false, kFollowsDrive = false;
   friction::Clearance law;
 
   /// Gaps in this share of their own: at 0 the stops are a spring.

@@ -18,7 +18,7 @@ struct JenkinsSpan {
   std::optional<double> held_at = {};
 };
 
-/// Coulomb friction behind a contact spring on a counterpart at rest, as BalancedLaw lists it.
+/// Coulomb friction behind a contact spring, as BalancedLaw lists it; y as it is seen from the counterpart.
 ///
 /// λ = K (y_c − y) within [−lower, upper]. The slider's place y_c is the play operator of y: it stays until a limit is
 /// reached, follows y at the limit's distance until y turns, and stays again. Each stick is a set of θ with
@@ -31,7 +31,7 @@ struct JenkinsSpan {
 /// makes it periodic, from any start; from 0 it ends, where nothing slides, at the place nearest to 0. By samples the
 /// same at these, over two periods. Source: docs/theory/harmonic-balance.md, section 2.
 struct BalancedJenkins {
-  static constexpr bool kRemembers = true;
+  static constexpr bool kRemembers = true, kFollowsDrive = true;
   double stiffness = 0.0, upper = 0.0, lower = 0.0;  ///< K [N/m]; limits ≥ 0 [N]
 
   /// Limits over this share: at 0 the element is a spring.
