@@ -41,4 +41,12 @@ template <class Work>
   return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
+/// Median CPU time of a call [s].
+template <class Work>
+[[nodiscard]] double median_seconds(int repeats, const Work& work) {
+  std::vector<double> times;
+  for (int k = 0; k < repeats; ++k) times.push_back(thread_seconds_of(work));
+  return median(times);
+}
+
 }  // namespace slipmode::bench

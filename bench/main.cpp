@@ -1,4 +1,5 @@
 // Speed and accuracy beside the peers, measured in one process: see bench/README.md.
+#include "bench/balance_cases.hpp"
 #include "bench/basin_cases.hpp"
 #include "bench/beam_cases.hpp"
 #include "bench/cases.hpp"
@@ -49,6 +50,7 @@ std::vector<LibraryCase> library_cases() {
           {"sweep-coulomb", [](bool quick) { return measure_sweep(true, quick); }},
           {"reduction", measure_reduction},
           {"orbit", measure_orbits},
+          {"balance", measure_balances},
           {"basins", measure_basins},
           {"extras", measure_extras},
           {"chain10000", measure_long_chain, true},

@@ -25,14 +25,6 @@ dynamics::HybridSystem backlash(const BacklashMass& m) {
           one};
 }
 
-/// Median CPU time of a call [s].
-template <class Work>
-double median_seconds(int repeats, const Work& work) {
-  std::vector<double> times;
-  for (int k = 0; k < repeats; ++k) times.push_back(thread_seconds_of(work));
-  return median(times);
-}
-
 }  // namespace
 
 Row measure_orbits(bool quick) {
