@@ -19,21 +19,17 @@ constexpr double kBehind = 0.25;
 /// Of the whole motion: what moves by less sticks.
 constexpr double kStill = 1e-12;
 
-std::vector<double> half_ranges(const OrbitSeries& orbit) {
-  constexpr int kLooks = 512;
-  Eigen::VectorXd low, high;
-  for (int k = 0; k < kLooks; ++k) {
-    const Eigen::VectorXd y = orbit.at(orbit.start() + orbit.period() * k / kLooks).head(orbit.contacts());
-    low = k == 0 ? y : Eigen::VectorXd(low.cwiseMin(y));
-    high = k == 0 ? y : Eigen::VectorXd(high.cwiseMax(y));
-  }
-  std::vector<double> half;
-  const Eigen::VectorXd ranges = high - low;
-  for (const double range : ranges) {  // of a contact that never moves: the whole motion's size
-    const bool still = 0.5 * range < kStill * orbit.motion();
-    half.push_back(still ? orbit.motion() : 0.5 * range);
-  }
-  return half;
+/// Displacements of the contacts at equal distances over a period [nc x points].
+struct Samples {
+  double start = 0.0, period = 0.0;
+  Eigen::MatrixXd y;
+};
+
+Samples samples_of(const OrbitSeries& orbit, int points) {
+  Samples out{orbit.start(), orbit.period(), Eigen::MatrixXd(orbit.contacts(), points)};
+  for (int k = 0; k < points; ++k)
+    out.y.col(k) = orbit.at(orbit.start() + orbit.period() * k / points).head(orbit.contacts());
+  return out;
 }
 
 /// The largest error over its contact's half range.
@@ -48,39 +44,40 @@ double largest_share(const std::vector<double>& error, const std::vector<double>
 struct Claim {
   const char* name;
   int crossings = 0;
-  int points = 2000;                                ///< at which it is compared
-  std::function<Eigen::VectorXd(double)> contacts;  ///< their displacements at a time [nc]
+  int points = 0;  ///< at which it is compared
+  /// Displacements of the contacts at so many instants of a period from a time on [nc x points].
+  std::function<Eigen::MatrixXd(double start, double period, int points)> contacts;
 };
+
+int points_for(int harmonics) { return std::max(500, 24 * harmonics); }
 
 Claim claim_of(const Balance& balance) {
   std::vector<TrigonometricPolynomial> series;
   for (const Harmonics& y : balance.displacement) series.push_back(polynomial_of(y));
-  return {"balance", balance.switches, std::max(2000, 24 * balance.harmonics),
-          [series = std::move(series), omega = balance.omega](double t) {
-            Eigen::VectorXd y(std::ssize(series));
-            for (std::size_t c = 0; c < series.size(); ++c) y[static_cast<Eigen::Index>(c)] = series[c].at(omega * t).y;
+  return {"balance", balance.switches, points_for(balance.harmonics),
+          [series = std::move(series), omega = balance.omega](double start, double /*period*/, int points) {
+            Eigen::MatrixXd y(std::ssize(series), points);
+            for (std::size_t c = 0; c < series.size(); ++c)
+              y.row(static_cast<Eigen::Index>(c)) = values_around(series[c], omega * start, points);
             return y;
           }};
 }
 
 Claim claim_of(const MixedOrbit& mixed) {
-  return {"mixed orbit", mixed.near_orbit.crossings, std::max(2000, 24 * mixed.harmonics),
-          [series = OrbitSeries(*mixed.near_system, mixed.near_orbit)](double t) -> Eigen::VectorXd {
-            return series.at(t).head(series.contacts());
+  return {"mixed orbit", mixed.near_orbit.crossings, points_for(mixed.harmonics),
+          [series = OrbitSeries(*mixed.near_system, mixed.near_orbit)](double start, double period, int points) {
+            Eigen::MatrixXd y(series.contacts(), points);
+            for (int k = 0; k < points; ++k) y.col(k) = series.at(start + period * k / points).head(series.contacts());
+            return y;
           }};
 }
 
 /// sup over the period of the distance of each contact's displacements.
-std::vector<double> distances(const Claim& claim, const OrbitSeries& orbit) {
-  const int points = claim.points;
-  const Eigen::Index contacts = orbit.contacts();
-  Eigen::MatrixXd error(contacts, points);
-  for (int k = 0; k < points; ++k) {
-    const double t = orbit.start() + orbit.period() * k / points;
-    error.col(k) = orbit.at(t).head(contacts) - claim.contacts(t);
-  }
+std::vector<double> distances(const Claim& claim, const Samples& orbit) {
+  const auto points = static_cast<int>(orbit.y.cols());
+  const Eigen::MatrixXd error = orbit.y - claim.contacts(orbit.start, orbit.period, points);
   std::vector<double> largest;
-  for (Eigen::Index c = 0; c < contacts; ++c) {
+  for (Eigen::Index c = 0; c < error.rows(); ++c) {
     double most = 0.0;
     for (int k = 0; k < points; ++k) {
       const double here = error(c, k), sign = here < 0.0 ? -1.0 : 1.0;
@@ -95,18 +92,48 @@ std::vector<double> distances(const Claim& claim, const OrbitSeries& orbit) {
   return largest;
 }
 
-/// What motions are measured by.
-struct OrbitBehind {
-  OrbitSeries series;
-  std::vector<double> half;
+/// An orbit that motions are measured by.
+class OrbitBehind {
+ public:
+  OrbitBehind(const dynamics::HybridSystem& system, PeriodicOrbit orbit) : system_(system), orbit_(std::move(orbit)) {}
 
-  OrbitBehind(const dynamics::HybridSystem& system, const PeriodicOrbit& orbit)
-      : series(system, orbit), half(half_ranges(series)) {}
+  /// At so many points: one run over the period from its start, an origin within the first.
+  [[nodiscard]] const Samples& samples(int points) {
+    if (samples_.y.cols() == points) return samples_;
+    dynamics::State start = orbit_.start;
+    start.time = std::fmod(start.time, orbit_.period);
+    const dynamics::Trajectory run = simulate(system_, start,
+                                              {.duration = orbit_.period,
+                                               .sample = orbit_.period / points,
+                                               .keep_events = false,
+                                               .output = dynamics::SimulateOptions::Output::kContacts,
+                                               .flow = {.tolerance = 1e-13, .audit = false}});
+    samples_ = {start.time, orbit_.period, run.contact_q.leftCols(points)};
+    return samples_;
+  }
+
+  [[nodiscard]] std::vector<double> half_ranges(const Samples& at) const {
+    constexpr double kSuspect = 1e-6;
+    std::vector<double> half;
+    for (const auto& y : at.y.rowwise()) half.push_back(0.5 * (y.maxCoeff() - y.minCoeff()));
+    const double seen = std::max(orbit_.start.q.cwiseAbs().maxCoeff(), *std::ranges::max_element(half));
+    if (*std::ranges::min_element(half) > kSuspect * seen) return half;
+    const double size = size_of_motion(system_, orbit_);
+    for (double& own : half)  // of a contact that never moves: the whole motion's size
+      if (own < kStill * size) own = size;
+    return half;
+  }
+
+ private:
+  dynamics::HybridSystem system_;
+  PeriodicOrbit orbit_;
+  Samples samples_;
 };
 
-void judge(const Claim& claim, const OrbitBehind& behind, Certificate& out) {
-  out.error = distances(claim, behind.series);
-  out.relative = largest_share(out.error, behind.half);
+void judge(const Claim& claim, OrbitBehind& behind, Certificate& out) {
+  const Samples& orbit_samples = behind.samples(claim.points);
+  out.error = distances(claim, orbit_samples);
+  out.relative = largest_share(out.error, behind.half_ranges(orbit_samples));
   out.behind = out.relative <= kBehind;
   const PeriodicOrbit& orbit = out.found.orbit;
   if (!out.behind) {
@@ -141,7 +168,8 @@ Certificate shoot_behind(const dynamics::HybridSystem& system, const dynamics::S
 Certificate distance_from(const ShootingResult& known, const Claim& claim, const dynamics::HybridSystem& system) {
   Certificate out;
   out.found = known;
-  judge(claim, OrbitBehind(system, known.orbit), out);
+  OrbitBehind behind(system, known.orbit);
+  judge(claim, behind, out);
   return out;
 }
 
@@ -160,7 +188,8 @@ ToError<Approximation> to_error(const dynamics::HybridSystem& system, double err
     if (behind && out.certificate.behind) return;
     out.certificate =
         shoot_behind(system, state_of(system, out.approximation), out.approximation.order, claim, shooting, behind);
-    const PeriodicOrbit& found = out.certificate.found.orbit;  // neighbours of a family that curves are told by a 1 alone
+    const PeriodicOrbit& found =
+        out.certificate.found.orbit;  // neighbours of a family that curves are told by a 1 alone
     if (found.family.cols() > 0 || found.stability == Stability::kMarginal) behind.reset();
   };
   for (int H = first; H <= most && !out.met; H = std::max(H + 1, static_cast<int>(kGrowth * H))) {
@@ -183,7 +212,8 @@ ToError<Approximation> to_error(const dynamics::HybridSystem& system, double err
 }  // namespace
 
 std::vector<double> true_errors(const Balance& balance, const OrbitSeries& orbit) {
-  return distances(claim_of(balance), orbit);
+  const Claim claim = claim_of(balance);
+  return distances(claim, samples_of(orbit, claim.points));
 }
 
 Certificate certify(const dynamics::HybridSystem& system, const Balance& balance, const ShootingOptions& options) {

@@ -22,7 +22,7 @@ struct Certificate {
 
 /// Shoots from a balance to the exact orbit and measures the distance.
 /// @param options  order is the balance's, whatever is given here
-/// The supremum is that of a grid of 2,000 points or 24 a harmonic, whichever is more, each local largest one improved
+/// The supremum is that of a grid of 500 points or 24 a harmonic, whichever is more, each local largest one improved
 /// by the parabola through three.
 [[nodiscard]] Certificate certify(const dynamics::HybridSystem& system, const Balance& balance,
                                   const ShootingOptions& options = {});

@@ -56,6 +56,28 @@ Eigen::Vector<double, kTerms> spherical_bessel(double x) {
   return j * (std::abs(first) > std::abs(second) ? first / j[0] : second / j[1]);
 }
 
+/// 64 samples of it.
+dynamics::Trajectory coarse_look(const dynamics::HybridSystem& system, const PeriodicOrbit& orbit) {
+  constexpr double kLooks = 64.0;
+  return simulate(system, orbit.start,
+                  {.duration = orbit.period,
+                   .sample = orbit.period / kLooks,
+                   .keep_events = false,
+                   .flow = {.tolerance = 1e-13, .audit = false}});
+}
+
+/// Of its displacements and, where all is at rest, of what the contacts' forces would move.
+double size_of_run(const dynamics::HybridSystem& system, const dynamics::Trajectory& run, double period) {
+  const double radian = period / (2.0 * std::numbers::pi);
+  double q = std::max(run.q.cwiseAbs().maxCoeff(), run.v.cwiseAbs().maxCoeff() * radian);
+  for (Eigen::Index c = 0; c < run.lambda.rows(); ++c) {
+    const Eigen::VectorXd& w = system.contacts()[static_cast<std::size_t>(c)].direction;
+    const double stiffness = w.dot(fem::multiply(system.structure().K(), w).col(0)) / w.squaredNorm();
+    if (stiffness > 0.0) q = std::max(q, run.lambda.row(c).cwiseAbs().maxCoeff() / stiffness);
+  }
+  return q;
+}
+
 /// Cuts the stays of an orbit into panels.
 class Cutter {
  public:
@@ -64,27 +86,15 @@ class Cutter {
 
   /// Sizes of all quantities, from a coarse look.
   void measure(const PeriodicOrbit& orbit) {
-    constexpr double kLooks = 64.0;
-    const dynamics::Trajectory run = simulate(system_, orbit.start,
-                                              {.duration = orbit.period,
-                                               .sample = orbit.period / kLooks,
-                                               .keep_events = false,
-                                               .flow = {.tolerance = 1e-13, .audit = false}});
+    const dynamics::Trajectory run = coarse_look(system_, orbit);
     for (Eigen::Index k = 0; k < run.times.size(); ++k) {
       const Eigen::VectorXd now = quantities(run, k);
       if (k == 0) size_ = now.cwiseAbs();
       size_ = size_.cwiseMax(now.cwiseAbs());
     }
     const Eigen::Index nc = run.contact_q.rows();
-    const double radian = orbit.period / (2.0 * std::numbers::pi);
-    double q = std::max(run.q.cwiseAbs().maxCoeff(), run.v.cwiseAbs().maxCoeff() * radian);
-    for (Eigen::Index c = 0; c < nc; ++c) {  // where all is at rest, what the force would move
-      const Eigen::VectorXd& w = system_.contacts()[static_cast<std::size_t>(c)].direction;
-      const double stiffness = w.dot(fem::multiply(system_.structure().K(), w).col(0)) / w.squaredNorm();
-      if (stiffness > 0.0) q = std::max(q, run.lambda.row(c).cwiseAbs().maxCoeff() / stiffness);
-    }
-    const double v = q / radian;
-    motion = q;
+    const double q = size_of_run(system_, run, orbit.period);
+    const double v = q * 2.0 * std::numbers::pi / orbit.period;
     rounding_ = Eigen::VectorXd::Zero(size_.size());
     for (Eigen::Index c = 0; c < nc; ++c) {
       const double reach = system_.contacts()[static_cast<std::size_t>(c)].direction.lpNorm<1>();
@@ -101,7 +111,7 @@ class Cutter {
   State cut(const State& state, double length) { return add(state, length, 1e300); }
 
   std::vector<OrbitSeries::Panel> panels;
-  double defect = 0.0, motion = 0.0;
+  double defect = 0.0;
 
  private:
   [[nodiscard]] Eigen::VectorXd quantities(const dynamics::Trajectory& run, Eigen::Index k) const {
@@ -159,6 +169,10 @@ class Cutter {
 
 }  // namespace
 
+double size_of_motion(const dynamics::HybridSystem& system, const PeriodicOrbit& orbit) {
+  return size_of_run(system, coarse_look(system, orbit), orbit.period);
+}
+
 OrbitSeries::OrbitSeries(const dynamics::HybridSystem& system, const PeriodicOrbit& orbit, const Eigen::MatrixXd& rows)
     : contacts_(static_cast<Eigen::Index>(system.contacts().size())),
       rows_(rows.cols()),
@@ -180,7 +194,6 @@ OrbitSeries::OrbitSeries(const dynamics::HybridSystem& system, const PeriodicOrb
   }
   panels_ = std::move(cutter.panels);
   defect_ = cutter.defect;
-  motion_ = cutter.motion;
 }
 
 Eigen::VectorXd OrbitSeries::at(double time) const {

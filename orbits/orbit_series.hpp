@@ -32,8 +32,6 @@ class OrbitSeries {
   /// below that. Displacements and velocities that are rounding of the whole motion are left out.
   [[nodiscard]] double defect() const { return defect_; }
 
-  /// The size of the whole motion, or of what the contacts' forces would move where all is at rest [m].
-  [[nodiscard]] double motion() const { return motion_; }
   /// All quantities at a time, any number of periods away. At an event the later panel's.
   [[nodiscard]] Eigen::VectorXd at(double time) const;
   /// (1/T)∫ y e^{−ikΩt} dt of all quantities, Ω = 2π/T, t the flow's own time: y = Σ_k of these e^{ikΩt} over all k.
@@ -49,8 +47,11 @@ class OrbitSeries {
 
  private:
   Eigen::Index contacts_ = 0, rows_ = 0;
-  double start_ = 0.0, period_ = 0.0, defect_ = 0.0, motion_ = 0.0;
+  double start_ = 0.0, period_ = 0.0, defect_ = 0.0;
   std::vector<Panel> panels_;
 };
+
+/// The size of an orbit's whole motion, or of what the contacts' forces would move where all is at rest [m].
+[[nodiscard]] double size_of_motion(const dynamics::HybridSystem& system, const PeriodicOrbit& orbit);
 
 }  // namespace slipmode::orbits

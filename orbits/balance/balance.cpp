@@ -21,15 +21,16 @@ using dynamics::HybridSystem;
 
 /// Newton's method, steps halved until the residual falls. Spends at most `budget` steps.
 BalanceEvaluation descend(const BalanceProblem& problem, const Eigen::VectorXd& from, double tolerance, int most,
-                          int& budget, bool& out_open) {
-  BalanceEvaluation best = problem.evaluate(from);
+                          int& budget) {
+  const Parity parity = problem.parity_of(from);
+  BalanceEvaluation best = problem.evaluate(from, parity);
   for (int turn = 0; turn < most && budget > 0 && !(best.relative <= tolerance); ++turn, --budget) {
-    const Eigen::VectorXd step = problem.step(best, out_open);
+    const Eigen::VectorXd step = problem.step(best);
     double share = 1.0;
-    BalanceEvaluation next = problem.evaluate(best.x + step);
+    BalanceEvaluation next = problem.evaluate(best.x + step, parity);
     while (!(next.residual.norm() < best.residual.norm()) && share > 1e-2) {
       share *= 0.5;
-      next = problem.evaluate(best.x + share * step);
+      next = problem.evaluate(best.x + share * step, parity);
     }
     const bool stalled = !(next.residual.norm() < best.residual.norm());
     if (stalled && best.relative <= 100.0 * tolerance) break;  // rounding
@@ -84,6 +85,7 @@ Eigen::VectorXd linear_response(const HybridSystem& system, const ContactRespons
       b.head(nc) += response.receptance[at].col(c) * (following * response.counterpart.phasors[k]);
       if (k == 0 && nr > 0) A.col(c).tail(nr) = -own * response.rigid_rows.row(c).transpose().cast<Complex>();
     }
+    if (b.isZero(0.0)) continue;
     const Eigen::VectorXcd y = A.completeOrthogonalDecomposition().solve(b);
     for (Eigen::Index c = 0; c < nc; ++c) {
       x[c * B + k] = y[c].real();
@@ -95,8 +97,7 @@ Eigen::VectorXd linear_response(const HybridSystem& system, const ContactRespons
 }
 
 /// From the linear response of linear laws to their own, by steps whose length follows Newton's method.
-BalanceEvaluation grow_laws(BalanceProblem& problem, const Eigen::VectorXd& from, double tolerance, int& budget,
-                            bool& out_open) {
+BalanceEvaluation grow_laws(BalanceProblem& problem, const Eigen::VectorXd& from, double tolerance, int& budget) {
   constexpr double kEnough = 1e-4, kLeastStep = 1e-3;
   Eigen::VectorXd before, now = from;
   double share_before = 0.0, share = 0.0, step = 0.5;
@@ -105,8 +106,7 @@ BalanceEvaluation grow_laws(BalanceProblem& problem, const Eigen::VectorXd& from
     problem.set_share(next);
     Eigen::VectorXd guess = now;
     if (before.size() > 0) guess += (next - share) / (share - share_before) * (now - before);
-    BalanceEvaluation found =
-        descend(problem, guess, next < 1.0 ? kEnough : tolerance, next < 1.0 ? 5 : 12, budget, out_open);
+    BalanceEvaluation found = descend(problem, guess, next < 1.0 ? kEnough : tolerance, next < 1.0 ? 5 : 12, budget);
     const bool arrived = found.relative <= (next < 1.0 ? kEnough : tolerance);
     if (next == 1.0 && (arrived || step < kLeastStep)) return found;
     if (arrived) {
@@ -123,7 +123,7 @@ BalanceEvaluation grow_laws(BalanceProblem& problem, const Eigen::VectorXd& from
 
 /// From linear responses. Friction is mostly met from one of them, stops want a path.
 BalanceEvaluation search_cold(const HybridSystem& system, const ContactResponse& response, BalanceProblem& problem,
-                              const BalanceOptions& options, int& budget, bool& out_open) {
+                              const BalanceOptions& options, int& budget) {
   constexpr int kFromHeld = 10, kFromFree = 25;
   const std::vector<BalancedLaw> laws = balanced_laws(system);
   const bool pressed = options.start == BalanceStart::kContact, friction = std::ranges::any_of(laws, remembers);
@@ -136,10 +136,10 @@ BalanceEvaluation search_cold(const HybridSystem& system, const ContactResponse&
     return best->relative <= options.tolerance;
   };
   const auto descend_from = [&](const Eigen::VectorXd& from, int most) {
-    return keep(descend(problem, from, options.tolerance, most, budget, out_open));
+    return keep(descend(problem, from, options.tolerance, most, budget));
   };
   if (pressed && friction && (descend_from(held, kFromHeld) || descend_from(free, from_free))) return *best;
-  if (pressed && keep(grow_laws(problem, held, options.tolerance, budget, out_open))) return *best;
+  if (pressed && keep(grow_laws(problem, held, options.tolerance, budget))) return *best;
   descend_from(free, budget);
   return *best;
 }
@@ -151,17 +151,18 @@ Balance balance(const HybridSystem& system, const BalanceOptions& options) {
   const ContactResponse response(system, options.order, options.harmonics);
   BalanceProblem problem(system, response, options.samples, response.lead(system));
   int budget = options.max_iterations;
-  bool open = false;
   BalanceEvaluation found;
   if (!options.guess.empty()) {
-    found = descend(problem, unknowns_of(options.guess, response), options.tolerance, budget, budget, open);
+    found = descend(problem, unknowns_of(options.guess, response), options.tolerance, budget, budget);
   } else {
-    found = search_cold(system, response, problem, options, budget, open);
+    found = search_cold(system, response, problem, options, budget);
   }
   Balance out = problem.series_of(found, options.order);
   out.converged = found.relative <= 100.0 * options.tolerance;
-  if (out.rigid.size() > 0) static_cast<void>(problem.step(found, open));  // a start may have been one already
-  out.family = open && out.rigid.size() > 0 && problem.leaves_means_open(found);
+  if (out.rigid.size() > 0) {
+    const BalanceEvaluation all = problem.evaluate(found.x);
+    out.family = problem.leaves_means_open(all) && problem.leaves_something_open(all);
+  }
   out.iterations = options.max_iterations - budget;
   if (!out.converged)
     out.message = fmt::format(

@@ -40,10 +40,10 @@ BalanceBranchSolver::BalanceBranchSolver(dynamics::SystemFamily family, const Ba
       symmetric_(symmetric),
       range_(std::abs(options.to - options.from)) {
   const Eigen::VectorXd x = unknowns_of({.parameter = parameter, .orbit = {}, .balance = from}).x;
-  const Eigen::Index H = from.harmonics, B = 2 * H + 1;
+  const ContactResponse first(family_(parameter), from.order, from.harmonics);
   displacements_ = x.size() - from.rigid.size();
   for (Eigen::Index i = 0; i < x.size(); ++i) {
-    const Eigen::Index own = i < displacements_ ? i % B : 0, order = own <= H ? own : own - H;
+    const Eigen::Index order = first.order_of(i);
     if (order % 2 == 0) even_.push_back(i);
     if (order % 2 == 1 || !symmetric) solved_.push_back(i);
   }

@@ -3,6 +3,7 @@
 #include <slipmode/dynamics/cache.hpp>
 #include <slipmode/dynamics/receptance.hpp>
 #include <slipmode/friction/places.hpp>
+#include <slipmode/orbits/shooting.hpp>
 
 #include <Eigen/LU>
 #include <Eigen/QR>
@@ -50,6 +51,7 @@ Eigen::VectorXcd drive_phasors(const HybridSystem& system, Eigen::Index order, E
 ContactResponse::ContactResponse(const HybridSystem& system, int order, Eigen::Index harmonics)
     : contacts_at(friction::by_place(system.contacts())),
       counterpart(counterpart_motion(system.drive(), order, harmonics)),
+      order_(order),
       harmonics_(harmonics),
       omega_(system.drive().omega() / order) {
   const dynamics::ModalModel& model = system.cache().tables(system, false).model;
@@ -95,6 +97,11 @@ ContactResponse::ContactResponse(const HybridSystem& system, int order, Eigen::I
   }
 }
 
+Eigen::Index ContactResponse::order_of(Eigen::Index unknown) const {
+  const Eigen::Index within = unknown < places() * block() ? unknown % block() : 0;
+  return within <= harmonics_ ? within : within - harmonics_;
+}
+
 Eigen::Index ContactResponse::lead(const HybridSystem& system) const {
   constexpr Eigen::Index kFew = 120;
   constexpr double kWeak = 0.005;
@@ -115,31 +122,48 @@ Eigen::Index ContactResponse::lead(const HybridSystem& system) const {
 
 BalanceProblem::BalanceProblem(const HybridSystem& system, const ContactResponse& response, int samples,
                                Eigen::Index lead)
-    : response_(response), samples_(samples), lead_(lead), own_laws_(balanced_laws(system)), laws_(own_laws_) {}
+    : response_(response),
+      samples_(samples),
+      lead_(lead),
+      symmetric_(is_symmetric(system) && response.order() % 2 == 1),
+      own_laws_(balanced_laws(system)),
+      laws_(own_laws_) {
+  for (Eigen::Index i = 0; i < response.unknowns(); ++i) {
+    const Eigen::Index order = response.order_of(i);
+    if (order % 2 == 0) even_.push_back(i);
+    if (order > lead) continue;
+    all_.push_back(i);
+    if (order % 2 == 1) odd_.push_back(i);
+  }
+}
 
 void BalanceProblem::set_share(double share) {
   for (std::size_t c = 0; c < laws_.size(); ++c) laws_[c] = at_share(own_laws_[c], share);
 }
 
-BalanceEvaluation BalanceProblem::evaluate(const Eigen::VectorXd& x) const {
+BalanceEvaluation BalanceProblem::evaluate(const Eigen::VectorXd& x, Parity parity) const {
+  const bool odd = parity == Parity::kOdd;
+  const Orders leading = odd ? Orders::odd(lead_) : Orders(lead_);
   const Eigen::Index nc = response_.places(), H = response_.harmonics(), B = response_.block();
-  const Eigen::Index nr = response_.rigid_rows.cols();
-  const Eigen::Index own = 2 * lead_ + 1, N = nc * own + nr;
-  BalanceEvaluation out{x, Eigen::VectorXd(x.size()), Eigen::MatrixXd::Identity(N, N), {}, {}, 0.0};
+  const Eigen::Index nr = response_.rigid_rows.cols(), own = leading.numbers(), N = nc * own + (odd ? 0 : nr);
+  BalanceEvaluation out{x, Eigen::VectorXd(x.size()), parity, Eigen::MatrixXd::Identity(N, N), {}, {}, 0.0};
   out.forces.resize(laws_.size(), BalancedForce(0, 0));
   for (Eigen::Index p = 0; p < nc; ++p) {
     const TrigonometricPolynomial y{phasors_of(x.segment(p * B, B), H)};
     const std::vector<std::size_t>& here = response_.contacts_at[static_cast<std::size_t>(p)];
     for (const std::size_t c : here) {
-      BalancedForce& force = out.forces[c] =
-          balanced_force(laws_[c], seen_by(laws_[c], y, response_.counterpart), response_.omega(), samples_, lead_);
+      BalancedForce whole =
+          balanced_force(laws_[c], seen_by(laws_[c], y, response_.counterpart), response_.omega(), samples_, leading);
+      BalancedForce& force = out.forces[c];
+      force.phasors = whole.phasors;
+      force.switches = whole.switches;
+      force.stuck = whole.stuck;
       if (c == here.front()) {
-        out.sums.push_back(force);
+        out.sums.push_back(std::move(whole));
       } else {
-        out.sums.back().phasors += force.phasors;
-        out.sums.back().jacobian += force.jacobian;
+        out.sums.back().phasors += whole.phasors;
+        out.sums.back().jacobian += whole.jacobian;
       }
-      force.jacobian.resize(0, 0);
     }
   }
   for (Eigen::Index c = 0; c < nc; ++c) {
@@ -153,7 +177,7 @@ BalanceEvaluation BalanceProblem::evaluate(const Eigen::VectorXd& x) const {
     if (nr > 0) missing[0] -= response_.rigid_rows.row(c).dot(x.tail(nr));
     out.residual.segment(c * B, B) = numbers_of(missing);
     for (Eigen::Index d = 0; d < nc; ++d) take_off(c, d, out);
-    out.jacobian.row(c * own).tail(nr) = -response_.rigid_rows.row(c);
+    if (!odd) out.jacobian.row(c * own).tail(nr) = -response_.rigid_rows.row(c);
   }
   add_equilibrium(out);
   out.relative = out.residual.head(nc * B).cwiseAbs().maxCoeff() / size_of(x);
@@ -172,19 +196,26 @@ bool BalanceProblem::leaves_means_open(const BalanceEvaluation& at) const {
   });
 }
 
-Eigen::VectorXd BalanceProblem::step(const BalanceEvaluation& at, bool& out_open) const {
-  const Eigen::Index H = response_.harmonics(), B = response_.block(), own = 2 * lead_ + 1;
-  const Eigen::Index nc = response_.places(), nr = response_.rigid_rows.cols();
-  std::vector<Eigen::Index> leading;
-  for (Eigen::Index c = 0; c < nc; ++c)
-    for (Eigen::Index i = 0; i < own; ++i) leading.push_back(c * B + (i <= lead_ ? i : H + i - lead_));
-  for (Eigen::Index r = 0; r < nr; ++r) leading.push_back(nc * B + r);
-  Eigen::VectorXd rest(at.jacobian.rows());
-  for (std::size_t i = 0; i < leading.size(); ++i) rest[static_cast<Eigen::Index>(i)] = -at.residual[leading[i]];
-  const Eigen::VectorXd newton = least_norm_solution(at.jacobian, rest, out_open);
+Eigen::VectorXd BalanceProblem::step(const BalanceEvaluation& at) const {
+  const std::vector<Eigen::Index>& solved = at.parity == Parity::kOdd ? odd_ : all_;
+  Eigen::VectorXd rest(std::ssize(solved));
+  for (Eigen::Index i = 0; i < rest.size(); ++i) rest[i] = -at.residual[solved[static_cast<std::size_t>(i)]];
+  bool open = false;
+  const Eigen::VectorXd newton = least_norm_solution(at.jacobian, rest, open);
   Eigen::VectorXd step = -at.residual;
-  for (std::size_t i = 0; i < leading.size(); ++i) step[leading[i]] = newton[static_cast<Eigen::Index>(i)];
+  for (Eigen::Index i = 0; i < rest.size(); ++i) step[solved[static_cast<std::size_t>(i)]] = newton[i];
   return step;
+}
+
+Parity BalanceProblem::parity_of(const Eigen::VectorXd& x) const {
+  const bool odd = symmetric_ && std::ranges::all_of(even_, [&](Eigen::Index i) { return x[i] == 0.0; });
+  return odd ? Parity::kOdd : Parity::kAll;
+}
+
+bool BalanceProblem::leaves_something_open(const BalanceEvaluation& at) const {
+  bool open = false;
+  static_cast<void>(least_norm_solution(at.jacobian, Eigen::VectorXd::Zero(at.jacobian.rows()), open));
+  return open;
 }
 
 double BalanceProblem::size_of(const Eigen::VectorXd& x) const {
@@ -195,28 +226,36 @@ double BalanceProblem::size_of(const Eigen::VectorXd& x) const {
 }
 
 void BalanceProblem::take_off(Eigen::Index c, Eigen::Index d, BalanceEvaluation& out) const {
-  const Eigen::Index H = lead_, B = 2 * lead_ + 1;
-  const Eigen::MatrixXd& J = out.sums[static_cast<std::size_t>(d)].jacobian;
-  auto block = out.jacobian.block(c * B, d * B, B, B);
-  for (Eigen::Index k = 0; k <= H; ++k) {
-    const Complex R = response_.receptance[static_cast<std::size_t>(k)](c, d);
-    block.row(k) -= R.real() * J.row(k);
-    if (k == 0) continue;
-    block.row(k) -= R.imag() * J.row(H + k);
-    block.row(H + k) -= R.real() * J.row(H + k) - R.imag() * J.row(k);
+  const BalancedForce& force = out.sums[static_cast<std::size_t>(d)];
+  const Orders& leading = force.leading;
+  const Eigen::Index B = leading.numbers(), L = leading.count, sines = B - L;
+  Eigen::ArrayXd re(L), im(L);
+  for (Eigen::Index i = 0; i < L; ++i) {
+    const Complex R = response_.receptance[static_cast<std::size_t>(leading.at(i))](c, d);
+    re[i] = R.real();
+    im[i] = R.imag();
+  }
+  for (Eigen::Index i = 0; i < B; ++i) {
+    const auto cosine = force.jacobian.col(i).array().head(L), sine = force.jacobian.col(i).array().tail(sines);
+    auto column = out.jacobian.col(d * B + i).segment(c * B, B).array();
+    column.head(L) -= re * cosine;
+    column.segment(L - sines, sines) -= im.tail(sines) * sine;
+    column.tail(sines) -= re.tail(sines) * sine - im.tail(sines) * cosine.tail(sines);
   }
 }
 
 void BalanceProblem::add_equilibrium(BalanceEvaluation& out) const {
-  const Eigen::Index nc = response_.places(), B = 2 * lead_ + 1, nr = response_.rigid_rows.cols();
+  const Eigen::Index nr = response_.rigid_rows.cols();
   if (nr == 0) return;
   out.residual.tail(nr) = response_.rigid_load;
-  out.jacobian.bottomRightCorner(nr, nr).setZero();
-  for (Eigen::Index d = 0; d < nc; ++d) {
+  const bool unknown = out.parity == Parity::kAll;
+  if (unknown) out.jacobian.bottomRightCorner(nr, nr).setZero();
+  for (Eigen::Index d = 0; d < response_.places(); ++d) {
     const BalancedForce& force = out.sums[static_cast<std::size_t>(d)];
     const Eigen::VectorXd z = response_.rigid_rows.row(d).transpose();
+    const Eigen::Index B = force.leading.numbers();
     out.residual.tail(nr) += z * force.phasors[0].real();
-    out.jacobian.block(nc * B, d * B, nr, B) = z * force.jacobian.row(0);
+    if (unknown) out.jacobian.block(response_.places() * B, d * B, nr, B) = z * force.jacobian.row(0);
   }
 }
 

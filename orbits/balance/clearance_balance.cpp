@@ -104,7 +104,7 @@ Occupation exact_occupation(const StopLaw& law, const TrigonometricPolynomial& y
     const Complex turn = std::polar(1.0, at.theta);
     Complex power = 1.0;
     for (Eigen::Index m = 0; m <= moments; ++m, power *= turn) {
-      if (m > 0) out.set[m] += sign * power / Complex(0.0, kCircle * static_cast<double>(m));
+      if (m > 0) out.set[m] += Complex(0.0, -sign / (kCircle * static_cast<double>(m))) * power;
       if (at.jumps) out.jumps[m] += sign / kCircle * power;
     }
   }
@@ -151,9 +151,9 @@ BalancedClearance BalancedClearance::at_share(double share) const {
 }
 
 BalancedForce BalancedClearance::force(const TrigonometricPolynomial& y, double omega, int samples,
-                                       Eigen::Index lead) const {
+                                       const Orders& leading) const {
   const Eigen::Index H = y.phasors.size() - 1;
-  BalancedForce out(H, lead);
+  BalancedForce out(H, leading);
   for_each_stop(law, omega, [&](const StopLaw& own) {
     const Occupation where = samples == kExact ? exact_occupation(own, y, 2 * H) : sampled_occupation(own, y, samples);
     add_linear(y,

@@ -133,8 +133,8 @@ std::vector<JenkinsSpan> BalancedJenkins::spans(const TrigonometricPolynomial& y
 }
 
 BalancedForce BalancedJenkins::force(const TrigonometricPolynomial& y, double /*omega*/, int samples,
-                                     Eigen::Index lead) const {
-  BalancedForce out(y.phasors.size() - 1, lead);
+                                     const Orders& leading) const {
+  BalancedForce out(y.phasors.size() - 1, leading);
   if (samples == kExact)
     add_exact(*this, y, out);
   else

@@ -155,7 +155,7 @@ TEST_F(OrbitVerbs, BalanceWithItsTrueError) {
   expect_refused({"find", play, "--harmonics", "9"}, {"--harmonics", "--by balance"});
   expect_refused(with({"--start", "1,0"}), {"--start 1,0", "contact", "gap"});
   expect_refused({"find", SLIPMODE_SOURCE_DIR "/datasets/chain10/scene.toml", "--by", "balance"},
-                 {"needs a force drive", "shooting"});
+                 {"needs a drive with a period", "shooting"});
 }
 
 TEST_F(OrbitVerbs, MixedWithItsTrueError) {
@@ -310,7 +310,7 @@ TEST_F(OrbitVerbs, ContinueByBalanceWithItsTrueError) {
                  {"--every", "--by balance"});
   expect_refused({"continue", SLIPMODE_SOURCE_DIR "/datasets/chain10/scene.toml", "--by", "balance", "--over",
                   "drive.speed=0.4:0.5", "-o", "x.h5"},
-                 {"needs a force drive", "shooting"});
+                 {"needs a drive with a period", "shooting"});
 }
 
 TEST_F(OrbitVerbs, SaysHowFarItCameWithoutAnOrbit) {

@@ -24,6 +24,9 @@ class ContactResponse {
   [[nodiscard]] Eigen::Index harmonics() const { return harmonics_; }
   [[nodiscard]] Eigen::Index block() const { return 2 * harmonics_ + 1; }
   [[nodiscard]] Eigen::Index unknowns() const { return places() * block() + rigid_rows.cols(); }
+  [[nodiscard]] int order() const { return order_; }
+  /// Of an unknown; 0 of what floats.
+  [[nodiscard]] Eigen::Index order_of(Eigen::Index unknown) const;
 
   /// The orders that Newton's method solves together: those beyond answer their forces by less than a share of their
   /// motion, and follow by substitution.
@@ -37,14 +40,19 @@ class ContactResponse {
   Eigen::VectorXd rigid_load;                         ///< of the modes that float [nr]
 
  private:
+  int order_;
   Eigen::Index harmonics_;
   double omega_;
 };
 
+/// Which orders there are: all, or the odd ones of a motion that has no others, and keeps to them.
+enum class Parity : std::uint8_t { kAll, kOdd };
+
 /// Newton's equations at a point.
 struct BalanceEvaluation {
   Eigen::VectorXd x, residual;
-  Eigen::MatrixXd jacobian;           ///< of the leading orders
+  Parity parity = Parity::kAll;
+  Eigen::MatrixXd jacobian;           ///< of the leading orders; of the odd ones what floats is no unknown
   std::vector<BalancedForce> forces;  ///< of each contact, without derivatives
   std::vector<BalancedForce> sums;    ///< of each place
   double relative = 0.0;
@@ -60,13 +68,17 @@ class BalanceProblem {
   /// Laws on the way from linear ones to their own: gaps in this share, limits of friction over it.
   void set_share(double share);
 
-  [[nodiscard]] BalanceEvaluation evaluate(const Eigen::VectorXd& x) const;
+  [[nodiscard]] BalanceEvaluation evaluate(const Eigen::VectorXd& x, Parity parity = Parity::kAll) const;
+  /// Of a motion without even orders in a system that is its own mirror image: odd.
+  [[nodiscard]] Parity parity_of(const Eigen::VectorXd& x) const;
   /// No contact's force changes with its mean displacement: where the mean floats, it is free.
   [[nodiscard]] bool leaves_means_open(const BalanceEvaluation& at) const;
 
   /// The step: Newton's for the leading orders, of least norm where the equations leave something open, and
   /// substitution for those beyond.
-  [[nodiscard]] Eigen::VectorXd step(const BalanceEvaluation& at, bool& out_open) const;
+  [[nodiscard]] Eigen::VectorXd step(const BalanceEvaluation& at) const;
+  /// The equations, of all orders, do not tell all unknowns.
+  [[nodiscard]] bool leaves_something_open(const BalanceEvaluation& at) const;
 
   /// The series at a point; `iterations`, `family`, `converged` and `message` are left to the caller.
   /// @param order  periods of the drive in one of the balance
@@ -82,7 +94,9 @@ class BalanceProblem {
   const ContactResponse& response_;
   int samples_;
   Eigen::Index lead_;
-  std::vector<BalancedLaw> own_laws_, laws_;  ///< at share 1, and at the one set
+  bool symmetric_;
+  std::vector<Eigen::Index> all_, odd_, even_;  ///< entries of x: those of the leading orders, and all of even order
+  std::vector<BalancedLaw> own_laws_, laws_;    ///< at share 1, and at the one set
 };
 
 /// The solution of a square system, of least norm where it is singular: a structure that floats in the gap.

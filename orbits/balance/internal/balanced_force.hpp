@@ -9,16 +9,37 @@ namespace slipmode::orbits {
 /// How many instants a force is looked at: 0 for the exact integrals between its switches.
 inline constexpr int kExact = 0;
 
+/// Orders of a series: all from 0 on, or the odd ones of a motion that has no others.
+struct Orders {
+  Eigen::Index first = 0, step = 1, count = 0;
+
+  Orders(Eigen::Index highest) : count(highest + 1) {}  // NOLINT(google-explicit-constructor): all up to it
+  [[nodiscard]] static Orders odd(Eigen::Index highest) { return {1, 2, (highest + 1) / 2}; }
+
+  [[nodiscard]] Eigen::Index at(Eigen::Index i) const { return first + step * i; }
+  [[nodiscard]] bool has_mean() const { return first == 0; }
+  /// Of cosines and sines: there is no sine_0.
+  [[nodiscard]] Eigen::Index numbers() const { return 2 * count - (has_mean() ? 1 : 0); }
+  /// Of the same kind, up to another order.
+  [[nodiscard]] Orders up_to(Eigen::Index highest) const { return has_mean() ? Orders(highest) : odd(highest); }
+
+ private:
+  Orders(Eigen::Index from, Eigen::Index by, Eigen::Index many) : first(from), step(by), count(many) {}
+};
+
 /// The Fourier coefficients of a contact's force along a given motion, and their derivatives.
 struct BalancedForce {
   Eigen::VectorXcd phasors;  ///< of λ [H + 1]
-  /// d(λ's)/d(y's) of the orders up to `lead`, both in the order cosine_0 … cosine_L, sine_1 … sine_L [2L+1 x 2L+1].
+  Orders leading;            ///< by which there are derivatives; odd ones: the motion has no others
+  /// d(λ's)/d(y's), both in the order of the cosines, then the sines: cosine_0 … cosine_L, sine_1 … sine_L.
   Eigen::MatrixXd jacobian;
   int switches = 0;    ///< instants at which the law's branch changes; of samples, changes from one to the next
   bool stuck = false;  ///< behind a contact spring, and never sliding: the slider's place is not told by the motion
 
-  BalancedForce(Eigen::Index harmonics, Eigen::Index lead)
-      : phasors(Eigen::VectorXcd::Zero(harmonics + 1)), jacobian(Eigen::MatrixXd::Zero(2 * lead + 1, 2 * lead + 1)) {}
+  BalancedForce(Eigen::Index harmonics, const Orders& own)
+      : phasors(Eigen::VectorXcd::Zero(harmonics + 1)),
+        leading(own),
+        jacobian(Eigen::MatrixXd::Zero(own.numbers(), own.numbers())) {}
 };
 
 /// g_m = (1/2π) ∫ e^{imθ} dθ over the arc from `begin` to `end` ≤ begin + 2π, m = 0 … `moments`.

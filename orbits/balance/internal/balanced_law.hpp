@@ -13,7 +13,7 @@ namespace slipmode::orbits {
 ///     kRemembers                       the force depends on the motion before, too
 ///     kFollowsDrive                    y is seen from the counterpart: less the displacement of a shaker
 ///     at_share(share)                  the law on the way from a linear one, share → 0, to its own, 1
-///     force(y, omega, samples, lead)   Fourier coefficients along y, and their derivatives
+///     force(y, omega, samples, orders) Fourier coefficients along y, and their derivatives
 ///     passage(y, omega)                what the contact does over a period
 ///     impedance(omega)                 −λ/y of the linear law at share 0, at this frequency
 ///     strongest(omega)                 largest |−∂λ/∂y| there is, at this frequency
@@ -37,10 +37,10 @@ using BalancedLaw = std::variant<BalancedClearance, BalancedJenkins>;
 }
 /// @param omega    Ω of the series
 /// @param samples  kExact, or their number
-/// @param lead     L ≤ H
+/// @param leading  orders by which there are derivatives, up to L ≤ H
 [[nodiscard]] inline BalancedForce balanced_force(const BalancedLaw& law, const TrigonometricPolynomial& y,
-                                                  double omega, int samples, Eigen::Index lead) {
-  return std::visit([&](const auto& own) { return own.force(y, omega, samples, lead); }, law);
+                                                  double omega, int samples, const Orders& leading) {
+  return std::visit([&](const auto& own) { return own.force(y, omega, samples, leading); }, law);
 }
 [[nodiscard]] inline Passage passage(const BalancedLaw& law, const TrigonometricPolynomial& y, double omega) {
   return std::visit([&](const auto& own) { return own.passage(y, omega); }, law);

@@ -31,7 +31,7 @@ struct BalancedClearance {
   /// Gaps in this share of their own: at 0 the stops are a spring.
   [[nodiscard]] BalancedClearance at_share(double share) const;
   [[nodiscard]] BalancedForce force(const TrigonometricPolynomial& y, double omega, int samples,
-                                    Eigen::Index lead) const;
+                                    const Orders& leading) const;
   /// A stop that has let go early is the gap.
   [[nodiscard]] Passage passage(const TrigonometricPolynomial& y, double omega) const;
   /// Of both stops, each half the time.

