@@ -46,6 +46,7 @@ Eigen::VectorXcd arc_moments(double begin, double end, Eigen::Index moments) {
 
 std::vector<Complex> sample_turns(int samples) {
   std::vector<Complex> turns;
+  turns.reserve(static_cast<std::size_t>(samples));
   for (int n = 0; n < samples; ++n) turns.push_back(std::polar(1.0, kFullTurn * n / samples));
   return turns;
 }
