@@ -1,4 +1,3 @@
-#include <slipmode/core/numbers.hpp>
 #include <slipmode/results/branch_store.hpp>
 #include <slipmode/results/provenance.hpp>
 #include <slipmode/studies/balance_search.hpp>
@@ -6,14 +5,15 @@
 #include "cli/balance_report.hpp"
 #include "cli/field_options.hpp"
 #include "cli/json_values.hpp"
+#include "cli/orbit_curves.hpp"
 #include "cli/orbit_report.hpp"
 #include "cli/orbit_search.hpp"
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -24,42 +24,18 @@ struct OrbitContinueArguments {
   OrbitSearchArguments search;
   BalanceArguments balance;
   std::optional<int> every;  ///< else 1
-  std::string over, output;
+  std::string over, along, point, output;
   studies::ContinuationRequest request;
 };
-
-/// KEY=FROM:TO, a range followed without steps.
-struct OrbitRange {
-  std::string key;
-  double from = 0.0, to = 0.0;
-};
-
-OrbitRange parse_range(const std::string& text) {
-  const auto complain = [&text](const std::string& what) {
-    return InvalidInput(fmt::format("--over {}: {}; expected KEY=FROM:TO, e.g. drive.omega=1.8:0.3", text, what));
-  };
-  const std::size_t equals = text.find('=');
-  const std::size_t colon = text.find(':', equals == std::string::npos ? 0 : equals);
-  if (equals == std::string::npos || equals == 0) throw complain("no KEY=");
-  if (colon == std::string::npos) throw complain("no range FROM:TO");
-  const auto number = [&](std::size_t begin, std::size_t end) {
-    const std::string word = text.substr(begin, end - begin);
-    const auto value = number_in<double>(word);
-    if (!value || !std::isfinite(*value)) throw complain(fmt::format("'{}' is not a number", word));
-    return *value;
-  };
-  OrbitRange range{text.substr(0, equals), number(equals + 1, colon), number(colon + 1, text.size())};
-  if (range.from == range.to) throw complain("the range has no length");
-  return range;
-}
 
 Json branch_json(const results::NamedBranch& named) {
   const orbits::Branch& branch = named.branch;
   Json special = Json::array();
   for (const orbits::SpecialPoint& point : branch.special) {
-    special.push_back(merged(
-        {{"kind", orbits::to_string(point.kind)}, {"multiplier", {point.multiplier.real(), point.multiplier.imag()}}},
-        fields_json(point)));
+    special.push_back(merged({{"kind", orbits::to_string(point.kind)},
+                              {"multiplier", {point.multiplier.real(), point.multiplier.imag()}},
+                              {"parameter", point.parameter}},
+                             fields_json(point)));
   }
   std::size_t stable = 0;
   for (const orbits::BranchPoint& point : branch.points) {
@@ -172,18 +148,41 @@ Report run_balance(const Session& session, const OrbitContinueArguments& argumen
   return report;
 }
 
+Report run_curves(const Session& session, const OrbitContinueArguments& arguments, const Followed& followed) {
+  if (arguments.along.empty() || arguments.point.empty())
+    throw InvalidInput(
+        fmt::format("{0} needs {1} too: KIND of special point and second key, e.g. --point fold --along "
+                    "drive.amplitude=0.5:2",
+                    arguments.along.empty() ? "--point" : "--along", arguments.along.empty() ? "--along" : "--point"));
+  const OrbitRange along = parse_range("--along", arguments.along, "drive.amplitude=0.5:2");
+  studies::CurveRequest curve{.along = along.key, .from = along.from, .to = along.to};
+  studies::read_point(arguments.point, curve);
+  const studies::OrbitSearch search = search_of(arguments.search, followed.scene);
+  const auto found = std::make_shared<const studies::SpecialCurves>(studies::special_curves(
+      followed.scene, followed.key, followed.basis, search, followed.request, curve, session.run_options()));
+  if (!found->base.found.converged()) return not_found("orbit continue", found->base.found);
+  return curves_report(
+      studies::plane_of(followed.scene, followed.key, followed.basis, curve, *found), found, followed.request, curve,
+      studies::command_of(followed.key, arguments.search.model, search, followed.request, curve), arguments.output);
+}
+
 Report run(const Session& session, const OrbitContinueArguments& arguments) {
   require_writable(arguments.output);
-  const OrbitRange range = parse_range(arguments.over);
+  const OrbitRange range = parse_range("--over", arguments.over, "drive.omega=1.8:0.3");
   const scene::Scene scene = session.load(arguments.search.scene);
   const studies::RunOptions run_options = session.run_options();
   Followed followed{scene, range.key, studies::model_basis(scene, arguments.search.model, run_options),
                     arguments.request};
   followed.request.from = range.from;
   followed.request.to = range.to;
+  const bool curves = !arguments.along.empty() || !arguments.point.empty();
+  if (curves && arguments.balance.by != "shooting")
+    throw InvalidInput("--along, --point: special points are followed by shooting; leave out --by " +
+                       arguments.balance.by);
   if (arguments.balance.by == "balance") return run_balance(session, arguments, followed);
   require_no_balance_options(arguments.balance);
   if (arguments.every) throw InvalidInput("--every: of a balance's certificates; add --by balance --certify");
+  if (curves) return run_curves(session, arguments, followed);
   const studies::OrbitSearch search = search_of(arguments.search, scene);
   studies::Continuation found =
       studies::continue_orbit(scene, range.key, followed.basis, search, followed.request, run_options);
@@ -203,6 +202,12 @@ Verb add_orbit_continue(CLI::App& orbit) {
   command->add_option("--every", arguments->every, "with --certify: every so many points, and the last")
       ->check(CLI::PositiveNumber);
   command->add_option("--over", arguments->over, "key and range: KEY=FROM:TO")->required();
+  command->add_option(
+      "--point", arguments->point,
+      fmt::format("special points to follow over --along too: {}; KIND:VALUE: only the one nearest to a "
+                  "value of --over",
+                  fmt::join(studies::followed_words(), ", ")));
+  command->add_option("--along", arguments->along, "second key and range of --point: KEY=FROM:TO");
   command->add_option("-o,--output", arguments->output, "result file (HDF5)")->required();
   add_fields(*command, arguments->request);
   command->footer(
@@ -211,7 +216,10 @@ Verb add_orbit_continue(CLI::App& orbit) {
       "Example:\n  slipmode orbit continue datasets/backlash_sdof/scene.toml --over drive.omega=1.8:0.5 --start 2.5,0 "
       "--switch -o branch.h5\n  slipmode plot branch.h5 -o response.svg\n"
       "  slipmode orbit continue datasets/play_oscillator/scene.toml --over drive.omega=0.9:1.1 --by balance "
-      "--harmonics 9 --certify -o balances.h5");
+      "--harmonics 9 --certify -o balances.h5\n"
+      "  slipmode orbit continue datasets/backlash_sdof/scene.toml --over drive.omega=0.9:1.8 --start 2.5,0 --point "
+      "fold "
+      "--along drive.amplitude=0.2:2 -o folds.h5");
   return {command, [arguments](const Session& session) { return run(session, *arguments); }};
 }
 

@@ -43,6 +43,7 @@ constexpr KindFigures kFigures[] = {
     {FileKind::kSeries, series_figures_of},
     {FileKind::kOrbit, orbit_figures_of},
     {FileKind::kBranches, branch_figures_of},
+    {FileKind::kCurves, curve_figures_of},
     {FileKind::kMap, map_figures_of},
     {FileKind::kStrobe, strobe_figures_of},
     {FileKind::kBasins, basins_figures_of},

@@ -13,6 +13,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace slipmode::figures {
@@ -139,6 +140,28 @@ Figure response(const StoreReader& store) {
        .value = axis_label("half the range of displacement at " + place, results::Units::of(scene.units).length)});
 }
 
+/// Curves of special points in the plane of both keys.
+Figure curve_plane(const StoreReader& store) {
+  constexpr std::array kColours = {kFullColour, kPomColour, kLnmColour, kSecondColour};
+  const scene::Scene scene = results::load_scene_of(store);
+  std::vector<ResponseBranch> curves;
+  std::vector<ResponseMark> marks;
+  for (const results::StoredBranch& curve : results::load_curves(store)) {
+    if (curve.points.rows() == 0) continue;
+    curves.push_back({.title = curve.title,
+                      .parameter = to_vector(curve.points.numbers("over")),
+                      .value = to_vector(curve.points.numbers("along")),
+                      .stable = std::vector<bool>(curve.points.rows(), true),
+                      .colour = kColours[curves.size() % kColours.size()]});
+    for (std::size_t i = 0; i < curve.special.rows(); ++i)
+      marks.push_back(
+          {curve.special.texts("kind")[i], curve.special.numbers("over")[i], curve.special.numbers("along")[i]});
+  }
+  return response_diagram(curves, marks,
+                          {.parameter = axis_label_of(scene, store.text("curves/over")),
+                           .value = axis_label_of(scene, store.text("curves/along"))});
+}
+
 /// |multipliers| over the key, the unit circle's modulus as a line.
 Figure branch_multipliers(const StoreReader& store) {
   constexpr double kOfAccount = 1e-4;  // smaller ones are of no account for stability, and would stretch the axis
@@ -172,6 +195,10 @@ std::vector<FileFigure> orbit_figures_of(const StoreReader&) {
   return {{"orbit", "phase portrait of the orbit, stops drawn", orbit_portrait},
           {"multipliers", "Floquet multipliers and the unit circle", orbit_multipliers},
           history_figure()};
+}
+
+std::vector<FileFigure> curve_figures_of(const StoreReader&) {
+  return {{"curves", "curves of special points in the plane of both keys", curve_plane}};
 }
 
 std::vector<FileFigure> branch_figures_of(const StoreReader& store) {

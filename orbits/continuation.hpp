@@ -22,13 +22,14 @@ enum class SpecialKind : std::uint8_t {
   kStickChange,       ///< the word gains or loses a stick
   kWordChange,        ///< the word changes in another way (a reversal comes or goes)
   kNonSmoothFold,     ///< the branch turns back where its word changes: no multiplier need pass 1
+  kCusp,              ///< of curves of folds (special_curve.hpp): two of them end in one another
 };
 
 enum class BranchEnd : std::uint8_t {
   kRange,      ///< the parameter left its range; the last point is on its end
   kMaxPoints,  ///< options.max_points reached
   kClosed,     ///< back at the start
-  kMerged,     ///< asymmetric orbits became symmetric: the branch joins another one
+  kMerged,     ///< it joins another one: asymmetric orbits became symmetric; of a curve, see `reason`
   kLost,       ///< no step however small found the branch again; `reason` says what was seen
 };
 
@@ -59,6 +60,8 @@ struct BranchPoint {
   /// first contact's displacement [m]; NaN: not looked at, infinite: no orbit lies behind.
   std::optional<Balance> balance = {};
   double true_error = std::numeric_limits<double>::quiet_NaN();
+  /// On curves of special points (special_curve.hpp): the key that is solved for.
+  std::optional<double> other = {};
 };
 
 /// A point where the branch changes its kind, found by root finding on converged orbits.
@@ -72,6 +75,7 @@ struct SpecialPoint {
   Eigen::VectorXd direction;  ///< its eigenvector, real part (q, q̇, internal) [N]; empty for word changes and balances
   std::string note;           ///< e.g. the words on both sides
   std::optional<Balance> balance = {};  ///< on branches of balances, as BranchPoint has it
+  std::optional<double> other = {};     ///< on curves, as BranchPoint has it
 };
 
 /// A curve of orbits over a parameter. Kept as far as it was found.

@@ -5,6 +5,7 @@
 #include <slipmode/studies/orbit_search.hpp>
 #include <slipmode/studies/orbit_spectra.hpp>
 #include <slipmode/studies/skeletons.hpp>
+#include <slipmode/studies/special_curves.hpp>
 #include "python/call.hpp"
 #include "python/errors.hpp"
 #include "python/model.hpp"
@@ -195,6 +196,42 @@ Result continue_balance(const Scene& scene, const std::string& over, const Metho
   return *result;
 }
 
+/// Special points over a second key, where one was given: (key, from, to).
+std::optional<studies::CurveRequest> curve_request(Keywords& keywords) {
+  const py::object along = keywords.take("along");
+  const std::string point = keywords.text("point");
+  if (!along && point.empty()) return std::nullopt;
+  py::detail::make_caster<std::tuple<std::string, double, double>> read;
+  if (!along || !read.load(along, true)) keywords.refuse("along", along ? along : py::none(), "(key, from, to)");
+  if (point.empty())
+    keywords.refuse("point", py::str(point), fmt::format("one of {}", fmt::join(studies::followed_words(), ", ")));
+  const auto [key, from, to] = py::detail::cast_op<std::tuple<std::string, double, double>>(read);
+  if (from == to) keywords.refuse("along", along, "a range with a length");
+  studies::CurveRequest request{.along = key, .from = from, .to = to};
+  studies::read_point(point, request);
+  return request;
+}
+
+Result continue_special(const Scene& scene, const std::string& over, const studies::OrbitSearch& search,
+                        const studies::ContinuationRequest& request, const studies::CurveRequest& curve,
+                        const ModelChoice& choice, Call& call) {
+  const auto [found, result] = call([&] {
+    const auto basis = choice.basis(scene, call.options());
+    const auto own = std::make_shared<const studies::SpecialCurves>(
+        studies::special_curves(scene, over, basis, search, request, curve, call.options()));
+    std::optional<Result> kept;
+    if (!own->curves.empty())
+      kept.emplace(studies::content_of(studies::plane_of(scene, over, basis, curve, *own), own,
+                                       studies::command_of(over, choice.word(), search, request, curve),
+                                       call.options()));
+    return std::pair(own, std::move(kept));
+  });
+  if (!found->base.found.converged()) raise_not_found(found->base.found);
+  if (!result) raise(NumericalFailure(studies::nothing_followed(*found, over, request, curve), 0.0, {}, 0.0));
+  for (const results::NamedBranch& one : found->curves) require_whole(one.branch, found->along, *result);
+  return *result;
+}
+
 Result continue_orbit(const Scene& scene, const std::string& over, double to, const std::optional<double>& from,
                       const py::kwargs& given) {
   Keywords keywords("continue_orbit", given);
@@ -206,11 +243,16 @@ Result continue_orbit(const Scene& scene, const std::string& over, double to, co
   request.from = from ? *from : scene::get_continuous_key(scene, over);
   if (request.from == request.to)
     throw InvalidInput(fmt::format("continue_orbit: to = {}: the range has no length", to));
+  const std::optional<studies::CurveRequest> curve = curve_request(keywords);
+  if (curve && method.balances)
+    throw InvalidInput(
+        "continue_orbit: along, point: special points are followed by shooting; leave out by = 'balance'");
   BranchCertificates own;
   if (method.balances) keywords.read(own);
   const ModelChoice choice(keywords);
   Call call(keywords);
   if (method.balances) return continue_balance(scene, over, method, request, own, choice, call);
+  if (curve) return continue_special(scene, over, search, request, *curve, choice, call);
   const auto [found, result] = call([&] {
     const auto basis = choice.basis(scene, call.options());
     studies::Continuation continuation = studies::continue_orbit(scene, over, basis, search, request, call.options());
@@ -293,8 +335,12 @@ void add_orbits(py::module_& module) {
              ("Branches of periodic orbits over a key. They begin at the scene's own value of the key where the range\n"
               "holds it, and go both ways; else at `from_`.\n\n"
               "    over: key of the scene, e.g. \"drive.omega\"\n    to: end of the range\n"
-              "    from_: its beginning; by default the scene's own value\n" +
-              search + options_text<BranchCertificates>() + options_text<studies::ContinuationRequest>() + call_text())
+              "    from_: its beginning; by default the scene's own value\n"
+              "    point, along: a kind of special point, or \"kind:value\" for the one nearest to a value of `over`,\n"
+              "        and (key, from, to) to follow it over a second key too: curves in the plane of both. Kinds:\n"
+              "        " +
+              fmt::format("{}", fmt::join(studies::followed_words(), ", ")) + "\n" + search +
+              options_text<BranchCertificates>() + options_text<studies::ContinuationRequest>() + call_text())
                  .c_str());
   module.def("spectrum", &spectrum, py::arg("orbit"), py::arg("dofs") = std::vector<int>{},
              ("Fourier coefficients of an exact orbit: displacement, velocity and force of each contact.\n\n"

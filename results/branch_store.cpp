@@ -1,5 +1,6 @@
 #include <slipmode/results/branch_store.hpp>
 
+#include <slipmode/results/file_kind.hpp>
 #include "results/internal/field_record.hpp"
 
 #include <fmt/format.h>
@@ -18,15 +19,15 @@ std::vector<double> gather(const std::vector<BranchPoint>& points, Get get) {
   return values;
 }
 
-/// Of a branch's or a special point: of its series where it is a balance.
+/// Of a branch's or a special point: of its series where it is a balance. @param family  over (other, parameter)
 template <class Point>
-std::vector<orbits::Amplitude> amplitudes_of(const Point& point, const dynamics::SystemFamily& family) {
+std::vector<orbits::Amplitude> amplitudes_of(const Point& point, const dynamics::PlaneFamily& family) {
   return point.balance ? orbits::contact_amplitudes(*point.balance)
-                       : orbits::contact_amplitudes(family(point.parameter), point.orbit);
+                       : orbits::contact_amplitudes(family(point.other.value_or(0.0), point.parameter), point.orbit);
 }
 
 /// Columns of the contacts' displacements: "alternating_1" and so on.
-std::vector<Column> amplitude_columns(const std::vector<BranchPoint>& points, const dynamics::SystemFamily& family) {
+std::vector<Column> amplitude_columns(const std::vector<BranchPoint>& points, const dynamics::PlaneFamily& family) {
   std::vector<std::vector<orbits::Amplitude>> all;
   all.reserve(points.size());
   for (const BranchPoint& point : points) all.push_back(amplitudes_of(point, family));
@@ -43,8 +44,24 @@ std::vector<Column> amplitude_columns(const std::vector<BranchPoint>& points, co
   return columns;
 }
 
-Table point_table(const std::string& key, const std::vector<BranchPoint>& points,
-                  const dynamics::SystemFamily& family) {
+/// Where a point lies: its values of the keys, by the names of their columns.
+struct KeyColumns {
+  std::vector<std::string> keys;  ///< of curves the other one first
+
+  template <class Point>
+  [[nodiscard]] std::vector<Column> of(const std::vector<Point>& points) const {
+    std::vector<double> parameter, other;
+    for (const Point& point : points) {
+      parameter.push_back(point.parameter);
+      other.push_back(point.other.value_or(0.0));
+    }
+    if (keys.size() == 1) return {{"parameter", {"", keys[0]}, parameter}};
+    return {{"over", {"", keys[0]}, other}, {"along", {"", keys[1]}, parameter}};
+  }
+};
+
+Table point_table(const KeyColumns& place, const std::vector<BranchPoint>& points,
+                  const dynamics::PlaneFamily& family) {
   const auto add = [&points](const char* name, const char* units, const char* what, auto get) {
     return Column{name, {units, what}, gather(points, get)};
   };
@@ -54,8 +71,7 @@ Table point_table(const std::string& key, const std::vector<BranchPoint>& points
     words.push_back(point.orbit.word);
   }
   Table table{.description = "orbits in order along the branch", .columns = {}};
-  table.columns = {
-      {"parameter", {"", key}, gather(points, [](const BranchPoint& p) { return p.parameter; })},
+  const std::vector<Column> own = {
       add("arclength", "1", "along the branch, scaled", [](const BranchPoint& p) { return p.arclength; }),
       add("period", "s", "period", [](const BranchPoint& p) { return p.orbit.period; }),
       add("leading_modulus", "1", "largest |multiplier| without trivial ones; NaN: not judged",
@@ -70,6 +86,7 @@ Table point_table(const std::string& key, const std::vector<BranchPoint>& points
           [](const BranchPoint& p) { return static_cast<double>(p.orbit.family.cols()); }),
       add("residual", "1", "mismatch after a period", [](const BranchPoint& p) { return p.orbit.residual; }),
       {"word", {"", "regimes"}, words}};
+  table.columns = joined({place.of(points), own});
   for (Column& column : amplitude_columns(points, family)) table.columns.push_back(std::move(column));
   if (!points.empty() && points.front().balance)
     table.columns.push_back(add("true_error", "m",
@@ -78,7 +95,7 @@ Table point_table(const std::string& key, const std::vector<BranchPoint>& points
   return table;
 }
 
-Table special_table(const orbits::Branch& branch, const dynamics::SystemFamily& family) {
+Table special_table(const KeyColumns& place, const orbits::Branch& branch, const dynamics::PlaneFamily& family) {
   std::vector<std::string> kind;
   std::vector<double> before, real, imaginary, amplitude;
   for (const orbits::SpecialPoint& point : branch.special) {
@@ -91,6 +108,7 @@ Table special_table(const orbits::Branch& branch, const dynamics::SystemFamily& 
   return {.description = "points where the branch changes its kind",
           .columns = joined(
               {{{"kind", {"", "what happens"}, kind}, {"before", {"", "row of `points` it follows, from 0"}, before}},
+               place.of(branch.special),
                columns_of(branch.special),
                {{"multiplier", {"1", "the critical one, real part"}, real},
                 {"multiplier_imaginary", {"1", "its imaginary part"}, imaginary},
@@ -135,21 +153,18 @@ Eigen::MatrixXd coefficient_rows(const std::vector<BranchPoint>& points) {
   return rows;
 }
 
-}  // namespace
-
-void store_branches(StoreWriter& writer, const std::string& key, const std::vector<NamedBranch>& branches,
-                    const dynamics::SystemFamily& family) {
-  writer.describe_group("branches", "branches of periodic orbits over a parameter");
-  writer.write("branches/key", key, {"", "the parameter: a key of the scene"});
+/// Each branch in a sub-group of its own.
+void store_all(StoreWriter& writer, const std::string& all, const KeyColumns& place,
+               const std::vector<NamedBranch>& branches, const dynamics::PlaneFamily& family) {
   for (std::size_t k = 0; k < branches.size(); ++k) {
     const auto& [title, branch] = branches[k];
-    const std::string group = fmt::format("branches/{}", k);
+    const std::string group = fmt::format("{}/{}", all, k);
     writer.describe_group(group, "one branch");
     writer.write(group + "/title", title, {"", "which branch"});
     writer.write(group + "/end", std::string(orbits::to_string(branch.end)), {"", "why it ends"});
     writer.write(group + "/reason", branch.reason, {"", "the same in a sentence"});
-    save(writer, group + "/points", point_table(key, branch.points, family));
-    save(writer, group + "/special", special_table(branch, family));
+    save(writer, group + "/points", point_table(place, branch.points, family));
+    save(writer, group + "/special", special_table(place, branch, family));
     writer.write(group + "/multipliers", multiplier_rows(branch.points),
                  {"1", "Floquet multipliers, point x (real parts, imaginary parts)"});
     writer.write(group + "/start", start_rows(branch.points),
@@ -163,10 +178,11 @@ void store_branches(StoreWriter& writer, const std::string& key, const std::vect
   }
 }
 
-std::vector<StoredBranch> load_branches(const StoreReader& store) {
+/// What was stored under a group. @param made_by  the command that makes one
+std::vector<StoredBranch> load_all(const StoreReader& store, const std::string& all, const std::string& made_by) {
   std::vector<StoredBranch> branches;
-  for (std::size_t k = 0; store.has(fmt::format("branches/{}", k)); ++k) {
-    const std::string group = fmt::format("branches/{}", k);
+  for (std::size_t k = 0; store.has(fmt::format("{}/{}", all, k)); ++k) {
+    const std::string group = fmt::format("{}/{}", all, k);
     StoredBranch branch{.title = store.text(group + "/title"),
                         .end = store.text(group + "/end"),
                         .reason = store.text(group + "/reason"),
@@ -178,8 +194,33 @@ std::vector<StoredBranch> load_branches(const StoreReader& store) {
     branch.modulus = (parts.leftCols(n).array().square() + parts.rightCols(n).array().square()).sqrt();
     branches.push_back(std::move(branch));
   }
-  if (branches.empty()) store.fail("branches", "the file holds no branch; make one with 'slipmode orbit continue'");
+  if (branches.empty()) store.fail(all, fmt::format("the file holds none; make one with '{}'", made_by));
   return branches;
+}
+
+}  // namespace
+
+void store_branches(StoreWriter& writer, const std::string& key, const std::vector<NamedBranch>& branches,
+                    const dynamics::SystemFamily& family) {
+  writer.describe_group("branches", "branches of periodic orbits over a parameter");
+  writer.write("branches/key", key, {"", "the parameter: a key of the scene"});
+  store_all(writer, "branches", {{key}}, branches, [&family](double, double value) { return family(value); });
+}
+
+void store_curves(StoreWriter& writer, const std::vector<std::string>& keys, const std::vector<NamedBranch>& curves,
+                  const dynamics::PlaneFamily& family) {
+  writer.describe_group("curves", "curves of special points over two parameters");
+  writer.write("curves/over", keys.at(0), {"", "the first parameter: a key of the scene"});
+  writer.write("curves/along", keys.at(1), {"", "the second one"});
+  store_all(writer, "curves", {keys}, curves, family);
+}
+
+std::vector<StoredBranch> load_branches(const StoreReader& store) {
+  return load_all(store, "branches", words_of(FileKind::kBranches).made_by);
+}
+
+std::vector<StoredBranch> load_curves(const StoreReader& store) {
+  return load_all(store, "curves", words_of(FileKind::kCurves).made_by);
 }
 
 }  // namespace slipmode::results

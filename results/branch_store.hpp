@@ -19,6 +19,12 @@ struct NamedBranch {
 void store_branches(StoreWriter& writer, const std::string& key, const std::vector<NamedBranch>& branches,
                     const dynamics::SystemFamily& family);
 
+/// Writes the group `curves` in the same way: of special points, each at its values of both keys.
+/// @param keys    the one that is solved for, and the curves' parameter
+/// @param family  over both
+void store_curves(StoreWriter& writer, const std::vector<std::string>& keys, const std::vector<NamedBranch>& curves,
+                  const dynamics::PlaneFamily& family);
+
 /// What figures need of a stored branch.
 struct StoredBranch {
   std::string title, end, reason;
@@ -28,5 +34,6 @@ struct StoredBranch {
 
 /// @throws InvalidInput  when the file holds no branches, or damaged ones
 [[nodiscard]] std::vector<StoredBranch> load_branches(const StoreReader& store);
+[[nodiscard]] std::vector<StoredBranch> load_curves(const StoreReader& store);
 
 }  // namespace slipmode::results

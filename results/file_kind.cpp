@@ -28,6 +28,7 @@ constexpr std::pair<const char*, FileKind> kMarks[] = {
     {"trade", FileKind::kTrade},
     {"orbit", FileKind::kOrbit},
     {"branches", FileKind::kBranches},
+    {"curves", FileKind::kCurves},
     {"returns", FileKind::kReturns},
     {"sweep", FileKind::kSweep},
     {"reduced", FileKind::kReduced},

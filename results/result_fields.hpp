@@ -159,8 +159,7 @@ inline constexpr auto kFields<orbits::OrbitMatch> = [] {
 template <>
 inline constexpr auto kFields<orbits::SpecialPoint> = [] {
   using Own = orbits::SpecialPoint;
-  return std::tuple{required("parameter", &Own::parameter, "", "where"),
-                    required("uncertainty", &Own::uncertainty, "", "width of the last bracket"),
+  return std::tuple{required("uncertainty", &Own::uncertainty, "", "width of the last bracket"),
                     required("note", &Own::note, "", "what was seen")};
 }();
 

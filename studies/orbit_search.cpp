@@ -92,13 +92,18 @@ std::vector<results::NamedBranch> follow(const dynamics::SystemFamily& family, c
 
 }  // namespace
 
-SearchStart search_start(const Family& model, const OrbitSearch& search) {
+orbits::ShootingOptions shooting_options(const Family& model, const OrbitSearch& search) {
   orbits::ShootingOptions options{.order = search.order,
                                   .segments = search.segments,
                                   .tolerance = search.tolerance,
                                   .max_iterations = search.iterations,
                                   .half_period = search.half};
   options.flow.method = model.scene().flow.method;
+  return options;
+}
+
+SearchStart search_start(const Family& model, const OrbitSearch& search) {
+  orbits::ShootingOptions options = shooting_options(model, search);
   const std::optional<double> drive = model.own().drive().period();
   if (!drive) return self_excited(search, model, options);
   if (search.period > 0.0) {

@@ -52,6 +52,8 @@ struct SearchStart {
   dynamics::State guess;
   orbits::ShootingOptions options;
 };
+/// What of a search is not its start.
+[[nodiscard]] orbits::ShootingOptions shooting_options(const Family& model, const OrbitSearch& search);
 /// @throws InvalidInput  for a period that is no multiple of the drive's, an order without a periodic drive, a start
 ///                       without a period on a belt
 [[nodiscard]] SearchStart search_start(const Family& model, const OrbitSearch& search);

@@ -108,7 +108,7 @@ Figure response_diagram(const std::vector<ResponseBranch>& branches, const std::
   double low_x = INFINITY, high_x = -INFINITY, low_y = INFINITY, high_y = -INFINITY;
   std::vector<std::string> plots;
   std::vector<Series> drawn;
-  bool has_band = false;
+  bool has_band = false, has_unstable = false;
   for (const ResponseBranch& branch : branches) {
     if (branch.parameter.size() == 0) continue;
     low_x = std::min(low_x, branch.parameter.minCoeff());
@@ -134,6 +134,7 @@ Figure response_diagram(const std::vector<ResponseBranch>& branches, const std::
           "{} using 1:2 with lines linewidth 1.8 linecolor rgb '{}' {}", looks.stable.data(figure), branch.colour,
           branch.title.empty() ? "notitle" : fmt::format("title \"{}\"", literal(branch.title))));
     }
+    has_unstable |= !looks.unstable.x.empty();
     if (!looks.unstable.x.empty()) {
       drawn.push_back(
           {"unstable", to_vector(looks.unstable.x), to_vector(looks.unstable.y), Series::Look::kDashed, branch.colour});
@@ -141,7 +142,7 @@ Figure response_diagram(const std::vector<ResponseBranch>& branches, const std::
                                   looks.unstable.data(figure), branch.colour));
     }
   }
-  plots.push_back("NaN with lines dashtype 2 linewidth 1.5 linecolor rgb '#222222' title 'unstable'");
+  if (has_unstable) plots.push_back("NaN with lines dashtype 2 linewidth 1.5 linecolor rgb '#222222' title 'unstable'");
   add_marks(figure, marks, plots, drawn);
   figure.show({.panels = {{.series = drawn, .x_label = labels.parameter, .y_label = labels.value}}});
   figure.command("set margins screen 0.09, screen 0.98, screen 0.11, screen 0.84");

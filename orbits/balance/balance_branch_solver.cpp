@@ -194,4 +194,9 @@ Eigen::VectorXd BalanceBranchSolver::parameter_row() const {
   return Eigen::VectorXd::Unit(N + 1, N);
 }
 
+std::vector<BranchKey<BalanceUnknowns>> BalanceBranchSolver::keys() const {
+  const auto [low, high] = std::minmax(options_.from, options_.to);
+  return {{&BalanceUnknowns::parameter, low, high, parameter_row()}};
+}
+
 }  // namespace slipmode::orbits

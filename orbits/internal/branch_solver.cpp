@@ -74,22 +74,39 @@ double share_of(double time, double period) { return time / period - std::floor(
 
 BranchSolver::BranchSolver(dynamics::SystemFamily family, const PeriodicOrbit& orbit, double parameter,
                            const ContinuationOptions& options)
-    : family_(std::move(family)), options_(options), kind_(orbit.kind), range_(std::abs(options.to - options.from)) {
+    : BranchSolver([own = std::move(family)](double, double at) { return own(at); }, orbit, parameter, 0.0, options,
+                   std::nullopt) {}
+
+BranchSolver::BranchSolver(dynamics::PlaneFamily family, const SpecialPoint& special, double parameter,
+                           const KeyRange& other, const ContinuationOptions& options)
+    : BranchSolver(
+          std::move(family), special.orbit, parameter, special.parameter, options,
+          CurveCondition{special.kind == SpecialKind::kNonSmoothFold ? SpecialKind::kGrazing : special.kind, other}) {}
+
+BranchSolver::BranchSolver(dynamics::PlaneFamily family, const PeriodicOrbit& orbit, double parameter, double other,
+                           const ContinuationOptions& options, const std::optional<CurveCondition>& condition)
+    : family_(std::move(family)),
+      options_(options),
+      kind_(orbit.kind),
+      condition_(condition),
+      range_(std::abs(options.to - options.from)) {
   options_.shooting.order = orbit.order;
   options_.shooting.segment_guesses.clear();
-  const dynamics::HybridSystem system = family_(parameter);
+  const dynamics::HybridSystem system = family_(other, parameter);
   if (orbit.start.q.size() != system.size())
     throw InvalidInput(fmt::format("the orbit has {} displacements, the family's system {} degrees of freedom",
                                    orbit.start.q.size(), system.size()));
-  const BranchUnknowns first = unknowns_of(orbit, parameter);
+  const BranchUnknowns first = unknowns_of(orbit, parameter, other);
   ShootingProblem problem(system, options_.shooting, kind_);
   static_cast<void>(problem.evaluate(first.point));
   scale_ = problem.scale();
+  if (condition_ && condition_->kind == SpecialKind::kGrazing) condition_ = grazed(problem, first.point, *condition_);
 }
 
-BranchUnknowns BranchSolver::unknowns_of(const PeriodicOrbit& orbit, double parameter) const {
-  BranchUnknowns out{{{orbit.start}, orbit.period}, parameter, 0.0};
-  const dynamics::HybridSystem system = family_(parameter);
+BranchUnknowns BranchSolver::unknowns_of(const PeriodicOrbit& orbit, double parameter, double other) const {
+  BranchUnknowns out{{{orbit.start}, orbit.period}, parameter, 0.0, other};
+  if (condition_) out.touch = condition_->touch;
+  const dynamics::HybridSystem system = system_at(out);
   if (kind_ == OrbitKind::kDriven) out.phase = share_of(orbit.start.time, orbit.period / orbit.order);
   const double covered = options_.shooting.half_period ? 0.5 : 1.0;
   const double length = covered * orbit.period / options_.shooting.segments;
@@ -109,27 +126,40 @@ void BranchSolver::set_times(BranchUnknowns& at, const dynamics::HybridSystem& s
     at.point.nodes[k].time = at.phase * *drive_period + length * static_cast<double>(k);
 }
 
+bool BranchSolver::in_range(const BranchUnknowns& at) const {
+  return std::ranges::all_of(keys(), [&](const BranchKey<BranchUnknowns>& key) {
+    const double slack = 1e-12 * key.range(), value = at.*key.value;
+    return value >= key.low - slack && value <= key.high + slack;
+  });
+}
+
 BranchEvaluation BranchSolver::evaluate(const BranchUnknowns& at) const {
-  const double slack = 1e-12 * range_;
-  if (at.parameter < std::min(options_.from, options_.to) - slack ||
-      at.parameter > std::max(options_.from, options_.to) + slack)
+  if (!in_range(at))
     throw NumericalFailure(fmt::format("the parameter {:.9g} is outside the range of the branch", at.parameter),
                            at.point.nodes[0].time, stacked(at.point.nodes[0]), 0.0);
-  const dynamics::HybridSystem system = family_(at.parameter);
+  BranchEvaluation out = closing(at, true);
+  if (condition_) add_condition(out);
+  return out;
+}
+
+BranchEvaluation BranchSolver::closing(const BranchUnknowns& at, bool with_parameters) const {
+  const dynamics::HybridSystem system = system_at(at);
   BranchEvaluation out{at, {}, std::make_shared<ShootingProblem>(system, options_.shooting, kind_), {}, {}, {}};
   set_times(out.at, system);
   out.problem->use_scale(scale_);
   for (dynamics::State& node : out.at.point.nodes) put_on_constraint(out.problem->system(), node);
   out.shooting = out.problem->evaluate(out.at.point);
-  out.columns = parameter_columns(out.at, out.shooting);
-  if (period_unknown()) {
-    const std::vector<Eigen::MatrixXd> periods = out.problem->period_columns(out.shooting);
-    for (std::size_t k = 0; k < out.columns.size(); ++k) {
-      Eigen::MatrixXd both(scale_.size(), 2);
-      both << periods[k], out.columns[k];
+  out.columns.assign(out.at.point.nodes.size(), Eigen::MatrixXd(scale_.size(), 0));
+  const auto append = [&out](const auto& columns) {
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      Eigen::MatrixXd both(columns[k].rows(), out.columns[k].cols() + 1);
+      both << out.columns[k], columns[k];
       out.columns[k] = std::move(both);
     }
-  }
+  };
+  if (period_unknown()) append(out.problem->period_columns(out.shooting));
+  if (with_parameters)
+    for (const BranchKey<BranchUnknowns>& key : keys()) append(parameter_columns(out.at, out.shooting, key));
   const CondensedShooting condensed = out.problem->condense(out.shooting, out.columns);
   const Eigen::Index n = scale_.size(), extra = condensed.columns.cols(), phase = period_unknown() ? 1 : 0;
   out.J = Eigen::MatrixXd::Zero(n + phase, n + extra);
@@ -141,32 +171,38 @@ BranchEvaluation BranchSolver::evaluate(const BranchUnknowns& at) const {
   return out;
 }
 
-std::vector<Eigen::MatrixXd> BranchSolver::parameter_columns(const BranchUnknowns& at,
-                                                             const ShootingEvaluation& here) const {
+std::vector<Eigen::VectorXd> BranchSolver::parameter_columns(const BranchUnknowns& at, const ShootingEvaluation& here,
+                                                             const BranchKey<BranchUnknowns>& key) const {
   double stretch = 1.0;
   for (const Eigen::MatrixXd& transfer : here.transfer) stretch = std::max(stretch, transfer.norm());
-  const double h = kDifferenceStep * range_ / std::sqrt(stretch);
-  const auto ends_at = [&](double parameter) {
-    BranchUnknowns moved_to{at.point, parameter, at.phase};
-    const dynamics::HybridSystem system = family_(parameter);
+  const double h = kDifferenceStep * key.range() / std::sqrt(stretch), own = at.*key.value;
+  const bool grazes = condition_ && condition_->kind == SpecialKind::kGrazing;
+  double cleared = 0.0;  // on the side of the last call
+  const auto ends_at = [&](double value) {
+    BranchUnknowns moved_to = at;
+    moved_to.*key.value = value;
+    const dynamics::HybridSystem system = system_at(moved_to);
     set_times(moved_to, system);
     ShootingProblem problem(system, options_.shooting, kind_);
     problem.use_scale(scale_);
+    if (grazes) cleared = touch_near(problem, moved_to.point, *condition_, at.touch).clearance;
     return problem.ends_of(moved_to.point);
   };
   // At the ends of the range the family need not go further.
-  const double high = std::min(at.parameter + h, std::max(options_.from, options_.to));
-  const double low = std::max(at.parameter - h, std::min(options_.from, options_.to));
-  const bool has_above = high - at.parameter > 0.1 * h, has_below = at.parameter - low > 0.1 * h;
-  const Eigen::MatrixXd above = ends_at(high), below = ends_at(low);
-  std::vector<Eigen::MatrixXd> columns;
+  const double high = std::min(own + h, key.high), low = std::max(own - h, key.low);
+  const bool has_above = high - own > 0.1 * h, has_below = own - low > 0.1 * h;
+  const Eigen::MatrixXd above = ends_at(high);
+  const double cleared_above = cleared;
+  const Eigen::MatrixXd below = ends_at(low);
+  const bool clearer_above = cleared_above > cleared;
+  std::vector<Eigen::VectorXd> columns;
   for (Eigen::Index k = 0; k < above.cols(); ++k) {
     const Eigen::VectorXd end = stacked(here.ends[static_cast<std::size_t>(k)]).cwiseQuotient(scale_);
-    const Eigen::VectorXd up = (above.col(k) - end) * (range_ / std::max(high - at.parameter, 1e-300));
-    const Eigen::VectorXd down = (end - below.col(k)) * (range_ / std::max(at.parameter - low, 1e-300));
-    // Where an event comes or goes within the step one side jumps: the other is right.
-    const bool jumps = (up - down).norm() > 0.1 * std::max(up.norm(), down.norm());
-    const bool take_up = !has_below || (has_above && jumps && up.norm() < down.norm());
+    const Eigen::VectorXd up = (above.col(k) - end) * (key.range() / std::max(high - own, 1e-300));
+    const Eigen::VectorXd down = (end - below.col(k)) * (key.range() / std::max(own - low, 1e-300));
+    // Where an event comes or goes within the step one side jumps: the other is right. Of a touch it is the clear one.
+    const bool jumps = grazes || (up - down).norm() > 0.1 * std::max(up.norm(), down.norm());
+    const bool take_up = !has_below || (has_above && jumps && (grazes ? clearer_above : up.norm() < down.norm()));
     const bool take_down = !has_above || (has_below && jumps && !take_up);
     columns.emplace_back(take_up ? up : take_down ? down : Eigen::VectorXd(0.5 * (up + down)));
   }
@@ -193,10 +229,9 @@ Eigen::VectorXd BranchSolver::tangent(const BranchEvaluation& at, const Eigen::V
 
 BranchUnknowns BranchSolver::moved(const BranchEvaluation& from, const Eigen::VectorXd& step, double share) const {
   const Eigen::Index n = scale_.size();
-  BranchUnknowns out;
+  BranchUnknowns out = from.at;
   out.point = from.problem->moved(from.shooting, step.head(n), from.columns, step.tail(step.size() - n), share);
-  out.parameter = from.at.parameter + range_ * step[step.size() - 1];
-  out.phase = from.at.phase;
+  for (const BranchKey<BranchUnknowns>& key : keys()) out.*key.value += key.range() * key.row.dot(step);
   return out;
 }
 
@@ -212,15 +247,15 @@ Eigen::VectorXd BranchSolver::newton_step(const BranchEvaluation& at, const Bran
 BranchEvaluation BranchSolver::polished(BranchEvaluation at, const BranchUnknowns& guess,
                                         const Eigen::VectorXd& row) const {
   BranchEvaluation next = evaluate(moved(at, newton_step(at, guess, row), 1.0));
-  return next.shooting.norm < at.shooting.norm ? next : at;
+  return next.norm() < at.norm() ? next : at;
 }
 
 std::optional<BranchEvaluation> BranchSolver::shortened(const BranchEvaluation& from,
                                                         const Eigen::VectorXd& step) const {
   for (double share = 1.0; share > 0.05; share *= 0.5) {
     BranchEvaluation next = evaluate(moved(from, share * step, share));
-    if (next.shooting.norm <= (1.0 - 0.1 * share) * from.shooting.norm) return next;
-    const bool at_rounding = next.shooting.largest <= kRoundingOfPass * std::max(1.0, next.J.norm());
+    if (next.norm() <= (1.0 - 0.1 * share) * from.norm()) return next;
+    const bool at_rounding = next.largest() <= kRoundingOfPass * std::max(1.0, next.J.norm());
     if (at_rounding) return next;
   }
   return std::nullopt;
@@ -230,13 +265,13 @@ std::optional<BranchSolver::Corrected> BranchSolver::correct(const BranchUnknown
                                                              const Eigen::VectorXd& row) const {
   try {
     Corrected out{evaluate(guess), 0};
-    while (out.at.shooting.largest > options_.shooting.tolerance) {
+    while (out.at.largest() > options_.shooting.tolerance) {
       if (out.iterations++ == kMaxCorrections) return std::nullopt;
       std::optional<BranchEvaluation> next = shortened(out.at, newton_step(out.at, guess, row));
       if (!next) return std::nullopt;
-      const bool stalls = next->shooting.norm > 0.3 * out.at.shooting.norm;
+      const bool stalls = next->norm() > 0.3 * out.at.norm();
       out.at = std::move(*next);
-      if (stalls && out.at.shooting.largest <= kRoundingOfPass * std::max(1.0, out.at.J.norm())) return out;
+      if (stalls && out.at.largest() <= kRoundingOfPass * std::max(1.0, out.at.J.norm())) return out;
     }
     return out;
   } catch (const NumericalFailure&) {
@@ -246,16 +281,17 @@ std::optional<BranchSolver::Corrected> BranchSolver::correct(const BranchUnknown
 
 BranchEvaluation BranchSolver::shifted(const BranchEvaluation& at, double share) const {
   BranchUnknowns later = at.at;
-  const dynamics::HybridSystem system = family_(at.at.parameter);
+  const dynamics::HybridSystem system = system_at(at.at);
   for (dynamics::State& node : later.point.nodes)
     node = advanced(system, runnable(system, node), share * at.at.point.period);
   if (kind_ == OrbitKind::kDriven) later.phase = share_of(later.phase + share * options_.shooting.order, 1.0);
+  later.touch = share_of(later.touch - share, 1.0);
   return evaluate(later);
 }
 
 std::optional<BranchEvaluation> BranchSolver::middle_of_family(const BranchEvaluation& at,
                                                                const PeriodicOrbit& orbit) const {
-  if (orbit.family.cols() == 0 || half_period()) return std::nullopt;
+  if (orbit.family.cols() == 0 || half_period() || on_curve()) return std::nullopt;
   const Eigen::VectorXd way = way_to_middle(at.problem->system(), orbit);
   if (way.size() == 0) return std::nullopt;
   Eigen::VectorXd step = Eigen::VectorXd::Zero(parameter_row().size());
@@ -274,10 +310,11 @@ PeriodicOrbit BranchSolver::in_the_middle(const PeriodicOrbit& orbit, double par
 
 Eigen::VectorXd BranchSolver::difference(const BranchUnknowns& b, const BranchUnknowns& a) const {
   const Eigen::Index n = scale_.size();
-  Eigen::VectorXd out(n + (period_unknown() ? 2 : 1));
+  Eigen::VectorXd out(parameter_row().size());
   out.head(n) = (stacked(b.point.nodes[0]) - stacked(a.point.nodes[0])).cwiseQuotient(scale_);
   if (period_unknown()) out[n] = std::log(b.point.period / a.point.period);
-  out[out.size() - 1] = (b.parameter - a.parameter) / range_;
+  for (const BranchKey<BranchUnknowns>& key : keys())
+    out[out.size() - (key.value == &BranchUnknowns::parameter ? 1 : 2)] = (b.*key.value - a.*key.value) / key.range();
   return out;
 }
 
@@ -287,7 +324,7 @@ BranchSolver::Symmetric BranchSolver::symmetric_beside(const BranchEvaluation& n
   PeriodicOrbit middle = orbit;
   middle.start.modes.clear();
   middle.start = with_coordinates(middle.start, stacked(middle.start) - 0.5 * scale_.cwiseProduct(skew(near)));
-  BranchSolver solver(family_, middle, near.at.parameter, halves);
+  BranchSolver solver(family_, middle, near.at.parameter, near.at.other, halves, std::nullopt);
   BranchUnknowns guess = solver.unknowns_of(middle, near.at.parameter);
   return {std::move(solver), std::move(guess)};
 }
@@ -310,8 +347,21 @@ PeriodicOrbit BranchSolver::describe(const BranchEvaluation& at) const {
 }
 
 Eigen::VectorXd BranchSolver::parameter_row() const {
-  const Eigen::Index size = scale_.size() + (period_unknown() ? 2 : 1);
+  const Eigen::Index size = scale_.size() + (period_unknown() ? 2 : 1) + (on_curve() ? 1 : 0);
   return Eigen::VectorXd::Unit(size, size - 1);
+}
+
+std::vector<BranchKey<BranchUnknowns>> BranchSolver::keys() const {
+  const auto key = [](double BranchUnknowns::*value, double from, double to, Eigen::VectorXd row) {
+    return BranchKey<BranchUnknowns>{value, std::min(from, to), std::max(from, to), std::move(row)};
+  };
+  const Eigen::VectorXd last = parameter_row();
+  std::vector<BranchKey<BranchUnknowns>> out;
+  if (condition_)
+    out.push_back(key(&BranchUnknowns::other, condition_->other.from, condition_->other.to,
+                      Eigen::VectorXd::Unit(last.size(), last.size() - 2)));
+  out.push_back(key(&BranchUnknowns::parameter, options_.from, options_.to, last));
+  return out;
 }
 
 }  // namespace slipmode::orbits

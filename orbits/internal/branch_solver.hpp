@@ -1,11 +1,17 @@
 #pragma once
 
 #include <slipmode/orbits/continuation.hpp>
+#include "orbits/internal/curve_condition.hpp"
 #include "orbits/internal/shooting_problem.hpp"
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace slipmode::orbits {
 
@@ -14,16 +20,34 @@ struct BranchUnknowns {
   ShootingPoint point;
   double parameter = 0.0;
   double phase = 0.0;  ///< of the drive at the origin, as a share of its period; kept as its period changes
+  double other = 0.0;  ///< on curves of special points: the parameter that is solved for
+  double touch = 0.0;  ///< on curves of grazings: when, as a share of the period after the origin
 };
 
-/// A point on (or near) a branch with the linearised conditions there. Scaled unknowns: (x₁ [N], ln T if unknown, p).
+/// A parameter that changes along a branch: where it is kept, its range, and its unit vector among the unknowns.
+template <class Unknowns>
+struct BranchKey {
+  double Unknowns::*value;
+  double low, high;
+  Eigen::VectorXd row;
+
+  [[nodiscard]] double range() const { return high - low; }
+};
+
+/// A point on (or near) a branch with the linearised conditions there. Scaled unknowns: (x₁ [N], ln T if unknown, on
+/// curves the other parameter, p).
 struct BranchEvaluation {
   BranchUnknowns at;
   ShootingEvaluation shooting;
   std::shared_ptr<ShootingProblem> problem;
-  std::vector<Eigen::MatrixXd> columns;  ///< per segment: of ln T (if unknown) and p [N x e]
-  Eigen::MatrixXd J;                     ///< closing conditions, and phase if the period is unknown
+  std::vector<Eigen::MatrixXd> columns;  ///< per segment: of ln T (if unknown) and parameters [N x e]
+  Eigen::MatrixXd J;  ///< closing conditions, phase if the period is unknown, and a curve's own condition
   Eigen::VectorXd r;
+  double condition = 0.0;  ///< of a curve
+
+  /// What Newton's method lowers, and its largest entry.
+  [[nodiscard]] double norm() const { return std::hypot(shooting.norm, condition); }
+  [[nodiscard]] double largest() const { return std::max(shooting.largest, std::abs(condition)); }
 };
 
 /// Predictor and corrector of a branch. For one thread.
@@ -36,10 +60,16 @@ class BranchSolver {
   /// @param orbit  fixes kind, order and scales
   BranchSolver(dynamics::SystemFamily family, const PeriodicOrbit& orbit, double parameter,
                const ContinuationOptions& options);
+  /// On a curve of special points over (other, parameter).
+  /// @param special  with the value of `other`
+  /// @throws InvalidInput  for a grazing of no stop
+  BranchSolver(dynamics::PlaneFamily family, const SpecialPoint& special, double parameter, const KeyRange& other,
+               const ContinuationOptions& options);
 
-  [[nodiscard]] BranchUnknowns unknowns_of(const PeriodicOrbit& orbit, double parameter) const;
+  /// @param other  of a curve
+  [[nodiscard]] BranchUnknowns unknowns_of(const PeriodicOrbit& orbit, double parameter, double other = 0.0) const;
   [[nodiscard]] BranchUnknowns unknowns_of(const BranchPoint& point) const {
-    return unknowns_of(point.orbit, point.parameter);
+    return unknowns_of(point.orbit, point.parameter, point.other.value_or(0.0));
   }
 
   /// @throws NumericalFailure  when the flow fails; InvalidInput when the family does
@@ -96,11 +126,29 @@ class BranchSolver {
   /// The unit vector of the parameter [N + e].
   [[nodiscard]] Eigen::VectorXd parameter_row() const;
   [[nodiscard]] double range() const { return range_; }
+  /// The parameter, and the other one of a curve.
+  [[nodiscard]] std::vector<BranchKey<BranchUnknowns>> keys() const;
+  [[nodiscard]] bool on_curve() const { return condition_.has_value(); }
+  /// Why a curve does not lead on to a point; empty where it does.
+  [[nodiscard]] std::string curve_end(const BranchEvaluation& at, const PeriodicOrbit& orbit) const;
+  /// The orbit ahead along a tangent, whether or not it is on the curve: what changes where a curve is found no more.
+  [[nodiscard]] std::optional<PeriodicOrbit> orbit_ahead(const BranchEvaluation& at, const Eigen::VectorXd& way) const;
+  [[nodiscard]] std::optional<double> other_of(const BranchEvaluation& at) const {
+    return on_curve() ? std::optional(at.at.other) : std::nullopt;
+  }
   [[nodiscard]] const Eigen::VectorXd& scale() const { return scale_; }
   [[nodiscard]] bool half_period() const { return options_.shooting.half_period; }
   [[nodiscard]] bool period_unknown() const { return kind_ == OrbitKind::kSelfExcited; }
 
  private:
+  BranchSolver(dynamics::PlaneFamily family, const PeriodicOrbit& orbit, double parameter, double other,
+               const ContinuationOptions& options, const std::optional<CurveCondition>& condition);
+  /// A pass: closing conditions by states, period and, if asked, parameters.
+  [[nodiscard]] BranchEvaluation closing(const BranchUnknowns& at, bool with_parameters) const;
+  void add_condition(BranchEvaluation& out) const;
+  /// What vanishes on the curve, as it is measured near a point; may follow the touch of that.
+  [[nodiscard]] std::function<double(BranchEvaluation&)> condition_near(const BranchEvaluation& at) const;
+  [[nodiscard]] bool in_range(const BranchUnknowns& at) const;
   [[nodiscard]] Eigen::VectorXd newton_step(const BranchEvaluation& at, const BranchUnknowns& guess,
                                             const Eigen::VectorXd& row) const;
   /// The step, or a half, a quarter … of it, that lowers the residual. Where Φ jumps (a stop touched) full steps
@@ -108,12 +156,17 @@ class BranchSolver {
   [[nodiscard]] std::optional<BranchEvaluation> shortened(const BranchEvaluation& from,
                                                           const Eigen::VectorXd& step) const;
   void set_times(BranchUnknowns& at, const dynamics::HybridSystem& system) const;
-  [[nodiscard]] std::vector<Eigen::MatrixXd> parameter_columns(const BranchUnknowns& at,
-                                                               const ShootingEvaluation& here) const;
+  /// One per segment. @param key  of the unknowns, in keys()
+  [[nodiscard]] std::vector<Eigen::VectorXd> parameter_columns(const BranchUnknowns& at, const ShootingEvaluation& here,
+                                                               const BranchKey<BranchUnknowns>& key) const;
+  [[nodiscard]] dynamics::HybridSystem system_at(const BranchUnknowns& at) const {
+    return family_(at.other, at.parameter);
+  }
 
-  dynamics::SystemFamily family_;
+  dynamics::PlaneFamily family_;
   ContinuationOptions options_;
   OrbitKind kind_;
+  std::optional<CurveCondition> condition_;
   double range_ = 1.0;
   Eigen::VectorXd scale_;
 };

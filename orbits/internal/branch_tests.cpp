@@ -116,7 +116,7 @@ Eigen::VectorXd critical_direction(const WatchedPoint<Solver>& point, SpecialKin
 }
 
 template <class Solver>
-SpecialPoint special_of(const Located<Solver>& found, SpecialKind kind, double tolerance) {
+SpecialPoint special_of(const Solver& solver, const Located<Solver>& found, SpecialKind kind, double tolerance) {
   SpecialPoint out;
   const WatchedPoint<Solver>& nearest = found.low;
   out.kind = kind;
@@ -124,6 +124,7 @@ SpecialPoint special_of(const Located<Solver>& found, SpecialKind kind, double t
   out.uncertainty = std::abs(found.high.at.at.parameter - found.low.at.at.parameter);
   out.orbit = nearest.orbit;
   out.balance = nearest.balance;
+  out.other = solver.other_of(nearest.at);
   if (out.uncertainty > tolerance)
     out.note = fmt::format("located to {:.1e} only: the branch is not found nearer. ", out.uncertainty);
   return out;
@@ -147,7 +148,7 @@ void add_smooth(const Solver& solver, const WatchedPoint<Solver>& a, const Watch
   if (kind != SpecialKind::kFold && critical.distance > 0.1) return;
   const bool jumps = at.low.orbit.word != at.high.orbit.word;
   if (kind == SpecialKind::kNeimarkSacker && critical.distance > 1e-4) return;  // two real ones of product 1
-  SpecialPoint special = special_of(at, kind, tolerance);
+  SpecialPoint special = special_of(solver, at, kind, tolerance);
   if (jumps && critical.distance > 1e-3) {
     if (kind != SpecialKind::kFold) return;  // the multiplier jumps with the word, which is reported as such
     special.kind = SpecialKind::kNonSmoothFold;
@@ -201,7 +202,7 @@ void add_turning_over(const Solver& solver, const WatchedPoint<Solver>& a, const
                       double tolerance, std::vector<Found>& out_found) {
   const Located<Solver> at = narrow<Solver>(
       solver, a, b, s, tolerance, [&](const WatchedPoint<Solver>& p) { return p.skew.dot(a.skew); }, true);
-  SpecialPoint special = special_of(at, SpecialKind::kSymmetryBreaking, tolerance);
+  SpecialPoint special = special_of(solver, at, SpecialKind::kSymmetryBreaking, tolerance);
   if (const auto exact = breaking_beside(solver, at.low)) {
     special.parameter = exact->at.at.parameter;
     special.uncertainty = 1e-12 * solver.range();
@@ -213,6 +214,24 @@ void add_turning_over(const Solver& solver, const WatchedPoint<Solver>& a, const
   }
   special.note += "reached from the asymmetric side";
   out_found.push_back({at.s, std::move(special)});
+}
+
+/// How a curve's projection on the plane of its parameters goes, seen from a direction in that.
+template <class Solver>
+double onward(const Solver& solver, const WatchedPoint<Solver>& point, const WatchedPoint<Solver>& seen_from) {
+  double sum = 0.0;
+  for (const auto& key : solver.keys()) sum += key.row.dot(point.tangent) * key.row.dot(seen_from.tangent);
+  return sum;
+}
+
+/// At a cusp the curve goes on among orbits and turns back in the plane.
+template <class Solver>
+void add_cusp(const Solver& solver, const WatchedPoint<Solver>& a, const WatchedPoint<Solver>& b, double s,
+              double tolerance, std::vector<Found>& out_found) {
+  if (onward(solver, b, a) >= 0.0) return;
+  const Located<Solver> at = narrow<Solver>(
+      solver, a, b, s, tolerance, [&](const WatchedPoint<Solver>& p) { return onward(solver, p, a); }, true);
+  out_found.push_back({at.s, special_of(solver, at, SpecialKind::kCusp, tolerance)});
 }
 
 }  // namespace
@@ -239,7 +258,7 @@ WatchedPoint<Solver> watch(const Solver& solver, typename Solver::Evaluation at,
   out.half_map = solver.half_map(at);
   out.skew = solver.skew(at);
   out.at = std::move(at);
-  out.fold = out.tangent[out.tangent.size() - 1];
+  out.fold = solver.parameter_row().dot(out.tangent);
   const std::vector<std::complex<double>> multipliers = watched_multipliers(out.orbit);
   std::complex<double> plus = 1.0, pairs = 1.0;
   for (std::size_t i = 0; i < multipliers.size(); ++i) {
@@ -257,13 +276,15 @@ std::vector<SpecialPoint> special_points_between(const Solver& solver, const Wat
                                                  const WatchedPoint<Solver>& b, double s, double tolerance) {
   using Point = WatchedPoint<Solver>;
   std::vector<Found> found;
-  if (turns_over(a, b)) {
+  if (solver.on_curve()) {
+    add_cusp(solver, a, b, s, tolerance, found);
+  } else if (turns_over(a, b)) {
     add_turning_over(solver, a, b, s, tolerance, found);
   } else {
     add_smooth(solver, a, b, s, tolerance, SpecialKind::kFold, &Point::fold, found);
   }
   const bool same_symmetry = a.orbit.symmetric == b.orbit.symmetric;
-  if (same_symmetry) {
+  if (same_symmetry && !solver.on_curve()) {
     add_smooth(solver, a, b, s, tolerance, SpecialKind::kSymmetryBreaking, &Point::breaking, found);
     add_smooth(solver, a, b, s, tolerance, SpecialKind::kPeriodDoubling, &Point::doubling, found);
     add_smooth(solver, a, b, s, tolerance, SpecialKind::kNeimarkSacker, &Point::torus, found);
@@ -271,12 +292,14 @@ std::vector<SpecialPoint> special_points_between(const Solver& solver, const Wat
   if (a.orbit.word != b.orbit.word && !turns_over(a, b)) {
     const Located<Solver> at = narrow<Solver>(
         solver, a, b, s, tolerance, [&](const Point& p) { return p.orbit.word == a.orbit.word ? -1.0 : 1.0; }, false);
-    SpecialPoint special = special_of(at, kind_of_word_change(at.low.orbit.word, at.high.orbit.word), tolerance);
+    SpecialPoint special =
+        special_of(solver, at, kind_of_word_change(at.low.orbit.word, at.high.orbit.word), tolerance);
     special.note += word_change(at.low.orbit, at.high.orbit);
     found.push_back({at.s, std::move(special)});
   }
   std::stable_sort(found.begin(), found.end(), [](const Found& x, const Found& y) { return x.s < y.s; });
   std::vector<SpecialPoint> points;
+  points.reserve(found.size());
   for (Found& one : found) points.push_back(std::move(one.point));
   return points;
 }

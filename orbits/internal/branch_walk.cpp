@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace slipmode::orbits {
 namespace {
@@ -26,11 +27,7 @@ class Walk {
  public:
   using Point = WatchedPoint<Solver>;
 
-  Walk(const Solver& solver, const ContinuationOptions& options)
-      : solver_(solver),
-        options_(options),
-        low_(std::min(options.from, options.to)),
-        high_(std::max(options.from, options.to)) {}
+  Walk(const Solver& solver, const ContinuationOptions& options) : solver_(solver), options_(options) {}
 
   [[nodiscard]] Branch follow(const BranchPoint& from, int direction) {
     const auto first = solver_.correct(solver_.unknowns_of(from), solver_.parameter_row());
@@ -66,7 +63,11 @@ class Walk {
 
   void add(const Point& point, double step) {
     const double arclength = branch_.points.empty() ? 0.0 : branch_.points.back().arclength + step;
-    branch_.points.push_back({point.at.at.parameter, point.orbit, arclength, point.balance});
+    branch_.points.push_back({.parameter = point.at.at.parameter,
+                              .orbit = point.orbit,
+                              .arclength = arclength,
+                              .balance = point.balance,
+                              .other = solver_.other_of(point.at)});
   }
 
   void end(BranchEnd how, std::string reason) {
@@ -80,12 +81,13 @@ class Walk {
     if (static_cast<int>(branch_.points.size()) >= options_.max_points)
       return end(BranchEnd::kMaxPoints, fmt::format("{} points were asked", options_.max_points));
     while (true) {
-      if (leaves_range(step_) && finish_at_range()) return;
+      if (length_of(step_) > ahead().length && finish_at_range()) return;
       int iterations = 0;
       std::optional<Point> next = attempt(step_, iterations);
-      if (next) {
-        step_ = std::min((iterations <= 4 ? 1.6 : 1.1) * step_, longest_step());
-        return accept(std::move(*next));
+      const double longer = std::min((iterations <= 4 ? 1.6 : 1.1) * step_, longest_step());
+      if (next && accept(std::move(*next))) {
+        step_ = longer;
+        return;
       }
       step_ *= 0.4;
       if (step_ < options_.min_step) return turn_or_stop();
@@ -93,7 +95,7 @@ class Walk {
   }
 
   /// The next point at a length s, if it is one of this branch.
-  [[nodiscard]] std::optional<Point> attempt(double s, int& out_iterations) const {
+  [[nodiscard]] std::optional<Point> attempt(double s, int& out_iterations) {
     const double length = length_of(s);
     const Eigen::VectorXd row = options_.arclength ? current_.tangent : solver_.parameter_row();
     const auto corrected = solver_.correct(solver_.moved(current_.at, length * current_.tangent, 0.0), row);
@@ -102,6 +104,8 @@ class Walk {
     const Eigen::VectorXd way = solver_.difference(corrected->at.at, current_.at.at);
     if ((way - length * current_.tangent).norm() > 0.5 * length + 1e-7) return std::nullopt;  // another branch
     Point next = watched(corrected->at, way);
+    why_not_ = solver_.curve_end(next.at, next.orbit);
+    if (!why_not_.empty()) return std::nullopt;
     const bool lands = !current_.orbit.symmetric && next.orbit.symmetric;
     if (lands && length > kLandingStep) return std::nullopt;  // symmetric orbits are joined in small steps
     const bool kink = next.orbit.word != current_.orbit.word && length < 1e-3;
@@ -123,25 +127,38 @@ class Walk {
     return options_.max_step * std::max(1.0, std::min(grown, 1.0 / std::abs(share())));
   }
 
-  [[nodiscard]] bool leaves_range(double s) const {
-    const double ahead = current_.at.at.parameter + solver_.range() * share() * length_of(s);
-    return ahead < low_ || ahead > high_;
+  /// The end of a parameter's range that the tangent reaches first, and at which length.
+  struct Ahead {
+    BranchKey<typename Solver::Unknowns> key;
+    double bound = 0.0, length = std::numeric_limits<double>::infinity();
+  };
+  [[nodiscard]] Ahead ahead() const {
+    Ahead nearest;
+    for (const auto& key : solver_.keys()) {
+      const double way = key.range() * key.row.dot(current_.tangent);
+      const double bound = way < 0 ? key.low : key.high, length = (bound - current_.at.at.*key.value) / way;
+      if (way != 0.0 && length < nearest.length) nearest = {key, bound, length};
+    }
+    return nearest;
   }
 
-  void accept(Point next) {
+  /// False where the branch does not lead there.
+  [[nodiscard]] bool accept(Point next) {
     const double taken = current_.tangent.dot(solver_.difference(next.at.at, current_.at.at));
     const bool lands = !current_.orbit.symmetric && next.orbit.symmetric;
-    if (options_.locate) locate(next, taken);
+    if (options_.locate && !locate(next, taken)) return false;
     add(next, taken);
-    if (lands || reached_symmetric())
-      return end(BranchEnd::kMerged,
-                 fmt::format("the orbits became symmetric near parameter {:.8g}: the branch joins that "
-                             "of symmetric orbits there",
-                             next.at.at.parameter));
+    if (lands || reached_symmetric()) {
+      end(BranchEnd::kMerged, fmt::format("the orbits became symmetric near parameter {:.8g}: the branch joins that "
+                                          "of symmetric orbits there",
+                                          next.at.at.parameter));
+      return true;
+    }
     current_ = std::move(next);
     if constexpr (Solver::kByShooting) keep_off_guards();
     if (branch_.points.size() > 10 && back_at_start(taken))
       end(BranchEnd::kClosed, "the branch is back where it began");
+    return true;
   }
 
   [[nodiscard]] bool reached_symmetric() const {
@@ -149,37 +166,43 @@ class Walk {
            branch_.special.back().kind == SpecialKind::kSymmetryBreaking && !current_.orbit.symmetric;
   }
 
-  void locate(const Point& next, double length) {
+  /// False where a curve does not go on to the next point: it passes a change of word that is not found between them.
+  [[nodiscard]] bool locate(const Point& next, double length) {
     const double tolerance = std::min(options_.locate_tolerance * solver_.range(), 1e-8);
     for (SpecialPoint& special : special_points_between(solver_, current_, next, length, tolerance)) {
+      if (solver_.on_curve() && special.kind != SpecialKind::kCusp && special.uncertainty > tolerance) {
+        why_not_ = "the word changes, and multipliers jump: " + word_change(current_.orbit, next.orbit);
+        return false;
+      }
       special.before = branch_.points.size() - 1;
       branch_.special.push_back(std::move(special));
     }
+    return true;
   }
 
   /// The orbit on the end of the range ahead, if the tangent leads there.
   [[nodiscard]] bool finish_at_range() {
-    const double bound = share() < 0 ? low_ : high_;
-    const double length = (bound - current_.at.at.parameter) / (solver_.range() * share());
+    const auto [key, bound, length] = ahead();
     if (length > 1e-12) {
       typename Solver::Unknowns guess = solver_.moved(current_.at, length * current_.tangent, 0.0);
-      guess.parameter = bound;
-      const auto corrected = solver_.correct(guess, solver_.parameter_row());
+      guess.*key.value = bound;
+      const auto corrected = solver_.correct(guess, key.row);
       if (!corrected) return false;
       const Eigen::VectorXd way = solver_.difference(corrected->at.at, current_.at.at);
       if ((way - length * current_.tangent).norm() > 0.5 * length + 1e-7) return false;
       Point last = watched(corrected->at, way);
-      if (options_.locate) locate(last, current_.tangent.dot(way));
+      if (options_.locate && !locate(last, current_.tangent.dot(way))) return false;
       add(last, way.norm());
     }
-    end(BranchEnd::kRange, fmt::format("the parameter left its range at {:.8g}", bound));
+    end(BranchEnd::kRange, fmt::format("the {}parameter left its range at {:.8g}",
+                                       key.value == &Solver::Unknowns::parameter ? "" : "other ", bound));
     return true;
   }
 
   /// No step leads on along the tangent: where the word changes, the branch may have a kink, or turn back.
   void turn_or_stop() {
     for (const double s : {1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3}) {
-      if (!options_.arclength) break;
+      if (!options_.arclength || !why_not_.empty()) break;
       for (const double sign : {1.0, -1.0}) {
         auto next = around_corner(s, sign);
         if (!next) continue;
@@ -191,6 +214,7 @@ class Walk {
         corner.uncertainty = std::abs(next->at.at.parameter - corner.parameter);
         corner.orbit = current_.orbit;
         corner.balance = current_.balance;
+        corner.other = solver_.other_of(current_.at);
         corner.before = branch_.points.size() - 1;
         corner.note = word_change(current_.orbit, next->orbit);
         branch_.special.push_back(std::move(corner));
@@ -200,6 +224,9 @@ class Walk {
         return;
       }
     }
+    see_ahead();
+    if (!why_not_.empty())
+      return end(BranchEnd::kMerged, fmt::format("at parameter {:.9g} {}", current_.at.at.parameter, why_not_));
     const PeriodicOrbit& last = branch_.points.back().orbit;
     std::string seen = fmt::format("no orbit is found beyond parameter {:.9g}, with steps down to {:.1e}",
                                    current_.at.at.parameter, options_.min_step);
@@ -208,9 +235,25 @@ class Walk {
     else if (last.has_grazing || last.grazing < 0.05)
       seen += fmt::format("; a stop is met at {:.1e} of the top speed there: a grazing at which the orbit ends",
                           last.grazing);
+    else if (solver_.on_curve())
+      seen += "; the curve may end on another one, as folds and losses of symmetry do on grazings";
     else
       seen += "; see whether an event meets the orbit's origin, or the family is not continuous there";
     end(BranchEnd::kLost, std::move(seen));
+  }
+
+  /// A curve that is found no more may have come to where the word changes.
+  void see_ahead() {
+    for (const double s : {1e-5, 1e-4, 1e-3}) {
+      if (!solver_.on_curve() || !why_not_.empty()) return;
+      try {
+        const auto orbit = solver_.orbit_ahead(current_.at, s * current_.tangent);
+        if (orbit && orbit->word != current_.orbit.word)
+          why_not_ = "the word changes, and multipliers jump: " + word_change(current_.orbit, *orbit);
+      } catch (const NumericalFailure&) {
+        return;  // what lies ahead stays unknown
+      }
+    }
   }
 
   [[nodiscard]] std::optional<Point> around_corner(double s, double sign) const {
@@ -280,11 +323,11 @@ class Walk {
 
   const Solver& solver_;
   const ContinuationOptions& options_;
-  double low_, high_;
   Branch branch_;
   Point current_;
   double step_ = 0.0, first_size_ = 0.0;
   bool ended_ = false;
+  std::string why_not_;  ///< what kept the last attempt on a curve from going on
 };
 
 /// The second way's points behind the first's start, in order along the branch.
@@ -309,7 +352,7 @@ Branch joined(Branch backward, Branch forward) {
     special.before += offset;
     out.special.push_back(std::move(special));
   }
-  out.end = forward.end;
+  out.end = backward.end == BranchEnd::kLost ? backward.end : forward.end;
   out.reason = "one way: " + backward.reason + "; other way: " + forward.reason;
   return out;
 }
@@ -332,7 +375,7 @@ template <class Solver>
 Branch walk_branch(const Solver& solver, const ContinuationOptions& options, const BranchPoint& from) {
   const int direction = options.direction < 0 ? -1 : 1;
   Branch first = Walk<Solver>(solver, options).follow(from, direction);
-  if (!options.both_ways) return first;
+  if (!options.both_ways || first.end == BranchEnd::kClosed) return first;
   return joined(Walk<Solver>(solver, options).follow(from, -direction), std::move(first));
 }
 

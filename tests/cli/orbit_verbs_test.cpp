@@ -355,6 +355,53 @@ TEST_F(OrbitVerbs, ContinueMeetsTheGrazingOfTheLinearMotion) {
   EXPECT_NEAR(special[0]["parameter"], std::sqrt(1.0 + 0.04 * 0.04), 1e-8);
 }
 
+TEST_F(OrbitVerbs, SpecialPointsAreFollowedOverASecondKey) {
+  const std::string play = SLIPMODE_SOURCE_DIR "/datasets/play_oscillator/scene.toml";
+  const auto with = [&](const std::string& point, const std::string& along, const std::string& over,
+                        std::vector<std::string> more = {}) {
+    more.insert(more.begin(), {"continue", play, "--over", over, "--along", along, "--point", point, "-o", "c.h5"});
+    return more;
+  };
+  const auto said = json_of(with("grazing", "drive.amplitude=0.5:2", "drive.omega=0.6:1.5"));
+  EXPECT_EQ(said["along"]["start"], 1.2);
+  ASSERT_EQ(said["curves"].size(), 1U);
+  const auto& curve = said["curves"][0];
+  EXPECT_TRUE(curve["complete"]);
+  const results::StoreReader store(folder.path() / "c.h5");
+  EXPECT_EQ(store.text("curves/over"), "drive.omega");
+  EXPECT_EQ(store.text("curves/along"), "drive.amplitude");
+  const Eigen::VectorXd omega = store.vector("curves/0/points/over"), a = store.vector("curves/0/points/along");
+  ASSERT_EQ(static_cast<std::size_t>(omega.size()), curve["points"].get<std::size_t>());
+  // In the gap |x| = a / (w sqrt(w² + 4ξ²)) with ξ = 0.02; half its range is the gap.
+  for (Eigen::Index k = 0; k < omega.size(); ++k) EXPECT_NEAR(a[k], omega[k] * std::hypot(omega[k], 0.04), 1e-8);
+  EXPECT_LT((store.vector("curves/0/points/alternating_1").array() - 1.0).abs().maxCoeff(), 1e-8);
+  EXPECT_EQ(slipmode_in(folder, {"plot", "c.h5", "-o", "curves.png"}).exit_code, 0);
+  EXPECT_TRUE(is_figure(folder.path() / "curves.png"));
+  // Both folds of a branch on one curve, with its cusp.
+  const auto folds =
+      json_of(with("fold", "drive.amplitude=0.5:2", "drive.omega=0.9:1.3", {"--set", "drive.amplitude=1.1"}));
+  ASSERT_EQ(folds["curves"].size(), 1U);
+  EXPECT_EQ(folds["curves"][0]["special"][0]["kind"], "cusp");
+  const auto one = json_of(with("fold:0.96", "drive.amplitude=1:1.2", "drive.omega=0.9:1.3"));
+  EXPECT_EQ(one["curves"].size(), 1U);
+
+  std::filesystem::remove(folder.path() / "c.h5");
+  const auto none = json_of(with("period-doubling", "drive.amplitude=0.5:2", "drive.omega=0.9:1.3"), 3);
+  EXPECT_THAT(none["message"].get<std::string>(),
+              AllOf(HasSubstr("no period doubling of drive.omega between 0.9 and 1.3"), HasSubstr("grazing at 1.095")));
+  expect_refused(with("hopf", "drive.amplitude=0.5:2", "drive.omega=0.6:1.5"), {"--point hopf", "neimark-sacker"});
+  expect_refused(with("fold:x", "drive.amplitude=0.5:2", "drive.omega=0.6:1.5"), {"--point fold:x", "'x'"});
+  expect_refused(with("fold", "drive.omega=0.5:2", "drive.omega=0.6:1.5"), {"--along drive.omega", "--over"});
+  expect_refused(with("fold", "drive.amplitud=0.5:2", "drive.omega=0.6:1.5"), {"drive.amplitud", "no such key"});
+  expect_refused(with("fold", "drive.amplitude=0.5", "drive.omega=0.6:1.5"), {"--along", "no range FROM:TO"});
+  expect_refused(with("fold", "contact.0.stop.gap=-1:x", "drive.omega=0.6:1.5"), {"--along", "'x'"});
+  expect_refused(with("fold", "drive.amplitude=0.5:2", "drive.omega=0.6:1.5", {"--by", "balance"}),
+                 {"--along, --point", "--by balance"});
+  expect_refused({"continue", play, "--over", "drive.omega=0.6:1.5", "--point", "fold", "-o", "c.h5"},
+                 {"--point needs --along"});
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "c.h5"));
+}
+
 TEST_F(OrbitVerbs, SequentialContinuationEndsAtAFoldAndKeepsWhatItFound) {
   const auto said = json_of(
       {"continue", kSdof, "--over", "drive.omega=1.2:1.8", "--start", "2.5,0", "--sequential", "-o", "branch.h5"}, 3);

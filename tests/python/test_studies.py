@@ -124,6 +124,17 @@ class BesideTheExecutable(unittest.TestCase):
         branch = sm.continue_orbit(BACKLASH, over="drive.omega", to=1.2, start=[2.5, 0.0])
         self.assert_same(branch, self.folder / "branch.h5")
         np.testing.assert_array_equal(branch["branches/0/points"]["period"], branch["branches/0/points/period"])
+        self.executable("orbit", "continue", PLAY, "--over", "drive.omega=0.9:1.3", "--point", "grazing", "--along",
+                        "drive.amplitude=1:1.5", "-o", self.folder / "curves.h5")
+        curves = sm.continue_orbit(PLAY, over="drive.omega", from_=0.9, to=1.3, point="grazing",
+                                   along=("drive.amplitude", 1.0, 1.5))
+        self.assert_same(curves, self.folder / "curves.h5")
+        self.assertEqual(curves.kind, "curves")
+        with self.assertRaisesRegex(sm.NumericalFailure, "no period doubling"):
+            sm.continue_orbit(PLAY, over="drive.omega", from_=0.9, to=1.3, point="period-doubling",
+                              along=("drive.amplitude", 1.0, 1.5))
+        with self.assertRaisesRegex(sm.InvalidInput, "along"):
+            sm.continue_orbit(PLAY, over="drive.omega", to=1.3, point="fold")
 
     def test_a_run_of_a_reduced_model(self):
         scene = sm.Scene.load(CHAIN, set=SHORT)

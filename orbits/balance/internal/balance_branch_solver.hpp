@@ -2,6 +2,7 @@
 
 #include <slipmode/orbits/continuation.hpp>
 #include "orbits/balance/internal/balance_problem.hpp"
+#include "orbits/internal/branch_solver.hpp"
 
 #include <Eigen/Core>
 #include <memory>
@@ -86,6 +87,16 @@ class BalanceBranchSolver {
 
   [[nodiscard]] Eigen::VectorXd parameter_row() const;
   [[nodiscard]] double range() const { return range_; }
+  [[nodiscard]] std::vector<BranchKey<BalanceUnknowns>> keys() const;
+  [[nodiscard]] bool on_curve() const { return false; }
+  [[nodiscard]] std::optional<PeriodicOrbit> orbit_ahead(const BalanceBranchEvaluation& /*at*/,
+                                                         const Eigen::VectorXd& /*way*/) const {
+    return std::nullopt;
+  }
+  [[nodiscard]] std::string curve_end(const BalanceBranchEvaluation& /*at*/, const PeriodicOrbit& /*orbit*/) const {
+    return {};
+  }
+  [[nodiscard]] std::optional<double> other_of(const BalanceBranchEvaluation& /*at*/) const { return std::nullopt; }
 
  private:
   [[nodiscard]] Eigen::VectorXd newton_step(const BalanceBranchEvaluation& at, const BalanceUnknowns& guess,

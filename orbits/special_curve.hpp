@@ -1,0 +1,39 @@
+#pragma once
+
+#include <slipmode/orbits/continuation.hpp>
+
+namespace slipmode::orbits {
+
+/// True for what `continue_special` follows: folds (non-smooth ones as the grazings they are), period doublings,
+/// symmetry breakings, Neimark-Sacker points, grazings.
+[[nodiscard]] bool can_be_followed(SpecialKind kind);
+
+/// Range of the key that is solved for, in either order.
+struct KeyRange {
+  double from = 0.0, to = 1.0;
+};
+
+/// Follows a special point of a branch over a second key: a curve in the plane of both, one orbit to a point.
+///
+/// Unknowns (x₁ … x_m, [ln T], over, along): closing conditions, phase where T is unknown, one condition of the kind,
+/// and the distance along the tangent. The condition is
+///
+///   fold               the smallest singular value of Φ − 1 (with the period's column and the phase where T is
+///   unknown) period doubling    that of Φ + 1;   symmetry breaking  that of 1 − Φ(T/2) Neimark-Sacker     |μ| − 1 of
+///   the pair nearest to the unit circle grazing            the clearance left where the contact is nearest to its
+///   stop, on the side without the touch
+///
+/// with its derivatives by differences in the two directions in which orbits go on. Curves of folds pass their cusps.
+/// The points' `parameter` is `along`, their `other` is `over`; special points of the curve are cusps, and changes of
+/// the word. It is followed both ways from the special point; a curve that closes is followed once.
+/// @param family   over (over, along)
+/// @param special  of a branch over `over`, at the value `along` of the second key
+/// @param over     must hold special.parameter; the curve ends at its ends too
+/// @param options  range and steps in `along`; `both_ways` is not read
+/// @throws InvalidInput  for a kind that cannot be followed, a grazing of something else than a stop, a fold or grazing
+///                       of a family of orbits, a symmetry breaking without its symmetric orbit, ranges as
+///                       continue_orbit
+[[nodiscard]] Branch continue_special(const dynamics::PlaneFamily& family, const SpecialPoint& special, double along,
+                                      const KeyRange& over, const ContinuationOptions& options);
+
+}  // namespace slipmode::orbits

@@ -1,0 +1,235 @@
+// Curves of special points over two parameters, against closed forms and against special points of branches over one.
+#include <slipmode/core/errors.hpp>
+#include <slipmode/orbits/special_curve.hpp>
+#include "clearance_systems.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <optional>
+
+namespace slipmode::orbits {
+namespace {
+
+using dynamics::HybridSystem;
+using dynamics::PlaneFamily;
+using dynamics::State;
+
+/// The system over frequency and amplitude of its force.
+PlaneFamily over_force(const HybridSystem& base) {
+  return [base](double omega, double amplitude) {
+    friction::Force force = *base.drive().force();
+    force.omega = omega;
+    force.harmonics.front().amplitude = amplitude;
+    return base.with_drive(force);
+  };
+}
+
+dynamics::SystemFamily at_amplitude(const PlaneFamily& family, double amplitude) {
+  return [family, amplitude](double omega) { return family(omega, amplitude); };
+}
+
+/// NLvib's third example (datasets/stop_2mass): two masses, the first before a stiff stop.
+HybridSystem before_a_stop() {
+  const friction::Stop stop{.stiffness = 100.0, .gap = 1.0};
+  return {fem::masses({.mass = {1.0, 1.0}, .links = {{1, 2, 1.0, 0.03}, {2, 0, 1.0, 0.03}}}),
+          {{Eigen::Vector2d(1.0, 0.0),
+            friction::Clearance{.left = {}, .right = stop, .loss = friction::ContactLoss::kGap}}},
+          friction::Force{0.7, {{.amplitude = 0.1}}},
+          {},
+          Eigen::Vector2d(0.0, 1.0)};
+}
+
+struct Start {
+  PlaneFamily family;
+  double amplitude;
+  Branch branch;  ///< over the frequency, at this amplitude
+};
+
+Start play_start() {
+  const HybridSystem base = play(0.02, 1.0833, 1.0);
+  const PlaneFamily family = over_force(base);
+  const PeriodicOrbit orbit = find_orbit(base, settle_guess(base, base.rest(), 400.0));
+  return {family, 1.0833,
+          continue_orbit(at_amplitude(family, 1.0833), orbit, 1.0, {.from = 0.9, .to = 1.3, .both_ways = true})};
+}
+
+Start backlash_start(double from, double to) {
+  const HybridSystem base = Backlash{.omega = 1.2}.system();
+  const PlaneFamily family = over_force(base);
+  const PeriodicOrbit orbit = find_orbit(base, settle_guess(base, displaced(base, 0, -2.0), 40.0));
+  return {family, 1.0,
+          continue_orbit(at_amplitude(family, 1.0), orbit, 1.2, {.from = from, .to = to, .both_ways = true})};
+}
+
+Start two_masses_start() {
+  const HybridSystem base = before_a_stop();
+  const PlaneFamily family = over_force(base);
+  State start = base.rest();
+  start.q << -0.5689457054, -0.5526538903;
+  start.v << 0.6844277403, 0.3444833229;
+  return {family, 0.1,
+          continue_orbit(at_amplitude(family, 0.1), find_orbit(base, start), 0.7,
+                         {.from = 0.5, .to = 0.8, .both_ways = true})};
+}
+
+std::vector<SpecialPoint> points_of(const Start& start, SpecialKind kind) {
+  std::vector<SpecialPoint> found;
+  std::ranges::copy_if(start.branch.special, std::back_inserter(found),
+                       [&](const SpecialPoint& point) { return point.kind == kind; });
+  return found;
+}
+
+Branch curve_from(const Start& start, const SpecialPoint& special, double low, double high) {
+  return continue_special(start.family, special, start.amplitude, {0.3, 3.0}, {.from = low, .to = high});
+}
+
+/// The frequency of the nearest special point of a branch over the frequency alone, at a curve point's amplitude: from
+/// an orbit found beside it by shooting.
+std::optional<double> found_alone(const PlaneFamily& family, const BranchPoint& point, SpecialKind kind, double reach) {
+  const dynamics::SystemFamily over = at_amplitude(family, point.parameter);
+  const double omega = *point.other;
+  std::optional<double> nearest;
+  for (const double beside : {0.3 * reach, -0.3 * reach}) {
+    const ShootingResult found = shoot(over(omega + beside), point.orbit.start,
+                                       {.order = point.orbit.order, .half_period = point.orbit.symmetric});
+    if (!found.converged()) continue;
+    const Branch branch =
+        continue_orbit(over, found.orbit, omega + beside,
+                       {.from = omega - reach, .to = omega + reach, .both_ways = true, .max_points = 200});
+    for (const SpecialPoint& special : branch.special)
+      if (special.kind == kind && (!nearest || std::abs(special.parameter - omega) < std::abs(*nearest - omega)))
+        nearest = special.parameter;
+  }
+  return nearest;
+}
+
+/// About twenty points of a curve, of amplitudes from `least` on, beside what is found alone.
+void expect_found_alone(const Start& start, const Branch& curve, SpecialKind kind, double reach, double least = 0.0) {
+  ASSERT_GT(curve.points.size(), 20u);
+  const std::size_t every = curve.points.size() / 20;
+  for (std::size_t k = every / 2; k < curve.points.size(); k += every) {
+    const BranchPoint& point = curve.points[k];
+    if (point.parameter < least) continue;
+    const std::optional<double> alone = found_alone(start.family, point, kind, reach);
+    ASSERT_TRUE(alone) << "at " << *point.other << ", " << point.parameter;
+    EXPECT_NEAR(*point.other, *alone, 1e-8) << "at amplitude " << point.parameter;
+  }
+}
+
+TEST(SpecialCurve, GrazingOfTheOscillatorWithPlayInClosedForm) {
+  // In the gap x = a/√(ω⁴ + 4ξ²ω²) cos(ωt − φ) reaches 1.
+  const Start start = play_start();
+  const Branch curve = curve_from(start, points_of(start, SpecialKind::kGrazing).at(0), 0.1, 4.0);
+  EXPECT_EQ(curve.end, BranchEnd::kRange);
+  EXPECT_DOUBLE_EQ(curve.points.front().parameter + curve.points.back().parameter, 4.1);
+  EXPECT_GT(curve.points.size(), 20u);
+  for (const BranchPoint& point : curve.points) {
+    const double omega = *point.other;
+    EXPECT_NEAR(point.parameter, std::hypot(omega * omega, 0.04 * omega), 1e-8);
+    EXPECT_EQ(point.orbit.word, "g");
+  }
+}
+
+TEST(SpecialCurve, FoldsMeetInACusp) {
+  // S2's oscillator jumps between two motions over a range of frequencies that closes as the force grows.
+  const Start start = play_start();
+  const std::vector<SpecialPoint> folds = points_of(start, SpecialKind::kFold);
+  ASSERT_EQ(folds.size(), 2u);
+  const Branch curve = curve_from(start, folds[0], 0.2, 2.0);
+  ASSERT_EQ(curve.special.size(), 1u);
+  const SpecialPoint& cusp = curve.special[0];
+  EXPECT_EQ(cusp.kind, SpecialKind::kCusp);
+  const auto passes_second = [&](const BranchPoint& a, const BranchPoint& b) {
+    return (a.parameter - start.amplitude) * (b.parameter - start.amplitude) <= 0.0 &&
+           std::abs(*a.other - folds[1].parameter) < 0.01;
+  };
+  EXPECT_NE(std::ranges::adjacent_find(curve.points, passes_second), curve.points.end());
+  // Alone: two folds on this side of the cusp, none on the other. Near it they part as distance^1.5.
+  for (const double off : {-1e-3, 1e-3}) {
+    const auto over = at_amplitude(start.family, cusp.parameter + off);
+    const ShootingResult found = shoot(over(*cusp.other + 0.02), cusp.orbit.start, {.half_period = true});
+    ASSERT_TRUE(found.converged());
+    const Branch branch = continue_orbit(over, found.orbit, *cusp.other + 0.02,
+                                         {.from = *cusp.other - 0.02, .to = *cusp.other + 0.02, .direction = -1});
+    const auto count = std::ranges::count(branch.special, SpecialKind::kFold, &SpecialPoint::kind);
+    EXPECT_EQ(count, off < 0.0 ? 2 : 0);
+  }
+  expect_found_alone(start, curve, SpecialKind::kFold, 0.01);
+}
+
+TEST(SpecialCurve, LossOfSymmetryOfTheMassWithBacklash) {
+  const Start start = backlash_start(0.65, 1.3);
+  const Branch curve = curve_from(start, points_of(start, SpecialKind::kSymmetryBreaking).at(0), 0.2, 3.0);
+  EXPECT_EQ(curve.end, BranchEnd::kRange) << curve.reason;
+  expect_found_alone(start, curve, SpecialKind::kSymmetryBreaking, 0.005);
+}
+
+TEST(SpecialCurve, GrazingOfADampedStopThatIsTouchedAlready) {
+  // Two more touches of stops that the orbit meets anyway; on the touched side multipliers jump.
+  const Start start = backlash_start(0.36, 1.3);
+  const SpecialPoint grazing = points_of(start, SpecialKind::kGrazing).at(0);
+  const Branch curve = curve_from(start, grazing, 0.6, 3.0);
+  EXPECT_EQ(curve.end, BranchEnd::kRange) << curve.reason;
+  for (const BranchPoint& point : curve.points) EXPECT_EQ(point.orbit.crossings, 4);
+  expect_found_alone(start, curve, SpecialKind::kGrazing, 1e-4);
+}
+
+TEST(SpecialCurve, PeriodDoublingsOfTwoMasses) {
+  // Both of a branch belong to one curve, which turns back at its least amplitude.
+  const Start start = two_masses_start();
+  const std::vector<SpecialPoint> doublings = points_of(start, SpecialKind::kPeriodDoubling);
+  ASSERT_EQ(doublings.size(), 2u);
+  const Branch curve = curve_from(start, doublings[0], 0.02, 0.5);
+  EXPECT_EQ(curve.end, BranchEnd::kRange) << curve.reason;
+  EXPECT_DOUBLE_EQ(curve.points.front().parameter, 0.5);
+  EXPECT_DOUBLE_EQ(curve.points.back().parameter, 0.5);
+  for (const BranchPoint& point : curve.points)
+    EXPECT_LT((point.orbit.multipliers.array() + 1.0).abs().minCoeff(), 1e-8);
+  // Where the two are nearly one, a branch over the frequency alone steps over both.
+  expect_found_alone(start, curve, SpecialKind::kPeriodDoubling, 0.004, 0.0872);
+}
+
+TEST(SpecialCurve, NeimarkSackerPointsEndAtAStrongResonance) {
+  const Start start = two_masses_start();
+  const SpecialPoint torus = points_of(start, SpecialKind::kNeimarkSacker).at(1);
+  const Branch curve = curve_from(start, torus, 0.05, 0.5);
+  EXPECT_EQ(curve.end, BranchEnd::kMerged);
+  EXPECT_THAT(curve.reason, testing::HasSubstr("strong resonance"));
+  const auto nearest = [](const BranchPoint& point) {
+    return (point.orbit.multipliers.array() + 1.0).abs().minCoeff();
+  };
+  EXPECT_LT(std::min(nearest(curve.points.front()), nearest(curve.points.back())), 0.02);
+  expect_found_alone(start, curve, SpecialKind::kNeimarkSacker, 0.002);
+}
+
+TEST(SpecialCurve, AFoldBesideAGrazingEndsOnIt) {
+  // The second fold is 6e-9 from the grazing, and nears it as the force shrinks.
+  const Start start = two_masses_start();
+  const Branch curve = curve_from(start, points_of(start, SpecialKind::kFold).at(1), 0.02, 0.3);
+  EXPECT_THAT(curve.reason, testing::HasSubstr("joins one of grazings"));
+  expect_found_alone(start, curve, SpecialKind::kFold, 0.001);
+}
+
+TEST(SpecialCurve, RefusesWhatItCannotFollow) {
+  const Start start = two_masses_start();
+  const auto message_of = [&](const SpecialPoint& special, const KeyRange& over) {
+    try {
+      static_cast<void>(continue_special(start.family, special, 0.1, over, {.from = 0.05, .to = 0.2}));
+      return std::string("none");
+    } catch (const InvalidInput& refused) {
+      return std::string(refused.what());
+    }
+  };
+  SpecialPoint point = points_of(start, SpecialKind::kPeriodDoubling).at(0);
+  EXPECT_THAT(message_of(point, {0.5, 0.6}), testing::HasSubstr("outside its range"));
+  point.kind = SpecialKind::kGrazing;
+  EXPECT_THAT(message_of(point, {0.5, 0.8}), testing::HasSubstr("just reaches a stop"));
+  point.kind = SpecialKind::kStickChange;
+  EXPECT_THAT(message_of(point, {0.5, 0.8}), testing::HasSubstr("followed over two keys are"));
+}
+
+}  // namespace
+}  // namespace slipmode::orbits
