@@ -86,7 +86,7 @@ OrbitRange parse_range(const std::string& option, const std::string& text, const
   return range;
 }
 
-Report curves_report(const studies::Family& model, std::shared_ptr<const studies::SpecialCurves> found,
+Report curves_report(const studies::Family& model, const std::shared_ptr<const studies::SpecialCurves>& found,
                      const studies::ContinuationRequest& request, const studies::CurveRequest& curve,
                      const std::string& command, const std::string& output) {
   const std::vector<std::string>& keys = model.keys();

@@ -20,7 +20,8 @@ struct OrbitRange {
 /// Curves of special points, told and stored; exit 3 where there is none, or one was lost on its way.
 /// @param model    over both keys, at their values where the curves begin
 /// @param command  for provenance @param output  result file
-[[nodiscard]] Report curves_report(const studies::Family& model, std::shared_ptr<const studies::SpecialCurves> found,
+[[nodiscard]] Report curves_report(const studies::Family& model,
+                                   const std::shared_ptr<const studies::SpecialCurves>& found,
                                    const studies::ContinuationRequest& request, const studies::CurveRequest& curve,
                                    const std::string& command, const std::string& output);
 

@@ -143,7 +143,7 @@ KeyFamily family_over(const scene::Scene& scene, const std::string& key, const s
               },
           .options = {.from = request.from,
                       .to = request.to,
-                      .direction = request.to > request.from ? 1 : -1,
+                      .direction = (request.to > request.from) == (start != request.to) ? 1 : -1,
                       .both_ways = start != request.from && start != request.to,
                       .step = request.step,
                       .max_step = request.max_step,

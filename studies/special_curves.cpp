@@ -150,10 +150,12 @@ std::string nothing_followed(const SpecialCurves& found, const std::string& key,
   for (const results::NamedBranch& branch : found.base.branches)
     for (const SpecialPoint& point : branch.branch.special)
       others.push_back(fmt::format("{} at {:.8g}", orbits::to_string(point.kind), point.parameter));
-  return fmt::format("no {} of {} between {} and {} with {} = {}: {}", orbits::to_string(curve.kind), key, request.from,
-                     request.to, curve.along, found.along,
-                     others.empty() ? "the branch has no special point there; widen --over"
-                                    : fmt::format("the branch has {}", fmt::join(others, ", ")));
+  const orbits::Branch& main = found.base.branches.front().branch;
+  const bool whole = main.end == orbits::BranchEnd::kRange;
+  return fmt::format("no {} of {} between {} and {} with {} = {}: the branch has {}{}", orbits::to_string(curve.kind),
+                     key, request.from, request.to, curve.along, found.along,
+                     others.empty() ? "no special point there" : fmt::format("{}", fmt::join(others, ", ")),
+                     whole ? "; widen --over" : "; it ends early: " + main.reason);
 }
 
 std::string command_of(const std::string& key, const std::string& model, const OrbitSearch& search,

@@ -171,7 +171,8 @@ class Walk {
     const double tolerance = std::min(options_.locate_tolerance * solver_.range(), 1e-8);
     for (SpecialPoint& special : special_points_between(solver_, current_, next, length, tolerance)) {
       if (solver_.on_curve() && special.kind != SpecialKind::kCusp && special.uncertainty > tolerance) {
-        why_not_ = "the word changes, and multipliers jump: " + word_change(current_.orbit, next.orbit);
+        why_not_ =
+            "the word changes, where multipliers jump or turn sharply: " + word_change(current_.orbit, next.orbit);
         return false;
       }
       special.before = branch_.points.size() - 1;
@@ -249,7 +250,7 @@ class Walk {
       try {
         const auto orbit = solver_.orbit_ahead(current_.at, s * current_.tangent);
         if (orbit && orbit->word != current_.orbit.word)
-          why_not_ = "the word changes, and multipliers jump: " + word_change(current_.orbit, *orbit);
+          why_not_ = "the word changes, where multipliers jump or turn sharply: " + word_change(current_.orbit, *orbit);
       } catch (const NumericalFailure&) {
         return;  // what lies ahead stays unknown
       }

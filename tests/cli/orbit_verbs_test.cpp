@@ -355,6 +355,13 @@ TEST_F(OrbitVerbs, ContinueMeetsTheGrazingOfTheLinearMotion) {
   EXPECT_NEAR(special[0]["parameter"], std::sqrt(1.0 + 0.04 * 0.04), 1e-8);
 }
 
+TEST_F(OrbitVerbs, ContinueFromTheFarEndOfARangeGoesBackThroughIt) {
+  const auto said = json_of({"continue", kSdof, "--set", "drive.omega=1.3", "--over", "drive.omega=1.2:1.3", "--start",
+                             "2.5,0", "-o", "branch.h5"});
+  EXPECT_EQ(said["branches"][0]["first"], 1.3);
+  EXPECT_EQ(said["branches"][0]["last"], 1.2);
+}
+
 TEST_F(OrbitVerbs, SpecialPointsAreFollowedOverASecondKey) {
   const std::string play = SLIPMODE_SOURCE_DIR "/datasets/play_oscillator/scene.toml";
   const auto with = [&](const std::string& point, const std::string& along, const std::string& over,
