@@ -24,10 +24,6 @@ void check_special(const SpecialPoint& special, const KeyRange& over) {
   const auto [low, high] = std::minmax(over.from, over.to);
   if (!(special.parameter >= low && special.parameter <= high))
     throw InvalidInput(fmt::format("{} is outside its range {} … {}", what, over.from, over.to));
-  const bool shifts =
-      special.kind == SpecialKind::kSymmetryBreaking ? special.orbit.crossings == 0 : !special.orbit.symmetric;
-  if (special.orbit.family.cols() > 0 && shifts)
-    throw InvalidInput(what + " belongs to a family of orbits, of which none is told from the others");
   if (special.kind == SpecialKind::kSymmetryBreaking && !special.orbit.symmetric)
     throw InvalidInput(what + ": the symmetric orbit beside it was not found; start from the symmetric branch");
 }
@@ -65,6 +61,12 @@ Branch continue_special(const dynamics::PlaneFamily& family, const SpecialPoint&
   const std::string met = solver.curve_end(solver.evaluate(solver.unknowns_of(first)), special.orbit);
   if (!met.empty())
     throw InvalidInput(fmt::format("the {} at {:.9g}: {}", to_string(special.kind), special.parameter, met));
+  const bool shifts =
+      special.kind == SpecialKind::kSymmetryBreaking ? special.orbit.crossings == 0 : !special.orbit.symmetric;
+  if (special.orbit.family.cols() > 0 && shifts)
+    throw InvalidInput(
+        fmt::format("the {} at {:.9g} belongs to a family of orbits, of which none is told from the others",
+                    to_string(special.kind), special.parameter));
   return walk_branch(solver, own, first);
 }
 

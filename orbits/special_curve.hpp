@@ -30,7 +30,8 @@ struct KeyRange {
 /// @param special  of a branch over `over`, at the value `along` of the second key
 /// @param over     must hold special.parameter; the curve ends at its ends too
 /// @param options  range and steps in `along`; `both_ways` is not read
-/// @throws InvalidInput  for a kind that cannot be followed, a grazing of something else than a stop, a fold or grazing
+/// @throws InvalidInput  for a kind that cannot be followed, a grazing of something else than a stop, a Hopf point, a
+/// fold or grazing
 ///                       of a family of orbits, a symmetry breaking without its symmetric orbit, ranges as
 ///                       continue_orbit
 [[nodiscard]] Branch continue_special(const dynamics::PlaneFamily& family, const SpecialPoint& special, double along,

@@ -15,6 +15,8 @@ constexpr double kUntouched = 1e-10;
 /// A stop met more slowly than this, of the top speed, has multipliers go like a square root that no difference
 /// follows.
 constexpr double kSlowTouch = 5e-4;
+/// A self-excited orbit whose path is this short, in units of its size with its steady part, is all but at rest.
+constexpr double kAtRest = 1e-3;
 /// Share of a touch's depth that a difference may change.
 constexpr double kOfTouch = 0.02;
 /// Step of a condition's differences, where Φ stretches nothing.
@@ -64,7 +66,10 @@ std::function<double(BranchEvaluation&)> BranchSolver::condition_near(const Bran
 }
 
 std::string BranchSolver::curve_end(const BranchEvaluation& at, const PeriodicOrbit& orbit) const {
-  if (!on_curve() || condition_->kind == SpecialKind::kGrazing) return {};
+  if (!on_curve()) return {};
+  if (period_unknown() && at.problem->period_columns(at.shooting).front().norm() < kAtRest)
+    return "the orbit shrinks to a state of rest: a Hopf point, where orbits begin";
+  if (condition_->kind == SpecialKind::kGrazing) return {};
   if (condition_->kind == SpecialKind::kNeimarkSacker) {
     const MultiplierPair pair = critical_pair(at.J, scale_.size(), half_period(), {});
     if (!pair.complex())

@@ -2,6 +2,7 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/orbits/special_curve.hpp>
 #include "clearance_systems.hpp"
+#include "fixtures/scenes.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -83,7 +84,7 @@ std::vector<SpecialPoint> points_of(const Start& start, SpecialKind kind) {
 }
 
 Branch curve_from(const Start& start, const SpecialPoint& special, double low, double high) {
-  return continue_special(start.family, special, start.amplitude, {0.3, 3.0}, {.from = low, .to = high});
+  return continue_special(start.family, special, start.amplitude, {0.05, 3.0}, {.from = low, .to = high});
 }
 
 /// The frequency of the nearest special point of a branch over the frequency alone, at a curve point's amplitude: from
@@ -93,8 +94,11 @@ std::optional<double> found_alone(const PlaneFamily& family, const BranchPoint& 
   const double omega = *point.other;
   std::optional<double> nearest;
   for (const double beside : {0.3 * reach, -0.3 * reach}) {
+    const bool driven = point.orbit.kind == OrbitKind::kDriven;
     const ShootingResult found = shoot(over(omega + beside), point.orbit.start,
-                                       {.order = point.orbit.order, .half_period = point.orbit.symmetric});
+                                       {.order = point.orbit.order,
+                                        .period = driven ? 0.0 : point.orbit.period,
+                                        .half_period = point.orbit.symmetric});
     if (!found.converged()) continue;
     const Branch branch =
         continue_orbit(over, found.orbit, omega + beside,
@@ -116,6 +120,16 @@ void expect_found_alone(const Start& start, const Branch& curve, SpecialKind kin
     const std::optional<double> alone = found_alone(start.family, point, kind, reach);
     ASSERT_TRUE(alone) << "at " << *point.other << ", " << point.parameter;
     EXPECT_NEAR(*point.other, *alone, 1e-8) << "at amplitude " << point.parameter;
+  }
+}
+
+template <class Call>
+std::string message_of(const Call& call) {
+  try {
+    call();
+    return "none";
+  } catch (const InvalidInput& refused) {
+    return refused.what();
   }
 }
 
@@ -213,22 +227,40 @@ TEST(SpecialCurve, AFoldBesideAGrazingEndsOnIt) {
   expect_found_alone(start, curve, SpecialKind::kFold, 0.001);
 }
 
+TEST(SpecialCurve, FoldsOfSelfExcitedOrbits) {
+  // An oscillator on a belt with a smooth law: over the belt's speed its cycle begins at Hopf points, folds, and is
+  // lost at a larger speed than it came at. With a flatter law the two folds meet.
+  const PlaneFamily family = [](double speed, double mu_k) {
+    return fixtures::oscillator(1.0, 1.0, 0.05,
+                                friction::TanhRegularised{.mu_s = 0.4, .mu_k = mu_k, .alpha = 3.0, .epsilon = 0.1}, 1.0,
+                                friction::Belt::constant(speed));
+  };
+  const HybridSystem base = family(0.3, 0.2);
+  const PeriodicOrbit orbit = find_orbit(base, displaced(base, 0, 0.6), {.period = 6.6});
+  const Start start{
+      family, 0.2, continue_orbit(at_amplitude(family, 0.2), orbit, 0.3, {.from = 0.05, .to = 2.0, .max_points = 200})};
+  const std::vector<SpecialPoint> folds = points_of(start, SpecialKind::kFold);
+  ASSERT_GE(folds.size(), 2u);
+  const Branch curve = curve_from(start, folds[0], 0.1, 0.35);
+  EXPECT_EQ(curve.end, BranchEnd::kRange) << curve.reason;
+  ASSERT_EQ(curve.special.size(), 1u);
+  EXPECT_EQ(curve.special[0].kind, SpecialKind::kCusp);
+  expect_found_alone(start, curve_from(start, folds[0], 0.1, 0.3), SpecialKind::kFold, 0.01);
+  EXPECT_THAT(message_of([&] { curve_from(start, folds[1], 0.1, 0.35); }), testing::HasSubstr("Hopf"));
+}
+
 TEST(SpecialCurve, RefusesWhatItCannotFollow) {
   const Start start = two_masses_start();
-  const auto message_of = [&](const SpecialPoint& special, const KeyRange& over) {
-    try {
-      static_cast<void>(continue_special(start.family, special, 0.1, over, {.from = 0.05, .to = 0.2}));
-      return std::string("none");
-    } catch (const InvalidInput& refused) {
-      return std::string(refused.what());
-    }
+  const auto refusal = [&](const SpecialPoint& special, const KeyRange& over) {
+    return message_of(
+        [&] { static_cast<void>(continue_special(start.family, special, 0.1, over, {.from = 0.05, .to = 0.2})); });
   };
   SpecialPoint point = points_of(start, SpecialKind::kPeriodDoubling).at(0);
-  EXPECT_THAT(message_of(point, {0.5, 0.6}), testing::HasSubstr("outside its range"));
+  EXPECT_THAT(refusal(point, {0.5, 0.6}), testing::HasSubstr("outside its range"));
   point.kind = SpecialKind::kGrazing;
-  EXPECT_THAT(message_of(point, {0.5, 0.8}), testing::HasSubstr("just reaches a stop"));
+  EXPECT_THAT(refusal(point, {0.5, 0.8}), testing::HasSubstr("just reaches a stop"));
   point.kind = SpecialKind::kStickChange;
-  EXPECT_THAT(message_of(point, {0.5, 0.8}), testing::HasSubstr("followed over two keys are"));
+  EXPECT_THAT(refusal(point, {0.5, 0.8}), testing::HasSubstr("followed over two keys are"));
 }
 
 }  // namespace
