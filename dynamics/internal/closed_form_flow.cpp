@@ -184,12 +184,13 @@ bool ClosedFormFlow::step(double t_limit) {
       corner = true;
     }
   }
+  if (!measured_) measure_amplitudes();
+  look_again();
   double end = limit;
   for (const Guard& guard : guards_)
     if (guard.exempt_until > begin_) end = std::min(end, guard.exempt_until);
   const double remaining = end - begin_;
 
-  if (!measured_) measure_amplitudes();
   Search found;
   double h = 0.0, tau = 0.0;
   bool finest = false, certain = !blind_start_;

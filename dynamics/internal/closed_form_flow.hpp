@@ -104,6 +104,14 @@ class ClosedFormFlow {
     double value = 0.0, rate = 0.0;
   };
 
+  /// A guard at the point, with bounds on its second and third derivative: for as long as the fastest pair takes, or
+  /// for good where they are `lasting`.
+  struct GuardStart {
+    double value = 0.0, rate = 0.0, second = 0.0, most_second = 0.0, most_third = 0.0;
+    double size = 0.0;  ///< see `scale`
+    bool lasting = false;
+  };
+
   void enter_regime();
   void set_guards();
   void add_clearance_guards(const Guard& guard, RegimeOutput::Kind kind);
@@ -118,6 +126,11 @@ class ClosedFormFlow {
   /// Inputs that vary, and the state with them.
   void follow_inputs(double tau);
   void foresee_starts();
+  [[nodiscard]] GuardStart start_of(const Guard& guard) const;
+  /// At the end of guards' exemptions: whether they have left zero.
+  void look_again();
+  /// How long, by bounds, a guard stays so near to zero that it cannot be told from it.
+  [[nodiscard]] double near_zero(const GuardStart& guard) const;
   /// The size of an output's values, which its rounding error is measured by.
   [[nodiscard]] double scale(const Guard& guard) const;
   [[nodiscard]] GuardValue evaluate(const Guard& guard, double t) const;

@@ -145,38 +145,64 @@ void ClosedFormFlow::drop_idle_guards() {
   });
 }
 
-void ClosedFormFlow::foresee_starts() {
-  // A guard that starts at zero. Taylor's theorem says for how long it is sure to stay positive: g ≥ g′t − M₂t²/2 (or
-  // g″t²/2 − M₃t³/6 when g′ vanishes); half of that time is used.
+ClosedFormFlow::GuardStart ClosedFormFlow::start_of(const Guard& guard) const {
   const Regime& r = tables_->regime();
   const DriveOverlay* overlay = regime_->overlay;
-  const double tiny = 1e-9 / r.rate, room = std::exp(r.growth / r.rate);
+  const double room = std::exp(r.growth / r.rate);
+  const double w = overlay ? overlay->omega() : 0.0;
+  const double harmonic2 = overlay ? w * w * overlay->outputs.size(guard.output, 2) : 0.0;
+  const double harmonic3 = overlay ? w * w * w * overlay->outputs.size(guard.output, 3) : 0.0;
+  const double third = std::abs(r.polynomial3.col(guard.output).dot(inputs_));
+  const auto [value, rate] = evaluate(guard, point_.time);
+  return {.value = value,
+          .rate = rate,
+          .second = second_derivative(guard, point_.time),
+          .most_second = room * r.weight2.col(guard.output).dot(amplitude_) +
+                         std::abs(r.polynomial2.col(guard.output).dot(inputs_)) + third / r.rate + harmonic2,
+          .most_third = room * r.weight3.col(guard.output).dot(amplitude_) + third + harmonic3,
+          .size = scale(guard),
+          .lasting = r.growth == 0.0 && third == 0.0};
+}
+
+double ClosedFormFlow::near_zero(const GuardStart& g) const {
+  // |g| ≤ |g₀| + |g′|t + M₂t²/2, and ≤ |g₀| + |g′|t + |g″|t²/2 + M₃t³/6, of whose terms each is given its share.
+  const double left = kTouching * g.size - std::abs(g.value), slope = std::abs(g.rate);
+  if (!(left > 0.0)) return 0.0;
+  const double by_second = 2.0 * left / (slope + std::sqrt(slope * slope + 2.0 * g.most_second * left));
+  const double by_third = std::min(
+      {left / (3.0 * slope), std::sqrt(2.0 * left / (3.0 * std::abs(g.second))), std::cbrt(2.0 * left / g.most_third)});
+  const double bounded = 1.0 / tables_->regime().rate, stays = std::max(by_second, by_third);
+  return g.lasting ? stays : std::min(stays, bounded);
+}
+
+void ClosedFormFlow::look_again() {
+  for (Guard& guard : guards_) {
+    if (guard.exempt_until != begin_) continue;
+    const GuardStart now = start_of(guard);
+    if (std::abs(now.value) <= kTouching * now.size / 2.0)
+      guard.exempt_until = std::max(begin_ + near_zero(now), std::nextafter(begin_, 1e300));
+  }
+}
+
+void ClosedFormFlow::foresee_starts() {
+  // A guard that starts at zero. Taylor's theorem says for how long it is sure to stay positive: g ≥ g′t − M₂t²/2 (or
+  // g″t²/2 − M₃t³/6 when g′ vanishes); half of that time is used. It is not looked at either as long as it cannot be
+  // told from zero: rounding alone would decide.
+  const Regime& r = tables_->regime();
+  const double tiny = 1e-9 / r.rate;
   double shortest = std::numeric_limits<double>::infinity();
   for (Guard& guard : guards_) {
     const auto i = static_cast<std::size_t>(guard.contact), k = static_cast<std::size_t>(guard.output);
     const ContactForces& law = resolver_.laws()[i];
     const bool rigid_speed =
         r.outputs[k].kind == RegimeOutput::Kind::kSpeed && law.kind == LawKind::kConstant && !law.varies;
-    const auto [g0, g1] = evaluate(guard, point_.time);
-    const double size = scale(guard);
-    if (rigid_speed ? point_.multiplicity[i] == 0 : g0 > kStarting * size) continue;
-    const double w = overlay ? overlay->omega() : 0.0;
-    const double harmonic2 = overlay ? w * w * overlay->outputs.size(guard.output, 2) : 0.0;
-    const double harmonic3 = overlay ? w * w * w * overlay->outputs.size(guard.output, 3) : 0.0;
-    const double g2 = second_derivative(guard, point_.time);
-    const double third = std::abs(r.polynomial3.col(guard.output).dot(inputs_));
-    const double m3 = room * r.weight3.col(guard.output).dot(amplitude_) + third + harmonic3;
-    const double m2 = room * r.weight2.col(guard.output).dot(amplitude_) +
-                      std::abs(r.polynomial2.col(guard.output).dot(inputs_)) + third / r.rate + harmonic2;
-    if (guard.kind == GuardKind::kStop) {
-      // At rest on the limit for longer than anything takes here: rounding alone would decide between the two sides.
-      const double left = kTouching * size - std::abs(g0), slope = std::abs(g1);
-      if (slope / r.rate + m2 / (2.0 * r.rate * r.rate) < left) {
-        const bool steady = r.growth == 0.0 && third == 0.0;
-        const double stays = 2.0 * left / (slope + std::sqrt(slope * slope + 2.0 * m2 * left));
-        guard.exempt_until = point_.time + (steady ? stays : 1.0 / r.rate);
-        continue;
-      }
+    if (rigid_speed ? point_.multiplicity[i] == 0 : evaluate(guard, point_.time).value > kStarting * scale(guard))
+      continue;
+    const GuardStart start = start_of(guard);
+    const double g1 = start.rate, g2 = start.second, size = start.size, near = near_zero(start);
+    if (guard.kind == GuardKind::kStop && near >= 1.0 / r.rate) {  // at rest on the limit
+      guard.exempt_until = point_.time + near;
+      continue;
     }
     const bool simple = rigid_speed ? point_.multiplicity[i] == 1 : g1 > kRising * r.rate * size;
     // Flat, too, where it falls by rounding, and no further below zero than can be told.
@@ -184,10 +210,10 @@ void ClosedFormFlow::foresee_starts() {
                           ? point_.multiplicity[i] == 2
                           : std::abs(g1) <= kSimpleStart * r.rate * size || g1 * g1 <= 2.0 * g2 * kTouching * size;
     double clear = 0.0;
-    if (simple && g1 > 0) clear = g1 / m2;
-    if (flat && g2 > 0) clear = std::max(clear, 1.5 * g2 / m3);
-    clear = std::min(clear, 1.0 / r.rate);
+    if (simple && g1 > 0) clear = g1 / start.most_second;
+    if (flat && g2 > 0) clear = std::max(clear, 1.5 * g2 / start.most_third);
     if (!rigid_speed && clear == 0.0) continue;  // falling through zero: an event at once
+    clear = std::min(std::max(clear, near), 1.0 / r.rate);
     blind_start_ |= clear < tiny;
     clear = std::max(clear, tiny);
     guard.exempt_until = point_.time + clear;

@@ -93,7 +93,8 @@ TEST(RandomScenes, OfTenSeedsThatOnceFailedHold) {
   // last two orders happened to agree (14_6290); a bristle beside a pressed stick that never moves, whose speeds of
   // 1e-33 were told apart (35_9548: a run without end); beams so soon after rest that the state is a small difference
   // of the steady answer and of what dies out (13_6712, 35_9272); a slider behind a
-  // stiff spring that came to rest and, by rounding, went on (44_2144).
+  // stiff spring that came to rest and, by rounding, went on (44_2144); a slip whose speed stays within its rounding
+  // for longer than bounds say that it rises (53_2322: Zeno).
   std::vector<std::pair<std::uint64_t, std::uint64_t>> scenes;
   for (const auto& file : std::filesystem::directory_iterator(SLIPMODE_SOURCE_DIR "/tests/selftest/scenes")) {
     const std::string name = file.path().stem();
