@@ -28,12 +28,15 @@ Eigen::VectorXd free_acceleration(const Instant& now) {
   return free;
 }
 
-/// What wᵀq̈ may be off by: states and loads round by all of the motion, not by what is left at a contact.
+/// What wᵀq̈ may be off by: states and loads round by all of the motion, not by what is left at a contact, and limits by
+/// what loads are sums of.
 Eigen::VectorXd acceleration_rounding(const Instant& now, const Eigen::VectorXd& force) {
   constexpr double kRoundsBy = 64.0 * std::numeric_limits<double>::epsilon();
   const Eigen::Map<const Eigen::VectorXd> x(now.x, 2 * now.model.np);
   const double motion = (now.model.acceleration_row.cwiseAbs().transpose() * x.cwiseAbs()).maxCoeff();
-  return kRoundsBy * (motion + force.lpNorm<Eigen::Infinity>() * now.model.mobility.diagonal().array());
+  Eigen::VectorXd size = Eigen::VectorXd::Constant(force.size(), force.lpNorm<Eigen::Infinity>());
+  if (now.limit_size.size() > 0) size += now.limit_size;
+  return kRoundsBy * (motion + now.model.mobility.diagonal().cwiseProduct(size).array());
 }
 
 struct Trial {

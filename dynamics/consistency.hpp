@@ -38,6 +38,9 @@ struct Instant {
   const Eigen::VectorXd* applied = nullptr;
   double belt_jerk = 0.0;                       ///< d³/dt³ of the counterpart's way: not zero for a shaker only
   Eigen::VectorXd force = {}, force_rate = {};  ///< of a force drive along its directions [nk]; empty without one
+  /// Limits under the sizes that loads which vary are sums of: what limits round by is a share of these [nc]; empty
+  /// where all loads are constant.
+  Eigen::VectorXd limit_size = {};
 };
 
 /// Decides, in one place, what contacts do after an event (Filippov): of the contacts at zero relative velocity

@@ -203,7 +203,26 @@ Instant EventResolver::instant(const HybridPoint& point, const std::vector<Conta
           &applied,
           jerk,
           drive_force(point.time),
-          drive_force_rate(point.time)};
+          drive_force_rate(point.time),
+          limit_sizes(point)};
+}
+
+Eigen::VectorXd EventResolver::limit_sizes(const HybridPoint& point) const {
+  if (std::ranges::none_of(laws_, &ContactForces::varies)) return {};
+  Eigen::VectorXd sizes = Eigen::VectorXd::Zero(model_.contacts);
+  const auto row_size = [&](const Eigen::MatrixXd& rows, int c) {
+    return rows.col(c).cwiseAbs().dot(point.x.cwiseAbs());
+  };
+  for (int c = 0; c < model_.contacts; ++c) {
+    const auto i = static_cast<std::size_t>(c);
+    if (!laws_[i].varies) continue;
+    const friction::LoadForm& load = loads_[i];
+    sizes(c) = laws_[i]
+                   .under(load.size(row_size(model_.displacement_row, c), row_size(model_.velocity_row, c),
+                                    load.oscillates() ? own_states(point, c) : nullptr))
+                   .static_limit;
+  }
+  return sizes;
 }
 
 double EventResolver::contact_velocity(int c, const double* x) const {

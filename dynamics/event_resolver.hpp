@@ -101,6 +101,8 @@ class EventResolver {
 
  private:
   void hold(double time, const std::vector<Eigen::Index>& contacts, double* x) const;
+  /// See Instant::limit_size.
+  [[nodiscard]] Eigen::VectorXd limit_sizes(const HybridPoint& point) const;
   /// Rigid and in contact: between stick and slip accelerations decide.
   [[nodiscard]] bool decides_by_acceleration(const HybridPoint& point, std::size_t c) const;
   [[nodiscard]] bool at_belt_speed(double time, int c, const double* x) const;

@@ -3,6 +3,7 @@
 #include <slipmode/friction/contact.hpp>
 
 #include <Eigen/Core>
+#include <cmath>
 
 namespace slipmode::friction {
 
@@ -32,6 +33,13 @@ struct LoadForm {
     double N = constant + y * displacement + v * velocity;
     if (own != nullptr) N += z * own[0] + z_rate * own[1];
     return N;
+  }
+
+  /// What its terms add up to in size: N rounds by that. @param displacement, velocity  sizes
+  [[nodiscard]] double size(double displacement, double velocity, const double* own) const {
+    double sum = std::abs(constant) + std::abs(y) * displacement + std::abs(v) * velocity;
+    if (own != nullptr) sum += std::abs(z * own[0]) + std::abs(z_rate * own[1]);
+    return sum;
   }
 
   double constant = 0.0, y = 0.0, v = 0.0, z = 0.0, z_rate = 0.0;

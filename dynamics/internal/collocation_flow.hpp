@@ -114,6 +114,8 @@ class CollocationFlow {
   /// Largest |V⁽⁹⁾| h⁹ of the drive.
   [[nodiscard]] double drive_ninth(double h) const;
   [[nodiscard]] bool unmoved(int c) const;
+  /// Largest |V − v| at the nodes.
+  [[nodiscard]] double fastest_at_nodes(int c) const;
   [[nodiscard]] double velocity_scale(int c, const Eigen::VectorXd& x) const;
   [[nodiscard]] bool too_early(const Guarded& guard) const;
   [[nodiscard]] double deepest_overshoot() const;

@@ -15,6 +15,8 @@ namespace {
 constexpr double kNegligibleShift = 1e-15;
 /// Right after sliding has begun, a guard that vanishes within this share of a step is an error of interpolation.
 constexpr double kEarly = 1.0 / 64.0;
+/// A step that starts with more than this share of its largest speed does not start at rest.
+constexpr double kOwnStart = 0.1;
 /// Halvings tried to show that a stick force stays below its limit.
 constexpr int kMarginHalvings = 2;
 constexpr int kRefinements = 20;
@@ -48,16 +50,16 @@ CollocationFlow::Guarded CollocationFlow::first_guard() {
       continue;
     }
     const double sign = sign_of(point_.modes[i]);
-    const int multiplicity = point_.multiplicity[i];
+    int multiplicity = point_.multiplicity[i];
     if ((multiplicity > 0 || bristled(c)) && unmoved(c)) {
       guard_start_(c) = guard_least_(c) = 0.0;
       guard_forms_.segment<kNodes>(kNodes * c).setZero();
       continue;
     }
-    const double start =
-        multiplicity > 0
-            ? 0.0
-            : std::max(0.0, sign * (drive().velocity(begin_) - resolver_.contact_velocity(c, x_begin_.data())));
+    double start = std::max(0.0, sign * (drive().velocity(begin_) - resolver_.contact_velocity(c, x_begin_.data())));
+    // A bristle's speed that was called rounding may be one: beside it, a start at zero would be a jump.
+    if (multiplicity > 0 && bristled(c) && start > kOwnStart * fastest_at_nodes(c)) multiplicity = 0;
+    if (multiplicity > 0) start = 0.0;
     double least = kernels_.speed_guard(t.bernstein8.data(), t.bernstein8_start.data(), start, sign,
                                         drive_nodes_.data() + kNodes * c, velocity_.data() + kNodes * c, guard);
     guard_start_(c) = start;
@@ -76,9 +78,11 @@ CollocationFlow::Guarded CollocationFlow::first_guard() {
 
 bool CollocationFlow::unmoved(int c) const {
   // So soon after its start that sliding has no speed beyond rounding, and its sign means nothing.
-  const double fastest =
-      (drive_nodes_.segment<kNodes>(kNodes * c) - velocity_.segment<kNodes>(kNodes * c)).cwiseAbs().maxCoeff();
-  return fastest <= kUnmoved * velocity_scale(c, x_begin_);
+  return fastest_at_nodes(c) <= kUnmoved * velocity_scale(c, x_begin_);
+}
+
+double CollocationFlow::fastest_at_nodes(int c) const {
+  return (drive_nodes_.segment<kNodes>(kNodes * c) - velocity_.segment<kNodes>(kNodes * c)).cwiseAbs().maxCoeff();
 }
 
 double CollocationFlow::velocity_scale(int c, const Eigen::VectorXd& x) const {
