@@ -37,7 +37,7 @@ std::unique_ptr<AuditForms> AuditForms::make(const RegimeTables& tables, const M
   const Regime& r = tables.regime();
   const ModalModel& pairs = r.pairs;
   const auto np = pairs.np, ni = r.inputs(), nu = ni + 2, nc = r.speed_input();
-  if (overlay.orders() > 1) return nullptr;
+  if (overlay.orders() > 1 || !overlay.resonances.empty()) return nullptr;
   if (!decays(pairs, overlay.omega())) return nullptr;
   const RegimeForms& squares = quadratic_forms(tables, slipping);
   if (!squares.found) return nullptr;

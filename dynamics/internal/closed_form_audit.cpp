@@ -70,9 +70,13 @@ StayWork ClosedFormFlow::integrate(double t, Eigen::VectorXd x, Eigen::VectorXd 
       sum.viscous += weight * r.viscous_power(x_then, V);
     }
   };
+  const auto swell = [&](double step, Eigen::VectorXd& out_x) {
+    if (swells()) drive->move_resonances(r, step, phase_at(t), out_x);
+  };
   const auto move_to = [&](const RegimeStep& s, const Eigen::VectorXd& from, const Eigen::VectorXd& from_inputs,
                            Eigen::VectorXd& out_x, Eigen::VectorXd& out_inputs) {
     apply(s, from.data(), from_inputs, out_x.data());
+    swell(s.h, out_x);
     out_inputs = from_inputs;
     r.advance_inputs(out_inputs, s.h);
   };
@@ -106,6 +110,7 @@ StayWork ClosedFormFlow::integrate(double t, Eigen::VectorXd x, Eigen::VectorXd 
       at_x = x;
       at_inputs = inputs;
       advance(tables, rule.node(j) * tau, at_x, at_inputs);
+      swell(rule.node(j) * tau, at_x);
       add(rule.weight(j) * tau, t + rule.node(j) * tau, at_x, at_inputs);
     }
   return sum;

@@ -148,9 +148,13 @@ void ClosedFormFlow::measure_amplitudes() {
 void ClosedFormFlow::move(double tau) {
   const Regime& r = tables_->regime();
   measured_ = false;
-  if (!r.motion.available()) return advance(*tables_, tau, x_, inputs_);
-  r.motion.add(tau, free_.data(), x_.data());
-  follow_inputs(tau);
+  if (r.motion.available()) {
+    r.motion.add(tau, free_.data(), x_.data());
+    follow_inputs(tau);
+  } else {
+    advance(*tables_, tau, x_, inputs_);
+  }
+  if (swells()) regime_->overlay->move_resonances(r, tau, phase_, x_);
 }
 
 void ClosedFormFlow::follow_inputs(double tau) {
@@ -163,7 +167,7 @@ void ClosedFormFlow::follow_inputs(double tau) {
 
 void ClosedFormFlow::pass_window() {
   const Regime& r = tables_->regime();
-  if (!r.motion.available()) return move(tables_->length(level_));
+  if (!r.motion.available() || swells()) return move(tables_->length(level_));
   const RegimeChange& d = tables_->change(level_);
   kernels::kernels().pass(
       {r.pairs.np, d.d11.data(), d.d12.data(), d.d21.data(), d.d22.data(), r.scale1.data(), r.scale2.data()}, x_.data(),
@@ -345,7 +349,9 @@ void ClosedFormFlow::lift_point() {
 
 void ClosedFormFlow::evaluate(double t, Eigen::VectorXd& out_x, Eigen::VectorXd& out_force) const {
   Eigen::VectorXd x = x_begin_, inputs = inputs_begin_;
-  advance(*step_regime_->tables, std::max(0.0, t - begin_), x, inputs);
+  const double tau = std::max(0.0, t - begin_);
+  advance(*step_regime_->tables, tau, x, inputs);
+  if (step_regime_->overlay) step_regime_->overlay->move_resonances(step_regime_->tables->regime(), tau, phase_, x);
   lift(*step_regime_, t, x, inputs, out_x, out_force);
 }
 

@@ -70,6 +70,7 @@ class ClosedFormFlow {
     /// What the regime answers to a cosine of each order along a force direction, one per direction: of x [2m x H], of
     /// the outputs [no x H].
     std::vector<DriveOverlay::Amplitudes> forced_state{}, forced_outputs{};
+    std::vector<std::vector<DriveOverlay::Resonance>> forced_resonances{};
   };
   /// What tangents change of the forces at an instant: coefficients of the answers' cosines and sines, direction after
   /// direction [nk H x k], and the forces themselves [nk x k].
@@ -140,6 +141,10 @@ class ClosedFormFlow {
   /// Takes the state on to where the guard vanishes, near tau, which follows. True if that is proved to be the first
   /// time after `from`.
   [[nodiscard]] bool approach(const Guard& guard, double from, double& tau);
+  /// A harmonic drives a pair at its own frequency, or next to it.
+  [[nodiscard]] bool swells() const { return regime_->overlay && !regime_->overlay->resonances.empty(); }
+  /// The most that pairs of these weights add up to within a time h, but for what free motion grows by.
+  [[nodiscard]] double most(const Eigen::Ref<const Eigen::VectorXd>& weight, double h) const;
   /// Bound on the second derivative of an output over the window.
   [[nodiscard]] double curvature(Eigen::Index output) const;
   /// Adds the work of a step of this length; where forms integrate whole stays, once a stay or the run `ends`.
@@ -166,6 +171,8 @@ class ClosedFormFlow {
   void enter_tangents();
   /// Brings the tangents up to the point's time, within a stay.
   void push_tangents();
+  /// What changed forces move resonant pairs.
+  void push_resonances(double begin, double tau);
   /// δ⁺ = R δ⁻ + (f⁺ − R f⁻) δg/ġ: before and after the event is settled. No guard: a corner of the drive, whose time
   /// is nobody's.
   void leave_tangents(const Guard* guard);

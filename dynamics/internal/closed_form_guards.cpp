@@ -100,7 +100,7 @@ double ClosedFormFlow::scale(const Guard& guard) const {
   // By the terms that are summed, not by amplitudes: a slow drift has a large one, however little it has moved.
   double size = std::abs(guard.constant) + r.row.col(guard.output).cwiseAbs().dot(x_.cwiseAbs()) +
                 r.coefficient.col(guard.output).cwiseAbs().dot(inputs_.cwiseAbs());
-  if (regime_->overlay) size += regime_->overlay->outputs.size(guard.output);
+  if (regime_->overlay) size += regime_->overlay->outputs[0].size(guard.output);
   if (guard.kind == GuardKind::kStop) return size;
   if (output.kind == RegimeOutput::Kind::kSpeed)
     return size + std::abs(inputs_(r.speed_input())) +
@@ -115,8 +115,8 @@ ClosedFormFlow::GuardValue ClosedFormFlow::evaluate(const Guard& guard, double t
   double rate = kernels::kernels().dot(r.row1.col(k).data(), x_.data(), x_.size()) + r.coefficient1.col(k).dot(inputs_);
   if (const DriveOverlay* overlay = regime_->overlay) {
     const DrivePhase phase = phase_at(t);
-    value += overlay->outputs.at(k, phase);
-    rate += overlay->omega() * overlay->outputs.rate(k, phase);
+    value += overlay->outputs[0].at(k, phase);
+    rate += overlay->outputs[1].at(k, phase);
   }
   return {guard.constant + guard.sign * value, guard.sign * rate};
 }
@@ -124,8 +124,7 @@ ClosedFormFlow::GuardValue ClosedFormFlow::evaluate(const Guard& guard, double t
 double ClosedFormFlow::second_derivative(const Guard& guard, double t) const {
   const Regime& r = tables_->regime();
   double second = r.row2.col(guard.output).dot(x_) + r.coefficient2.col(guard.output).dot(inputs_);
-  if (const DriveOverlay* overlay = regime_->overlay)
-    second += overlay->omega() * overlay->omega() * overlay->outputs.bend(guard.output, phase_at(t));
+  if (const DriveOverlay* overlay = regime_->overlay) second += overlay->outputs[2].at(guard.output, phase_at(t));
   return guard.sign * second;
 }
 
@@ -134,13 +133,13 @@ void ClosedFormFlow::drop_idle_guards() {
   // does not grow, an output stays within its amplitudes of where the inputs hold it for as long as the stay lasts.
   const Regime& r = tables_->regime();
   const DriveOverlay* overlay = regime_->overlay;
-  if (overlay == nullptr || !r.motion.available() || r.growth > 0.0) return;
+  if (overlay == nullptr || !overlay->resonances.empty() || !r.motion.available() || r.growth > 0.0) return;
   std::erase_if(guards_, [&](const Guard& guard) {
     const auto k = guard.output;
     const double held =
         r.output(k, x_, inputs_) - kernels::kernels().dot(r.row.col(k).data(), free_.data(), free_.size());
-    const double reach =
-        kernels::kernels().dot(r.weight.col(k).data(), amplitude_.data(), amplitude_.size()) + overlay->outputs.size(k);
+    const double reach = kernels::kernels().dot(r.weight.col(k).data(), amplitude_.data(), amplitude_.size()) +
+                         overlay->outputs[0].size(k);
     return guard.constant + guard.sign * held - reach > kStarting * (std::abs(guard.constant) + std::abs(held) + reach);
   });
 }
@@ -149,19 +148,18 @@ ClosedFormFlow::GuardStart ClosedFormFlow::start_of(const Guard& guard) const {
   const Regime& r = tables_->regime();
   const DriveOverlay* overlay = regime_->overlay;
   const double room = std::exp(r.growth / r.rate);
-  const double w = overlay ? overlay->omega() : 0.0;
-  const double harmonic2 = overlay ? w * w * overlay->outputs.size(guard.output, 2) : 0.0;
-  const double harmonic3 = overlay ? w * w * w * overlay->outputs.size(guard.output, 3) : 0.0;
+  const double harmonic2 = overlay ? overlay->outputs[2].size(guard.output) : 0.0;
+  const double harmonic3 = overlay ? overlay->outputs[3].size(guard.output) : 0.0;
   const double third = std::abs(r.polynomial3.col(guard.output).dot(inputs_));
   const auto [value, rate] = evaluate(guard, point_.time);
   return {.value = value,
           .rate = rate,
           .second = second_derivative(guard, point_.time),
-          .most_second = room * r.weight2.col(guard.output).dot(amplitude_) +
+          .most_second = room * most(r.weight2.col(guard.output), 1.0 / r.rate) +
                          std::abs(r.polynomial2.col(guard.output).dot(inputs_)) + third / r.rate + harmonic2,
-          .most_third = room * r.weight3.col(guard.output).dot(amplitude_) + third + harmonic3,
+          .most_third = room * most(r.weight3.col(guard.output), 1.0 / r.rate) + third + harmonic3,
           .size = scale(guard),
-          .lasting = r.growth == 0.0 && third == 0.0};
+          .lasting = r.growth == 0.0 && third == 0.0 && !swells()};
 }
 
 double ClosedFormFlow::near_zero(const GuardStart& g) const {
@@ -276,13 +274,17 @@ ClosedFormFlow::Search ClosedFormFlow::search(int level) const {
         // c cos j(θ₀ + ωτ) + s sin j(θ₀ + ωτ) by the window's cos jωτ and sin jωτ.
         DrivePhase p;
         Eigen::Index j = 0;
-        for (const DriveOverlay::Window& harmonic : overlay->window(level, tables_->length(level))) {
+        for (const DriveOverlay::Window& harmonic : overlay->window(r, level, tables_->length(level))) {
           p = p.times(phase_);
-          const double c = overlay->outputs.c(k, j), s = overlay->outputs.s(k, j);
+          const double c = overlay->outputs[0].c(k, j), s = overlay->outputs[0].s(k, j);
           vector.add_scaled(c * p.cosine + s * p.sine, harmonic.cosine.data(), output.data(), kNodes);
           vector.add_scaled(s * p.cosine - c * p.sine, harmonic.sine.data(), output.data(), kNodes);
-          remainder += harmonic.remainder * overlay->outputs.magnitude(k, j);
+          remainder += harmonic.remainder * overlay->outputs[0].magnitude(k, j);
           ++j;
+          if (harmonic.swell_remainder.size() == 0) continue;
+          vector.add_scaled(p.cosine, harmonic.swell_cosine.col(k).data(), output.data(), kNodes);
+          vector.add_scaled(p.sine, harmonic.swell_sine.col(k).data(), output.data(), kNodes);
+          remainder += harmonic.swell_remainder(k);
         }
       }
     }
@@ -312,7 +314,7 @@ bool ClosedFormFlow::approach(const Guard& guard, double from, double& tau) {
     const double shift = -now.value / slope;
     if (!(slope < 0.0) || !(std::abs(shift) * rate < 2.0) || tau + shift < 0.0) return false;
     tau += shift;
-    if (!tables_->regime().motion.available() && std::abs(shift) * rate < kClose) {
+    if (!tables_->regime().motion.available() && !swells() && std::abs(shift) * rate < kClose) {
       advance(*tables_, shift, x_, inputs_);
     } else {
       x_ = x_begin_;
@@ -328,14 +330,17 @@ bool ClosedFormFlow::approach(const Guard& guard, double from, double& tau) {
   return tau <= from || (tau - from) * bend < std::abs(slope);
 }
 
+double ClosedFormFlow::most(const Eigen::Ref<const Eigen::VectorXd>& weight, double h) const {
+  return weight.dot(amplitude_) + (swells() ? h * weight.dot(regime_->overlay->swell) : 0.0);
+}
+
 double ClosedFormFlow::curvature(Eigen::Index output) const {
   const Regime& r = tables_->regime();
   const double h = tables_->length(level_);
-  double bend = std::exp(std::min(r.growth * h, 200.0)) * r.weight2.col(output).dot(amplitude_) +
+  double bend = std::exp(std::min(r.growth * h, 200.0)) * most(r.weight2.col(output), h) +
                 std::abs(r.polynomial2.col(output).dot(inputs_begin_)) +
                 std::abs(r.polynomial3.col(output).dot(inputs_begin_)) * h;
-  if (const DriveOverlay* overlay = regime_->overlay)
-    bend += overlay->omega() * overlay->omega() * overlay->outputs.size(output, 2);
+  if (const DriveOverlay* overlay = regime_->overlay) bend += overlay->outputs[2].size(output);
   return bend;
 }
 

@@ -1,7 +1,9 @@
 #include "dynamics/internal/closed_form_flow.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <numbers>
+#include <utility>
 
 namespace slipmode::dynamics {
 namespace {
@@ -84,7 +86,8 @@ void ClosedFormFlow::prepare_forced(TangentMaps& out_maps) const {
     const DriveOverlay answer(r, slipping_, unit);
     out_maps.forced_state.emplace_back(unpadded_rows(answer.state.c, r.pairs.n),
                                        unpadded_rows(answer.state.s, r.pairs.n));
-    out_maps.forced_outputs.push_back(answer.outputs);
+    out_maps.forced_outputs.push_back(answer.outputs[0]);
+    out_maps.forced_resonances.push_back(answer.resonances);
   }
 }
 
@@ -125,8 +128,7 @@ void ClosedFormFlow::add_forced(const std::vector<DriveOverlay::Amplitudes>& ans
 
 void ClosedFormFlow::push_tangents() {
   tangents_current_ = false;
-  const double tau = point_.time - tangent_time_;
-  tangent_time_ = point_.time;
+  const double begin = std::exchange(tangent_time_, point_.time), tau = point_.time - begin;
   if (tau == 0.0) return;
   const Regime& r = tables_->regime();
   const auto n = r.pairs.n, np = r.pairs.np;
@@ -138,6 +140,7 @@ void ClosedFormFlow::push_tangents() {
       x_tangents_(n + i, k) = E(1, 0) * a + E(1, 1) * b;
     }
   }
+  push_resonances(begin, tau);
   const auto hold = [&](Eigen::Index input, const auto& tangents) {
     Eigen::VectorXd response = Eigen::VectorXd::Zero(2 * np);
     Eigen::VectorXd held = Eigen::VectorXd::Unit(r.inputs(), input);
@@ -148,6 +151,23 @@ void ClosedFormFlow::push_tangents() {
     hold(regime_->maps->follows[k], follow_tangents_.row(static_cast<Eigen::Index>(k)));
   for (Eigen::Index d = 0; force_tangents_.rows() > 0 && d < r.forces; ++d)
     hold(r.force_input(d), force_tangents_.row(d * (force_tangents_.rows() / r.forces)));
+}
+
+void ClosedFormFlow::push_resonances(double begin, double tau) {
+  // a cos jθ + b sin jθ is Re (a − ib) e^{ijθ}, and (a − ib) e^{ijθ} is cosine + i sine of `force_change`.
+  const std::vector<std::vector<DriveOverlay::Resonance>>& directions = regime_->maps->forced_resonances;
+  if (std::ranges::all_of(directions, [](const auto& own) { return own.empty(); })) return;
+  const Regime& r = tables_->regime();
+  const ForceChange change = force_change(begin);
+  const Eigen::Index orders = change.cosine.rows() / r.forces;
+  for (std::size_t d = 0; d < directions.size(); ++d)
+    for (const DriveOverlay::Resonance& own : directions[d]) {
+      const Eigen::Vector2cd moved = own.moved(r, regime_->overlay->omega(), tau);
+      const Eigen::Index k = static_cast<Eigen::Index>(d) * orders + own.order - 1;
+      for (const Eigen::Index row : {Eigen::Index{0}, Eigen::Index{1}})
+        x_tangents_.row(row * r.pairs.n + own.pair) +=
+            moved(row).real() * change.cosine.row(k) - moved(row).imag() * change.sine.row(k);
+    }
 }
 
 const Eigen::MatrixXd& ClosedFormFlow::tangents() {
@@ -183,12 +203,11 @@ const Eigen::VectorXd& ClosedFormFlow::point_rate() {
   input_rate_(V) = inputs_(V + 1);
   if (const DriveOverlay* overlay = regime_->overlay) {
     const DrivePhase phase = phase_at(point_.time);
-    const double w = overlay->omega();
     for (Eigen::Index i = 0; i < n; ++i) {
-      x_rate_(i) += w * overlay->state.rate(i, phase);
-      x_rate_(n + i) += w * overlay->state.rate(np + i, phase);
+      x_rate_(i) += overlay->state_rate.at(i, phase);
+      x_rate_(n + i) += overlay->state_rate.at(np + i, phase);
     }
-    for (Eigen::Index k = 0; k < input_rate_.size(); ++k) input_rate_(k) += w * overlay->inputs.rate(k, phase);
+    overlay->input_rate.add(phase, 1.0, input_rate_);
   }
   rate_.noalias() = maps.leave * x_rate_;
   rate_.noalias() += maps.leave_inputs * input_rate_;

@@ -1,6 +1,6 @@
 #include "dynamics/internal/drive_overlay.hpp"
 
-#include <slipmode/core/errors.hpp>
+#include <slipmode/dynamics/receptance.hpp>
 #include "dynamics/internal/harmonic_response.hpp"
 #include "dynamics/internal/lobatto.hpp"
 
@@ -8,14 +8,14 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <limits>
 #include <utility>
 
 namespace slipmode::dynamics {
 namespace {
 
-/// Closer to an eigenvalue than this share of the drive's frequency there is no telling resonance from damping.
-constexpr double kResonance = 1e-13;
+/// A pair whose determinant is below this share of the squared frequency answers a harmonic steadily with about the
+/// inverse of it times what moves in a radian: so many digits would be lost.
+constexpr double kResonance = 1e-3;
 
 using Amplitudes = DriveOverlay::Amplitudes;
 using Complex = std::complex<double>;
@@ -48,20 +48,8 @@ Amplitudes driven_inputs(const Regime& r, const friction::Drive& drive) {
   return {std::move(c), std::move(s)};
 }
 
-/// @param load  what the inputs put into the pairs
-void refuse_resonance(const Regime& r, double w, const Eigen::VectorXcd& load) {
-  const auto np = r.pairs.np;
-  for (Eigen::Index i = 0; i < r.pairs.n; ++i) {
-    if (load(i) == 0.0 && load(np + i) == 0.0) continue;
-    const Complex determinant =
-        Complex(-r.pairs.g11(i), w) * Complex(-r.pairs.g22(i), w) - r.pairs.g12(i) * r.pairs.g21(i);
-    if (std::abs(determinant) <= kResonance * w * std::max(w, r.pair_rate(i)))
-      throw NumericalFailure("the drive's angular frequency of " + std::to_string(w) +
-                                 " rad/s is that of a mode without damping: its motion grows without bound; give the "
-                                 "structure damping or change the frequency",
-                             std::numeric_limits<double>::quiet_NaN(), {}, std::abs(determinant));
-  }
-}
+/// Exponent beyond which a growing window is useless anyway.
+constexpr double kSwellExponent = 200.0;
 
 /// ∫ e^{G(h−s)} b e^{iws} ds over 0 ≤ s ≤ h of one pair: Taylor's series of a short time, doubled.
 Eigen::Vector2cd pair_from_rest(const ModalModel& pairs, Eigen::Index i, const Eigen::Vector2cd& b, double w,
@@ -83,6 +71,8 @@ Eigen::Vector2cd pair_from_rest(const ModalModel& pairs, Eigen::Index i, const E
   return sum;
 }
 
+Amplitudes amplitudes(const Eigen::MatrixXcd& phasors) { return {phasors.real(), -phasors.imag()}; }
+
 /// How much of an output is the force of its contact in stick.
 double force_share(RegimeOutput::Kind kind) {
   if (kind == RegimeOutput::Kind::kForce || kind == RegimeOutput::Kind::kReserve) return 1.0;
@@ -101,32 +91,6 @@ double Amplitudes::at(Eigen::Index k, DrivePhase first) const {
   return sum;
 }
 
-double Amplitudes::rate(Eigen::Index k, DrivePhase first) const {
-  double sum = s(k, 0) * first.cosine - c(k, 0) * first.sine;
-  DrivePhase p = first;
-  for (Eigen::Index j = 1; j < c.cols(); ++j) {
-    p = p.times(first);
-    sum += static_cast<double>(j + 1) * (s(k, j) * p.cosine - c(k, j) * p.sine);
-  }
-  return sum;
-}
-
-double Amplitudes::bend(Eigen::Index k, DrivePhase first) const {
-  double sum = 0.0;
-  DrivePhase p;
-  for (Eigen::Index j = 0; j < c.cols(); ++j) {
-    p = p.times(first);
-    sum -= static_cast<double>((j + 1) * (j + 1)) * (c(k, j) * p.cosine + s(k, j) * p.sine);
-  }
-  return sum;
-}
-
-double Amplitudes::size(Eigen::Index k, int power) const {
-  double sum = magnitude(k, 0);
-  for (Eigen::Index j = 1; j < c.cols(); ++j) sum += std::pow(static_cast<double>(j + 1), power) * magnitude(k, j);
-  return sum;
-}
-
 void Amplitudes::add(DrivePhase first, double factor, Eigen::VectorXd& out) const {
   DrivePhase p;
   for (Eigen::Index j = 0; j < c.cols(); ++j) {
@@ -135,18 +99,8 @@ void Amplitudes::add(DrivePhase first, double factor, Eigen::VectorXd& out) cons
   }
 }
 
-Eigen::VectorXd Amplitudes::rates(DrivePhase first) const {
-  Eigen::VectorXd out = Eigen::VectorXd::Zero(c.rows());
-  DrivePhase p;
-  for (Eigen::Index j = 0; j < c.cols(); ++j) {
-    p = p.times(first);
-    out += static_cast<double>(j + 1) * (p.cosine * s.col(j) - p.sine * c.col(j));
-  }
-  return out;
-}
-
 DriveOverlay::DriveOverlay(const Regime& r, const ModalModel& slipping_model, const friction::Drive& drive)
-    : inputs(driven_inputs(r, drive)) {
+    : inputs(driven_inputs(r, drive)), swell(Eigen::VectorXd::Zero(r.pairs.np)) {
   omega_ = drive.omega();
   phase_ = drive.shaker() ? drive.shaker()->phase : 0.0;
   const Complex way = drive.shaker() ? Complex(0.0, -drive.shaker()->amplitude) : 0.0;
@@ -154,16 +108,23 @@ DriveOverlay::DriveOverlay(const Regime& r, const ModalModel& slipping_model, co
   Eigen::MatrixXcd own(2 * r.pairs.np, used), lifted(slipping_model.input.rows(), used), forces(r.speed_input(), used);
   for (Eigen::Index j = 0; j < used; ++j) {
     const double w = static_cast<double>(j + 1) * omega_;
-    const Eigen::VectorXcd J = inputs.c.col(j) - Complex(0.0, 1.0) * inputs.s.col(j);
-    refuse_resonance(r, w, r.B * J);
+    const Eigen::VectorXcd J = inputs.c.col(j) - Complex(0.0, 1.0) * inputs.s.col(j), load = r.B * J;
+    if (find_resonances(r, j + 1, load) || any_oscillator_resonates(r, w, kResonance)) {
+      own.col(j) = pair_receptances(r.pairs, w, load);
+      for (const Resonance& of : resonances)
+        if (of.order == j + 1) own(of.pair, j) = own(r.pairs.np + of.pair, j) = 0.0;
+      lifted.col(j) = r.to_slipping * own.col(j) + r.inputs_slipping * J;
+      forces.col(j) = r.force_row.transpose() * own.col(j) + r.force_coefficient.transpose() * J;
+      continue;
+    }
     const HarmonicResponse response = harmonic_response(r, slipping_model, w, way, J.tail(r.forces));
     own.col(j) = r.from_slipping * response.slipping + r.from_oscillators * response.oscillators;
     lifted.col(j) = response.slipping;
     forces.col(j) = response.force;
   }
-  state = {own.real(), -own.imag()};
-  slipping = {lifted.real(), -lifted.imag()};
-  force = {forces.real(), -forces.imag()};
+  state = amplitudes(own);
+  slipping = amplitudes(lifted);
+  force = amplitudes(forces);
   displacement = through(r.displacement_row, r.displacement_coefficient, state, inputs);
   velocity = through(r.velocity_row, r.velocity_coefficient, state, inputs);
   driven = through(r.drive_row, r.drive_coefficient, state, inputs);
@@ -179,7 +140,58 @@ DriveOverlay::DriveOverlay(const Regime& r, const ModalModel& slipping_model, co
     shares(output.contact, k) = share;
   }
   const Amplitudes rest = through(rows, coefficients, state, inputs);
-  outputs = {rest.c + shares.transpose() * force.c, rest.s + shares.transpose() * force.s};
+  outputs[0] = {rest.c + shares.transpose() * force.c, rest.s + shares.transpose() * force.s};
+  differentiate(r);
+}
+
+bool DriveOverlay::find_resonances(const Regime& r, Eigen::Index order, const Eigen::VectorXcd& load) {
+  const auto np = r.pairs.np, known = std::ssize(resonances);
+  const double w = static_cast<double>(order) * omega_;
+  for (Eigen::Index i = 0; i < r.pairs.n; ++i) {
+    const Eigen::Vector2cd push(load(i), load(np + i));
+    if (push.isZero(0.0) || !resonates(r.pairs, i, w, kResonance)) continue;
+    resonances.push_back({i, order, push});
+    swell(i) += r.scale1(i) * std::abs(push(0)) + r.scale2(i) * std::abs(push(1));
+  }
+  return std::ssize(resonances) > known;
+}
+
+void DriveOverlay::differentiate(const Regime& r) {
+  const auto np = r.pairs.np;
+  const auto rate = [this](const Amplitudes& of) {
+    Eigen::MatrixXcd out = of.s + Complex(0.0, 1.0) * of.c;
+    for (Eigen::Index j = 0; j < out.cols(); ++j) out.col(j) *= static_cast<double>(j + 1) * omega_;
+    return out;
+  };
+  Eigen::MatrixXcd of_state = rate(state);
+  for (const Resonance& own : resonances) {
+    of_state(own.pair, own.order - 1) += own.push(0);
+    of_state(np + own.pair, own.order - 1) += own.push(1);
+  }
+  state_rate = amplitudes(of_state);
+  input_rate = amplitudes(rate(inputs));
+  const std::array<const Eigen::MatrixXd*, 3> rows{&r.row, &r.row1, &r.row2};
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    Eigen::MatrixXcd next = rate(outputs[k]);
+    for (const Resonance& own : resonances)
+      next.col(own.order - 1) +=
+          own.push(0) * rows[k]->row(own.pair).transpose() + own.push(1) * rows[k]->row(np + own.pair).transpose();
+    outputs[k + 1] = amplitudes(next);
+  }
+}
+
+Eigen::Vector2cd DriveOverlay::Resonance::moved(const Regime& r, double omega, double tau) const {
+  return pair_from_rest(r.pairs, pair, push, static_cast<double>(order) * omega, r.pair_rate(pair), tau);
+}
+
+void DriveOverlay::move_resonances(const Regime& r, double tau, DrivePhase first, Eigen::VectorXd& out_x) const {
+  for (const Resonance& own : resonances) {
+    DrivePhase p;
+    for (Eigen::Index j = 0; j < own.order; ++j) p = p.times(first);
+    const Eigen::Vector2cd moved = Complex(p.cosine, p.sine) * own.moved(r, omega_, tau);
+    out_x(own.pair) += moved(0).real();
+    out_x(r.pairs.np + own.pair) += moved(1).real();
+  }
 }
 
 Eigen::VectorXd DriveOverlay::from_rest(const Regime& r, double tau, DrivePhase first) const {
@@ -191,10 +203,9 @@ Eigen::VectorXd DriveOverlay::from_rest(const Regime& r, double tau, DrivePhase 
     const Complex begin(p.cosine, p.sine);
     const Eigen::VectorXcd b = r.B * (inputs.c.col(j) - Complex(0.0, 1.0) * inputs.s.col(j));
     for (Eigen::Index i = 0; i < r.pairs.n; ++i) {
-      const Eigen::Vector2cd moved =
-          pair_from_rest(r.pairs, i, {b(i), b(np + i)}, static_cast<double>(j + 1) * omega_, r.pair_rate(i), tau);
-      out(i) += (begin * moved(0)).real();
-      out(np + i) += (begin * moved(1)).real();
+      const Eigen::Vector2cd moved = begin * Resonance{i, j + 1, {b(i), b(np + i)}}.moved(r, omega_, tau);
+      out(i) += moved(0).real();
+      out(np + i) += moved(1).real();
     }
   }
   return out;
@@ -205,7 +216,7 @@ DrivePhase DriveOverlay::phase(double t) const {
   return {std::cos(theta), std::sin(theta)};
 }
 
-const std::vector<DriveOverlay::Window>& DriveOverlay::window(int level, double h) const {
+const std::vector<DriveOverlay::Window>& DriveOverlay::window(const Regime& r, int level, double h) const {
   return windows_.get(level, [&](std::vector<Window>& out) {
     for (Eigen::Index order = 1; order <= orders(); ++order) {
       const double w = static_cast<double>(order) * omega_;
@@ -218,9 +229,37 @@ const std::vector<DriveOverlay::Window>& DriveOverlay::window(int level, double 
       Eigen::Map<Eigen::Matrix<double, 8, 1>>(own.cosine.data()) = lobatto().bernstein * cosine;
       Eigen::Map<Eigen::Matrix<double, 8, 1>>(own.sine.data()) = lobatto().bernstein * sine;
       own.remainder = std::min(kInterpolationGain, interpolation_share(w, h));
-      out.push_back(own);
+      swell_window(r, order, h, own);
+      out.push_back(std::move(own));
     }
   });
+}
+
+void DriveOverlay::swell_window(const Regime& r, Eigen::Index order, double h, Window& out) const {
+  const auto np = r.pairs.np, no = r.row.cols();
+  const double w = static_cast<double>(order) * omega_, growth = std::exp(std::min(r.growth * h, kSwellExponent));
+  for (const Resonance& own : resonances) {
+    if (own.order != order) continue;
+    if (out.swell_cosine.size() == 0) {
+      out.swell_cosine = out.swell_sine = Eigen::MatrixXd::Zero(8, no);
+      out.swell_remainder = Eigen::VectorXd::Zero(no);
+    }
+    Eigen::Matrix<double, 8, 4> moved;
+    for (int j = 0; j < 8; ++j) {
+      const Eigen::Vector2cd at = own.moved(r, omega_, lobatto().point(j) * h);
+      moved.row(j) << at(0).real(), at(1).real(), -at(0).imag(), -at(1).imag();
+    }
+    moved = (lobatto().bernstein * moved).eval();
+    Eigen::MatrixXd rows(2, no);
+    rows << r.row.row(own.pair), r.row.row(np + own.pair);
+    out.swell_cosine += moved.leftCols<2>() * rows;
+    out.swell_sine += moved.rightCols<2>() * rows;
+    // |x⁽⁸⁾| ≤ ‖G‖⁸|x| + 8 f⁷|push|, f the faster of ‖G‖ and w, and |x| ≤ h|push|.
+    const double fastest = std::max(r.pair_rate(own.pair), w);
+    const double share = std::min(kInterpolationGain * h, interpolation_share(fastest, h) * (h + 8.0 / fastest));
+    const double push = r.scale1(own.pair) * std::abs(own.push(0)) + r.scale2(own.pair) * std::abs(own.push(1));
+    out.swell_remainder += growth * share * push * r.weight.row(own.pair).transpose();
+  }
 }
 
 }  // namespace slipmode::dynamics

@@ -28,10 +28,20 @@ struct DrivePhase {
 /// Made once for each regime and drive (see DriveCache); safe to share between threads.
 ///
 /// (ijω − G) X_j = B J_j, J_j the drive's part of the inputs, solved at the contacts (see `harmonic_response`).
+///
+/// A pair that has no steady response to a harmonic, or one far larger than what moves, is left out of X_j: its state
+/// is held whole, and the drive moves it on, see `Resonance`. Theory: docs/theory/compliant-contacts.md, section 3.
 class DriveOverlay {
  public:
-  /// @throws NumericalFailure  at resonance with a mode that has no damping: there is no steady response
   DriveOverlay(const Regime& regime, const ModalModel& slipping, const friction::Drive& drive);
+
+  /// A pair on the frequency of a harmonic, or next to it: ẋ_i = G_i x_i + Re(push e^{ijθ}) beside what else drives it.
+  struct Resonance {
+    Eigen::Index pair = 0, order = 1;
+    Eigen::Vector2cd push;
+    /// What e^{ijθ} moves it from rest in a time tau, as a phasor at the begin: ∫ e^{G(τ−s)} push e^{ijωs} ds.
+    [[nodiscard]] Eigen::Vector2cd moved(const Regime& regime, double omega, double tau) const;
+  };
 
   /// Harmonics of each row: value = Σ_j c_j cos jθ + s_j sin jθ.
   struct Amplitudes {
@@ -43,43 +53,52 @@ class DriveOverlay {
     Eigen::MatrixXd magnitude;  ///< hypot(c, s)
 
     [[nodiscard]] double at(Eigen::Index k, DrivePhase p) const;
-    /// d/dθ and d²/dθ².
-    [[nodiscard]] double rate(Eigen::Index k, DrivePhase p) const;
-    [[nodiscard]] double bend(Eigen::Index k, DrivePhase p) const;
-    /// Σ_j j^power hypot(c_j, s_j): a bound on the derivative of this order.
-    [[nodiscard]] double size(Eigen::Index k, int power = 0) const;
+    /// Σ_j hypot(c_j, s_j): a bound.
+    [[nodiscard]] double size(Eigen::Index k) const { return magnitude.row(k).sum(); }
     /// Adds `factor` times all rows at once.
     void add(DrivePhase p, double factor, Eigen::VectorXd& out) const;
-    /// d/dθ of all rows.
-    [[nodiscard]] Eigen::VectorXd rates(DrivePhase p) const;
   };
 
   [[nodiscard]] DrivePhase phase(double t) const;
   /// What the drive alone moves in a time tau, from phase p on: ∫ e^{G(τ−s)} B J(s) ds [2np]. The steady response less
   /// that with which it would have begun, to all digits where these two nearly cancel.
   [[nodiscard]] Eigen::VectorXd from_rest(const Regime& regime, double tau, DrivePhase p) const;
+  /// Adds that of the resonant pairs under their harmonics.
+  void move_resonances(const Regime& regime, double tau, DrivePhase p, Eigen::VectorXd& out_x) const;
   [[nodiscard]] double omega() const { return omega_; }
   [[nodiscard]] Eigen::Index orders() const { return state.c.cols(); }
 
-  Amplitudes state;         ///< X [2np]
-  Amplitudes inputs;        ///< J [ni]
-  Amplitudes outputs;       ///< [no]
+  Amplitudes state, state_rate;   ///< X, and what of ẋ is not G times the state beside X [2np]
+  Amplitudes inputs, input_rate;  ///< J, dJ/dt [ni]
+  /// The outputs and their first three derivatives, beside what Regime's rows say of the state [no].
+  std::array<Amplitudes, 4> outputs;
   Amplitudes force;         ///< λ of each contact [nc]
   Amplitudes velocity;      ///< wᵀq̇ of each contact [nc]
   Amplitudes displacement;  ///< wᵀq of each contact [nc]
   Amplitudes driven;        ///< d_kᵀq̇ of each force direction [nk]
   Amplitudes slipping;      ///< the state in the slipping model [2np_s]
+  std::vector<Resonance> resonances;
+  Eigen::VectorXd swell;  ///< the most by which they make pairs' sizes grow, in the regime's scales [np, 1/s]
 
   /// Bernstein coefficients of cos jωτ and sin jωτ over a window 0 ≤ τ ≤ h of this level, and the share of their size
   /// that interpolation leaves out.
   struct Window {
     alignas(64) std::array<double, 8> cosine, sine;
     double remainder = 0.0;
+    /// What resonant pairs, from rest, add to the outputs by cos jθ and sin jθ at the begin [8 x no], with what that
+    /// leaves out [no]. Empty without.
+    Eigen::MatrixXd swell_cosine, swell_sine;
+    Eigen::VectorXd swell_remainder;
   };
   /// One per order.
-  [[nodiscard]] const std::vector<Window>& window(int level, double h) const;
+  [[nodiscard]] const std::vector<Window>& window(const Regime& regime, int level, double h) const;
 
  private:
+  /// Whether any pair resonates with a harmonic of this order; keeps those that do. @param load  B J
+  bool find_resonances(const Regime& regime, Eigen::Index order, const Eigen::VectorXcd& load);
+  void differentiate(const Regime& regime);
+  void swell_window(const Regime& regime, Eigen::Index order, double h, Window& out) const;
+
   double omega_ = 0.0, phase_ = 0.0;
   LazyLevels<std::vector<Window>, RegimeTables::kLevels> windows_;
 };

@@ -6,11 +6,25 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <vector>
 
 namespace slipmode::dynamics {
 namespace {
 
 using Complex = std::complex<double>;
+
+/// A pair of the slipping structure whose determinant is below this share of ω² is an unknown of its own.
+constexpr double kOwnUnknown = 1e-2;
+
+/// Solves A x = b of rows and columns of any size.
+Eigen::VectorXcd equilibrated_solve(Eigen::MatrixXcd A, Eigen::VectorXcd b) {
+  const Eigen::VectorXd columns = A.cwiseAbs().colwise().maxCoeff().cwiseInverse();
+  A *= columns.asDiagonal();
+  const Eigen::VectorXd rows = A.cwiseAbs().rowwise().maxCoeff().cwiseInverse();
+  A = (rows.asDiagonal() * A).eval();
+  b = rows.cwiseProduct(b).eval();
+  return columns.cwiseProduct(A.partialPivLu().solve(b).eval());
+}
 
 /// ζ of a normal oscillator per wᵀq.
 Complex oscillator_gain(const friction::LoadForm& load, double omega) {
@@ -19,37 +33,76 @@ Complex oscillator_gain(const friction::LoadForm& load, double omega) {
 
 }  // namespace
 
+bool resonates(const ModalModel& pairs, Eigen::Index i, double omega, double share) {
+  const Complex determinant =
+      Complex(-pairs.g11(i), omega) * Complex(-pairs.g22(i), omega) - pairs.g12(i) * pairs.g21(i);
+  return std::abs(determinant) <= share * omega * omega;
+}
+
+bool any_oscillator_resonates(const Regime& r, double omega, double share) {
+  return std::ranges::any_of(r.answers, [&](const ContactAnswer& answer) {
+    const Complex stiffness(answer.load.stiffness - omega * omega, omega * answer.load.damping);
+    return answer.load.oscillates() && std::abs(stiffness) <= share * omega * omega;
+  });
+}
+
 HarmonicResponse harmonic_response(const Regime& r, const ModalModel& slipping, double omega, Complex way,
                                    const Eigen::VectorXcd& forces) {
-  const Eigen::Index nc = r.speed_input();
-  const Eigen::MatrixXcd by_contacts = pair_receptances(slipping, omega, slipping.input.cast<Complex>());
-  const Eigen::MatrixXcd by_forces = pair_receptances(slipping, omega, slipping.force_input * forces);
+  const Eigen::Index nc = r.speed_input(), np = slipping.np;
+  const Eigen::VectorXcd forced = slipping.force_input * forces;
+  Eigen::MatrixXcd by_contacts = pair_receptances(slipping, omega, slipping.input.cast<Complex>());
+  Eigen::MatrixXcd by_forces = pair_receptances(slipping, omega, forced);
+  std::vector<Eigen::Index> own;  // states that are unknowns of their own
+  for (Eigen::Index i = 0; i < slipping.n; ++i)
+    if (resonates(slipping, i, omega, kOwnUnknown))
+      for (const Eigen::Index k : {i, np + i}) {
+        own.push_back(k);
+        by_contacts.row(k).setZero();
+        by_forces.row(k).setZero();
+      }
   const Eigen::MatrixXcd H = slipping.displacement_row.transpose() * by_contacts;
   const Eigen::VectorXcd moved = slipping.displacement_row.transpose() * by_forces;
 
-  Eigen::MatrixXcd A(nc, nc);
-  Eigen::VectorXcd b(nc);
+  const auto unknowns = nc + std::ssize(own);
+  Eigen::MatrixXcd A = Eigen::MatrixXcd::Zero(unknowns, unknowns);
+  Eigen::VectorXcd b(unknowns);
+  // factor · y of contact c.
+  const auto set_row = [&](Eigen::Index c, Complex factor, Complex target) {
+    A.row(c).head(nc) = factor * H.row(c);
+    for (Eigen::Index k = nc; k < unknowns; ++k)
+      A(c, k) = factor * slipping.displacement_row(own[static_cast<std::size_t>(k - nc)], c);
+    b(c) = factor * target;
+  };
   for (Eigen::Index c = 0; c < nc; ++c) {
     const auto i = static_cast<std::size_t>(c);
-    const double own = std::abs(H(c, c));
+    const double reach = std::abs(H(c, c));
     const Complex target = (r.sticks(static_cast<int>(c)) ? way : 0.0) - moved(c);
     if (r.held(static_cast<int>(c))) {
-      A.row(c) = H.row(c) / own;
-      b(c) = target / own;
+      set_row(c, own.empty() ? 1.0 / reach : 1.0, target);  // what is left of H may be rounding
       continue;
     }
     Complex impedance(r.answers[i].stiffness, omega * r.answers[i].damping);
     const friction::LoadForm& load = r.answers[i].load;
     if (load.oscillates())
       impedance -= r.answers[i].friction * Complex(load.z, omega * load.z_rate) * oscillator_gain(load, omega);
-    const double size = std::max(1.0, std::abs(impedance) * own);
-    A.row(c) = impedance / size * H.row(c);
+    const double size = std::max(1.0, std::abs(impedance) * reach);
+    set_row(c, impedance / size, target);
     A(c, c) += 1.0 / size;
-    b(c) = impedance / size * target;
   }
+  for (Eigen::Index k = nc; k < unknowns; k += 2) {
+    const Eigen::Index i = own[static_cast<std::size_t>(k - nc)];
+    A.block<2, 2>(k, k) << Complex(-slipping.g11(i), omega), Complex(-slipping.g12(i)), Complex(-slipping.g21(i)),
+        Complex(-slipping.g22(i), omega);
+    A.row(k).head(nc) = -slipping.input.row(i).cast<Complex>();
+    A.row(k + 1).head(nc) = -slipping.input.row(np + i).cast<Complex>();
+    b(k) = forced(i);
+    b(k + 1) = forced(np + i);
+  }
+  const Eigen::VectorXcd solved = own.empty() ? A.partialPivLu().solve(b).eval() : equilibrated_solve(A, b);
   HarmonicResponse out;
-  out.force = A.partialPivLu().solve(b);
+  out.force = solved.head(nc);
   out.slipping = by_contacts * out.force + by_forces;
+  out.slipping(own) = solved.tail(unknowns - nc);
   out.oscillators.resize(r.from_oscillators.cols());
   Eigen::Index j = 0;
   for (Eigen::Index c = 0; c < nc; ++c) {

@@ -63,6 +63,50 @@ TEST(ClearanceOrbits, AGuessAtRestOnAStopIsAGuess) {
   }
 }
 
+TEST(ClearanceOrbits, PlayWithoutDampingIsBoundedAtItsOwnFrequency) {
+  // q'' + q = A sin t in the gap of 1, q'' + 5q = 4 + A sin t beyond. The odd orbit that is symmetric about quarter
+  // periods: q = a sin t − (A/2) t cos t up to the stop at t₁, then 4/5 + (A/4) sin t + b cos √5(t − π/2); a and b from
+  // q(t₁) = 1, t₁ from the speed, which does not jump.
+  const double A = 0.3, own = std::sqrt(5.0), quarter = std::numbers::pi / 2.0;
+  const auto a = [&](double t) { return (1.0 + A / 2.0 * t * std::cos(t)) / std::sin(t); };
+  const auto jump = [&](double t) {
+    const double b = (0.2 - A / 4.0 * std::sin(t)) / std::cos(own * (t - quarter));
+    return a(t) * std::cos(t) - A / 2.0 * (std::cos(t) - t * std::sin(t)) - A / 4.0 * std::cos(t) +
+           own * b * std::sin(own * (t - quarter));
+  };
+  double t1 = 1.0, high = 1.2;
+  for (int halving = 0; halving < 52; ++halving) (jump((t1 + high) / 2.0) < 0.0 ? t1 : high) = (t1 + high) / 2.0;
+  const auto one = [](double value) -> fem::Matrix { return Eigen::MatrixXd::Constant(1, 1, value); };
+  const friction::Stop stop{.stiffness = 4.0, .gap = 1.0};
+  const HybridSystem system(fem::Structure(one(1.0), one(0.0), one(1.0)),
+                            {{Eigen::VectorXd::Ones(1), friction::Clearance{stop, stop}}}, Backlash::drive(A, 1.0), {},
+                            Eigen::MatrixXd::Ones(1, 1));
+  State guess = system.rest();
+  guess.v[0] = 1.2;
+  const PeriodicOrbit orbit = find_orbit(system, guess);
+  EXPECT_NEAR(orbit.start.q[0], 0.0, 1e-10);
+  EXPECT_NEAR(orbit.start.v[0], a(t1) - A / 2.0, 1e-10);
+  EXPECT_EQ(orbit.crossings, 4);
+  // Nothing is lost and no speed jumps: the tangents turn by each stay's own frequency.
+  const auto turn = [](double w, double t) {
+    return Eigen::Matrix2d{{std::cos(w * t), std::sin(w * t) / w}, {-w * std::sin(w * t), std::cos(w * t)}};
+  };
+  const Eigen::Matrix2d half = turn(1.0, t1) * turn(own, 2.0 * (quarter - t1)) * turn(1.0, t1);
+  const Eigen::Vector2cd mu = (half * half).eigenvalues();
+  expect_multipliers(orbit, {mu(0), mu(1)}, 1e-9);
+  EXPECT_NEAR(orbit.monodromy.determinant(), 1.0, 1e-11);
+  const auto end_of = [&](const Eigen::Vector2d& shift) {
+    const State start = with_coordinates(orbit.start, stacked(orbit.start) + shift);
+    return stacked(dynamics::simulate(system, start, {.duration = orbit.period}).final_state);
+  };
+  const double h = 1e-4;
+  for (Eigen::Index i = 0; i < 2; ++i) {
+    const Eigen::Vector2d e = h * Eigen::Vector2d::Unit(i);
+    const Eigen::Vector2d slope = (8.0 * (end_of(e) - end_of(-e)) - (end_of(2.0 * e) - end_of(-2.0 * e))) / (12.0 * h);
+    EXPECT_LT((slope - orbit.monodromy.col(i)).norm(), 1e-9 * orbit.monodromy.norm());
+  }
+}
+
 TEST(ClearanceOrbits, FloatingInTheGapIsAFamily) {
   // S0 orbit A: a sine of amplitude A/(ω √(ω² + c²)); any shift that keeps clear of the stops is an orbit too.
   // Multipliers 1 and e^{−cT}; single shooting is singular as well as multiple (S0 section 3.2 excepts it).
