@@ -12,7 +12,7 @@ Eigen::MatrixXcd pair_receptances(const ModalModel& m, double omega, const Eigen
   for (Eigen::Index i = 0; i < m.n; ++i) {
     const std::complex<double> a(-m.g11(i), omega), d(-m.g22(i), omega);
     const double b = -m.g12(i), c = -m.g21(i);
-    const double nearest = std::numeric_limits<double>::epsilon() * omega * omega;
+    const double nearest = std::sqrt(std::numeric_limits<double>::epsilon()) * omega * omega;
     std::complex<double> determinant = a * d - b * c;
     if (std::abs(determinant) < nearest) determinant = nearest;
     for (Eigen::Index k = 0; k < inputs.cols(); ++k) {

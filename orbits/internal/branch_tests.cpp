@@ -17,6 +17,8 @@ template <class Solver>
 using Test = double WatchedPoint<Solver>::*;
 
 constexpr int kMaxEvaluations = 80;
+/// Nearer to the unit circle a multiplier cannot be told from one on it.
+constexpr double kOnCircle = 1e-10;
 
 /// Multipliers without the trivial ones; of the half-period map where the orbit is symmetric.
 std::vector<std::complex<double>> watched_multipliers(const PeriodicOrbit& orbit) {
@@ -139,6 +141,10 @@ template <class Solver>
 void add_smooth(const Solver& solver, const WatchedPoint<Solver>& a, const WatchedPoint<Solver>& b, double s,
                 double tolerance, SpecialKind kind, Test<Solver> test, std::vector<Found>& out_found) {
   if ((a.*test < 0) == (b.*test < 0)) return;
+  // Where nothing is lost a pair is on the circle all along: which side of it is rounding.
+  if (kind == SpecialKind::kNeimarkSacker && critical_multiplier(a.orbit, kind).distance < kOnCircle &&
+      critical_multiplier(b.orbit, kind).distance < kOnCircle)
+    return;
   const Located<Solver> at = narrow<Solver>(
       solver, a, b, s, tolerance, [&](const WatchedPoint<Solver>& p) { return p.*test; }, true);
   Critical critical = critical_multiplier(at.low.orbit, kind);

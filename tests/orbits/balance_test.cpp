@@ -229,6 +229,22 @@ TEST(Certificate, ErrorFallsAsTheForceIsSmooth) {
   EXPECT_NEAR(order(Backlash{.omega = 1.2}.system()), 2.0, 0.5);
 }
 
+TEST(Certificate, ErrorIsTheSameAtTheFrequencyOfAnUndampedMode) {
+  // Its receptance has no bound there; what the stops let it do is nothing special.
+  const friction::Stop stop{.stiffness = 4.0, .gap = 1.0};
+  const auto error = [&](double omega) {
+    const HybridSystem system(fem::masses({.links = {{.stiffness = 1.0}}}),
+                              {{Eigen::VectorXd::Ones(1), friction::Clearance{stop, stop}}},
+                              Backlash::drive(0.3, omega), {}, Eigen::MatrixXd::Ones(1, 1));
+    const Certificate certificate = certify(system, balance(system, {.harmonics = 15}));
+    EXPECT_TRUE(certificate.behind) << certificate.verdict;
+    return certificate.relative;
+  };
+  const double beside = error(1.001);
+  for (const double omega : {1.0, 1.0 + 1e-15, 1.0 - 1e-12, 1.0 + 1e-7})
+    EXPECT_NEAR(error(omega), beside, 0.02 * beside);
+}
+
 TEST(Certificate, OrderIsChosenByTheTrueError) {
   for (const double error : {1e-3, 1e-5}) {
     const HybridSystem system = play(0.05063, 0.1, 0.3);

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <iterator>
 #include <numbers>
 
@@ -58,6 +59,22 @@ TEST(Continuation, FollowsTheResonanceCurveOfALinearOscillator) {
       EXPECT_NEAR(point.orbit.start.q[0], size * std::sin(omega * point.orbit.start.time - lag), 1e-9 * size);
     }
   }
+}
+
+TEST(Continuation, PassesTheOwnFrequencyOfPlayWithoutDamping) {
+  // Nothing is lost, so both multipliers stay on the circle, and no torus is born; the motion grows with the frequency.
+  const friction::Stop stop{.stiffness = 4.0, .gap = 1.0};
+  const HybridSystem base(fem::masses({.links = {{.stiffness = 1.0}}}),
+                          {{Eigen::VectorXd::Ones(1), friction::Clearance{stop, stop}}}, Backlash::drive(0.3, 1.0), {},
+                          Eigen::MatrixXd::Ones(1, 1));
+  State guess = base.rest();
+  guess.v[0] = 1.2;
+  const Branch branch = continue_orbit(over_frequency(base), find_orbit(base, guess), 1.0, {.from = 0.9, .to = 1.1});
+  EXPECT_EQ(branch.end, BranchEnd::kRange);
+  EXPECT_TRUE(branch.special.empty());
+  EXPECT_GT(branch.points.size(), 5U);
+  for (const BranchPoint& point : branch.points)
+    for (const std::complex<double>& mu : point.orbit.multipliers) EXPECT_NEAR(std::abs(mu), 1.0, 1e-10);
 }
 
 TEST(Continuation, FollowsASelfExcitedOrbitInClosedForm) {
