@@ -18,10 +18,11 @@ struct KeyRange {
 /// Unknowns (x₁ … x_m, [ln T], over, along): closing conditions, phase where T is unknown, one condition of the kind,
 /// and the distance along the tangent. The condition is
 ///
-///   fold               the smallest singular value of Φ − 1 (with the period's column and the phase where T is
-///   unknown) period doubling    that of Φ + 1;   symmetry breaking  that of 1 − Φ(T/2) Neimark-Sacker     |μ| − 1 of
-///   the pair nearest to the unit circle grazing            the clearance left where the contact is nearest to its
-///   stop, on the side without the touch
+///     fold               least singular value of Φ − 1, with column of T and phase row where T is unknown
+///     period doubling    least singular value of Φ + 1
+///     symmetry breaking  least singular value of 1 − Φ(T/2)
+///     Neimark-Sacker     μᵢμⱼ − 1 of the pair whose product is nearest to 1
+///     grazing            clearance left where the contact is nearest to its stop, without the touch
 ///
 /// with its derivatives by differences in the two directions in which orbits go on. Curves of folds pass their cusps.
 /// The points' `parameter` is `along`, their `other` is `over`; special points of the curve are cusps, and changes of
@@ -31,9 +32,8 @@ struct KeyRange {
 /// @param over     must hold special.parameter; the curve ends at its ends too
 /// @param options  range and steps in `along`; `both_ways` is not read
 /// @throws InvalidInput  for a kind that cannot be followed, a grazing of something else than a stop, a Hopf point, a
-/// fold or grazing
-///                       of a family of orbits, a symmetry breaking without its symmetric orbit, ranges as
-///                       continue_orbit
+///                       fold or grazing of a family of orbits, a symmetry breaking without its symmetric orbit,
+///                       ranges as continue_orbit
 [[nodiscard]] Branch continue_special(const dynamics::PlaneFamily& family, const SpecialPoint& special, double along,
                                       const KeyRange& over, const ContinuationOptions& options);
 
