@@ -46,6 +46,11 @@ EventResolver::EventResolver(const HybridSystem& system, const ModalModel& model
   slides_as_.resize(laws_.size());
   std::iota(slides_as_.begin(), slides_as_.end(), 0);
   for (const std::vector<std::size_t>& place : friction::by_place(system.contacts())) {
+    const auto rigid = [&](std::size_t c) { return friction::sticks_rigidly(laws_[c].kind); };
+    if (const auto own = std::ranges::find_if(place, rigid); own != place.end())
+      for (const std::size_t c : place)
+        if (laws_[c].kind == LawKind::kCompliant && !laws_[c].varies)
+          beside_.emplace_back(static_cast<int>(*own), static_cast<int>(c));
     const auto alike = [&](std::size_t c) { return laws_[c].kind == LawKind::kCompliant && !laws_[c].varies; };
     const auto first = std::ranges::find_if(place, alike);
     for (const std::size_t c : place)
@@ -53,7 +58,7 @@ EventResolver::EventResolver(const HybridSystem& system, const ModalModel& model
   }
   for (const ContactForces& law : laws_) clearances_only_ &= law.kind == LawKind::kClearance;
   lone_spring_ = laws_.size() == 1 && laws_[0].kind == LawKind::kCompliant;
-  plain_ = laws_.size() == 1 && !laws_[0].needs_closed_form();
+  plain_ = laws_.size() == 1 && !laws_[0].is_elaborate();
 }
 
 double EventResolver::contact_displacement(int c, const double* x) const {
@@ -297,7 +302,8 @@ bool EventResolver::decides_by_acceleration(const HybridPoint& point, std::size_
 void EventResolver::hold(double time, const std::vector<ContactMode>& modes, double* x) const {
   std::vector<Eigen::Index> stuck;
   for (std::size_t c = 0; c < modes.size(); ++c)
-    if (modes[c] == ContactMode::kStick) stuck.push_back(static_cast<Eigen::Index>(c));
+    if (modes[c] == ContactMode::kStick && laws_[c].kind != LawKind::kCompliant)
+      stuck.push_back(static_cast<Eigen::Index>(c));
   hold(time, stuck, x);
 }
 
@@ -310,19 +316,6 @@ void EventResolver::hold(double time, const std::vector<Eigen::Index>& contacts,
   Eigen::Map<Eigen::VectorXd>(x, 2 * model_.np) +=
       Eigen::MatrixXd(model_.input(Eigen::all, contacts)) *
       Eigen::MatrixXd(model_.mobility(contacts, contacts)).ldlt().solve(gap);
-}
-
-Eigen::VectorXd EventResolver::forces(double time, const std::vector<ContactMode>& modes, const double* x) const {
-  Eigen::VectorXd force(model_.contacts);
-  std::vector<bool> stuck(modes.size());
-  for (std::size_t c = 0; c < modes.size(); ++c) {
-    const auto i = static_cast<Eigen::Index>(c);
-    stuck[c] = modes[c] == ContactMode::kStick;
-    if (!stuck[c])
-      force(i) = laws_[c].sliding(sign_of(modes[c]), drive_.velocity(time) - contact_velocity(static_cast<int>(c), x));
-  }
-  stick_forces(instant(time, x), stuck, force);
-  return force;
 }
 
 Eigen::VectorXd EventResolver::deflections(const HybridPoint& point) const {

@@ -6,6 +6,7 @@
 #include <slipmode/friction/load_form.hpp>
 
 #include <Eigen/Core>
+#include <utility>
 #include <vector>
 
 namespace slipmode::dynamics {
@@ -61,6 +62,8 @@ class EventResolver {
                                 const Eigen::VectorXd& applied) const;
   /// wᵀq̇ of contact c.
   [[nodiscard]] double contact_velocity(int c, const double* x) const;
+  /// wᵀq of contact c.
+  [[nodiscard]] double contact_displacement(int c, const double* x) const;
 
   /// The first contact that slides as c does: behind springs at one place, under constant loads. All that slide the
   /// same way turn at the same instant. c itself where there is none before it.
@@ -68,9 +71,6 @@ class EventResolver {
 
   /// Takes the velocity error of sticking contacts out of a state, by the impulse that their friction would exert.
   void hold(double time, const std::vector<ContactMode>& modes, double* x) const;
-
-  /// λ of every contact in these modes, by their laws and by the belt's acceleration where they stick [nc].
-  [[nodiscard]] Eigen::VectorXd forces(double time, const std::vector<ContactMode>& modes, const double* x) const;
 
   /// Decides the modes of contacts that start at rest on the drive, behind a contact spring, or without load. Like
   /// `settle`, takes the forces of contacts with bristles from the point.
@@ -82,6 +82,7 @@ class EventResolver {
   [[nodiscard]] std::vector<ContactRole> roles(const std::vector<ContactMode>& modes) const;
   /// The regime's input of contact c at a point whose modes are decided.
   [[nodiscard]] double regime_input(const HybridPoint& point, int c) const;
+  [[nodiscard]] const friction::LoadForm& load_form(int c) const { return loads_[static_cast<std::size_t>(c)]; }
   /// N of contact c; negative where contact is lost.
   [[nodiscard]] double normal_load(const HybridPoint& point, int c) const;
 
@@ -119,6 +120,9 @@ class EventResolver {
   void turn_compliant(HybridPoint& point, int c) const;
   /// The same, and of all that cease to slide with it.
   void turn_together(HybridPoint& point, int c) const;
+  /// Springs beside a rigid contact at one place, once that is decided: they cease to slide where it does, and those
+  /// at their limit slide where it begins to.
+  void turn_beside(HybridPoint& point) const;
   /// Contact lost or regained.
   void turn_load(HybridPoint& point, int c) const;
   /// The laws at this instant's normal loads.
@@ -127,7 +131,6 @@ class EventResolver {
   [[nodiscard]] double applied_force(const HybridPoint& point, int c) const;
   /// Velocity at which the contact point of a compliant contact slides in this direction.
   [[nodiscard]] double slide_velocity(const HybridPoint& point, int c, double direction) const;
-  [[nodiscard]] double contact_displacement(int c, const double* x) const;
   [[nodiscard]] const double* own_states(const HybridPoint& point, int c) const;
   void record(const HybridPoint& point, int contact, EventKind kind, ContactMode before);
   void record_change(const HybridPoint& point, int contact, ContactMode before);
@@ -143,6 +146,7 @@ class EventResolver {
   bool clearances_only_ = true;
   bool lone_spring_ = false;  ///< one contact, compliant
   std::vector<int> slides_as_;
+  std::vector<std::pair<int, int>> beside_;  ///< a rigid contact, one behind a spring at the same place
   int max_events_per_window_;
   double zeno_window_;
   std::vector<Event> events_;

@@ -113,6 +113,20 @@ void EventResolver::turn_together(HybridPoint& point, int c) const {
     if (slides_as(d) == slides_as(c) && point.modes[static_cast<std::size_t>(d)] == before) turn_compliant(point, d);
 }
 
+void EventResolver::turn_beside(HybridPoint& point) const {
+  for (const auto& [rigid, sprung] : beside_) {
+    const auto r = static_cast<std::size_t>(rigid), s = static_cast<std::size_t>(sprung);
+    const ContactMode leads = point.modes[r];
+    ContactMode& follows = point.modes[s];
+    const double sign = sign_of(leads), force = laws_[s].stiffness * point.internal(internal_[s]);
+    if (leads != follows && follows != ContactMode::kStick)
+      turn_compliant(point, sprung);
+    else if (follows == ContactMode::kStick && point.multiplicity[r] > 0 &&
+             sign * force >= laws_[s].limit(sign) * (1.0 - kTogether))
+      follows = leads;
+  }
+}
+
 bool EventResolver::has_event(int c) const {
   return std::any_of(events_.begin(), events_.end(), [c](const Event& e) { return e.contact == c; });
 }
@@ -174,6 +188,7 @@ void EventResolver::settle_coupled(HybridPoint& point, const Reached& reached) {
   Eigen::VectorXd applied(model_.contacts);
   for (int c = 0; c < model_.contacts; ++c) applied(c) = applied_force(point, c);
   point.assign(resolve(instant(point, laws, applied), point.modes, at_rest, released));
+  turn_beside(point);
 
   if (contact < 0) record(point, -1, EventKind::kDriveCorner, ContactMode::kStick);
   for (std::size_t c = 0; c < point.modes.size(); ++c)

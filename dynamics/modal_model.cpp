@@ -323,6 +323,8 @@ ModalModel with_given_forces(const ModalModel& model) {
   m.load = model.load;
   m.velocity_row.resize(2 * m.np, m.contacts);
   m.velocity_row << model.velocity_row, model.force_row;
+  m.displacement_row = Eigen::MatrixXd::Zero(2 * m.np, m.contacts);
+  m.displacement_row.leftCols(model.contacts) = model.displacement_row;
   m.fastest = model.fastest;
   m.proportional = model.proportional;
   m.omega = model.omega;

@@ -93,7 +93,7 @@ void separate_rigid_modes(const Eigen::VectorXd& omega, Eigen::MatrixXd& shapes,
 [[nodiscard]] ModalModel build_modal_model(const HybridSystem& system, bool rows_only);
 
 /// The same pairs with the directions of a drive's forces after the contacts, as contacts whose force is given: what a
-/// step sees. Without displacements, offsets and mode shapes.
+/// step sees. Without the drive's displacements, offsets and mode shapes.
 [[nodiscard]] ModalModel with_given_forces(const ModalModel& model);
 
 }  // namespace slipmode::dynamics

@@ -183,30 +183,29 @@ Eigen::VectorXd start_internal(const HybridSystem& system, const State& start) {
 }  // namespace
 
 FlowMethod choose_method(const HybridSystem& system, FlowMethod asked) {
-  int special = 0, nonlinear = 0;  // the last such contact, counted from 1
+  int elaborate = 0, oscillates = 0, nonlinear = 0;  // the last such contact, counted from 1
   for (std::size_t c = 0; c < system.contacts().size(); ++c) {
     const ContactForces law = contact_forces(system.contacts()[c]);
-    if (law.needs_closed_form()) special = static_cast<int>(c) + 1;
-    if (!is_piecewise_linear(law.kind)) nonlinear = static_cast<int>(c) + 1;
+    const int number = static_cast<int>(c) + 1;
+    if (law.is_elaborate()) elaborate = number;
+    if (friction::LoadForm(system.contacts()[c]).oscillates()) oscillates = number;
+    if (!is_piecewise_linear(law.kind)) nonlinear = number;
   }
   const auto name = [](int contact) { return "contact " + std::to_string(contact); };
-  require_or_say(special == 0 || nonlinear == 0, [&] {
-    return name(special) +
-           " has a contact spring, a clearance, a tilt or a varying load, for which "
-           "all laws must be piecewise linear, but " +
+  require_or_say(oscillates == 0 || nonlinear == 0, [&] {
+    return name(oscillates) + " has a normal oscillator, for which all laws must be piecewise linear, but " +
            name(nonlinear) + " has a force that depends on the sliding speed";
   });
-  require_or_say(special == 0 || asked != FlowMethod::kCollocation, [&] {
-    return name(special) + " has a contact spring, a clearance, a tilt or a varying load: use the closed-form flow";
-  });
+  require_or_say(oscillates == 0 || asked != FlowMethod::kCollocation,
+                 [&] { return name(oscillates) + " has a normal oscillator: use the closed-form flow"; });
   require_or_say(nonlinear == 0 || asked != FlowMethod::kClosedForm, [&] {
     return "the closed-form flow needs piecewise-linear laws, but " + name(nonlinear) +
            " has a force that depends on the sliding speed; use the collocation flow, or Coulomb's law";
   });
   if (asked != FlowMethod::kAutomatic) return asked;
   const bool forced = system.drive().force() != nullptr;
-  if (special > 0 || (nonlinear == 0 && (forced || system.size() <= kClosedFormSize))) return FlowMethod::kClosedForm;
-  return FlowMethod::kCollocation;
+  const bool small = system.size() <= kClosedFormSize;
+  return nonlinear == 0 && (elaborate > 0 || forced || small) ? FlowMethod::kClosedForm : FlowMethod::kCollocation;
 }
 
 namespace {

@@ -1,31 +1,16 @@
 #pragma once
 
+#include <slipmode/dynamics/contact_role.hpp>
 #include <slipmode/dynamics/lazy_levels.hpp>
 #include <slipmode/dynamics/modal_model.hpp>
 #include <slipmode/dynamics/nodes.hpp>
 #include <slipmode/dynamics/pair_motion.hpp>
-#include <slipmode/friction/load_form.hpp>
 
 #include <Eigen/Core>
 #include <array>
 #include <vector>
 
 namespace slipmode::dynamics {
-
-/// What a contact is to the linear equations of a regime.
-enum class ContactRole : std::int8_t {
-  kSliding,          ///< a constant force, whatever its sign
-  kHeld,             ///< sticks: its velocity is the drive's
-  kSprung,           ///< sticks behind its contact spring
-  kSlidingNegative,  ///< slides with a force proportional to a normal load that varies
-  kSlidingPositive,
-  kSeparated,  ///< no force; only where the normal load varies
-  kGap,        ///< no force, between the stops of a clearance
-  kLeftStop,   ///< pressed by the stop's stiffness and damping
-  kRightStop,
-  kLeftFlight,  ///< no force, beyond the gap of a stop that has let go
-  kRightFlight,
-};
 
 /// A scalar of a regime that must keep its sign: what guards are made of.
 struct RegimeOutput {
@@ -40,14 +25,6 @@ struct RegimeOutput {
   };
   int contact = 0;
   Kind kind = Kind::kSpeed;
-};
-
-/// How the force of a contact that is not held answers its own motion, about what is constant:
-/// λ = stiffness (d − y) − damping ẏ + friction (z ζ + z_rate ζ̇), y = wᵀq, d the way of the drive where it is followed.
-struct ContactAnswer {
-  double stiffness = 0.0, damping = 0.0;
-  double friction = 0.0;  ///< ±μ_k, sliding under a load that varies
-  friction::LoadForm load;
 };
 
 /// The structure with its contacts in certain roles, as decoupled pairs driven by inputs that are polynomials of time

@@ -102,7 +102,7 @@ void StepTables::make(NodeStates& out, int level) const {
     propagate_to(out.rule.node(static_cast<Eigen::Index>(j)), h, out.node[j]);
 }
 
-void StepTables::make(Collocation& out, int level) const {
+void StepTables::make(const Eigen::MatrixXd& rows, int level, AtNodes& out) const {
   const auto& m = acted_on_;
   const auto np = m.np;
   const int nc = m.contacts;
@@ -110,13 +110,13 @@ void StepTables::make(Collocation& out, int level) const {
   const auto& node = radau().node;
 
   out.free.resize(kNodes, 2 * np * nc);
-  const Eigen::MatrixXd at_nodes = exponentials(h * node);
+  const Eigen::MatrixXd free = exponentials(h * node);
   for (int c = 0; c < nc; ++c) {
-    const auto first = m.velocity_row.col(c).head(np).asDiagonal(),
-               second = m.velocity_row.col(c).tail(np).asDiagonal();
-    const auto rows = at_nodes.topRows(2 * np), next = at_nodes.bottomRows(2 * np);
-    out.free.middleCols(2 * np * c, np) = (first * rows.topRows(np) + second * next.topRows(np)).transpose();
-    out.free.middleCols(2 * np * c + np, np) = (first * rows.bottomRows(np) + second * next.bottomRows(np)).transpose();
+    const auto first = rows.col(c).head(np).asDiagonal(), second = rows.col(c).tail(np).asDiagonal();
+    const auto upper = free.topRows(2 * np), lower = free.bottomRows(2 * np);
+    out.free.middleCols(2 * np * c, np) = (first * upper.topRows(np) + second * lower.topRows(np)).transpose();
+    out.free.middleCols(2 * np * c + np, np) =
+        (first * upper.bottomRows(np) + second * lower.bottomRows(np)).transpose();
   }
 
   // The kernels g_cᵀ e^{Gs} b_d (and the load's) are smooth scalars: sampled once, then read where quadrature wants
@@ -129,8 +129,8 @@ void StepTables::make(Collocation& out, int level) const {
   for (int c = 0; c < nc; ++c)
     for (int d = 0; d <= nc; ++d) {
       const Eigen::VectorXd input = d < nc ? m.input.col(d) : m.load;
-      ends.col(c * (nc + 1) + d) << m.velocity_row.col(c).head(np).replicate(2, 1).cwiseProduct(input),
-          m.velocity_row.col(c).tail(np).replicate(2, 1).cwiseProduct(input);
+      ends.col(c * (nc + 1) + d) << rows.col(c).head(np).replicate(2, 1).cwiseProduct(input),
+          rows.col(c).tail(np).replicate(2, 1).cwiseProduct(input);
     }
   const Eigen::MatrixXd kernel_samples = exponentials(at).transpose() * ends;
 
@@ -152,20 +152,24 @@ void StepTables::make(Collocation& out, int level) const {
       }
     }
   }
+}
+
+void StepTables::make(Collocation& out, int level) const {
+  make(acted_on_.velocity_row, level, static_cast<AtNodes&>(out));
   const int own = kNodes * model_.contacts;
   out.own_kernel = out.kernel.topLeftCorner(own, own);
   if (own > 0) out.kernel_norm = out.own_kernel.cwiseAbs().rowwise().sum().maxCoeff();
   out.kernel_inverse = out.own_kernel.inverse();
 }
 
-void Collocation::free_velocities(const double* x, Eigen::Index contacts, double* out) const {
+void AtNodes::without_forces(const double* x, Eigen::Index contacts, double* out) const {
   const Eigen::Index columns = free.cols() / std::max<Eigen::Index>(load.cols(), 1);
   for (Eigen::Index c = 0; c < contacts; ++c)
     kernels::kernels().node_sums(free.data() + kNodes * columns * c, x, columns, load.col(c).data(), out + kNodes * c);
 }
 
 void Collocation::velocities(const double* x, const double* forces, double* out) const {
-  free_velocities(x, load.cols(), out);
+  without_forces(x, load.cols(), out);
   Eigen::Map<Eigen::VectorXd>(out, kernel.rows()).noalias() +=
       kernel * Eigen::Map<const Eigen::VectorXd>(forces, kernel.rows());
 }

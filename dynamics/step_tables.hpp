@@ -27,18 +27,23 @@ struct Propagator {
   }
 };
 
-/// The scalar Volterra equations of a step: contact velocities at the nodes,
-/// w = free x(0) + load + kernel λ, all exact for λ of degree 7. Contacts are those of StepTables::acted_on.
-struct Collocation {
-  Eigen::MatrixXd free;    ///< rows are nodes: g_cᵀ e^{G c_j h}; contact c in columns [2np c, 2np (c+1)) [8 x 2np nc]
+/// A scalar of each contact at the nodes of a step, free x(0) + load + kernel λ: exact for λ of degree 7. Contacts are
+/// those of StepTables::acted_on.
+struct AtNodes {
+  Eigen::MatrixXd free;    ///< rows are nodes: rowᵀ e^{G c_j h}; contact c in columns [2np c, 2np (c+1)) [8 x 2np nc]
   Eigen::MatrixXd load;    ///< [8 x nc]
   Eigen::MatrixXd kernel;  ///< [8nc x 8nc]
+
+  /// Without the forces' share, of the first so many contacts [8nc].
+  void without_forces(const double* x, Eigen::Index contacts, double* out) const;
+};
+
+/// The scalar Volterra equations of a step: contact velocities w at the nodes.
+struct Collocation : AtNodes {
   Eigen::MatrixXd own_kernel;      ///< of what are contacts, without a drive's forces
   double kernel_norm = 0.0;        ///< largest row sum of |own_kernel|
   Eigen::MatrixXd kernel_inverse;  ///< of own_kernel: used when every contact sticks
 
-  /// w without the forces' share, of the first so many contacts [8nc].
-  void free_velocities(const double* x, Eigen::Index contacts, double* out) const;
   /// w [8nc].
   void velocities(const double* x, const double* forces, double* out) const;
 };
@@ -108,6 +113,10 @@ class StepTables {
   [[nodiscard]] const Collocation& collocation(int level) const {
     return collocations_.get(level, [&](Collocation& out) { make(out, level); });
   }
+  /// The contacts' displacements wᵀq; zero along a drive's forces.
+  [[nodiscard]] const AtNodes& displacements(int level) const {
+    return displacements_.get(level, [&](AtNodes& out) { make(acted_on_.displacement_row, level, out); });
+  }
   [[nodiscard]] const StepBounds& bounds(int level) const {
     return bounds_.get(level, [&](StepBounds& out) { make(out, level); });
   }
@@ -125,6 +134,7 @@ class StepTables {
  private:
   void make(Propagator& out, int level) const;
   void make(Collocation& out, int level) const;
+  void make(const Eigen::MatrixXd& rows, int level, AtNodes& out) const;
   void make(NodeStates& out, int level) const;
   void make(LossForm& out, int level) const;
   void make(StepBounds& out, int level) const;
@@ -141,6 +151,7 @@ class StepTables {
   bool loaded_;
   LazyLevels<Propagator, kLevels> propagators_;
   LazyLevels<Collocation, kLevels> collocations_;
+  LazyLevels<AtNodes, kLevels> displacements_;
   LazyLevels<LossForm, kLevels> losses_;
   LazyLevels<NodeStates, kLevels> node_states_;
   LazyLevels<StepBounds, kLevels> bounds_;

@@ -30,19 +30,27 @@ Eigen::Index rank_of(const std::vector<Eigen::VectorXd>& directions) {
   return qr.rank();
 }
 
-/// Contacts that may share a place are independent of the others, and these of each other.
+/// Contacts that may not share a place are independent of one another.
 void check_independence(const std::vector<friction::Contact>& contacts) {
-  std::vector<Eigen::VectorXd> all, shared;
+  std::vector<Eigen::VectorXd> rigid;
+  for (const friction::Contact& contact : contacts)
+    if (friction::sticks_rigidly(friction::kind(contact.law))) rigid.push_back(contact.direction.normalized());
+  std::vector<Eigen::VectorXd> apart = rigid;
+  const auto check = [&] {
+    if (const Eigen::Index rank = rank_of(apart); rank < std::ssize(apart))
+      throw InvalidInput("the directions of " + std::to_string(apart.size()) +
+                         " contacts that stick rigidly, or have bristles beside such, are linearly dependent (rank " +
+                         std::to_string(rank) +
+                         "): two contacts act on the same degree of freedom, or a reduced "
+                         "basis has fewer vectors than contacts; merge them or keep more modes");
+  };
+  check();
   for (const friction::Contact& contact : contacts) {
-    all.push_back(contact.direction.normalized());
-    if (friction::can_share_place(friction::kind(contact.law))) shared.push_back(all.back());
+    if (rigid.empty() || friction::kind(contact.law) != friction::LawKind::kBristle) continue;
+    apart = rigid;
+    apart.push_back(contact.direction.normalized());
+    check();
   }
-  const Eigen::Index rank = rank_of(all);
-  if (rank < std::ssize(all) - std::ssize(shared) + rank_of(shared))
-    throw InvalidInput("the directions of the " + std::to_string(contacts.size()) +
-                       " contacts are linearly dependent (rank " + std::to_string(rank) +
-                       "): two contacts act on the same degree of freedom, or a reduced "
-                       "basis has fewer vectors than contacts; merge them or keep more modes");
 }
 
 }  // namespace

@@ -43,8 +43,8 @@ struct ContactForces {
   [[nodiscard]] bool sticks() const { return friction::sticks(kind); }
   /// Piecewise linear, and its force in slip constant: what the collocation flow takes without a law to solve.
   [[nodiscard]] bool is_constant() const { return kind == LawKind::kFree || kind == LawKind::kConstant; }
-  /// Has what only the closed-form flow provides: a contact spring, a clearance, a load that varies, a tilted slider.
-  [[nodiscard]] bool needs_closed_form() const {
+  /// Has a contact spring, a clearance, a load that varies or a tilted slider. Such laws are piecewise linear.
+  [[nodiscard]] bool is_elaborate() const {
     return kind == LawKind::kCompliant || kind == LawKind::kClearance || varies || mu_s[0] != mu_s[1] ||
            mu_k[0] != mu_k[1];
   }

@@ -31,10 +31,11 @@ enum class LawKind : std::uint8_t {
   return kind == LawKind::kCompliant || kind == LawKind::kBristle;
 }
 
-/// Several contacts of such laws may act on one displacement: behind springs and at stops each one's force follows from
-/// its own state, whatever acts beside it. What sticks rigidly must be told apart by its motion.
-[[nodiscard]] constexpr bool can_share_place(LawKind kind) {
-  return kind == LawKind::kCompliant || kind == LawKind::kClearance;
+/// Two contacts of these laws may act on one displacement: their forces follow from its motion or from states of their
+/// own. Of two that stick rigidly neither could be told, and beside one the direction of bristles could not.
+[[nodiscard]] constexpr bool can_share_place(LawKind a, LawKind b) {
+  const auto told_by_motion = [](LawKind kind) { return sticks_rigidly(kind) || kind == LawKind::kBristle; };
+  return !(sticks_rigidly(a) && told_by_motion(b)) && !(sticks_rigidly(b) && told_by_motion(a));
 }
 
 /// How fast a contact and what it is attached to can move.

@@ -92,13 +92,16 @@ bool same_place(const ContactPlace& a, const ContactPlace& b, const Scene& scene
 }
 
 void check_alone(TomlReader& in, const ContactSpec& own, const std::vector<ContactSpec>& others, const Scene& scene) {
-  const auto can_share = [](const ContactSpec& spec) { return friction::can_share_place(friction::kind(spec.law)); };
   for (std::size_t other = 0; other < others.size(); ++other) {
-    if (!same_place(others[other].at, own.at, scene) || (can_share(own) && can_share(others[other]))) continue;
+    if (!same_place(others[other].at, own.at, scene) ||
+        friction::can_share_place(friction::kind(own.law), friction::kind(others[other].law)))
+      continue;
     const bool pair = std::holds_alternative<Between>(own.at);
     const char* where = pair ? "pair of masses" : scene.beam() == nullptr ? "mass" : "place";
     in.fail(pair ? "between" : "at", fmt::format("contact.{} is on this {} already", other, where),
-            fmt::format("one contact per {}, or all of them \"compliant\" or \"clearance\"", where));
+            fmt::format("one per {} of those that stick rigidly (\"coulomb\", \"stribeck\", \"table\"), and beside one "
+                        "no bristles (\"dahl\", \"lugre\")",
+                        where));
   }
 }
 

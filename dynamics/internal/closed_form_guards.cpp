@@ -64,31 +64,14 @@ void ClosedFormFlow::set_guards() {
 
 void ClosedFormFlow::add_clearance_guards(const Guard& of_output, RegimeOutput::Kind kind) {
   const auto i = static_cast<std::size_t>(of_output.contact);
-  const friction::Clearance& law = resolver_.laws()[i].clearance;
-  const ContactMode mode = point_.modes[i];
-  const auto add = [&](double sign, double constant, ContactMode next) {
+  for (const StopGuard& own : stop_guards(resolver_.laws()[i].clearance, point_.modes[i])) {
+    if (own.press != (kind == RegimeOutput::Kind::kPress)) continue;
     Guard guard = of_output;
     guard.kind = GuardKind::kStop;
-    guard.sign = sign;
-    guard.constant = constant;
-    guard.next = next;
+    guard.sign = own.sign;
+    guard.constant = own.constant;
+    guard.next = own.next;
     guards_.push_back(guard);
-  };
-  const bool left = mode == ContactMode::kLeftStop || mode == ContactMode::kLeftFlight;
-  if (mode == ContactMode::kGap) {
-    if (law.right) add(-1.0, law.right->gap, ContactMode::kRightStop);
-    if (law.left) add(1.0, law.left->gap, ContactMode::kLeftStop);
-  } else if (kind == RegimeOutput::Kind::kDisplacement) {
-    if (left)
-      add(-1.0, -law.left->gap, ContactMode::kGap);
-    else
-      add(1.0, -law.right->gap, ContactMode::kGap);
-  } else if (mode == ContactMode::kLeftFlight || mode == ContactMode::kRightFlight) {
-    add(-1.0, 0.0, left ? ContactMode::kLeftStop : ContactMode::kRightStop);
-  } else {
-    // Without damping the force vanishes where the gap begins: there is no flight beyond it.
-    const bool damped = (left ? law.left : law.right)->damping > 0.0;
-    add(1.0, 0.0, !damped ? ContactMode::kGap : left ? ContactMode::kLeftFlight : ContactMode::kRightFlight);
   }
 }
 

@@ -14,11 +14,11 @@ void CollocationFlow::start_bristles() {
     point_.modes[i] = s < 0.0 ? ContactMode::kSlipNegative : ContactMode::kSlipPositive;
   }
   // What they pull with, the resolver takes for given.
-  bristle_force_at(begin_, point_.modes, point_.x.data(), point_.internal, point_.force);
+  forces_at(begin_, point_.modes, point_.x.data(), point_.internal, point_.force);
 }
 
 void CollocationFlow::refresh_bristles() {
-  bristle_force_at(point_.time, point_.modes, point_.x.data(), point_.internal, point_.force);
+  forces_at(point_.time, point_.modes, point_.x.data(), point_.internal, point_.force);
   for (int c = 0; c < nc_; ++c) {
     if (!bristled(c)) continue;
     const double s = drive().velocity(point_.time) - resolver_.contact_velocity(c, point_.x.data());
@@ -35,27 +35,30 @@ void CollocationFlow::start_from_rest(int c) {
   if (order != 2) point_.modes[i] = order == 1 ? ContactMode::kSlipPositive : ContactMode::kSlipNegative;
 }
 
-Eigen::VectorXd CollocationFlow::internal_within(double share) const {
+Eigen::VectorXd CollocationFlow::internal_within(double tau, const double* x) const {
   Eigen::VectorXd internal = internal_begin_;
+  const double share = tau / tables_.step(step_level_);
   for (int c = 0; c < nc_; ++c) {
+    const auto i = static_cast<std::size_t>(c);
+    if (laws()[i].kind == LawKind::kCompliant) internal(own_at_[i]) = own_force(c, tau, x) / laws()[i].stiffness;
     if (!bristled(c)) continue;
-    double& z = internal(bristle_at_[static_cast<std::size_t>(c)]);
+    double& z = internal(own_at_[i]);
     z = share < 1.0 ? bristle_within(z, bristle_nodes_.segment<kNodes>(kNodes * c), share)
                     : bristle_nodes_(kNodes * c + kNodes - 1);
   }
   return internal;
 }
 
-void CollocationFlow::bristle_force_at(double t, const std::vector<ContactMode>& modes, const double* x,
-                                       const Eigen::VectorXd& internal, Eigen::VectorXd& out_force) const {
+void CollocationFlow::forces_at(double t, const std::vector<ContactMode>& modes, const double* x,
+                                const Eigen::VectorXd& internal, Eigen::VectorXd& out_force) const {
   std::vector<bool> stuck(modes.size());
   for (int c = 0; c < nc_; ++c) {
     const auto i = static_cast<std::size_t>(c);
-    stuck[i] = modes[i] == ContactMode::kStick;
+    stuck[i] = held(modes, c);
     const double s = drive().velocity(t) - resolver_.contact_velocity(c, x);
     if (bristled(c))
-      out_force(c) = laws()[i].bristle.force(sign_of(modes[i]), s, internal(bristle_at_[i]));
-    else if (!stuck[i])
+      out_force(c) = laws()[i].bristle.force(sign_of(modes[i]), s, internal(own_at_[i]));
+    else if (!stuck[i] && !elaborate(c))
       out_force(c) = laws()[i].sliding(sign_of(modes[i]), s);
   }
   stick_forces(resolver_.instant(t, x), stuck, out_force);
@@ -66,7 +69,7 @@ void CollocationFlow::collocate_bristles(double h) {
     if (!bristled(c)) continue;
     const auto i = static_cast<std::size_t>(c);
     bristle_nodes_.segment<kNodes>(kNodes * c) =
-        solve_bristle(laws()[i].bristle, sign_of(point_.modes[i]), internal_begin_(bristle_at_[i]), h,
+        solve_bristle(laws()[i].bristle, sign_of(point_.modes[i]), internal_begin_(own_at_[i]), h,
                       drive_nodes_.segment<kNodes>(kNodes * c) - velocity_.segment<kNodes>(kNodes * c))
             .z;
   }
@@ -117,7 +120,7 @@ void CollocationFlow::settle_bristle(int c, bool touching) {
         before == ContactMode::kSlipPositive ? ContactMode::kSlipNegative : ContactMode::kSlipPositive;
     point_.modes[i] = after;
     start_from_rest(c);
-    bristle_force_at(point_.time, point_.modes, point_.x.data(), point_.internal, point_.force);
+    forces_at(point_.time, point_.modes, point_.x.data(), point_.internal, point_.force);
   } else {
     point_.multiplicity[i] = 2;
   }

@@ -17,7 +17,7 @@ CollocationFlow::BristleDefect CollocationFlow::bristle_defect(int c, double rea
   alignas(64) const RadauTables::Vector8 s =
       sign * (drive_nodes_.segment<kNodes>(kNodes * c) - velocity_.segment<kNodes>(kNodes * c));
   alignas(64) const RadauTables::Vector8 z = sign * bristle_nodes_.segment<kNodes>(kNodes * c);
-  const double s_begin = guard_start_(c), z_begin = sign * internal_begin_(bristle_at_[i]);
+  const double s_begin = guard_start_(c), z_begin = sign * internal_begin_(own_at_[i]);
   const ChebyshevSeries speed(kernels_, s_begin, s), bristle(kernels_, z_begin, z);
   RadauTables::Vector8 rate;
   for (int j = 0; j < kNodes; ++j) rate(j) = law.rate(1.0, s(j), z(j));

@@ -26,9 +26,9 @@ constexpr double kGrowthAtStart = 10.0;
 constexpr int kProofHalvings = 3;
 /// A step spans at most this phase of a shaker, so that all quadratures resolve it.
 constexpr double kLargestDrivePhase = 2.0;
+
 /// Of a force that is larger than friction by more than this, errors are held against the force.
 constexpr double kLeastForceShare = 1e-4;
-
 /// Of a step at once.
 constexpr int kMostHalvings = 4;
 
@@ -89,8 +89,9 @@ CollocationFlow::CollocationFlow(const HybridSystem& system, const StepTables& t
       coarsest_(coarsest_level(system.drive(), tables, resolver_.laws(), options.tolerance)),
       newton_change_(std::min(1e-3, std::sqrt(kNewtonShare * options.tolerance))),
       start_level_(static_cast<std::size_t>(nc_) + 1, std::max(3, coarsest_)) {
-  for (auto* v : {&free_, &velocity_, &drive_nodes_, &bristle_nodes_, &guard_forms_})
+  for (auto* v : {&free_, &velocity_, &drive_nodes_, &bristle_nodes_, &guard_forms_, &free_way_, &displacement_})
     *v = Eigen::VectorXd::Zero(kNodes * nc_);
+  way_nodes_ = Eigen::VectorXd::Zero(kNodes);
   forces_ = Eigen::VectorXd::Zero(kNodes * (nc_ + given_));
   statistics_.stick_time.assign(static_cast<std::size_t>(nc_), 0.0);
   for (std::size_t c = 0; c < laws().size(); ++c) {
@@ -102,19 +103,26 @@ CollocationFlow::CollocationFlow(const HybridSystem& system, const StepTables& t
     const double growth = laws()[c].onset_slope() * model_.mobility(i, i) * tables_.step(0);
     slow_start_level_.push_back(growth > kGrowthAtStart ? std::ilogb(growth / kGrowthAtStart) + 1 : 0);
     over_limit_.push_back(1.0 / laws()[c].static_limit);
+    if (laws()[c].static_limit > 0.0) least_limit_ = std::min(least_limit_, laws()[c].static_limit);
+    elaborate_.push_back(laws()[c].is_elaborate());
   }
+  own_forces_.resize(laws().size());
   for (int c = 0; c < nc_; ++c) {
     any_bristle_ |= bristled(c);
-    bristle_at_.push_back(system.internal_begin(c));
+    any_elaborate_ |= elaborate(c);
+    own_at_.push_back(system.internal_begin(c));
   }
-  if (any_bristle_ && point_.internal.size() == 0) point_.internal = Eigen::VectorXd::Zero(system.internal_size());
+  if (point_.internal.size() == 0) point_.internal = Eigen::VectorXd::Zero(system.internal_size());
   internal_begin_ = point_.internal;
   if (any_bristle_) start_bristles();
   resolver_.start(point_);
   if (any_bristle_) refresh_bristles();
   guard_start_ = guard_least_ = Eigen::VectorXd::Zero(nc_);
   prepare_proof();
-  single_ = nc_ == 1 && !any_bristle_ && laws()[0].characteristic == nullptr;
+  step_modes_ = point_.modes;
+  internal_begin_ = point_.internal;
+  if (any_elaborate_) set_own_forces();
+  single_ = nc_ == 1 && !any_bristle_ && !any_elaborate_ && laws()[0].characteristic == nullptr;
   restart_steps();
 }
 
@@ -122,6 +130,7 @@ bool CollocationFlow::step(double t_limit) {
   resolver_.clear();
   events_.clear();
   begin_ = point_.time;
+  if (any_elaborate_) set_own_forces();
   x_begin_.swap(point_.x);
   internal_begin_ = point_.internal;
   step_modes_ = point_.modes;
@@ -149,12 +158,11 @@ bool CollocationFlow::step(double t_limit) {
           "the contact forces could not be resolved by any step size at t = " + std::to_string(begin_), begin_,
           x_begin_, error);
     h = tables_.step(level);
-    const Collocation& table = tables_.collocation(level);
     guess_forces(level, retry);
     if (given_ > 0) give_forces(level);
-    solved_ = solve_forces(table, h);
+    solved_ = solve_forces(level);
     step_level_ = level;
-    if (any_bristle_ && solved_ && turn_resting_bristles()) solved_ = solve_forces(table, h);
+    if (any_bristle_ && solved_ && turn_resting_bristles()) solved_ = solve_forces(level);
     if (!solved_) {
       ++level;
       continue;
@@ -176,7 +184,8 @@ bool CollocationFlow::step(double t_limit) {
       level += halvings(error / tolerance);
       continue;
     }
-    if (any_bristle_ && tangents_.size() > 0 && !smallest && h * tangent_rate() > largest_phase(options_.tolerance)) {
+    if ((any_bristle_ || any_elaborate_) && tangents_.size() > 0 && !smallest &&
+        h * tangent_rate() > largest_phase(options_.tolerance)) {
       ++level;
       continue;
     }
@@ -251,26 +260,36 @@ bool CollocationFlow::step(double t_limit) {
   }
   fresh_ = false;
   std::fill(point_.multiplicity.begin(), point_.multiplicity.end(), 0);
+  touched_ = -1;
   if (tau < h) {
     const RadauTables::Vector8 last = nodes_.lagrange(tau / h);
     for (int c = 0; c < nc_; ++c) point_.force(c) = forces_.segment<kNodes>(kNodes * c).dot(last);
   } else {
     for (int c = 0; c < nc_; ++c) point_.force(c) = forces_(kNodes * c + kNodes - 1);
   }
-  if (any_bristle_) {
-    for (int c = 0; c < nc_; ++c)  // as long as its speed is rounding, a bristle's direction means nothing
+  if (any_bristle_ || any_elaborate_) {
+    for (int c = 0; c < nc_; ++c) {
+      if (elaborate(c) && !held(point_.modes, c)) point_.force(c) = own_force(c, tau, point_.x.data());
+      // As long as its speed is rounding, a bristle's direction means nothing.
       if (bristled(c) && unmoved(c)) point_.multiplicity[static_cast<std::size_t>(c)] = 2;
-    point_.internal = internal_within(tau / h);
-    bristle_force_at(point_.time, point_.modes, point_.x.data(), point_.internal, point_.force);
+    }
+    point_.internal = internal_within(tau, point_.x.data());
+    forces_at(point_.time, point_.modes, point_.x.data(), point_.internal, point_.force);
   }
   if (!at_guard && !(corner && point_.time == limit)) return false;
 
   const int contact = at_guard ? guard.contact : -1;
-  const Eigen::VectorXd force_before = tangents_.size() > 0 ? point_.force : Eigen::VectorXd();
+  const Eigen::VectorXd rate_before = tangents_.size() > 0 ? point_rate() : Eigen::VectorXd();
   if (at_guard && bristled(contact)) {
     settle_bristle(contact, guard.touching);
   } else {
-    resolver_.settle(point_, {contact, guard.touching});
+    Reached reached{contact, guard.touching};
+    if (at_guard && guard.own) {
+      reached.kind = guard.own->kind;
+      reached.next = guard.own->next;
+      if (guard.touching) touched_ = contact;
+    }
+    resolver_.settle(point_, reached);
     events_ = resolver_.events();
     if (any_bristle_) {
       refresh_bristles();
@@ -280,16 +299,24 @@ bool CollocationFlow::step(double t_limit) {
   statistics_.events += static_cast<std::int64_t>(events_.size());
   if (!guard.touching) {
     restart_steps();
-    if (tangents_.size() > 0) salt_tangents(force_before, contact);
+    if (tangents_.size() > 0) salt_tangents(rate_before, guard);
   }
   return true;
+}
+
+double CollocationFlow::over_scale(int c) const {
+  const auto i = static_cast<std::size_t>(c);
+  if (laws()[i].kind != LawKind::kClearance) return over_limit_[i];
+  const double most = forces_.segment<kNodes>(kNodes * c).cwiseAbs().maxCoeff();
+  if (most == 0.0) return 0.0;
+  return 1.0 / (std::isfinite(least_limit_) ? std::max(least_limit_, kLeastForceShare * most) : most);
 }
 
 double CollocationFlow::rounding_of_sticks() const {
   constexpr double kRoundsBy = 64.0 * std::numeric_limits<double>::epsilon();
   double most = 0.0;
   for (int c = 0; c < nc_; ++c)
-    if (point_.modes[static_cast<std::size_t>(c)] == ContactMode::kStick)
+    if (held(point_.modes, c))
       most = std::max(most,
                       velocity_scale(c, x_begin_) / model_.mobility(c, c) * over_limit_[static_cast<std::size_t>(c)]);
   return kRoundsBy * most * over_top_;
@@ -376,12 +403,10 @@ void CollocationFlow::evaluate(double t, Eigen::VectorXd& out_x, Eigen::VectorXd
   within_.begin(x_begin_.data(), forces_.data(), step_level_);
   within_.state(tau, out_x.data());
   resolver_.hold(t, step_modes_, out_x.data());
-  if (any_bristle_) {
-    out_force.resize(nc_);
-    bristle_force_at(t, step_modes_, out_x.data(), internal_within(tau / h), out_force);
-  } else {
-    out_force = resolver_.forces(t, step_modes_, out_x.data());
-  }
+  out_force.resize(nc_);
+  for (int c = 0; c < nc_; ++c)
+    if (elaborate(c) && !held(step_modes_, c)) out_force(c) = own_force(c, tau, out_x.data());
+  forces_at(t, step_modes_, out_x.data(), internal_within(tau, out_x.data()), out_force);
 }
 
 }  // namespace slipmode::dynamics

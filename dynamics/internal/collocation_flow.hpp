@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace slipmode::dynamics {
@@ -16,7 +17,8 @@ namespace slipmode::dynamics {
 /// and step, whatever n is; the linear part is exact. In slip the eight equations λ_i = law(w_i) are solved by Newton;
 /// in stick the eight forces that hold wᵀq̇ = v_drive. Slip and stick share the modal basis, so an event costs no change
 /// of basis. Bristles (Dahl, LuGre) are collocated at the same nodes and eliminated from the eight equations; their one
-/// event is the reversal of the sliding speed. Theory: docs/theory/flow.md, docs/theory/bristle-laws.md.
+/// event is the reversal of the sliding speed. Contact springs, stops and loads that vary with the contact's way are
+/// eight more equations, linear in its motion. Theory: docs/theory/flow.md, docs/theory/bristle-laws.md.
 ///
 /// A step ends at the time asked, at the end of a tabulated step, or at an event, whichever comes first. The last step
 /// stays readable (`evaluate`) until the next one.
@@ -56,22 +58,37 @@ class CollocationFlow {
   /// Speeds below this share of the velocities at play are rounding.
   static constexpr double kUnmoved = 1e-14;
 
+  /// A scalar of an elaborate contact that must stay positive: constant + y wᵀq + v wᵀq̇ + force λ + drive V.
+  struct OwnGuard {
+    GuardKind kind = GuardKind::kFriction;
+    ContactMode next = ContactMode::kStick;  ///< of a clearance
+    double constant = 0.0, y = 0.0, v = 0.0, force = 0.0, drive = 0.0;
+
+    [[nodiscard]] double value(double at_y, double at_v, double at_force, double at_drive) const {
+      return constant + y * at_y + v * at_v + force * at_force + drive * at_drive;
+    }
+  };
+
   struct Guarded {
     double theta = 1.0;  ///< fraction of the step at which the first guard is reached
     int contact = -1;
     bool touching = false;
+    std::optional<OwnGuard> own = {};  ///< of an elaborate contact
+    int order = 0;                     ///< of the zero that guard starts with
   };
 
   void guess_forces(int level, bool retry);
   [[nodiscard]] int foreseen_level(int level) const;
   /// A characteristic at this speed is steeper than a step of the level resolves.
   [[nodiscard]] bool too_steep(int c, double speed, int level) const;
-  bool solve_forces(const Collocation& table, double h);
+  bool solve_forces(int level);
   /// One contact of a law the kernels know.
   bool solve_single(const Collocation& table);
   /// @param load  what the load and a drive's forces add to the velocities at the nodes
   bool solve_single_smooth(const Collocation& table, const double* load);
-  bool solve_coupled(const Collocation& table, double h);
+  bool solve_coupled(const Collocation& table, const AtNodes* displacements, double h);
+  /// Of a force in `force_error` [1/N]: the static limit, or where there is none the least of other contacts.
+  [[nodiscard]] double over_scale(int c) const;
   [[nodiscard]] double force_error() const;
   /// What of that is the rounding of speeds, which sticks' forces hold within a step, whatever its length: by the time
   /// of a step it is the same, and shorter steps do not lower it.
@@ -122,10 +139,51 @@ class CollocationFlow {
   void refine_event(const Guarded& guard, double& tau, Eigen::VectorXd& x);
   [[nodiscard]] double stick_force(int c, const Eigen::VectorXd& x, double tau,
                                    const RadauTables::Vector8& basis) const;
+  /// wᵀq̈ at `begin_ + tau`. @param basis  Lagrange's there
+  [[nodiscard]] double contact_acceleration(int c, const Eigen::VectorXd& x, double tau,
+                                            const RadauTables::Vector8& basis) const;
   void account(int level, double tau);
   /// ∫ Σ λ v_drive dt over [0, tau] of the step.
   [[nodiscard]] double driven_work(double h, double tau) const;
   void restart_steps();
+
+  // Elaborate contacts (ContactForces::is_elaborate). Unless they are held, their forces are linear in their own
+  // motion.
+  [[nodiscard]] bool elaborate(int c) const { return elaborate_[static_cast<std::size_t>(c)]; }
+  /// Sticks, and not by a spring.
+  [[nodiscard]] bool held(const std::vector<ContactMode>& modes, int c) const {
+    const auto i = static_cast<std::size_t>(c);
+    return modes[i] == ContactMode::kStick && laws()[i].kind != LawKind::kCompliant;
+  }
+  /// λ = constant + stiffness (way of the drive, where it is followed, − wᵀq) − damping wᵀq̇ within a step.
+  struct OwnForce {
+    double constant = 0.0, stiffness = 0.0, damping = 0.0;
+    bool follows = false;
+
+    [[nodiscard]] bool moves() const { return stiffness != 0.0 || damping != 0.0; }
+    [[nodiscard]] double at(double way, double y, double v) const {
+      return constant + stiffness * ((follows ? way : 0.0) - y) - damping * v;
+    }
+    [[nodiscard]] double rate(double drive, double v, double acceleration) const {
+      return stiffness * ((follows ? drive : 0.0) - v) - damping * acceleration;
+    }
+  };
+  /// Of the step that begins at the point.
+  void set_own_forces();
+  [[nodiscard]] double own_force(int c, double tau, const double* x) const;
+  [[nodiscard]] std::vector<OwnGuard> own_guards(int c, ContactMode mode) const;
+  void search_own_guards(int c, Guarded& first) const;
+  struct GuardValue {
+    double value = 0.0, rate = 0.0;
+    double size = 0.0, rate_size = 0.0;  ///< of the terms that are summed
+  };
+  [[nodiscard]] GuardValue evaluate(const OwnGuard& guard, int c, double tau, const Eigen::VectorXd& x) const;
+  /// d(guard)/d(state, contacts' own states).
+  [[nodiscard]] Eigen::RowVectorXd gradient(const OwnGuard& guard, int c) const;
+  /// d(λ)/d(state, contacts' own states) of the held contacts in the step's modes, rows of `stuck`.
+  [[nodiscard]] Eigen::MatrixXd held_force_gradient(const std::vector<Eigen::Index>& stuck) const;
+  /// Of an elaborate contact's force, not held, in the step's modes.
+  [[nodiscard]] Eigen::RowVectorXd own_force_gradient(int c) const;
 
   [[nodiscard]] bool bristled(int c) const { return laws()[static_cast<std::size_t>(c)].kind == LawKind::kBristle; }
   void start_bristles();
@@ -135,10 +193,11 @@ class CollocationFlow {
   void start_from_rest(int c);
   /// z at the nodes, for the speeds there.
   void collocate_bristles(double h);
-  /// z of every bristle at a share of the last step (other contact states unchanged).
-  [[nodiscard]] Eigen::VectorXd internal_within(double share) const;
-  void bristle_force_at(double t, const std::vector<ContactMode>& modes, const double* x,
-                        const Eigen::VectorXd& internal, Eigen::VectorXd& out_force) const;
+  /// The contacts' own states within the last step, at `begin_ + tau`.
+  [[nodiscard]] Eigen::VectorXd internal_within(double tau, const double* x) const;
+  /// λ of every contact, but for elaborate ones that are not held: theirs are there.
+  void forces_at(double t, const std::vector<ContactMode>& modes, const double* x, const Eigen::VectorXd& internal,
+                 Eigen::VectorXd& out_force) const;
   /// Turns bristle contacts whose acceleration at rest was rounding towards where the solved step takes them. True if
   /// any turned.
   bool turn_resting_bristles();
@@ -170,7 +229,10 @@ class CollocationFlow {
   /// @param speeds  tangents of the contacts' velocities at the nodes [8nc x k]
   void push_bristle_tangents(const std::vector<BristleVariation>& bristles, const Eigen::MatrixXd& speeds,
                              double share);
-  void salt_tangents(const Eigen::VectorXd& force_before, int contact);
+  /// @param rate_before  d(state, contacts' own states)/dt before the event
+  void salt_tangents(Eigen::VectorXd rate_before, const Guarded& guard);
+  /// A stretch that follows the load where its contact slides is no state of its own.
+  void slave_stretches();
   [[nodiscard]] double force_slope(int c, ContactMode mode, double velocity, double drive_velocity) const;
 
   // The drive at `begin + tau` of a step that began at `begin`; across a belt's corner, what was before it goes on.
@@ -213,13 +275,17 @@ class CollocationFlow {
   std::vector<double> steep_fall_;   ///< what that speed falls by from level to level [m/s]
   std::vector<int> slow_start_level_;  ///< of the longest step that follows the start of a slip
   std::vector<double> over_limit_;     ///< 1 / static limit [1/N]
+  double least_limit_ = std::numeric_limits<double>::infinity();  ///< of those there are [N]
 
   double begin_;
   HybridPoint point_;
   Eigen::VectorXd x_begin_, internal_begin_;
-  bool any_bristle_ = false;
+  bool any_bristle_ = false, any_elaborate_ = false;
+  std::vector<bool> elaborate_;
+  std::vector<OwnForce> own_forces_;
+  int touched_ = -1;  ///< the contact whose guard was touched where the step begins
   double turned_at_ = std::numeric_limits<double>::quiet_NaN();  ///< when a contact at rest was last turned
-  std::vector<Eigen::Index> bristle_at_;  ///< index of each contact's bristle among the contacts' own states
+  std::vector<Eigen::Index> own_at_;                             ///< index of each contact's first own state
   std::vector<Event> events_;
   std::vector<ContactMode> step_modes_;
   int coarsest_ = 0;  ///< level of the largest step that resolves the drive
@@ -233,7 +299,7 @@ class CollocationFlow {
   std::vector<int> start_level_;  ///< remembered first step size after an event, by number of sticking contacts
 
   // One step's scalars, contact after contact, eight nodes each.
-  Eigen::VectorXd free_, velocity_, drive_nodes_, bristle_nodes_;
+  Eigen::VectorXd free_, velocity_, drive_nodes_, bristle_nodes_, free_way_, displacement_, way_nodes_;
   Eigen::VectorXd forces_;        ///< a drive's after the contacts'
   Eigen::VectorXd given_speeds_;  ///< what a drive's forces and the load add to one contact's velocity
 

@@ -32,6 +32,10 @@ CollocationFlow::Guarded CollocationFlow::first_guard() {
   for (int c = 0; c < nc_; ++c) {
     const auto i = static_cast<std::size_t>(c);
     const ContactForces& law = laws()[i];
+    if (elaborate(c)) {
+      search_own_guards(c, first);
+      continue;
+    }
     if (!law.sticks() && !bristled(c)) continue;
     BernsteinPolynomial p;
     double* guard = guard_forms_.data() + kNodes * c;
@@ -97,7 +101,10 @@ double CollocationFlow::velocity_scale(int c, const Eigen::VectorXd& x) const {
 }
 
 bool CollocationFlow::too_early(const Guarded& guard) const {
-  return guard.contact >= 0 && point_.multiplicity[static_cast<std::size_t>(guard.contact)] > 0 && guard.theta < kEarly;
+  if (guard.contact < 0 || !(guard.theta < kEarly)) return false;
+  // A slope that is known says when a guard falls at once.
+  return guard.own ? guard.order == 2 || (guard.order == 1 && guard.theta > 0.0)
+                   : point_.multiplicity[static_cast<std::size_t>(guard.contact)] > 0;
 }
 
 double CollocationFlow::deepest_overshoot() const {
@@ -129,7 +136,12 @@ void CollocationFlow::refine_event(const Guarded& guard, double& tau, Eigen::Vec
     const double a = drive_acceleration(begin_, tau), V = drive_velocity(begin_, tau);
     const RadauTables::Vector8 basis = nodes_.lagrange(tau / h);
     double value = 0.0, rate = 0.0, usual_rate = 0.0;
-    if (point_.modes[i] == ContactMode::kStick) {
+    if (guard.own) {
+      const GuardValue now = evaluate(*guard.own, c, tau, x);
+      value = now.value;
+      rate = now.rate;
+      usual_rate = now.size / h;
+    } else if (point_.modes[i] == ContactMode::kStick) {
       const double sign = forces_.segment<kNodes>(kNodes * c).dot(basis) > 0 ? 1.0 : -1.0;
       value = laws()[i].static_limit - sign * stick_force(c, x, tau, basis);
       rate = -sign * forces_.segment<kNodes>(kNodes * c).dot(nodes_.lagrange_slope(tau / h)) / h;
@@ -137,11 +149,7 @@ void CollocationFlow::refine_event(const Guarded& guard, double& tau, Eigen::Vec
     } else {
       const double sign = sign_of(point_.modes[i]);
       value = sign * (V - resolver_.contact_velocity(c, x.data()));
-      double acceleration = kernels_.dot(model_.acceleration_row.col(c).data(), x.data(), 2 * model_.np) +
-                            model_.load_acceleration(c) + given_acceleration(c, tau);
-      for (int d = 0; d < nc_; ++d)
-        acceleration += model_.mobility(c, d) * forces_.segment<kNodes>(kNodes * d).dot(basis);
-      rate = sign * (a - acceleration);
+      rate = sign * (a - contact_acceleration(c, x, tau, basis));
       usual_rate = model_.mobility(c, c) * laws()[i].static_limit;
     }
     const double shift = -value / rate;
@@ -159,6 +167,14 @@ void CollocationFlow::refine_event(const Guarded& guard, double& tau, Eigen::Vec
   }
 }
 
+double CollocationFlow::contact_acceleration(int c, const Eigen::VectorXd& x, double tau,
+                                             const RadauTables::Vector8& basis) const {
+  double acceleration = kernels_.dot(model_.acceleration_row.col(c).data(), x.data(), 2 * model_.np) +
+                        model_.load_acceleration(c) + given_acceleration(c, tau);
+  for (int d = 0; d < nc_; ++d) acceleration += model_.mobility(c, d) * forces_.segment<kNodes>(kNodes * d).dot(basis);
+  return acceleration;
+}
+
 double CollocationFlow::stick_force(int c, const Eigen::VectorXd& x, double tau,
                                     const RadauTables::Vector8& basis) const {
   const double a = drive_acceleration(begin_, tau);
@@ -169,7 +185,7 @@ double CollocationFlow::stick_force(int c, const Eigen::VectorXd& x, double tau,
   Eigen::VectorXd force(nc_);
   std::vector<bool> stuck(point_.modes.size());
   for (int d = 0; d < nc_; ++d) {
-    stuck[static_cast<std::size_t>(d)] = point_.modes[static_cast<std::size_t>(d)] == ContactMode::kStick;
+    stuck[static_cast<std::size_t>(d)] = held(step_modes_, d);
     force(d) = forces_.segment<kNodes>(kNodes * d).dot(basis);
   }
   Instant now{model_, laws(), x.data(), begin_ + tau, drive_velocity(begin_, tau), a};

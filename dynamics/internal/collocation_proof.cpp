@@ -46,8 +46,9 @@ void CollocationFlow::prepare_proof() {
     return law.is_constant() || law.kind == LawKind::kBristle ||
            (law.kind == LawKind::kSpeedDependent && law.characteristic == nullptr);
   };
-  guarded_ = std::ranges::any_of(laws(), has_guard);
-  provable_ = halving_proves_ = options_.certify && (!guarded_ || std::ranges::all_of(laws(), known));
+  guarded_ = any_elaborate_ || std::ranges::any_of(laws(), has_guard);
+  provable_ = halving_proves_ =
+      options_.certify && !any_elaborate_ && (!guarded_ || std::ranges::all_of(laws(), known));
   ninth_.resize(nc_);
 }
 

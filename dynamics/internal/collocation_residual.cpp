@@ -36,7 +36,7 @@ double CollocationFlow::bristle_error(int c, const Between& at) const {
   const RadauTables::Vector8 z = sign * bristle_nodes_.segment<kNodes>(kNodes * c);
   const RadauTables::Vector8 force = sign * forces_.segment<kNodes>(kNodes * c);
   const double s_begin = sign * (drive_velocity(begin_, 0.0) - resolver_.contact_velocity(c, x_begin_.data())),
-               z_begin = sign * internal_begin_(bristle_at_[i]);
+               z_begin = sign * internal_begin_(own_at_[i]);
   RadauTables::Vector8 rate;
   for (int j = 0; j < kNodes; ++j) rate(j) = law.rate(1.0, s(j), z(j));
   double worst = 0.0;

@@ -79,14 +79,26 @@ int CollocationFlow::foreseen_level(int level) const {
   return level;
 }
 
-bool CollocationFlow::solve_forces(const Collocation& table, double h) {
+bool CollocationFlow::solve_forces(int level) {
+  const Collocation& table = tables_.collocation(level);
+  const double h = tables_.step(level);
   const RadauTables::Vector8 drive_speed = drive_velocities(begin_, h);
   for (int c = 0; c < nc_; ++c) drive_nodes_.segment<kNodes>(kNodes * c) = drive_speed;
   if (single_) return solve_single(table);
-  table.free_velocities(x_begin_.data(), nc_, free_.data());
-  if (given_ > 0)
-    free_.noalias() += table.kernel.topRightCorner(kNodes * nc_, kNodes * given_) * forces_.tail(kNodes * given_);
-  return solve_coupled(table, h);
+  const auto without_contacts = [&](const AtNodes& at, Eigen::VectorXd& out) {
+    at.without_forces(x_begin_.data(), nc_, out.data());
+    if (given_ > 0)
+      out.noalias() += at.kernel.topRightCorner(kNodes * nc_, kNodes * given_) * forces_.tail(kNodes * given_);
+  };
+  without_contacts(table, free_);
+  if (!any_elaborate_) return solve_coupled(table, nullptr, h);
+  const AtNodes& displacements = tables_.displacements(level);
+  without_contacts(displacements, free_way_);
+  for (int j = 0; j < kNodes; ++j) way_nodes_(j) = drive().way(begin_, begin_ + h * nodes_.node(j));
+  if (!solve_coupled(table, &displacements, h)) return false;
+  displacement_ =
+      free_way_ + displacements.kernel.topLeftCorner(free_.size(), free_.size()) * forces_.head(free_.size());
+  return true;
 }
 
 bool CollocationFlow::solve_single(const Collocation& table) {
@@ -150,7 +162,7 @@ bool CollocationFlow::solve_single_smooth(const Collocation& table, const double
   return false;
 }
 
-bool CollocationFlow::solve_coupled(const Collocation& table, double h) {
+bool CollocationFlow::solve_coupled(const Collocation& table, const AtNodes* displacements, double h) {
   const Eigen::Index size = kNodes * nc_;
   const Eigen::MatrixXd& kernel = table.own_kernel;
   auto forces = forces_.head(size);
@@ -158,10 +170,10 @@ bool CollocationFlow::solve_coupled(const Collocation& table, double h) {
   std::vector<bool> stuck(static_cast<std::size_t>(nc_));
   bool any_stuck = false, all_stuck = true, any_nonlinear = false;
   for (std::size_t c = 0; c < stuck.size(); ++c) {
-    stuck[c] = point_.modes[c] == ContactMode::kStick;
-    any_stuck |= stuck[c];
+    stuck[c] = held(point_.modes, static_cast<int>(c));
+    any_stuck |= stuck[c] || (any_elaborate_ && own_forces_[c].moves());
     all_stuck &= stuck[c];
-    any_nonlinear |= !stuck[c] && !laws()[c].is_constant();
+    any_nonlinear |= !stuck[c] && !is_piecewise_linear(laws()[c].kind);
   }
   if (all_stuck) {
     forces.noalias() = table.kernel_inverse * (drive_nodes_ - free_);
@@ -171,6 +183,10 @@ bool CollocationFlow::solve_coupled(const Collocation& table, double h) {
   for (int c = 0; c < nc_; ++c) {
     const auto i = static_cast<std::size_t>(c);
     if (bristled(c)) continue;
+    if (elaborate(c) && !stuck[i]) {
+      block(forces_, c).setConstant(own_forces_[i].moves() ? point_.force(c) : own_forces_[i].constant);
+      continue;
+    }
     block(forces_, c)
         .setConstant(laws()[i].is_constant() && !stuck[i] ? sign_of(point_.modes[i]) * laws()[i].kinetic
                                                           : point_.force(c));
@@ -185,17 +201,29 @@ bool CollocationFlow::solve_coupled(const Collocation& table, double h) {
   for (int iteration = 0; iteration < kNewtonLimit; ++iteration) {
     // Sliding contacts: λ − law(v) = 0. Sticking ones: v − v_drive = 0.
     velocity_.noalias() = free_ + kernel * forces;
+    if (displacements != nullptr)
+      displacement_.noalias() = free_way_ + displacements->kernel.topLeftCorner(size, size) * forces;
     double curvature = 0.0;
     for (int c = 0; c < nc_; ++c) {
       const auto i = static_cast<std::size_t>(c);
       const ContactForces& law = laws()[i];
       if (bristled(c)) {
-        const BristleStep step = solve_bristle(law.bristle, sign_of(point_.modes[i]), internal_begin_(bristle_at_[i]),
-                                               h, block(drive_nodes_, c) - block(velocity_, c));
+        const BristleStep step = solve_bristle(law.bristle, sign_of(point_.modes[i]), internal_begin_(own_at_[i]), h,
+                                               block(drive_nodes_, c) - block(velocity_, c));
         block(residual, c) = step.force - block(forces_, c);
         jacobian.middleRows<kNodes>(kNodes * c).noalias() = step.slope * kernel.middleRows<kNodes>(kNodes * c);
         jacobian.block<kNodes, kNodes>(kNodes * c, kNodes * c) += RadauTables::Matrix8::Identity();
         block(bristle_nodes_, c) = step.z;
+        continue;
+      }
+      if (elaborate(c) && !stuck[i]) {
+        const OwnForce& own = own_forces_[i];
+        for (int j = 0; j < kNodes; ++j) {
+          const Eigen::Index row = kNodes * c + j;
+          residual(row) = own.at(way_nodes_(j), displacement_(row), velocity_(row)) - forces_(row);
+          jacobian.row(row) = own.stiffness * displacements->kernel.row(row).head(size) + own.damping * kernel.row(row);
+          jacobian(row, row) += 1.0;
+        }
         continue;
       }
       for (int j = 0; j < kNodes; ++j) {
@@ -279,7 +307,7 @@ double CollocationFlow::force_error() const {
     if (laws()[i].kind == LawKind::kFree) continue;
     // The first coefficient left out, if the sequence keeps falling as it does.
     const auto [last, ratio] = ending(forces_.data() + kNodes * c);
-    worst = std::max(worst, last * ratio * over_limit_[i]);
+    worst = std::max(worst, last * ratio * over_scale(c));
     if (bristled(c)) worst = std::max(worst, bristle_error(c, halfway()) / (tables_.step(step_level_) * over_top_));
     if (laws()[i].characteristic != nullptr && point_.modes[i] != ContactMode::kStick)
       worst = std::max(worst, characteristic_error(c));

@@ -13,15 +13,17 @@ namespace slipmode::dynamics {
 double CollocationFlow::force_slope(int c, ContactMode mode, double velocity, double drive_velocity) const {
   const auto i = static_cast<std::size_t>(c);
   const double s = drive_velocity - velocity;
-  if (bristled(c)) return -laws()[i].bristle.slopes(sign_of(mode), s, point_.internal(bristle_at_[i])).by_speed;
+  if (bristled(c)) return -laws()[i].bristle.slopes(sign_of(mode), s, point_.internal(own_at_[i])).by_speed;
+  if (elaborate(c)) return 0.0;  // not of the speed alone: own_force_gradient
   return mode == ContactMode::kStick ? 0.0 : -laws()[i].slope(sign_of(mode), s);
 }
 
 void CollocationFlow::set_tangents(Eigen::MatrixXd tangents) {
   tangents_ = std::move(tangents);
   std::vector<Eigen::Index> stuck;
+  if (any_elaborate_) slave_stretches();
   for (int c = 0; c < nc_; ++c)
-    if (point_.modes[static_cast<std::size_t>(c)] == ContactMode::kStick) stuck.push_back(c);
+    if (held(point_.modes, c)) stuck.push_back(c);
   if (stuck.empty()) return;
   const Eigen::MatrixXd rows = model_.velocity_row(Eigen::all, stuck).transpose();
   const Eigen::MatrixXd mobility = model_.mobility(stuck, stuck);
@@ -33,12 +35,16 @@ Eigen::VectorXd CollocationFlow::point_rate() const {
   Eigen::VectorXd rate(point_.x.size() + point_.internal.size());
   rate.head(point_.x.size()) = model_.rate(point_.x, point_.force);
   if (given_ > 0) rate.head(point_.x.size()) += model_.force_input * resolver_.drive_force(point_.time);
+  rate.tail(point_.internal.size()).setZero();
   for (int c = 0; c < nc_; ++c) {
-    if (!bristled(c)) continue;
     const auto i = static_cast<std::size_t>(c);
     const double s = drive().velocity(point_.time) - resolver_.contact_velocity(c, point_.x.data());
-    rate(point_.x.size() + bristle_at_[i]) =
-        laws()[i].bristle.rate(sign_of(point_.modes[i]), s, point_.internal(bristle_at_[i]));
+    double& own = rate(point_.x.size() + own_at_[i]);
+    if (bristled(c)) own = laws()[i].bristle.rate(sign_of(point_.modes[i]), s, point_.internal(own_at_[i]));
+    if (laws()[i].kind != LawKind::kCompliant || point_.modes[i] == ContactMode::kSeparated) continue;
+    own = s;
+    if (point_.modes[i] != ContactMode::kStick)
+      own = resolver_.slide_stretch_gradient(point_, c).head(point_.x.size()) * rate.head(point_.x.size());
   }
   return rate;
 }
@@ -47,8 +53,10 @@ double CollocationFlow::tangent_rate() const {
   // With w̄ = wᵀM⁻¹w: δs′ = −w̄ (λ_s δs + λ_z δz), δz′ = (1 − κ′z) δs − κ δz at each node.
   double fastest = 0.0;
   for (int c = 0; c < nc_; ++c) {
-    if (!bristled(c)) continue;
     const auto i = static_cast<std::size_t>(c);
+    fastest = std::max({fastest, std::sqrt(std::abs(own_forces_[i].stiffness) * model_.mobility(c, c)),
+                        std::abs(own_forces_[i].damping) * model_.mobility(c, c)});
+    if (!bristled(c)) continue;
     const friction::BristleForces& law = laws()[i].bristle;
     const double sign = sign_of(point_.modes[i]), mobility = model_.mobility(c, c);
     for (Eigen::Index j = kNodes * c; j < kNodes * (c + 1); ++j) {
@@ -75,6 +83,13 @@ void CollocationFlow::push_tangents(int level, double tau) {
   for (int c = 0; c < nc_; ++c) free.middleRows(kNodes * c, kNodes) = table.free.middleCols(2 * np * c, 2 * np);
   speeds.noalias() = free * tangents_.topRows(2 * np);
   Eigen::MatrixXd right = speeds;
+  const AtNodes* displacements = any_elaborate_ ? &tables_.displacements(level) : nullptr;
+  const auto carried = [&](int c) {  // of a spring's contact point, less what the drive carries it [1 x k]
+    return (model_.displacement_row.col(c).transpose() * tangents_.topRows(2 * np) +
+            tangents_.row(2 * np + own_at_[static_cast<std::size_t>(c)]))
+        .eval();
+  };
+  std::vector<Eigen::RowVectorXd> points(static_cast<std::size_t>(nc_));
   std::vector<BristleVariation> bristles(any_bristle_ ? static_cast<std::size_t>(nc_) : 0);
   for (int c = 0; c < nc_; ++c) {
     const auto i = static_cast<std::size_t>(c);
@@ -86,13 +101,29 @@ void CollocationFlow::push_tangents(int level, double tau) {
       const BristleVariation& by = bristles[i];
       jacobian.middleRows<kNodes>(first).noalias() = by.force_by_speed * kernel.middleRows<kNodes>(first);
       jacobian.block<kNodes, kNodes>(first, first) += RadauTables::Matrix8::Identity();
-      right.middleRows<kNodes>(first) = by.force_by_start * tangents_.row(2 * np + bristle_at_[i]) -
-                                        by.force_by_speed * speeds.middleRows<kNodes>(first);
+      right.middleRows<kNodes>(first) =
+          by.force_by_start * tangents_.row(2 * np + own_at_[i]) - by.force_by_speed * speeds.middleRows<kNodes>(first);
+      continue;
+    }
+    if (elaborate(c) && !held(step_modes_, c)) {
+      const OwnForce& own = own_forces_[i];
+      const Eigen::Index first = kNodes * c;
+      jacobian.middleRows<kNodes>(first) =
+          own.stiffness * displacements->kernel.middleRows<kNodes>(first).leftCols(size) +
+          own.damping * kernel.middleRows<kNodes>(first);
+      jacobian.block<kNodes, kNodes>(first, first) += RadauTables::Matrix8::Identity();
+      right.middleRows<kNodes>(first) =
+          -own.damping * speeds.middleRows<kNodes>(first) -
+          own.stiffness * (displacements->free.middleCols(2 * np * c, 2 * np) * tangents_.topRows(2 * np));
+      if (own.follows) {
+        points[i] = carried(c);
+        right.middleRows<kNodes>(first).rowwise() += own.stiffness * points[i];
+      }
       continue;
     }
     for (int j = 0; j < kNodes; ++j) {
       const Eigen::Index row = kNodes * c + j;
-      if (step_modes_[i] == ContactMode::kStick) {
+      if (held(step_modes_, c)) {
         jacobian.row(row) = -kernel.row(row);
         continue;
       }
@@ -117,6 +148,13 @@ void CollocationFlow::push_tangents(int level, double tau) {
     }
     tangents_.col(k).head(2 * np) = to;
   }
+  for (int c = 0; c < nc_; ++c) {
+    const auto i = static_cast<std::size_t>(c);
+    if (points[i].size() > 0)
+      tangents_.row(2 * np + own_at_[i]) =
+          points[i] - model_.displacement_row.col(c).transpose() * tangents_.topRows(2 * np);
+  }
+  if (any_elaborate_) slave_stretches();
 }
 
 void CollocationFlow::push_bristle_tangents(const std::vector<BristleVariation>& bristles,
@@ -124,7 +162,7 @@ void CollocationFlow::push_bristle_tangents(const std::vector<BristleVariation>&
   for (int c = 0; c < nc_; ++c) {
     if (!bristled(c)) continue;
     const auto i = static_cast<std::size_t>(c);
-    auto deflection = tangents_.row(2 * model_.np + bristle_at_[i]);
+    auto deflection = tangents_.row(2 * model_.np + own_at_[i]);
     const Eigen::Matrix<double, kNodes, Eigen::Dynamic> nodes =
         bristles[i].z_by_start * deflection - bristles[i].z_by_speed * speeds.middleRows<kNodes>(kNodes * c);
     for (Eigen::Index k = 0; k < deflection.size(); ++k)
@@ -132,47 +170,70 @@ void CollocationFlow::push_bristle_tangents(const std::vector<BristleVariation>&
   }
 }
 
-void CollocationFlow::salt_tangents(const Eigen::VectorXd& force_before, int contact) {
-  // δx⁺ = δx + (f⁺ − f⁻) (∇g δx) / ġ⁻ for the guard g that was reached; f⁺ − f⁻ = Σ b_c Δλ_c. Neither jumps where a
-  // bristle turns, nor ż at any event.
-  if (contact < 0 || bristled(contact)) return;
+Eigen::MatrixXd CollocationFlow::held_force_gradient(const std::vector<Eigen::Index>& stuck) const {
+  // λ of the held contacts from a = Gᵀrow x + mobility λ, the others following their own laws.
   const Eigen::Index size = 2 * model_.np;
-  const Eigen::VectorXd jump = model_.input * (point_.force - force_before);
-  const double a = drive_acceleration(begin_, point_.time - begin_), V = drive().velocity(point_.time);
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(stuck.size()), size + point_.internal.size());
+  rows.leftCols(size) = model_.acceleration_row(Eigen::all, stuck).transpose();
+  for (int d = 0; d < nc_; ++d) {
+    const auto i = static_cast<std::size_t>(d);
+    const double V = drive().velocity(point_.time), v = model_.velocity_row.col(d).dot(point_.x),
+                 slope = force_slope(d, step_modes_[i], v, V);
+    const Eigen::VectorXd reach = model_.mobility(stuck, d);
+    if (slope != 0.0) rows.leftCols(size) += reach * slope * model_.velocity_row.col(d).transpose();
+    if (elaborate(d) && !held(step_modes_, d)) rows += reach * own_force_gradient(d);
+    if (bristled(d))
+      rows.col(size + own_at_[i]) +=
+          reach * laws()[i].bristle.slopes(sign_of(step_modes_[i]), V - v, point_.internal(own_at_[i])).by_deflection;
+  }
+  const Eigen::MatrixXd mobility = model_.mobility(stuck, stuck);
+  return -mobility.ldlt().solve(rows);
+}
+
+void CollocationFlow::salt_tangents(Eigen::VectorXd rate_before, const Guarded& guard) {
+  // δ⁺ = R δ + (f⁺ − R f⁻) (∇g δ) / ġ⁻ for the guard g that was reached; R resets stretches that jump. Nothing jumps
+  // where a bristle turns.
+  const int contact = guard.contact;
+  if (contact < 0 || bristled(contact)) return;
+  const double tau = point_.time - begin_;
   Eigen::RowVectorXd gradient = Eigen::RowVectorXd::Zero(tangents_.rows());
   double rate;
-  if (step_modes_[static_cast<std::size_t>(contact)] != ContactMode::kStick) {
-    gradient.head(size) = -model_.velocity_row.col(contact).transpose();
-    rate = a - (model_.acceleration_row.col(contact).dot(point_.x) + model_.load_acceleration(contact) +
-                model_.mobility.row(contact).dot(force_before) + given_acceleration(contact, point_.time - begin_));
+  if (guard.own) {
+    gradient = this->gradient(*guard.own, contact);
+    rate = evaluate(*guard.own, contact, tau, point_.x).rate;
+  } else if (!held(step_modes_, contact)) {
+    const RadauTables::Vector8 basis = nodes_.lagrange(tau / tables_.step(step_level_));
+    gradient.head(2 * model_.np) = -model_.velocity_row.col(contact).transpose();
+    rate = drive_acceleration(begin_, tau) - contact_acceleration(contact, point_.x, tau, basis);
   } else {
-    // g = ±μ_s N − λ_stick(x, z): λ of the sticking contacts from a = Gᵀrow x + mobility λ, the sliding ones following
-    // their own laws.
     std::vector<Eigen::Index> stuck;
     Eigen::Index position = 0;
     for (int c = 0; c < nc_; ++c)
-      if (step_modes_[static_cast<std::size_t>(c)] == ContactMode::kStick) {
+      if (held(step_modes_, c)) {
         if (c == contact) position = static_cast<Eigen::Index>(stuck.size());
         stuck.push_back(c);
       }
-    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(stuck.size()), tangents_.rows());
-    rows.leftCols(size) = model_.acceleration_row(Eigen::all, stuck).transpose();
-    for (int d = 0; d < nc_; ++d) {
-      const auto i = static_cast<std::size_t>(d);
-      const double v = model_.velocity_row.col(d).dot(point_.x), slope = force_slope(d, step_modes_[i], v, V);
-      const Eigen::VectorXd reach = model_.mobility(stuck, d);
-      if (slope != 0.0) rows.leftCols(size) += reach * slope * model_.velocity_row.col(d).transpose();
-      if (bristled(d))
-        rows.col(size + bristle_at_[i]) +=
-            reach *
-            laws()[i].bristle.slopes(sign_of(step_modes_[i]), V - v, point_.internal(bristle_at_[i])).by_deflection;
-    }
-    const Eigen::MatrixXd mobility = model_.mobility(stuck, stuck);
-    gradient = mobility.ldlt().solve(rows).row(position);  // −dλ/d(x, z)
+    gradient = -held_force_gradient(stuck).row(position);
     const double h = tables_.step(step_level_);
-    rate = -forces_.segment<kNodes>(kNodes * contact).dot(nodes_.lagrange_slope((point_.time - begin_) / h)) / h;
+    rate = -forces_.segment<kNodes>(kNodes * contact).dot(nodes_.lagrange_slope(tau / h)) / h;
   }
-  tangents_.topRows(size) += jump * (gradient * tangents_) / rate;
+  const Eigen::RowVectorXd delay = gradient * tangents_ / rate;
+  for (int c = 0; c < nc_; ++c) {
+    const auto i = static_cast<std::size_t>(c);
+    if (laws()[i].kind != LawKind::kCompliant || !resolver_.has_event(c)) continue;
+    const ContactMode before = step_modes_[i], after = point_.modes[i];
+    const Eigen::Index row = 2 * model_.np + own_at_[i];
+    const bool parted = before != after && (before == ContactMode::kSeparated || after == ContactMode::kSeparated);
+    if (!parted && before != ContactMode::kStick) continue;  // ceases to slide: the stretch is kept
+    const Eigen::RowVectorXd reset =
+        parted ? Eigen::RowVectorXd::Zero(tangents_.rows()) : resolver_.slide_stretch_gradient(point_, c);
+    const double moved = reset * rate_before;
+    rate_before(row) = moved;
+    const Eigen::RowVectorXd changed = reset * tangents_;
+    tangents_.row(row) = changed;
+  }
+  tangents_ += (point_rate() - rate_before) * delay;
+  if (any_elaborate_) slave_stretches();
 }
 
 }  // namespace slipmode::dynamics

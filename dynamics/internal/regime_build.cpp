@@ -62,19 +62,12 @@ RegimeBuilder::RegimeBuilder(const HybridSystem& system, const ModalModel& slipp
 void RegimeBuilder::couple_contacts() {
   for (Eigen::Index c = 0; c < nc_; ++c) {
     const auto w = modal_.directions.col(c);
-    if (role(c) == ContactRole::kSprung) spring_(c) = law(c).stiffness;
-    if (role(c) == ContactRole::kLeftStop || role(c) == ContactRole::kRightStop) {
-      spring_(c) = stop(c)->stiffness;
-      damper_(c) = stop(c)->damping;
-      C_ += damper_(c) * w * w.transpose();
-    }
-    if (role(c) == ContactRole::kSlidingNegative) friction_(c) = -law(c).kinetic_coefficient(-1.0);
-    if (role(c) == ContactRole::kSlidingPositive) friction_(c) = law(c).kinetic_coefficient(1.0);
-    if (friction_(c) != 0.0) {
-      spring_(c) -= friction_(c) * load(c).y;
-      if (load(c).v != 0.0) C_ -= friction_(c) * load(c).v * w * w.transpose();
-      symmetric_ &= load(c).v == 0.0;
-    }
+    const ContactAnswer& answer = answers_.emplace_back(contact_answer(law(c), load(c), role(c)));
+    spring_(c) = answer.stiffness;
+    friction_(c) = answer.friction;
+    if (role(c) == ContactRole::kLeftStop || role(c) == ContactRole::kRightStop) damper_(c) = answer.damping;
+    if (answer.damping != 0.0) C_ += answer.damping * w * w.transpose();
+    symmetric_ &= friction_(c) == 0.0 || load(c).v == 0.0;
     symmetric_ &= spring_(c) >= 0.0;
     if (spring_(c) != 0.0) K_ += spring_(c) * w * w.transpose();
   }
@@ -331,8 +324,7 @@ void RegimeBuilder::fill(Regime& out) {
   out.roles = roles_;
   out.forces = nk_;
   for (const ContactRole r : roles_) out.follows.push_back(r == ContactRole::kHeld || r == ContactRole::kSprung);
-  for (Eigen::Index c = 0; c < nc_; ++c)
-    out.answers.push_back({spring_(c), damper_(c) - friction_(c) * load(c).v, friction_(c), load(c)});
+  out.answers = answers_;
   make_pairs(out);
   make_inputs(out);
   make_contact_rows(out);

@@ -63,6 +63,7 @@ class RegimeBuilder {
   std::optional<fem::Rayleigh> rayleigh_;
   std::vector<ContactForces> laws_;
   std::vector<friction::LoadForm> loads_;
+  std::vector<ContactAnswer> answers_;
   Eigen::Index n_, nc_, nk_, ni_, V_, one_;
   std::vector<Eigen::Index> held_, oscillators_;  ///< contacts
   Eigen::VectorXd friction_;                      ///< ±μ_k of contacts that slide under a varying load, else 0

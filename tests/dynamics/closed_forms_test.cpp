@@ -108,7 +108,7 @@ TEST_P(ClosedForms, FreeCoulombDecayWithDashpotShrinksGeometricallyAsWell) {
 }
 
 TEST_P(ClosedForms, ChainWithoutFrictionFollowsItsTextbookModes) {
-  Random random(11);
+  Draws random(11);
   for (const double damping : {0.0, 0.006, 0.9, 30.0}) {
     const UniformChain chain{10, damping};
     const Eigen::VectorXd q0 = random.vector(10, 1.0), v0 = random.vector(10, 1.0);
@@ -126,7 +126,7 @@ TEST_P(ClosedForms, ChainWithoutFrictionFollowsItsTextbookModes) {
 }
 
 TEST_P(ClosedForms, UndampedChainWithoutFrictionKeepsItsEnergy) {
-  Random random(5);
+  Draws random(5);
   const HybridSystem system = belt_chain(friction::Coulomb{0.0, 0.0}, friction::Belt::constant(0.2), 25, 0.0);
   const State start = random_state(random, 25, 1.0);
   const Trajectory run = simulate(system, start, {.duration = 1e4, .flow = flow()});

@@ -42,7 +42,7 @@ TEST(Energy, ClosesForAHundredMassesAndForTheTanhLaw) {
 }
 
 TEST(Energy, ClosesWithALoadARampAndGeneralDamping) {
-  Random random(4);
+  Draws random(4);
   Eigen::MatrixXd A(6, 6), M(6, 6), C(6, 6);
   for (auto* matrix : {&A, &M, &C}) {
     for (double& value : matrix->reshaped()) value = random.uniform(-1.0, 1.0);
@@ -61,7 +61,7 @@ TEST(Energy, WorkAndLossesAgreeWithQuadratureOfTheReference) {
   // The audit could close and still split wrongly: integrate each part from the Taylor series (composite Gauss rule of
   // 5 points on 16 pieces of each Taylor step).
   const HybridSystem chain = belt_chain(friction::Stribeck{0.4, 0.2, 8.0}, Belt::constant(0.2));
-  Random random(2);
+  Draws random(2);
   const State start = random_state(random, 10, 1.5);
   const Trajectory run = simulate(chain, start, {.duration = 60.0, .flow = {.tolerance = 1e-12}});
 

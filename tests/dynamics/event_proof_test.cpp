@@ -13,13 +13,13 @@
 namespace slipmode::dynamics {
 namespace {
 
-enum class Laws { kStribeck, kBristles, kMixed };
+enum class ProofLaws { kStribeck, kBristles, kMixed };
 
-const char* word_of(Laws laws) {
-  return laws == Laws::kStribeck ? "Stribeck" : laws == Laws::kBristles ? "Bristles" : "Mixed";
+const char* word_of(ProofLaws laws) {
+  return laws == ProofLaws::kStribeck ? "Stribeck" : laws == ProofLaws::kBristles ? "Bristles" : "Mixed";
 }
 
-void PrintTo(Laws laws, std::ostream* out) { *out << word_of(laws); }
+void PrintTo(ProofLaws laws, std::ostream* out) { *out << word_of(laws); }
 
 /// One contact's law, from flat to steep, from soft to stiff.
 std::string random_law(slipmode::Random& r, bool bristle) {
@@ -41,7 +41,7 @@ std::string random_law(slipmode::Random& r, bool bristle) {
 constexpr std::uint64_t kForced = 60;
 
 /// A chain with one or two contacts: any damping, belts, ramps and shakers, and forces.
-std::string random_chain(std::uint64_t index, int contacts, Laws laws) {
+std::string random_chain(std::uint64_t index, int contacts, ProofLaws laws) {
   slipmode::Random r = slipmode::Random::stream(77, index);
   const int n = contacts + static_cast<int>(r.uniform() * 8);
   std::string text = fmt::format(
@@ -49,7 +49,7 @@ std::string random_chain(std::uint64_t index, int contacts, Laws laws) {
       "damping = {}\n",
       n, r.uniform() < 0.2 ? 0.0 : r.uniform(0.0, 0.05));
   for (int c = 0; c < contacts; ++c) {
-    const bool bristle = laws == Laws::kBristles || (laws == Laws::kMixed && c == 1);
+    const bool bristle = laws == ProofLaws::kBristles || (laws == ProofLaws::kMixed && c == 1);
     text += fmt::format("[[contact]]\nat = {}\n{}", n - c, random_law(r, bristle));
   }
   const double kind = r.uniform(), from = r.uniform(-0.6, 0.6), to = r.uniform(-0.6, 0.6);
@@ -79,7 +79,7 @@ struct Judged {
 
 /// Every step of a run beside the motion from the step's own start at tolerance 1e-13: does that pass an event where
 /// the step has none?
-Judged judge_steps(std::uint64_t index, int contacts, Laws laws, double tolerance) {
+Judged judge_steps(std::uint64_t index, int contacts, ProofLaws laws, double tolerance) {
   constexpr double kDuration = 40.0;
   const scene::Scene scene = scene::parse_scene(random_chain(index, contacts, laws));
   const HybridSystem system = scene::build_system(scene);
@@ -127,7 +127,7 @@ Judged judge_steps(std::uint64_t index, int contacts, Laws laws, double toleranc
   return out;
 }
 
-class CertifiedSteps : public testing::TestWithParam<std::tuple<int, Laws, double>> {};
+class CertifiedSteps : public testing::TestWithParam<std::tuple<int, ProofLaws, double>> {};
 
 TEST_P(CertifiedSteps, PassNoEventAtAnyTolerance) {
   const auto [contacts, laws, tolerance] = GetParam();
@@ -143,24 +143,25 @@ TEST_P(CertifiedSteps, PassNoEventAtAnyTolerance) {
   EXPECT_GT(all.judged, 9 * all.certified / 10);
   // What stays open: grazings, starts at two limits at once, bristles at rest; and the way of a bristle near a reversal
   // which a loose tolerance does not resolve.
-  const double share = laws == Laws::kStribeck ? (contacts == 1 ? 0.99 : 0.9) : tolerance > 1e-5 ? 0.3 : 0.9;
+  const double share = laws == ProofLaws::kStribeck ? (contacts == 1 ? 0.99 : 0.9) : tolerance > 1e-5 ? 0.3 : 0.9;
   EXPECT_GT(all.certified, share * all.steps) << all.steps;
 }
 
-std::string name_of(const testing::TestParamInfo<std::tuple<int, Laws, double>>& cell) {
+std::string name_of(const testing::TestParamInfo<std::tuple<int, ProofLaws, double>>& cell) {
   const auto [contacts, laws, tolerance] = cell.param;
   return fmt::format("Contacts{}{}Tolerance1em{:.0f}", contacts, word_of(laws), -std::log10(tolerance));
 }
 
 INSTANTIATE_TEST_SUITE_P(Single, CertifiedSteps,
-                         testing::Combine(testing::Values(1), testing::Values(Laws::kStribeck, Laws::kBristles),
+                         testing::Combine(testing::Values(1),
+                                          testing::Values(ProofLaws::kStribeck, ProofLaws::kBristles),
                                           testing::Values(1e-1, 1e-3, 1e-6, 1e-9)),
                          name_of);
-INSTANTIATE_TEST_SUITE_P(Coupled, CertifiedSteps,
-                         testing::Combine(testing::Values(2),
-                                          testing::Values(Laws::kStribeck, Laws::kBristles, Laws::kMixed),
-                                          testing::Values(1e-1, 1e-3, 1e-6, 1e-9)),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(
+    Coupled, CertifiedSteps,
+    testing::Combine(testing::Values(2), testing::Values(ProofLaws::kStribeck, ProofLaws::kBristles, ProofLaws::kMixed),
+                     testing::Values(1e-1, 1e-3, 1e-6, 1e-9)),
+    name_of);
 
 TEST(EventProof, BoundsWhatTheInterpolantOfASpeedLeavesOut) {
   // Exact motion under polynomial forces at 65 times, beside the polynomial of degree 8 through nodes and start.
@@ -168,7 +169,7 @@ TEST(EventProof, BoundsWhatTheInterpolantOfASpeedLeavesOut) {
   double tightest = 0.0;
   for (std::uint64_t index = 0; index < 12; ++index) {
     const scene::Scene scene =
-        scene::parse_scene(random_chain(index, 1 + static_cast<int>(index % 2), Laws::kStribeck));
+        scene::parse_scene(random_chain(index, 1 + static_cast<int>(index % 2), ProofLaws::kStribeck));
     const HybridSystem system = scene::build_system(scene);
     const Prepared p = prepare(system, scene::initial_state(scene, system), {}, false);
     const StepTables& tables = p.tables.steps;

@@ -22,7 +22,7 @@ constexpr FlowOptions kFlow{.method = FlowMethod::kCollocation, .tolerance = 1e-
 
 /// A scene's structure and contacts under forces along one or two directions, of one to three harmonics each.
 HybridSystem forced(const RandomScene& scene, std::uint64_t seed) {
-  Random random(seed);
+  Draws random(seed);
   const Eigen::Index n = scene.system.size();
   const int directions = random.integer(1, 2);
   Force force{0.2 * std::exp(random.uniform(0.0, 3.0)), {}};

@@ -30,7 +30,7 @@ Eigen::VectorXd stacked(const State& s) {
 HybridSystem forced(unsigned seed) {
   if (seed % 2 == 0) return random_clearances(seed);
   const HybridSystem made = random_piecewise_linear(seed);
-  Random random(seed + 1000);
+  Draws random(seed + 1000);
   friction::Force force{random.uniform(0.5, 2.5), {}};
   for (int order = 1; order <= 2; ++order)
     force.harmonics.push_back({random.uniform(0.5, 2.0), random.uniform(0.0, 6.0), order, order - 1});
@@ -128,7 +128,7 @@ TEST(ForcedTangent, GoesOnFromASample) {
     const std::optional<State> start = free_start(system);
     ASSERT_TRUE(start) << seed;
     const Eigen::Index N = stacked(*start).size(), rows = 2 * (2 * kOrders + 1);
-    Random random(seed);
+    Draws random(seed);
     Tangents tangents{Eigen::MatrixXd(N, 4), Eigen::MatrixXd(rows, 4)};
     for (double& value : tangents.start.reshaped()) value = random.uniform(-1.0, 1.0);
     for (double& value : tangents.forces.reshaped()) value = random.uniform(-1.0, 1.0);

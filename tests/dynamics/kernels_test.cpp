@@ -23,7 +23,7 @@ class EachKernelSet : public testing::TestWithParam<std::size_t> {
 };
 
 Eigen::VectorXd numbers(Eigen::Index count, std::uint64_t seed, double size = 1.0) {
-  fixtures::Random random(seed);
+  fixtures::Draws random(seed);
   return Eigen::VectorXd::NullaryExpr(count, [&] { return random.uniform(-size, size); });
 }
 
@@ -128,7 +128,7 @@ TEST_P(EachKernelSet, SlidesAsStribecksLawSays) {
 /// Oscillating pairs of rates from slow to fast, hardly damped to strongly.
 struct Oscillators {
   explicit Oscillators(std::uint64_t seed, Eigen::Index np) : decay(np), w(np), a11(np), a12(np), a21(np) {
-    fixtures::Random random(seed);
+    fixtures::Draws random(seed);
     for (Eigen::Index i = 0; i < np; ++i) {
       w(i) = std::pow(10.0, random.uniform(-2.0, 4.0));
       decay(i) = -w(i) * std::pow(10.0, random.uniform(-4.0, 0.0));
@@ -145,7 +145,7 @@ struct Oscillators {
 
 TEST_P(EachKernelSet, MovesOscillatorsExactlyToRounding) {
   constexpr Eigen::Index np = 16;
-  fixtures::Random random(5);
+  fixtures::Draws random(5);
   for (std::uint64_t seed = 0; seed < 500; ++seed) {
     const Oscillators pairs(seed, np);
     const double t = std::pow(10.0, random.uniform(-7.0, 2.0));
@@ -257,7 +257,7 @@ TEST(KernelSets, OfTwoVectorWidthsMoveOscillatorsToTheSameBytes) {
   const std::vector<const Kernels*> fused = fused_sets();
   if (fused.size() < 2) GTEST_SKIP() << "this processor runs one vector width with fused multiply-add";
   constexpr Eigen::Index np = 24;
-  fixtures::Random random(6);
+  fixtures::Draws random(6);
   for (std::uint64_t seed = 0; seed < 2000; ++seed) {
     const Oscillators pairs(seed, np);
     const double t = std::pow(10.0, random.uniform(-7.0, 2.0));

@@ -32,7 +32,7 @@ bool mixed(const HybridSystem& system) {
 
 /// The same scene with directions that reach onto the other contacts' masses, so that forces of one accelerate another.
 RandomScene interwoven(const RandomScene& scene, std::uint64_t seed) {
-  Random random(9000 + seed);
+  Draws random(9000 + seed);
   std::vector<friction::Contact> contacts = scene.system.contacts();
   for (friction::Contact& contact : contacts)
     for (const friction::Contact& other : scene.system.contacts())

@@ -21,7 +21,7 @@ ModalModel modes(const Eigen::VectorXd& omega, const Eigen::VectorXd& damping) {
 }
 
 TEST(PairMotion, IsExactToRoundingOverAnyTimeAndForAnyRate) {
-  fixtures::Random random(1);
+  fixtures::Draws random(1);
   for (int trial = 0; trial < 2000; ++trial) {
     SCOPED_TRACE(trial);
     const double t = std::pow(10.0, random.uniform(-7.0, 2.0));

@@ -333,12 +333,5 @@ TEST(PiecewiseLinear, AShakerAtResonanceSlidesWhereItsForceHasGrownToTheLimit) {
   EXPECT_LT(std::abs(run.audit.residual()), 1e-11);
 }
 
-TEST(PiecewiseLinear, MixesWithSpeedDependentLawsAreRefused) {
-  friction::Contact compliant{.direction = fixtures::unit(2, 0), .law = friction::CompliantCoulomb{0.5, 0.5, 3.0}};
-  friction::Contact stribeck{.direction = fixtures::unit(2, 1), .law = friction::Stribeck{0.5, 0.3, 2.0}};
-  const HybridSystem system(fem::chain({.masses = 2}), {compliant, stribeck}, friction::Belt::constant(0.1));
-  EXPECT_THROW((void)simulate(system, system.rest(), {.duration = 1.0}), InvalidInput);
-}
-
 }  // namespace
 }  // namespace slipmode::dynamics

@@ -104,7 +104,7 @@ TEST(ShakerCollocation, TheSteadyMotionTurnsItsSignEveryHalfPeriod) {
   }
 }
 
-Shaker random_shaker(Random& random) {
+Shaker random_shaker(Draws& random) {
   return {random.uniform(0.05, 1.5), 0.03 * std::exp(random.uniform(0.0, 4.6)), random.uniform(-3.0, 3.0)};
 }
 
@@ -112,7 +112,7 @@ TEST(ShakerCollocation, AgreesWithTheTaylorReferenceOnRandomScenes) {
   std::size_t events = 0;
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     const RandomScene scene = random_scene(seed, Laws::kAll, 8);
-    Random random(1000 + seed);
+    Draws random(1000 + seed);
     const HybridSystem system = scene.system.with_drive(random_shaker(random));
     const ReferenceGap gap = gap_to_reference(system, scene.start, 15.0, kFlow);
     EXPECT_EQ(gap.mismatch, "") << "seed " << seed;
@@ -126,7 +126,7 @@ TEST(ShakerCollocation, AgreesWithTheTaylorReferenceOnRandomScenes) {
 TEST(ShakerCollocation, TheEnergyBalanceCloses) {
   for (std::uint64_t seed = 100; seed < 140; ++seed) {
     const RandomScene scene = random_scene(seed, Laws::kAll, 12);
-    Random random(seed);
+    Draws random(seed);
     const HybridSystem system = scene.system.with_drive(random_shaker(random));
     const Trajectory run =
         simulate(system, scene.start, {.duration = 60.0, .flow = {.method = FlowMethod::kCollocation}});

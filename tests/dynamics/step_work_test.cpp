@@ -19,7 +19,7 @@ struct StepOfForces {
 
 /// @param last  size of the forces' part of degree 7, to which the parts of lower degree fall steadily
 StepOfForces random_step(const ModalModel& model, std::uint64_t seed, double last) {
-  fixtures::Random random(seed);
+  fixtures::Draws random(seed);
   StepOfForces out{Eigen::VectorXd::Zero(2 * model.np), Eigen::VectorXd::Zero(kNodes * model.contacts)};
   for (Eigen::Index i = 0; i < model.n; ++i) {
     out.x(i) = random.uniform(-1.0, 1.0);

@@ -62,7 +62,7 @@ void expect_jacobian(const HybridSystem& system, const MixedOptions& options) {
   const MixedOrbit mixed = mixed_orbit(system, options);
   ASSERT_TRUE(mixed.converged) << mixed.message;
   // Beside the orbit, where nothing is zero.
-  fixtures::Random random(7);
+  fixtures::Draws random(7);
   dynamics::State start = mixed.near_orbit.start;
   start.modes.clear();
   const double size = start.q.lpNorm<Eigen::Infinity>();
@@ -241,7 +241,7 @@ TEST(Mixed, RandomChainsConvergeFromNothing) {
   constexpr int kScenes = 60;
   for (int seed = 0; seed < kScenes; ++seed) {
     SCOPED_TRACE(seed);
-    fixtures::Random random(static_cast<std::uint64_t>(seed));
+    fixtures::Draws random(static_cast<std::uint64_t>(seed));
     const int n = random.integer(3, 12), first = random.integer(0, n - 1);
     std::vector<friction::Contact> contacts;
     for (int c = 0; c < (random.chance(0.4) ? 2 : 1); ++c) {

@@ -25,7 +25,7 @@ Attractor limit_cycle(const BeltOscillator& o) {
 
 /// A record of the chaotic chain, belt speed 0.2.
 Attractor chaos(const dynamics::HybridSystem& system) {
-  fixtures::Random random(3);
+  fixtures::Draws random(3);
   dynamics::State start = system.rest();
   start.q = Eigen::VectorXd::LinSpaced(10, 0.67, 6.66) + random.vector(10, 0.3);
   return record_attractor(system, start, {.transient = 20000.0, .duration = 60000.0, .sample = 50.0});

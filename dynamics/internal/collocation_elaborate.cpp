@@ -1,0 +1,195 @@
+// Contacts with springs, stops, tilt or loads that vary: forces linear in the contact's own motion, guards linear in
+// motion and force. docs/theory/flow.md, section 4.
+#include "dynamics/internal/collocation_flow.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace slipmode::dynamics {
+namespace {
+
+/// A guard that cannot be told from zero beyond this share of its scale is not looked at, and starts at zero below the
+/// other one; its slope there is zero below the last share of what its terms are
+/// and would become in a radian of the fastest mode: at a turning point all of them may vanish.
+constexpr double kTouching = 1e-12, kStarting = 1e-11, kFlat = 1e-9;
+/// After a grazing the guard is as near to zero as the grazing was located.
+constexpr double kGrazed = 1e-6;
+
+}  // namespace
+
+void CollocationFlow::set_own_forces() {
+  const std::vector<ContactRole> roles = resolver_.roles(point_.modes);
+  for (int c = 0; c < nc_; ++c) {
+    const auto i = static_cast<std::size_t>(c);
+    if (!elaborate(c)) continue;
+    own_forces_[i] = {};
+    if (held(point_.modes, c)) continue;
+    const ContactAnswer answer = contact_answer(laws()[i], resolver_.load_form(c), roles[i]);
+    const bool follows = roles[i] == ContactRole::kSprung;
+    const double input = resolver_.regime_input(point_, c);
+    own_forces_[i] = {follows ? answer.stiffness * input : input, answer.stiffness, answer.damping, follows};
+  }
+}
+
+double CollocationFlow::own_force(int c, double tau, const double* x) const {
+  const OwnForce& own = own_forces_[static_cast<std::size_t>(c)];
+  if (!own.moves()) return own.constant;
+  const double way = own.follows ? drive().way(begin_, begin_ + tau) : 0.0;
+  return own.at(way, resolver_.contact_displacement(c, x), resolver_.contact_velocity(c, x));
+}
+
+std::vector<CollocationFlow::OwnGuard> CollocationFlow::own_guards(int c, ContactMode mode) const {
+  const auto i = static_cast<std::size_t>(c);
+  const ContactForces& law = laws()[i];
+  const friction::LoadForm& load = resolver_.load_form(c);
+  std::vector<OwnGuard> guards;
+  if (law.kind == LawKind::kClearance) {
+    const double side = side_of(mode);
+    for (const StopGuard& own : stop_guards(law.clearance, mode)) {
+      OwnGuard guard{
+          .kind = GuardKind::kStop, .next = own.next, .constant = own.constant + own.sign * load.offset, .y = own.sign};
+      if (own.press) {
+        const friction::Stop& stop = side < 0.0 ? *law.clearance.left : *law.clearance.right;
+        guard.y = own.sign * side * stop.stiffness;
+        guard.v = own.sign * side * stop.damping;
+        guard.constant = own.constant + guard.y * load.offset - own.sign * stop.stiffness * stop.gap;
+      }
+      guards.push_back(guard);
+    }
+    return guards;
+  }
+  if (load.varies()) {
+    const double sign = mode == ContactMode::kSeparated ? -1.0 : 1.0;
+    guards.push_back({.kind = GuardKind::kLoad, .constant = sign * load.constant, .y = sign * load.y});
+  }
+  if (mode == ContactMode::kSeparated) return guards;
+  if (mode == ContactMode::kStick) {
+    for (const double side : {-1.0, 1.0}) {
+      const double mu = law.static_coefficient(side);
+      guards.push_back({.constant = mu * load.constant, .y = mu * load.y, .force = -side});
+    }
+    return guards;
+  }
+  // The speed at which the contact point slides: behind a spring it follows the load.
+  const double sign = sign_of(mode);
+  OwnGuard speed{.v = -sign, .drive = sign};
+  if (law.kind == LawKind::kCompliant) speed.v -= law.kinetic_coefficient(sign) * load.y / law.stiffness;
+  guards.push_back(speed);
+  return guards;
+}
+
+void CollocationFlow::search_own_guards(int c, Guarded& first) const {
+  const auto i = static_cast<std::size_t>(c);
+  const double y = resolver_.contact_displacement(c, x_begin_.data()),
+               v = resolver_.contact_velocity(c, x_begin_.data()), V = drive_velocity(begin_, 0.0);
+  const auto at_nodes = [&](const Eigen::VectorXd& of) { return of.segment<kNodes>(kNodes * c); };
+  const bool rigid_slip = point_.multiplicity[i] > 0 && laws()[i].kind == LawKind::kConstant;
+  for (const OwnGuard& guard : own_guards(c, point_.modes[i])) {
+    const double start = guard.value(y, v, point_.force(c), V);
+    const RadauTables::Vector8 value =
+        (guard.constant + guard.y * at_nodes(displacement_).array() + guard.v * at_nodes(velocity_).array() +
+         guard.force * at_nodes(forces_).array() + guard.drive * at_nodes(drive_nodes_).array())
+            .matrix();
+    BernsteinPolynomial p;
+    p.degree = kNodes;
+    p.coefficient[0] = start;
+    Eigen::Map<RadauTables::Vector8> form(p.coefficient.data() + 1);
+    form = nodes_.bernstein8 * value + nodes_.bernstein8_start * start;
+    const GuardValue now = evaluate(guard, c, 0.0, x_begin_);
+    if (start > kStarting * now.size && form.minCoeff() > 0.0) continue;
+    if (std::max(std::abs(start), form.cwiseAbs().maxCoeff()) <= kTouching * now.size)
+      continue;  // at rest on its limit
+    const bool touched = touched_ == c && std::abs(start) <= kGrazed * now.size;
+    int order = 0;  // of the zero it starts with
+    if (guard.drive != 0.0 && rigid_slip)
+      order = point_.multiplicity[i];
+    else if (touched || std::abs(start) <= kStarting * now.size)
+      order = touched || std::abs(now.rate) <= kFlat * now.rate_size ? 2 : 1;
+    if (order == 1) form(0) = now.rate * tables_.step(step_level_) / kNodes;
+    std::fill_n(p.coefficient.begin(), order, 0.0);
+    const auto* leading = std::find_if(p.coefficient.begin(), p.coefficient.end(), [](double b) { return b != 0.0; });
+    if (leading == p.coefficient.end()) continue;
+    const auto reached = [&](double theta, bool touching) {
+      if (theta < first.theta) first = {theta, c, touching, guard, order};
+    };
+    if (*leading < 0.0)  // falls through zero where the step begins
+      reached(0.0, false);
+    else if (const auto root = first_root(p))
+      reached(root->at, root->touching);
+  }
+}
+
+CollocationFlow::GuardValue CollocationFlow::evaluate(const OwnGuard& guard, int c, double tau,
+                                                      const Eigen::VectorXd& x) const {
+  const OwnForce& own = own_forces_[static_cast<std::size_t>(c)];
+  const double h = tables_.step(step_level_), V = drive_velocity(begin_, tau), a = drive_acceleration(begin_, tau),
+               y = resolver_.contact_displacement(c, x.data()), v = resolver_.contact_velocity(c, x.data());
+  const RadauTables::Vector8 basis = nodes_.lagrange(tau / h);
+  const double acceleration = contact_acceleration(c, x, tau, basis);
+  const auto row_size = [&](const Eigen::MatrixXd& rows) { return rows.col(c).cwiseAbs().dot(x.cwiseAbs()); };
+  const double speeds = row_size(model_.velocity_row) + drive().velocity_scale(begin_),
+               accelerations = row_size(model_.acceleration_row) + std::abs(a) +
+                               model_.mobility.row(c).cwiseAbs().dot(point_.force.cwiseAbs());
+  double force = 0.0, force_rate = 0.0, force_rate_size = 0.0;
+  if (guard.force != 0.0) {
+    if (held(step_modes_, c)) {
+      force = stick_force(c, x, tau, basis);
+      force_rate = forces_.segment<kNodes>(kNodes * c).dot(nodes_.lagrange_slope(tau / h)) / h;
+    } else {
+      force = own_force(c, tau, x.data());
+      force_rate = own.rate(V, v, acceleration);
+      force_rate_size = std::abs(own.stiffness) * speeds + std::abs(own.damping) * accelerations;
+    }
+  }
+  const double size = std::abs(guard.constant) + std::abs(guard.y) * row_size(model_.displacement_row) +
+                      std::abs(guard.v) * row_size(model_.velocity_row) + std::abs(guard.force * force) +
+                      std::abs(guard.drive) * drive().velocity_scale(begin_);
+  return {.value = guard.value(y, v, force, V),
+          .rate = guard.y * v + guard.v * acceleration + guard.force * force_rate + guard.drive * a,
+          .size = size,
+          .rate_size = model_.fastest * size + std::abs(guard.y) * speeds +
+                       (std::abs(guard.v) + std::abs(guard.drive)) * accelerations +
+                       std::abs(guard.force) * force_rate_size};
+}
+
+Eigen::RowVectorXd CollocationFlow::own_force_gradient(int c) const {
+  const auto i = static_cast<std::size_t>(c);
+  const OwnForce& own = own_forces_[i];
+  const Eigen::Index size = 2 * model_.np;
+  Eigen::RowVectorXd gradient = Eigen::RowVectorXd::Zero(size + point_.internal.size());
+  if (own.follows)
+    gradient(size + own_at_[i]) = own.stiffness;
+  else
+    gradient.head(size) = -own.stiffness * model_.displacement_row.col(c) - own.damping * model_.velocity_row.col(c);
+  return gradient;
+}
+
+Eigen::RowVectorXd CollocationFlow::gradient(const OwnGuard& guard, int c) const {
+  Eigen::RowVectorXd gradient = Eigen::RowVectorXd::Zero(2 * model_.np + point_.internal.size());
+  gradient.head(2 * model_.np) = guard.y * model_.displacement_row.col(c) + guard.v * model_.velocity_row.col(c);
+  if (guard.force == 0.0) return gradient;
+  if (!held(step_modes_, c)) return gradient + guard.force * own_force_gradient(c);
+  std::vector<Eigen::Index> stuck;
+  Eigen::Index position = 0;
+  for (int d = 0; d < nc_; ++d)
+    if (held(step_modes_, d)) {
+      if (d == c) position = static_cast<Eigen::Index>(stuck.size());
+      stuck.push_back(d);
+    }
+  return gradient + guard.force * held_force_gradient(stuck).row(position);
+}
+
+void CollocationFlow::slave_stretches() {
+  for (int c = 0; c < nc_; ++c) {
+    const auto i = static_cast<std::size_t>(c);
+    if (laws()[i].kind != LawKind::kCompliant || point_.modes[i] == ContactMode::kStick) continue;
+    auto row = tangents_.row(2 * model_.np + own_at_[i]);
+    if (point_.modes[i] == ContactMode::kSeparated)
+      row.setZero();
+    else
+      row = (resolver_.slide_stretch_gradient(point_, c) * tangents_).eval();
+  }
+}
+
+}  // namespace slipmode::dynamics
