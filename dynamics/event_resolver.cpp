@@ -14,6 +14,8 @@ namespace {
 
 /// Sliding slower than this share of the velocities at play is no sliding.
 constexpr double kAtRest = 1e-13;
+/// A spring stretched beyond its limit by this share is at it: where sliding has ended, it is but for rounding.
+constexpr double kAtLimit = 1e-12;
 
 }  // namespace
 
@@ -47,18 +49,23 @@ EventResolver::EventResolver(const HybridSystem& system, const ModalModel& model
   std::iota(slides_as_.begin(), slides_as_.end(), 0);
   for (const std::vector<std::size_t>& place : friction::by_place(system.contacts())) {
     const auto rigid = [&](std::size_t c) { return friction::sticks_rigidly(laws_[c].kind); };
-    if (const auto own = std::ranges::find_if(place, rigid); own != place.end())
-      for (const std::size_t c : place)
-        if (laws_[c].kind == LawKind::kCompliant && !laws_[c].varies)
-          beside_.emplace_back(static_cast<int>(*own), static_cast<int>(c));
     const auto alike = [&](std::size_t c) { return laws_[c].kind == LawKind::kCompliant && !laws_[c].varies; };
-    const auto first = std::ranges::find_if(place, alike);
+    auto leads = std::ranges::find_if(place, rigid);
+    if (leads == place.end()) leads = std::ranges::find_if(place, alike);
     for (const std::size_t c : place)
-      if (alike(c)) slides_as_[c] = static_cast<int>(*first);
+      if (alike(c)) slides_as_[c] = static_cast<int>(*leads);
   }
   for (const ContactForces& law : laws_) clearances_only_ &= law.kind == LawKind::kClearance;
   lone_spring_ = laws_.size() == 1 && laws_[0].kind == LawKind::kCompliant;
   plain_ = laws_.size() == 1 && !laws_[0].is_elaborate();
+}
+
+bool EventResolver::led(int c) const {
+  return slides_as(c) != c && sticks_rigidly(laws_[static_cast<std::size_t>(slides_as(c))].kind);
+}
+
+bool EventResolver::rests(int c, const std::vector<ContactMode>& modes) const {
+  return led(c) && modes[static_cast<std::size_t>(slides_as(c))] == ContactMode::kStick;
 }
 
 double EventResolver::contact_displacement(int c, const double* x) const {
@@ -267,7 +274,7 @@ void EventResolver::start(HybridPoint& point) const {
     }
     const ContactForces law = laws_[c].varies ? laws_[c].under(normal_load(point, i)) : laws_[c];
     const double force = law.stiffness * stretch;
-    if (point.modes[c] == ContactMode::kStick && std::abs(force) > law.limit(force))
+    if (point.modes[c] == ContactMode::kStick && std::abs(force) > law.limit(force) * (1.0 + kAtLimit))
       point.modes[c] = force > 0 ? ContactMode::kSlipPositive : ContactMode::kSlipNegative;
     if (point.modes[c] == ContactMode::kStick) continue;
     stretch = law.sliding(sign_of(point.modes[c]), 0.0) / law.stiffness;

@@ -6,7 +6,6 @@
 #include <slipmode/friction/load_form.hpp>
 
 #include <Eigen/Core>
-#include <utility>
 #include <vector>
 
 namespace slipmode::dynamics {
@@ -65,9 +64,14 @@ class EventResolver {
   /// wᵀq of contact c.
   [[nodiscard]] double contact_displacement(int c, const double* x) const;
 
-  /// The first contact that slides as c does: behind springs at one place, under constant loads. All that slide the
-  /// same way turn at the same instant. c itself where there is none before it.
+  /// The contact that slides as c does, behind a spring under a constant load: a rigid one at its place, else the first
+  /// such spring there. All that slide the same way turn at the same instant. c itself where there is none.
   [[nodiscard]] int slides_as(int c) const { return slides_as_[static_cast<std::size_t>(c)]; }
+
+  /// Behind a spring, and slides as a rigid contact at its place does.
+  [[nodiscard]] bool led(int c) const;
+  /// The same where that one sticks: nothing can happen to the spring.
+  [[nodiscard]] bool rests(int c, const std::vector<ContactMode>& modes) const;
 
   /// Takes the velocity error of sticking contacts out of a state, by the impulse that their friction would exert.
   void hold(double time, const std::vector<ContactMode>& modes, double* x) const;
@@ -120,8 +124,8 @@ class EventResolver {
   void turn_compliant(HybridPoint& point, int c) const;
   /// The same, and of all that cease to slide with it.
   void turn_together(HybridPoint& point, int c) const;
-  /// Springs beside a rigid contact at one place, once that is decided: they cease to slide where it does, and those
-  /// at their limit slide where it begins to.
+  /// Springs led by a rigid contact, once that is decided: they cease to slide where it does, and those at their limit
+  /// slide where it begins to.
   void turn_beside(HybridPoint& point) const;
   /// Contact lost or regained.
   void turn_load(HybridPoint& point, int c) const;
@@ -146,7 +150,6 @@ class EventResolver {
   bool clearances_only_ = true;
   bool lone_spring_ = false;  ///< one contact, compliant
   std::vector<int> slides_as_;
-  std::vector<std::pair<int, int>> beside_;  ///< a rigid contact, one behind a spring at the same place
   int max_events_per_window_;
   double zeno_window_;
   std::vector<Event> events_;

@@ -109,20 +109,24 @@ void EventResolver::turn_together(HybridPoint& point, int c) const {
   const ContactMode before = point.modes[static_cast<std::size_t>(c)];
   turn_compliant(point, c);
   if (before == ContactMode::kStick) return;
-  for (int d = 0; d < model_.contacts; ++d)
-    if (slides_as(d) == slides_as(c) && point.modes[static_cast<std::size_t>(d)] == before) turn_compliant(point, d);
+  for (int d = 0; d < model_.contacts; ++d) {
+    const auto i = static_cast<std::size_t>(d);
+    if (slides_as(d) == slides_as(c) && laws_[i].kind == LawKind::kCompliant && point.modes[i] == before)
+      turn_compliant(point, d);
+  }
 }
 
 void EventResolver::turn_beside(HybridPoint& point) const {
-  for (const auto& [rigid, sprung] : beside_) {
-    const auto r = static_cast<std::size_t>(rigid), s = static_cast<std::size_t>(sprung);
+  for (int c = 0; c < model_.contacts; ++c) {
+    if (!led(c)) continue;
+    const auto i = static_cast<std::size_t>(c), r = static_cast<std::size_t>(slides_as(c));
     const ContactMode leads = point.modes[r];
-    ContactMode& follows = point.modes[s];
-    const double sign = sign_of(leads), force = laws_[s].stiffness * point.internal(internal_[s]);
+    ContactMode& follows = point.modes[i];
+    const double sign = sign_of(leads), force = laws_[i].stiffness * point.internal(internal_[i]);
     if (leads != follows && follows != ContactMode::kStick)
-      turn_compliant(point, sprung);
+      turn_compliant(point, c);
     else if (follows == ContactMode::kStick && point.multiplicity[r] > 0 &&
-             sign * force >= laws_[s].limit(sign) * (1.0 - kTogether))
+             sign * force >= laws_[i].limit(sign) * (1.0 - kTogether))
       follows = leads;
   }
 }

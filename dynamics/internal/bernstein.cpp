@@ -167,4 +167,8 @@ BernsteinPolynomial derivative(const BernsteinPolynomial& p) {
 
 std::optional<FirstRoot> first_root(const BernsteinPolynomial& p) { return search(p, 0.0, 1.0); }
 
+double least(const BernsteinPolynomial& p) {
+  return *std::min_element(p.coefficient.begin(), p.coefficient.begin() + p.degree + 1);
+}
+
 }  // namespace slipmode::dynamics

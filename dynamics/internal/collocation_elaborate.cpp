@@ -26,9 +26,17 @@ void CollocationFlow::set_own_forces() {
     own_forces_[i] = {};
     if (held(point_.modes, c)) continue;
     const ContactAnswer answer = contact_answer(laws()[i], resolver_.load_form(c), roles[i]);
-    const bool follows = roles[i] == ContactRole::kSprung;
-    const double input = resolver_.regime_input(point_, c);
-    own_forces_[i] = {follows ? answer.stiffness * input : input, answer.stiffness, answer.damping, follows};
+    if (roles[i] != ContactRole::kSprung) {
+      own_forces_[i] = {resolver_.regime_input(point_, c), answer.stiffness, answer.damping};
+      continue;
+    }
+    OwnForce& own = own_forces_[i];
+    own.by_stretch = answer.stiffness;
+    own.constant = answer.stiffness * point_.internal(own_at_[i]);
+    if (resolver_.rests(c, point_.modes)) continue;
+    own.constant += answer.stiffness * resolver_.contact_displacement(c, point_.x.data());
+    own.stiffness = answer.stiffness;
+    own.follows = true;
   }
 }
 
@@ -44,6 +52,7 @@ std::vector<CollocationFlow::OwnGuard> CollocationFlow::own_guards(int c, Contac
   const ContactForces& law = laws()[i];
   const friction::LoadForm& load = resolver_.load_form(c);
   std::vector<OwnGuard> guards;
+  if (resolver_.rests(c, point_.modes)) return guards;
   if (law.kind == LawKind::kClearance) {
     const double side = side_of(mode);
     for (const StopGuard& own : stop_guards(law.clearance, mode)) {
@@ -71,6 +80,7 @@ std::vector<CollocationFlow::OwnGuard> CollocationFlow::own_guards(int c, Contac
     }
     return guards;
   }
+  if (resolver_.led(c)) return guards;  // by a contact whose guard it is
   // The speed at which the contact point slides: behind a spring it follows the load.
   const double sign = sign_of(mode);
   OwnGuard speed{.v = -sign, .drive = sign};
@@ -84,7 +94,6 @@ void CollocationFlow::search_own_guards(int c, Guarded& first) const {
   const double y = resolver_.contact_displacement(c, x_begin_.data()),
                v = resolver_.contact_velocity(c, x_begin_.data()), V = drive_velocity(begin_, 0.0);
   const auto at_nodes = [&](const Eigen::VectorXd& of) { return of.segment<kNodes>(kNodes * c); };
-  const bool rigid_slip = point_.multiplicity[i] > 0 && laws()[i].kind == LawKind::kConstant;
   for (const OwnGuard& guard : own_guards(c, point_.modes[i])) {
     const double start = guard.value(y, v, point_.force(c), V);
     const RadauTables::Vector8 value =
@@ -100,12 +109,7 @@ void CollocationFlow::search_own_guards(int c, Guarded& first) const {
     if (start > kStarting * now.size && form.minCoeff() > 0.0) continue;
     if (std::max(std::abs(start), form.cwiseAbs().maxCoeff()) <= kTouching * now.size)
       continue;  // at rest on its limit
-    const bool touched = touched_ == c && std::abs(start) <= kGrazed * now.size;
-    int order = 0;  // of the zero it starts with
-    if (guard.drive != 0.0 && rigid_slip)
-      order = point_.multiplicity[i];
-    else if (touched || std::abs(start) <= kStarting * now.size)
-      order = touched || std::abs(now.rate) <= kFlat * now.rate_size ? 2 : 1;
+    const int order = start_order(guard, c, now);
     if (order == 1) form(0) = now.rate * tables_.step(step_level_) / kNodes;
     std::fill_n(p.coefficient.begin(), order, 0.0);
     const auto* leading = std::find_if(p.coefficient.begin(), p.coefficient.end(), [](double b) { return b != 0.0; });
@@ -118,6 +122,15 @@ void CollocationFlow::search_own_guards(int c, Guarded& first) const {
     else if (const auto root = first_root(p))
       reached(root->at, root->touching);
   }
+}
+
+int CollocationFlow::start_order(const OwnGuard& guard, int c, const GuardValue& now) const {
+  const auto i = static_cast<std::size_t>(c);
+  if (guard.drive != 0.0 && laws()[i].kind == LawKind::kConstant && point_.multiplicity[i] > 0)
+    return point_.multiplicity[i];
+  const bool touched = touched_ == c && std::abs(now.value) <= kGrazed * now.size;
+  if (!touched && std::abs(now.value) > kStarting * now.size) return 0;
+  return touched || std::abs(now.rate) <= kFlat * now.rate_size ? 2 : 1;
 }
 
 CollocationFlow::GuardValue CollocationFlow::evaluate(const OwnGuard& guard, int c, double tau,
@@ -158,8 +171,8 @@ Eigen::RowVectorXd CollocationFlow::own_force_gradient(int c) const {
   const OwnForce& own = own_forces_[i];
   const Eigen::Index size = 2 * model_.np;
   Eigen::RowVectorXd gradient = Eigen::RowVectorXd::Zero(size + point_.internal.size());
-  if (own.follows)
-    gradient(size + own_at_[i]) = own.stiffness;
+  if (own.by_stretch != 0.0)
+    gradient(size + own_at_[i]) = own.by_stretch;
   else
     gradient.head(size) = -own.stiffness * model_.displacement_row.col(c) - own.damping * model_.velocity_row.col(c);
   return gradient;

@@ -7,6 +7,7 @@
 #include "dynamics/internal/within_step.hpp"
 
 #include <Eigen/Core>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -128,6 +129,16 @@ class CollocationFlow {
   /// this guard's
   [[nodiscard]] bool stays_clear(const BernsteinPolynomial& guard, double error, double slope_error, double from,
                                  const Guarded* found, double end) const;
+  /// Of an elaborate contact within the step.
+  struct OwnMotion {
+    double way = 0.0;    ///< h⁹ max |(wᵀq)⁽⁹⁾| [m]
+    double force = 0.0;  ///< h⁹ max |λ⁽⁹⁾| by its law [N]
+    double left = 0.0;   ///< what the solution leaves of the law at the nodes [N]
+    double start = 0.0;  ///< what the polynomial through the nodes is off it at the step's start [N]
+  };
+  [[nodiscard]] OwnMotion own_motion(int c, double h) const;
+  /// `proves`, of one elaborate contact. @param found  the event, if it is this contact's
+  [[nodiscard]] bool proves_own(int c, const Guarded* found, const Deviation& off, double h, double end) const;
   /// Largest |V⁽⁹⁾| h⁹ of the drive.
   [[nodiscard]] double drive_ninth(double h) const;
   [[nodiscard]] bool unmoved(int c) const;
@@ -158,9 +169,12 @@ class CollocationFlow {
   /// λ = constant + stiffness (way of the drive, where it is followed, − wᵀq) − damping wᵀq̇ within a step.
   struct OwnForce {
     double constant = 0.0, stiffness = 0.0, damping = 0.0;
+    double by_stretch = 0.0;  ///< dλ/d(stretch) at the step's start [N/m]
     bool follows = false;
 
     [[nodiscard]] bool moves() const { return stiffness != 0.0 || damping != 0.0; }
+    /// What it changes by at most, of a change of the speed within a step of this length.
+    [[nodiscard]] double lipschitz(double h) const { return std::abs(stiffness) * h + std::abs(damping); }
     [[nodiscard]] double at(double way, double y, double v) const {
       return constant + stiffness * ((follows ? way : 0.0) - y) - damping * v;
     }
@@ -177,6 +191,8 @@ class CollocationFlow {
     double value = 0.0, rate = 0.0;
     double size = 0.0, rate_size = 0.0;  ///< of the terms that are summed
   };
+  /// Of the zero with which a guard starts, 0 if with none. @param now  of the guard at the step's start
+  [[nodiscard]] int start_order(const OwnGuard& guard, int c, const GuardValue& now) const;
   [[nodiscard]] GuardValue evaluate(const OwnGuard& guard, int c, double tau, const Eigen::VectorXd& x) const;
   /// d(guard)/d(state, contacts' own states).
   [[nodiscard]] Eigen::RowVectorXd gradient(const OwnGuard& guard, int c) const;

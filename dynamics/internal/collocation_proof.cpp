@@ -28,10 +28,6 @@ bool has_guard(const ContactForces& law) { return law.sticks() || law.kind == La
 
 bool positive(const BernsteinPolynomial& p) { return p.coefficient[0] > 0.0 && !first_root(p); }
 
-double least(const BernsteinPolynomial& p) {
-  return *std::min_element(p.coefficient.begin(), p.coefficient.begin() + p.degree + 1);
-}
-
 double most(const BernsteinPolynomial& p) {
   return *std::max_element(p.coefficient.begin(), p.coefficient.begin() + p.degree + 1);
 }
@@ -43,12 +39,11 @@ double exponential_bound(double x) { return x < 0.25 ? 1.0 / (1.0 - x) : std::ex
 
 void CollocationFlow::prepare_proof() {
   const auto known = [](const ContactForces& law) {
-    return law.is_constant() || law.kind == LawKind::kBristle ||
+    return law.is_constant() || law.is_elaborate() || law.kind == LawKind::kBristle ||
            (law.kind == LawKind::kSpeedDependent && law.characteristic == nullptr);
   };
   guarded_ = any_elaborate_ || std::ranges::any_of(laws(), has_guard);
-  provable_ = halving_proves_ =
-      options_.certify && !any_elaborate_ && (!guarded_ || std::ranges::all_of(laws(), known));
+  provable_ = halving_proves_ = options_.certify && (!guarded_ || std::ranges::all_of(laws(), known));
   ninth_.resize(nc_);
 }
 
@@ -95,7 +90,7 @@ CollocationFlow::Deviation CollocationFlow::deviation(const StepBounds& bounds, 
   for (int c = 0; c < nc_; ++c) {
     const auto i = static_cast<std::size_t>(c);
     const ContactForces& law = laws()[i];
-    if (point_.modes[i] == ContactMode::kStick) {
+    if (held(point_.modes, c)) {
       stuck.push_back(c);
       rate = std::max(rate, nodes_.remainder[1] * ninth_(c) / h);
       curve = std::max(curve, nodes_.remainder[2] * ninth_(c) / (h * h));
@@ -106,6 +101,11 @@ CollocationFlow::Deviation CollocationFlow::deviation(const StepBounds& bounds, 
       defect = std::max(defect, own.force);
       slope = std::max(slope, own.growth / reach);
       out.room = std::min(out.room, own.room);
+    }
+    if (elaborate(c) && own_forces_[i].moves()) {
+      const OwnMotion own = own_motion(c, h);
+      defect = std::max(defect, 2.0 * nodes_.lebesgue * own.left + own.start + nodes_.remainder[0] * own.force);
+      slope = std::max(slope, own_forces_[i].lipschitz(h));
     }
     if (law.kind != LawKind::kSpeedDependent) continue;
     const double sign = sign_of(point_.modes[i]);
@@ -129,7 +129,7 @@ CollocationFlow::Deviation CollocationFlow::deviation(const StepBounds& bounds, 
       hold = own.inverse().cwiseAbs().rowwise().sum().maxCoeff();
       for (int d = 0; d < nc_; ++d) {
         const auto i = static_cast<std::size_t>(d);
-        if (point_.modes[i] == ContactMode::kStick || laws()[i].is_constant()) continue;
+        if (held(point_.modes, d) || laws()[i].is_constant() || (elaborate(d) && !own_forces_[i].moves())) continue;
         cross += model_.mobility(stuck, d).cwiseAbs().maxCoeff();
       }
     }
@@ -153,6 +153,19 @@ double CollocationFlow::largest_force_rate(int d, const Deviation& off, double h
   const auto i = static_cast<std::size_t>(d);
   const ContactForces& law = laws()[i];
   if (bristled(d)) return std::numeric_limits<double>::infinity();
+  if (elaborate(d) && !held(point_.modes, d)) {
+    // By the speed, and by an acceleration of which as much is known as of the speed.
+    alignas(64) const RadauTables::Vector8 speed =
+        drive_nodes_.segment<kNodes>(kNodes * d) - velocity_.segment<kNodes>(kNodes * d);
+    const double start = drive_velocity(begin_, 0.0) - resolver_.contact_velocity(d, x_begin_.data());
+    const ChebyshevSeries series(kernels_, start, speed);
+    const double left = nodes_.remainder[0] * ninth_(d) + off.speed, fastest = std::abs(start) + 2.0 * series.spread();
+    const double drive_fast = own_forces_[i].follows ? 0.0 : drive().velocity_scale(begin_);
+    return std::abs(own_forces_[i].stiffness) * (fastest + drive_fast + left) +
+           std::abs(own_forces_[i].damping) *
+               ((2.0 * kNodes * kNodes * series.spread() + nodes_.remainder[1] * ninth_(d) + off.speed_slope) / h +
+                std::abs(drive_acceleration(begin_, 0.0)));
+  }
   const auto form = guard_forms_.segment<kNodes>(kNodes * d);
   const double steps = (form.tail<kNodes - 1>() - form.head<kNodes - 1>()).cwiseAbs().maxCoeff();
   if (point_.modes[i] == ContactMode::kStick) return ((kNodes - 1) * steps + off.force_slope) / h;
@@ -186,7 +199,10 @@ double CollocationFlow::clear_after_release(const StepBounds& bounds, const Devi
   for (int d = 0; d < nc_; ++d) {
     const ContactForces& other = laws()[static_cast<std::size_t>(d)];
     now -= bounds.response1(c, d) * point_.force(d);
-    change += (h * bounds.third_by_force(c, d) + std::abs(bounds.response2(c, d))) * other.static_limit;
+    const double most = elaborate(d)
+                            ? nodes_.lebesgue * forces_.segment<kNodes>(kNodes * d).cwiseAbs().maxCoeff() + off.force
+                            : other.static_limit;
+    change += (h * bounds.third_by_force(c, d) + std::abs(bounds.response2(c, d))) * most;
     if (other.is_constant() && point_.modes[static_cast<std::size_t>(d)] != ContactMode::kStick) continue;
     if (d == c) {
       by_rate = std::abs(bounds.response1(c, c)) * other.alpha * other.drop;
@@ -263,7 +279,8 @@ bool CollocationFlow::proves(const Guarded& found, double end) {
   const double by_drive = drive_ninth(h);
   for (int c = 0; c < nc_; ++c)
     ninth_(c) = bounds.ninth_by_load(c) + by_drive + bounds.ninth_by_state.col(c).dot(x_begin_.cwiseAbs());
-  if (nc_ == 1 && given_ == 0 && !any_bristle_ && found.contact < 0 && far_from_guards(bounds, h)) return true;
+  if (nc_ == 1 && given_ == 0 && !any_bristle_ && !any_elaborate_ && found.contact < 0 && far_from_guards(bounds, h))
+    return true;
   alignas(64) std::array<double, kNodes> series;
   for (int d = 0; d < nc_ + given_; ++d) {
     kernels_.matrix8(nodes_.legendre.data(), forces_.data() + kNodes * d, series.data());
@@ -277,7 +294,7 @@ bool CollocationFlow::proves(const Guarded& found, double end) {
   const auto faster_than = [&](double speed) {  // of the computed motion
     for (int c = 0; c < nc_; ++c) {
       const auto i = static_cast<std::size_t>(c);
-      if (point_.modes[i] == ContactMode::kStick || !has_guard(laws()[i])) continue;
+      if (point_.modes[i] == ContactMode::kStick || !has_guard(laws()[i]) || elaborate(c)) continue;
       if (!(guard_least_(c) - between > speed)) return false;
     }
     return true;
@@ -291,8 +308,12 @@ bool CollocationFlow::proves(const Guarded& found, double end) {
   for (int c = 0; c < nc_; ++c) {
     const auto i = static_cast<std::size_t>(c);
     const ContactForces& law = laws()[i];
-    if (!has_guard(law)) continue;
     const Guarded* reached = found.contact == c ? &found : nullptr;
+    if (elaborate(c)) {
+      if (!proves_own(c, reached, off, h, end)) return false;
+      continue;
+    }
+    if (!has_guard(law)) continue;
     const auto form = guard_forms_.segment<kNodes>(kNodes * c);
     if (point_.modes[i] == ContactMode::kStick) {
       p.degree = kNodes - 1;

@@ -84,12 +84,7 @@ void CollocationFlow::push_tangents(int level, double tau) {
   speeds.noalias() = free * tangents_.topRows(2 * np);
   Eigen::MatrixXd right = speeds;
   const AtNodes* displacements = any_elaborate_ ? &tables_.displacements(level) : nullptr;
-  const auto carried = [&](int c) {  // of a spring's contact point, less what the drive carries it [1 x k]
-    return (model_.displacement_row.col(c).transpose() * tangents_.topRows(2 * np) +
-            tangents_.row(2 * np + own_at_[static_cast<std::size_t>(c)]))
-        .eval();
-  };
-  std::vector<Eigen::RowVectorXd> points(static_cast<std::size_t>(nc_));
+  std::vector<Eigen::RowVectorXd> points(static_cast<std::size_t>(nc_));  // where springs' contact points are
   std::vector<BristleVariation> bristles(any_bristle_ ? static_cast<std::size_t>(nc_) : 0);
   for (int c = 0; c < nc_; ++c) {
     const auto i = static_cast<std::size_t>(c);
@@ -115,9 +110,10 @@ void CollocationFlow::push_tangents(int level, double tau) {
       right.middleRows<kNodes>(first) =
           -own.damping * speeds.middleRows<kNodes>(first) -
           own.stiffness * (displacements->free.middleCols(2 * np * c, 2 * np) * tangents_.topRows(2 * np));
-      if (own.follows) {
-        points[i] = carried(c);
-        right.middleRows<kNodes>(first).rowwise() += own.stiffness * points[i];
+      if (own.by_stretch != 0.0) {
+        points[i] = tangents_.row(2 * np + own_at_[i]);
+        if (own.follows) points[i] += model_.displacement_row.col(c).transpose() * tangents_.topRows(2 * np);
+        right.middleRows<kNodes>(first).rowwise() += own.by_stretch * points[i];
       }
       continue;
     }
@@ -150,7 +146,7 @@ void CollocationFlow::push_tangents(int level, double tau) {
   }
   for (int c = 0; c < nc_; ++c) {
     const auto i = static_cast<std::size_t>(c);
-    if (points[i].size() > 0)
+    if (own_forces_[i].follows)
       tangents_.row(2 * np + own_at_[i]) =
           points[i] - model_.displacement_row.col(c).transpose() * tangents_.topRows(2 * np);
   }
