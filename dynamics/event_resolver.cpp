@@ -48,24 +48,14 @@ EventResolver::EventResolver(const HybridSystem& system, const ModalModel& model
   slides_as_.resize(laws_.size());
   std::iota(slides_as_.begin(), slides_as_.end(), 0);
   for (const std::vector<std::size_t>& place : friction::by_place(system.contacts())) {
-    const auto rigid = [&](std::size_t c) { return friction::sticks_rigidly(laws_[c].kind); };
     const auto alike = [&](std::size_t c) { return laws_[c].kind == LawKind::kCompliant && !laws_[c].varies; };
-    auto leads = std::ranges::find_if(place, rigid);
-    if (leads == place.end()) leads = std::ranges::find_if(place, alike);
+    const auto first = std::ranges::find_if(place, alike);
     for (const std::size_t c : place)
-      if (alike(c)) slides_as_[c] = static_cast<int>(*leads);
+      if (alike(c)) slides_as_[c] = static_cast<int>(*first);
   }
   for (const ContactForces& law : laws_) clearances_only_ &= law.kind == LawKind::kClearance;
   lone_spring_ = laws_.size() == 1 && laws_[0].kind == LawKind::kCompliant;
   plain_ = laws_.size() == 1 && !laws_[0].is_elaborate();
-}
-
-bool EventResolver::led(int c) const {
-  return slides_as(c) != c && sticks_rigidly(laws_[static_cast<std::size_t>(slides_as(c))].kind);
-}
-
-bool EventResolver::rests(int c, const std::vector<ContactMode>& modes) const {
-  return led(c) && modes[static_cast<std::size_t>(slides_as(c))] == ContactMode::kStick;
 }
 
 double EventResolver::contact_displacement(int c, const double* x) const {

@@ -64,14 +64,9 @@ class EventResolver {
   /// wᵀq of contact c.
   [[nodiscard]] double contact_displacement(int c, const double* x) const;
 
-  /// The contact that slides as c does, behind a spring under a constant load: a rigid one at its place, else the first
-  /// such spring there. All that slide the same way turn at the same instant. c itself where there is none.
+  /// The first contact that slides as c does: behind springs at one place, under constant loads. All that slide the
+  /// same way turn at the same instant. c itself where there is none before it.
   [[nodiscard]] int slides_as(int c) const { return slides_as_[static_cast<std::size_t>(c)]; }
-
-  /// Behind a spring, and slides as a rigid contact at its place does.
-  [[nodiscard]] bool led(int c) const;
-  /// The same where that one sticks: nothing can happen to the spring.
-  [[nodiscard]] bool rests(int c, const std::vector<ContactMode>& modes) const;
 
   /// Takes the velocity error of sticking contacts out of a state, by the impulse that their friction would exert.
   void hold(double time, const std::vector<ContactMode>& modes, double* x) const;
@@ -124,9 +119,6 @@ class EventResolver {
   void turn_compliant(HybridPoint& point, int c) const;
   /// The same, and of all that cease to slide with it.
   void turn_together(HybridPoint& point, int c) const;
-  /// Springs led by a rigid contact, once that is decided: they cease to slide where it does, and those at their limit
-  /// slide where it begins to.
-  void turn_beside(HybridPoint& point) const;
   /// Contact lost or regained.
   void turn_load(HybridPoint& point, int c) const;
   /// The laws at this instant's normal loads.

@@ -109,26 +109,8 @@ void EventResolver::turn_together(HybridPoint& point, int c) const {
   const ContactMode before = point.modes[static_cast<std::size_t>(c)];
   turn_compliant(point, c);
   if (before == ContactMode::kStick) return;
-  for (int d = 0; d < model_.contacts; ++d) {
-    const auto i = static_cast<std::size_t>(d);
-    if (slides_as(d) == slides_as(c) && laws_[i].kind == LawKind::kCompliant && point.modes[i] == before)
-      turn_compliant(point, d);
-  }
-}
-
-void EventResolver::turn_beside(HybridPoint& point) const {
-  for (int c = 0; c < model_.contacts; ++c) {
-    if (!led(c)) continue;
-    const auto i = static_cast<std::size_t>(c), r = static_cast<std::size_t>(slides_as(c));
-    const ContactMode leads = point.modes[r];
-    ContactMode& follows = point.modes[i];
-    const double sign = sign_of(leads), force = laws_[i].stiffness * point.internal(internal_[i]);
-    if (leads != follows && follows != ContactMode::kStick)
-      turn_compliant(point, c);
-    else if (follows == ContactMode::kStick && point.multiplicity[r] > 0 &&
-             sign * force >= laws_[i].limit(sign) * (1.0 - kTogether))
-      follows = leads;
-  }
+  for (int d = 0; d < model_.contacts; ++d)
+    if (slides_as(d) == slides_as(c) && point.modes[static_cast<std::size_t>(d)] == before) turn_compliant(point, d);
 }
 
 bool EventResolver::has_event(int c) const {
@@ -192,7 +174,6 @@ void EventResolver::settle_coupled(HybridPoint& point, const Reached& reached) {
   Eigen::VectorXd applied(model_.contacts);
   for (int c = 0; c < model_.contacts; ++c) applied(c) = applied_force(point, c);
   point.assign(resolve(instant(point, laws, applied), point.modes, at_rest, released));
-  turn_beside(point);
 
   if (contact < 0) record(point, -1, EventKind::kDriveCorner, ContactMode::kStick);
   for (std::size_t c = 0; c < point.modes.size(); ++c)

@@ -30,26 +30,31 @@ Eigen::Index rank_of(const std::vector<Eigen::VectorXd>& directions) {
   return qr.rank();
 }
 
-/// Contacts that may not share a place are independent of one another.
+/// Contacts that may not share a place are independent: those that stick rigidly of one another, and each of the others
+/// of these.
 void check_independence(const std::vector<friction::Contact>& contacts) {
+  using friction::LawKind;
   std::vector<Eigen::VectorXd> rigid;
+  const auto check = [](const std::vector<Eigen::VectorXd>& apart) {
+    if (const Eigen::Index rank = rank_of(apart); rank < std::ssize(apart))
+      throw InvalidInput(
+          "the directions of " + std::to_string(apart.size()) +
+          " contacts that stick rigidly, or have a spring or bristles beside such, are linearly dependent "
+          "(rank " +
+          std::to_string(rank) +
+          "): two contacts act on the same degree of freedom, or a reduced "
+          "basis has fewer vectors than contacts; merge them or keep more modes");
+  };
   for (const friction::Contact& contact : contacts)
     if (friction::sticks_rigidly(friction::kind(contact.law))) rigid.push_back(contact.direction.normalized());
-  std::vector<Eigen::VectorXd> apart = rigid;
-  const auto check = [&] {
-    if (const Eigen::Index rank = rank_of(apart); rank < std::ssize(apart))
-      throw InvalidInput("the directions of " + std::to_string(apart.size()) +
-                         " contacts that stick rigidly, or have bristles beside such, are linearly dependent (rank " +
-                         std::to_string(rank) +
-                         "): two contacts act on the same degree of freedom, or a reduced "
-                         "basis has fewer vectors than contacts; merge them or keep more modes");
-  };
-  check();
+  check(rigid);
   for (const friction::Contact& contact : contacts) {
-    if (rigid.empty() || friction::kind(contact.law) != friction::LawKind::kBristle) continue;
-    apart = rigid;
+    const LawKind kind = friction::kind(contact.law);
+    if (rigid.empty() || friction::sticks_rigidly(kind) || friction::can_share_place(LawKind::kConstant, kind))
+      continue;
+    std::vector<Eigen::VectorXd> apart = rigid;
     apart.push_back(contact.direction.normalized());
-    check();
+    check(apart);
   }
 }
 

@@ -208,7 +208,10 @@ ContactForces contact_forces(const Contact& contact) {
   }
   f.static_limit = std::max(f.limit(-1.0), f.limit(1.0));
   const bool idle = mu_s == 0.0 || (N == 0.0 && !f.varies);
-  if (idle && f.kind != LawKind::kClearance) f.kind = LawKind::kFree;
+  if (idle && f.kind != LawKind::kClearance) {
+    f.kind = LawKind::kFree;
+    f.varies = false;
+  }
   return f;
 }
 

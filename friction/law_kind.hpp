@@ -31,11 +31,13 @@ enum class LawKind : std::uint8_t {
   return kind == LawKind::kCompliant || kind == LawKind::kBristle;
 }
 
-/// Two contacts of these laws may act on one displacement: their forces follow from its motion or from states of their
-/// own. Of two that stick rigidly neither could be told, and beside one the direction of bristles could not.
+/// Two contacts of these laws may act on one displacement. Of two that stick rigidly the forces could not be told;
+/// beside one, springs and bristles would begin to slide and turn where it holds their speed at zero.
 [[nodiscard]] constexpr bool can_share_place(LawKind a, LawKind b) {
-  const auto told_by_motion = [](LawKind kind) { return sticks_rigidly(kind) || kind == LawKind::kBristle; };
-  return !(sticks_rigidly(a) && told_by_motion(b)) && !(sticks_rigidly(b) && told_by_motion(a));
+  const auto apart = [](LawKind rigid, LawKind other) {
+    return sticks_rigidly(rigid) && (sticks(other) || other == LawKind::kBristle);
+  };
+  return !apart(a, b) && !apart(b, a);
 }
 
 /// How fast a contact and what it is attached to can move.

@@ -98,10 +98,11 @@ void check_alone(TomlReader& in, const ContactSpec& own, const std::vector<Conta
       continue;
     const bool pair = std::holds_alternative<Between>(own.at);
     const char* where = pair ? "pair of masses" : scene.beam() == nullptr ? "mass" : "place";
-    in.fail(pair ? "between" : "at", fmt::format("contact.{} is on this {} already", other, where),
-            fmt::format("one per {} of those that stick rigidly (\"coulomb\", \"stribeck\", \"table\"), and beside one "
-                        "no bristles (\"dahl\", \"lugre\")",
-                        where));
+    in.fail(
+        pair ? "between" : "at", fmt::format("contact.{} is on this {} already", other, where),
+        fmt::format("one per {} of those that stick rigidly (\"coulomb\", \"stribeck\", \"table\"); beside one only "
+                    "\"clearance\" and \"tanh\"",
+                    where));
   }
 }
 

@@ -32,13 +32,15 @@ bool place(SceneDraft& d, int own) {
   return true;
 }
 
+/// @param varying  it may; with an oscillator of its own beside piecewise-linear laws only
 void load(SceneDraft& d, bool varying) {
   const double constant = d.stiffness * d.size * d.uniform(0.2, 3.0);
-  const double kind = varying ? d.uniform(0.0, 1.0) : 0.0;
+  const double kind = varying ? d.uniform(0.0, d.linear ? 1.0 : 0.85) : 0.0;
   if (kind < 0.6) return d.key("normal_load", constant);
   d.varying = true;
   if (kind < 0.85)
     return d.fill("normal_load = { constant = #, slope = # }", {constant, d.stiffness * d.uniform(-1.5, 1.5)});
+  d.oscillates = true;
   d.fill(
       "normal_load = { constant = #, oscillator = { mass = #, support_stiffness = #, support_damping = #, "
       "spring_stiffness = #, spring_damping = #, slope = # } }",
@@ -76,19 +78,21 @@ void contact(SceneDraft& d, int own) {
   d.line("\n[[contact]]");
   const bool of_mass = place(d, own);
   if (d.chance(0.1)) d.line("name = \"contact at {}\"", own);
-  if (d.linear && d.chance(0.35)) return clearance(d, own, of_mass);
+  // Of a piecewise-linear scene all are, of another one some.
+  const bool linear = d.linear || (!d.coulomb_alone && d.chance(0.3));
+  if (linear && d.chance(0.35)) return clearance(d, own, of_mass);
   const double mu_k = d.chance(0.08) ? 0.0 : d.uniform(0.05, 0.5);
   const double mu_s = d.chance(0.2) ? mu_k : mu_k + (d.chance(0.1) ? d.uniform(1.0, 5.0) : d.uniform(0.0, 0.5));
-  const int kind = d.linear ? d.integer(0, 1) : d.coulomb_alone ? 0 : d.integer(0, 4);
-  if (kind == 0 || (d.linear && kind == 1)) {
+  const int kind = linear ? d.integer(0, 1) : d.coulomb_alone ? 0 : d.integer(0, 4);
+  if (kind == 0 || (linear && kind == 1)) {
     if (kind == 1)
       d.line("law = \"compliant\"\nstiffness = {}", SceneDraft::number(d.contact_spring(200.0, 1e6)));
     else
       d.line("law = \"coulomb\"");
     d.key("mu_s", mu_s);
     d.key("mu_k", mu_k);
-    if (d.linear && mu_k > 0.1 && d.chance(0.2)) d.key("tilt_deg", d.uniform(-5.0, 5.0));
-    return load(d, d.linear);
+    if (linear && mu_k > 0.1 && d.chance(0.2)) d.key("tilt_deg", d.uniform(-5.0, 5.0));
+    return load(d, linear);
   }
   if (kind == 1) {
     d.line("law = \"stribeck\"\nalpha = {}", SceneDraft::number(d.uniform(0.2, 15.0) / d.speed()));
@@ -178,6 +182,10 @@ void write_contacts(SceneDraft& d) {
   const int count = std::min(d.masses(), d.chance(0.1) ? d.integer(4, 5) : d.integer(1, 3));
   choose_places(d, count);
   for (const int own : d.places) contact(d, own);
+  if (d.beam || !d.chance(0.12)) return;
+  // A stop beside a contact, at its mass.
+  d.line("\n[[contact]]\nat = {}", d.places.front());
+  clearance(d, d.places.front(), true);
 }
 
 void write_drive(SceneDraft& d) {

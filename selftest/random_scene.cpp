@@ -64,7 +64,8 @@ std::string random_scene_text(std::uint64_t seed, std::uint64_t index) {
   time(draft);
   start(draft);
   // The other flow that can do it.
-  if (!draft.linear && draft.coulomb_alone) draft.line("\n[flow]\nmethod = \"collocation\"");
+  const bool both = draft.linear ? !draft.oscillates && draft.chance(0.15) : draft.coulomb_alone;
+  if (both) draft.line("\n[flow]\nmethod = \"collocation\"");
   return draft.text;
 }
 

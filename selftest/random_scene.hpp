@@ -14,11 +14,10 @@ namespace slipmode::selftest {
 ///   a skew part), a beam of one or two spans of either theory; 1 to 12 degrees of freedom, at times up to 200; damping
 ///   of every kind, from none to far beyond critical; at times stiff and slow mixed, springs up to 1e6 times one
 ///   another;
-/// - one to five contacts, to ground or between masses. Either piecewise-linear laws in any mixture (Coulomb,
-/// compliant,
-///   clearance of both rules, springs and stops up to 1e6 times the structure's; constant, affine or vibrating normal
-///   loads; tilt) or laws at constant load in any mixture (Coulomb, Stribeck, tanh, Dahl, LuGre), by collocation where
-///   all are Coulomb's;
+/// - one to six contacts, to ground or between masses, at times a stop beside another one. Either piecewise-linear laws
+///   in any mixture (Coulomb, compliant, clearance of both rules, springs and stops up to 1e6 times the structure's;
+///   constant, affine or vibrating normal loads; tilt), by either flow, or any of those but vibrating loads beside laws
+///   of the sliding speed (Stribeck, tanh, Dahl, LuGre), or Coulomb's alone by collocation;
 /// - drive: a belt (at rest, constant, ramp), a shaker (amplitude a number or a curve), a force of up to six harmonics
 /// in
 ///   several places with a mean;

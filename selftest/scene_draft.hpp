@@ -28,7 +28,7 @@ struct SceneDraft {
   bool mixed = false;  ///< stiff and slow: springs up to a million times one another
 
   bool linear = false;                          ///< of piecewise-linear laws alone
-  bool varying = false;                         ///< a normal load is not constant
+  bool varying = false, oscillates = false;     ///< a normal load is not constant; has an oscillator
   bool clearances = false, closed = false;      ///< has some; has one without a gap
   bool coulomb_alone = true;                    ///< no other law
   std::vector<int> places{};                    ///< masses of the contacts, or nodes

@@ -51,9 +51,11 @@ BeltWork::BeltWork(const Regime& r, const ModalModel& slipping) : regime_(r), sl
   for (Eigen::Index c = 0; c < nc; ++c) {
     const bool constant = r.force_row.col(c).isZero(0.0);
     if (!constant) impulse_.col(c) = antiderivative(r.pairs, r.force_row.col(c));
-    const Exchange by = r.sticks(static_cast<int>(c))   ? Exchange::kFollows
-                        : constant || r.slope(c) != 0.0 ? Exchange::kPotential
-                                                        : Exchange::kForms;
+    // A stop beside a held contact presses as that moves.
+    const bool own = r.force_coefficient.col(c) == Eigen::VectorXd::Unit(r.inputs(), c);
+    const Exchange by = r.sticks(static_cast<int>(c))            ? Exchange::kFollows
+                        : (constant && own) || r.slope(c) != 0.0 ? Exchange::kPotential
+                                                                 : Exchange::kForms;
     if (by == Exchange::kForms) way_.col(c) = antiderivative(r.pairs, r.displacement_row.col(c));
     exchange_.push_back(by);
   }

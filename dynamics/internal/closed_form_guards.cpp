@@ -41,7 +41,6 @@ void ClosedFormFlow::set_guards() {
         break;
       }
       case RegimeOutput::Kind::kForce:
-        if (resolver_.rests(c, point_.modes)) continue;
         guard.constant = law.limit(-1.0);
         guards_.push_back(guard);
         guard.constant = law.limit(1.0);

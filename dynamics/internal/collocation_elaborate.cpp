@@ -26,17 +26,9 @@ void CollocationFlow::set_own_forces() {
     own_forces_[i] = {};
     if (held(point_.modes, c)) continue;
     const ContactAnswer answer = contact_answer(laws()[i], resolver_.load_form(c), roles[i]);
-    if (roles[i] != ContactRole::kSprung) {
-      own_forces_[i] = {resolver_.regime_input(point_, c), answer.stiffness, answer.damping};
-      continue;
-    }
-    OwnForce& own = own_forces_[i];
-    own.by_stretch = answer.stiffness;
-    own.constant = answer.stiffness * point_.internal(own_at_[i]);
-    if (resolver_.rests(c, point_.modes)) continue;
-    own.constant += answer.stiffness * resolver_.contact_displacement(c, point_.x.data());
-    own.stiffness = answer.stiffness;
-    own.follows = true;
+    const bool follows = roles[i] == ContactRole::kSprung;
+    const double input = resolver_.regime_input(point_, c);
+    own_forces_[i] = {follows ? answer.stiffness * input : input, answer.stiffness, answer.damping, follows};
   }
 }
 
@@ -52,7 +44,6 @@ std::vector<CollocationFlow::OwnGuard> CollocationFlow::own_guards(int c, Contac
   const ContactForces& law = laws()[i];
   const friction::LoadForm& load = resolver_.load_form(c);
   std::vector<OwnGuard> guards;
-  if (resolver_.rests(c, point_.modes)) return guards;
   if (law.kind == LawKind::kClearance) {
     const double side = side_of(mode);
     for (const StopGuard& own : stop_guards(law.clearance, mode)) {
@@ -80,7 +71,6 @@ std::vector<CollocationFlow::OwnGuard> CollocationFlow::own_guards(int c, Contac
     }
     return guards;
   }
-  if (resolver_.led(c)) return guards;  // by a contact whose guard it is
   // The speed at which the contact point slides: behind a spring it follows the load.
   const double sign = sign_of(mode);
   OwnGuard speed{.v = -sign, .drive = sign};
@@ -171,8 +161,8 @@ Eigen::RowVectorXd CollocationFlow::own_force_gradient(int c) const {
   const OwnForce& own = own_forces_[i];
   const Eigen::Index size = 2 * model_.np;
   Eigen::RowVectorXd gradient = Eigen::RowVectorXd::Zero(size + point_.internal.size());
-  if (own.by_stretch != 0.0)
-    gradient(size + own_at_[i]) = own.by_stretch;
+  if (own.follows)
+    gradient(size + own_at_[i]) = own.stiffness;
   else
     gradient.head(size) = -own.stiffness * model_.displacement_row.col(c) - own.damping * model_.velocity_row.col(c);
   return gradient;

@@ -169,7 +169,6 @@ class CollocationFlow {
   /// λ = constant + stiffness (way of the drive, where it is followed, − wᵀq) − damping wᵀq̇ within a step.
   struct OwnForce {
     double constant = 0.0, stiffness = 0.0, damping = 0.0;
-    double by_stretch = 0.0;  ///< dλ/d(stretch) at the step's start [N/m]
     bool follows = false;
 
     [[nodiscard]] bool moves() const { return stiffness != 0.0 || damping != 0.0; }

@@ -110,10 +110,10 @@ void CollocationFlow::push_tangents(int level, double tau) {
       right.middleRows<kNodes>(first) =
           -own.damping * speeds.middleRows<kNodes>(first) -
           own.stiffness * (displacements->free.middleCols(2 * np * c, 2 * np) * tangents_.topRows(2 * np));
-      if (own.by_stretch != 0.0) {
-        points[i] = tangents_.row(2 * np + own_at_[i]);
-        if (own.follows) points[i] += model_.displacement_row.col(c).transpose() * tangents_.topRows(2 * np);
-        right.middleRows<kNodes>(first).rowwise() += own.by_stretch * points[i];
+      if (own.follows) {
+        points[i] =
+            tangents_.row(2 * np + own_at_[i]) + model_.displacement_row.col(c).transpose() * tangents_.topRows(2 * np);
+        right.middleRows<kNodes>(first).rowwise() += own.stiffness * points[i];
       }
       continue;
     }

@@ -83,6 +83,8 @@ TEST(ParallelContacts, ThatStickRigidlyAreRefused) {
   rigid.front().law = friction::Dahl{0.3, 1.0};
   EXPECT_THROW((void)system.with_laws(rigid), InvalidInput);
   rigid.front() = system.contacts().front();
+  EXPECT_THROW((void)system.with_laws(rigid), InvalidInput);
+  rigid.front().law = friction::Clearance{{}, friction::Stop{.stiffness = 1.0}};
   EXPECT_NO_THROW((void)system.with_laws(rigid));
 }
 
