@@ -218,7 +218,7 @@ Eigen::Matrix2d ModalModel::exponential(Eigen::Index i, double t) const {
   const double tau = (g11(i) + g22(i)) / 2.0;
   const double delta = g11(i) * g22(i) - g12(i) * g21(i) - tau * tau;  // > 0: oscillating
   const double z = delta * t * t;
-  double c, s, growth = std::exp(tau * t);
+  double c = 1.0, s = 0.0, growth = std::exp(tau * t);
   if (std::abs(z) < 1e-4) {
     c = 1.0 - z / 2.0 * (1.0 - z / 12.0 * (1.0 - z / 30.0 * (1.0 - z / 56.0)));
     s = t * (1.0 - z / 6.0 * (1.0 - z / 20.0 * (1.0 - z / 42.0 * (1.0 - z / 72.0))));

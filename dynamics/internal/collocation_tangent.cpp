@@ -193,7 +193,7 @@ void CollocationFlow::salt_tangents(Eigen::VectorXd rate_before, const Guarded& 
   if (contact < 0 || bristled(contact)) return;
   const double tau = point_.time - begin_;
   Eigen::RowVectorXd gradient = Eigen::RowVectorXd::Zero(tangents_.rows());
-  double rate;
+  double rate = 0.0;
   if (guard.own) {
     gradient = this->gradient(*guard.own, contact);
     rate = evaluate(*guard.own, contact, tau, point_.x).rate;

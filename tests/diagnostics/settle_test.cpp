@@ -100,10 +100,10 @@ TEST(Settle, WaitsALittleLongerForTheLastSlipsThatTell) {
   EXPECT_EQ(with(200.0, 0.0).period.motion, Motion::kUndecided);
   const Settled waited = with(200.0, 0.5);
   EXPECT_EQ(waited.period.motion, Motion::kAperiodic);
-  EXPECT_EQ(waited.time, 1000.0 + 1.5 * options.limit);
+  EXPECT_DOUBLE_EQ(waited.time, 1000.0 + 1.5 * options.limit);  // a sum of blocks
   const Settled hopeless = with(100.0, 0.5);
   EXPECT_EQ(hopeless.period.motion, Motion::kUndecided);
-  EXPECT_EQ(hopeless.time, 1000.0 + options.limit);
+  EXPECT_DOUBLE_EQ(hopeless.time, 1000.0 + options.limit);
 }
 
 TEST(Settle, WaitsOutASlowDecayAndReportsTheShortPeriod) {

@@ -22,7 +22,7 @@ struct Chain {
   Skeleton skeleton;
 
   Chain() {
-    fixtures::Random random(3);
+    fixtures::Draws random(3);
     dynamics::State start = system.rest();
     start.q = Eigen::VectorXd::LinSpaced(10, 0.67, 6.66) + random.vector(10, 0.3);
     attractor = record_attractor(system, start, {.transient = 20000.0, .duration = 40000.0, .sample = 50.0});
