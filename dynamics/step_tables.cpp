@@ -49,16 +49,21 @@ StepTables::StepTables(const ModalModel& model)
       top_(kLongestPhase / (model.fastest > 0 ? model.fastest : 1.0)),
       loaded_(!model.load.isZero(0.0)) {}
 
-Eigen::MatrixXd StepTables::exponentials(const Eigen::VectorXd& times) const {
+Eigen::MatrixXd StepTables::changes(const Eigen::VectorXd& times) const {
   const auto np = model_.np;
   Eigen::MatrixXd E = motion_.changes(times);
-  E.topRows(np).array() += 1.0;
-  E.bottomRows(np).array() += 1.0;
   for (const Eigen::Index i : motion_.others())
     for (Eigen::Index k = 0; k < times.size(); ++k) {
-      const Eigen::Matrix2d own = model_.exponential(i, times(k));
+      const Eigen::Matrix2d own = model_.exponential(i, times(k)) - Eigen::Matrix2d::Identity();
       E.col(k)({i, np + i, 2 * np + i, 3 * np + i}) << own(0, 0), own(0, 1), own(1, 0), own(1, 1);
     }
+  return E;
+}
+
+Eigen::MatrixXd StepTables::exponentials(const Eigen::VectorXd& times) const {
+  Eigen::MatrixXd E = changes(times);
+  E.topRows(model_.np).array() += 1.0;
+  E.bottomRows(model_.np).array() += 1.0;
   return E;
 }
 
@@ -102,7 +107,7 @@ void StepTables::make(NodeStates& out, int level) const {
     propagate_to(out.rule.node(static_cast<Eigen::Index>(j)), h, out.node[j]);
 }
 
-void StepTables::make(const Eigen::MatrixXd& rows, int level, AtNodes& out) const {
+void StepTables::make(const Eigen::MatrixXd& rows, bool change, int level, AtNodes& out) const {
   const auto& m = acted_on_;
   const auto np = m.np;
   const int nc = m.contacts;
@@ -110,7 +115,7 @@ void StepTables::make(const Eigen::MatrixXd& rows, int level, AtNodes& out) cons
   const auto& node = radau().node;
 
   out.free.resize(kNodes, 2 * np * nc);
-  const Eigen::MatrixXd free = exponentials(h * node);
+  const Eigen::MatrixXd free = change ? changes(h * node) : exponentials(h * node);
   for (int c = 0; c < nc; ++c) {
     const auto first = rows.col(c).head(np).asDiagonal(), second = rows.col(c).tail(np).asDiagonal();
     const auto upper = free.topRows(2 * np), lower = free.bottomRows(2 * np);
@@ -155,7 +160,7 @@ void StepTables::make(const Eigen::MatrixXd& rows, int level, AtNodes& out) cons
 }
 
 void StepTables::make(Collocation& out, int level) const {
-  make(acted_on_.velocity_row, level, static_cast<AtNodes&>(out));
+  make(acted_on_.velocity_row, false, level, static_cast<AtNodes&>(out));
   const int own = kNodes * model_.contacts;
   out.own_kernel = out.kernel.topLeftCorner(own, own);
   if (own > 0) out.kernel_norm = out.own_kernel.cwiseAbs().rowwise().sum().maxCoeff();

@@ -113,9 +113,10 @@ class StepTables {
   [[nodiscard]] const Collocation& collocation(int level) const {
     return collocations_.get(level, [&](Collocation& out) { make(out, level); });
   }
-  /// The contacts' displacements wᵀq; zero along a drive's forces.
+  /// What the contacts' displacements wᵀq have changed by since the step's start: the difference is not taken, where a
+  /// stiff spring would feel its rounding. Zero along a drive's forces.
   [[nodiscard]] const AtNodes& displacements(int level) const {
-    return displacements_.get(level, [&](AtNodes& out) { make(acted_on_.displacement_row, level, out); });
+    return displacements_.get(level, [&](AtNodes& out) { make(acted_on_.displacement_row, true, level, out); });
   }
   [[nodiscard]] const StepBounds& bounds(int level) const {
     return bounds_.get(level, [&](StepBounds& out) { make(out, level); });
@@ -134,11 +135,14 @@ class StepTables {
  private:
   void make(Propagator& out, int level) const;
   void make(Collocation& out, int level) const;
-  void make(const Eigen::MatrixXd& rows, int level, AtNodes& out) const;
+  /// @param change  of the scalars since the step's start
+  void make(const Eigen::MatrixXd& rows, bool change, int level, AtNodes& out) const;
   void make(NodeStates& out, int level) const;
   void make(LossForm& out, int level) const;
   void make(StepBounds& out, int level) const;
-  /// e^{Gt} of all pairs, a column for each time: entries 11, 12, 21 and 22 [4np x times].
+  /// e^{Gt} − I of all pairs, a column for each time: entries 11, 12, 21 and 22 [4np x times].
+  [[nodiscard]] Eigen::MatrixXd changes(const Eigen::VectorXd& times) const;
+  /// e^{Gt}.
   [[nodiscard]] Eigen::MatrixXd exponentials(const Eigen::VectorXd& times) const;
   /// Propagator to the time end·h of a step of size h whose forces are given at the nodes of [0, h].
   void propagate_to(double end, double h, Propagator& out) const;

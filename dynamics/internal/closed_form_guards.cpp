@@ -147,13 +147,16 @@ ClosedFormFlow::GuardStart ClosedFormFlow::start_of(const Guard& guard) const {
 
 double ClosedFormFlow::near_zero(const GuardStart& g) const {
   // |g| ≤ |g₀| + |g′|t + M₂t²/2, and ≤ |g₀| + |g′|t + |g″|t²/2 + M₃t³/6, of whose terms each is given its share.
+  const double bounded = 1.0 / tables_->regime().rate;
+  const auto lasts = [&](double stays) { return g.lasting ? stays : std::min(stays, bounded); };
   const double left = kTouching * g.size - std::abs(g.value), slope = std::abs(g.rate);
+  if (g.size == 0.0 && g.value == 0.0 && slope == 0.0 && g.most_second == 0.0)  // of what nothing moves
+    return lasts(std::numeric_limits<double>::infinity());
   if (!(left > 0.0)) return 0.0;
   const double by_second = 2.0 * left / (slope + std::sqrt(slope * slope + 2.0 * g.most_second * left));
   const double by_third = std::min(
       {left / (3.0 * slope), std::sqrt(2.0 * left / (3.0 * std::abs(g.second))), std::cbrt(2.0 * left / g.most_third)});
-  const double bounded = 1.0 / tables_->regime().rate, stays = std::max(by_second, by_third);
-  return g.lasting ? stays : std::min(stays, bounded);
+  return lasts(std::max(by_second, by_third));
 }
 
 void ClosedFormFlow::look_again() {

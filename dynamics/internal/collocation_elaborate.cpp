@@ -27,8 +27,10 @@ void CollocationFlow::set_own_forces() {
     if (held(point_.modes, c)) continue;
     const ContactAnswer answer = contact_answer(laws()[i], resolver_.load_form(c), roles[i]);
     const bool follows = roles[i] == ContactRole::kSprung;
-    const double input = resolver_.regime_input(point_, c);
-    own_forces_[i] = {follows ? answer.stiffness * input : input, answer.stiffness, answer.damping, follows};
+    const double place = resolver_.contact_displacement(c, point_.x.data());
+    const double start = follows ? answer.stiffness * point_.internal(own_at_[i])
+                                 : resolver_.regime_input(point_, c) - answer.stiffness * place;
+    own_forces_[i] = {start, answer.stiffness, answer.damping, place, follows};
   }
 }
 
@@ -36,7 +38,7 @@ double CollocationFlow::own_force(int c, double tau, const double* x) const {
   const OwnForce& own = own_forces_[static_cast<std::size_t>(c)];
   if (!own.moves()) return own.constant;
   const double way = own.follows ? drive().way(begin_, begin_ + tau) : 0.0;
-  return own.at(way, resolver_.contact_displacement(c, x), resolver_.contact_velocity(c, x));
+  return own.at(way, resolver_.contact_displacement(c, x) - own.place, resolver_.contact_velocity(c, x));
 }
 
 std::vector<CollocationFlow::OwnGuard> CollocationFlow::own_guards(int c, ContactMode mode) const {
@@ -87,7 +89,7 @@ void CollocationFlow::search_own_guards(int c, Guarded& first) const {
   for (const OwnGuard& guard : own_guards(c, point_.modes[i])) {
     const double start = guard.value(y, v, point_.force(c), V);
     const RadauTables::Vector8 value =
-        (guard.constant + guard.y * at_nodes(displacement_).array() + guard.v * at_nodes(velocity_).array() +
+        (guard.constant + guard.y * (y + at_nodes(moved_).array()) + guard.v * at_nodes(velocity_).array() +
          guard.force * at_nodes(forces_).array() + guard.drive * at_nodes(drive_nodes_).array())
             .matrix();
     BernsteinPolynomial p;
@@ -100,12 +102,15 @@ void CollocationFlow::search_own_guards(int c, Guarded& first) const {
     if (std::max(std::abs(start), form.cwiseAbs().maxCoeff()) <= kTouching * now.size)
       continue;  // at rest on its limit
     const int order = start_order(guard, c, now);
-    if (order == 1) form(0) = now.rate * tables_.step(step_level_) / kNodes;
+    const double h = tables_.step(step_level_);
+    if (order == 1) form(0) = now.rate * h / kNodes;
+    const bool known = order == 2 && now.second != 0.0 && touched_ != c;
+    if (known) form(1) = now.second * h * h / (kNodes * (kNodes - 1));
     std::fill_n(p.coefficient.begin(), order, 0.0);
     const auto* leading = std::find_if(p.coefficient.begin(), p.coefficient.end(), [](double b) { return b != 0.0; });
     if (leading == p.coefficient.end()) continue;
     const auto reached = [&](double theta, bool touching) {
-      if (theta < first.theta) first = {theta, c, touching, guard, order};
+      if (theta < first.theta) first = {theta, c, touching, guard, theta == 0.0 && known ? 1 : order};
     };
     if (*leading < 0.0)  // falls through zero where the step begins
       reached(0.0, false);
@@ -148,8 +153,16 @@ CollocationFlow::GuardValue CollocationFlow::evaluate(const OwnGuard& guard, int
   const double size = std::abs(guard.constant) + std::abs(guard.y) * row_size(model_.displacement_row) +
                       std::abs(guard.v) * row_size(model_.velocity_row) + std::abs(guard.force * force) +
                       std::abs(guard.drive) * drive().velocity_scale(begin_);
+  double second = 0.0;
+  const bool linear = guard.force != 0.0 && !held(step_modes_, c);
+  if (guard.v == 0.0 && guard.drive == 0.0 && (guard.force == 0.0 || (linear && own.damping == 0.0))) {
+    const double by_force = linear ? guard.force * own.stiffness : 0.0, by_place = guard.y - by_force;
+    second = by_place * acceleration + (own.follows ? by_force * a : 0.0);
+    if (std::abs(second) <= kFlat * (std::abs(by_place) + std::abs(by_force)) * accelerations) second = 0.0;
+  }
   return {.value = guard.value(y, v, force, V),
           .rate = guard.y * v + guard.v * acceleration + guard.force * force_rate + guard.drive * a,
+          .second = second,
           .size = size,
           .rate_size = model_.fastest * size + std::abs(guard.y) * speeds +
                        (std::abs(guard.v) + std::abs(guard.drive)) * accelerations +

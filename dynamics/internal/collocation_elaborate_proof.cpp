@@ -31,8 +31,7 @@ CollocationFlow::OwnMotion CollocationFlow::own_motion(int c, double h) const {
   const double followed = own.follows ? h * eighth(V - v, drive - speed) : out.way;
   out.force = std::abs(own.stiffness) * followed + std::abs(own.damping) * ninth_(c);
   for (int j = kNodes * c; j < kNodes * (c + 1); ++j)
-    out.left =
-        std::max(out.left, std::abs(own.at(way_nodes_(j % kNodes), displacement_(j), velocity_(j)) - forces_(j)));
+    out.left = std::max(out.left, std::abs(own.at(way_nodes_(j % kNodes), moved_(j), velocity_(j)) - forces_(j)));
   const double at_start = nodes_.lagrange(0.0).dot(forces_.segment<kNodes>(kNodes * c));
   out.start = std::abs(point_.force(c) - at_start);
   return out;
@@ -69,11 +68,11 @@ bool CollocationFlow::proves_own(int c, const Guarded* found, const Deviation& o
       slope_error += by_force * (off.force_slope + kSteepest * motion.start);
     }
     const GuardValue now = evaluate(guard, c, 0.0, x_begin_);
-    BernsteinPolynomial p = interpolant(
-        guard.value(y, v, point_.force(c), V),
-        (guard.constant + guard.y * at_nodes(displacement_).array() + guard.v * at_nodes(velocity_).array() +
-         guard.force * at_nodes(forces_).array() + guard.drive * at_nodes(drive_nodes_).array())
-            .matrix());
+    BernsteinPolynomial p =
+        interpolant(guard.value(y, v, point_.force(c), V),
+                    (guard.constant + guard.y * (y + at_nodes(moved_).array()) + guard.v * at_nodes(velocity_).array() +
+                     guard.force * at_nodes(forces_).array() + guard.drive * at_nodes(drive_nodes_).array())
+                        .matrix());
     const int order = start_order(guard, c, now);
     if (order > 0) p.coefficient[0] = 0.0;
     double from = 0.0;

@@ -89,7 +89,7 @@ CollocationFlow::CollocationFlow(const HybridSystem& system, const StepTables& t
       coarsest_(coarsest_level(system.drive(), tables, resolver_.laws(), options.tolerance)),
       newton_change_(std::min(1e-3, std::sqrt(kNewtonShare * options.tolerance))),
       start_level_(static_cast<std::size_t>(nc_) + 1, std::max(3, coarsest_)) {
-  for (auto* v : {&free_, &velocity_, &drive_nodes_, &bristle_nodes_, &guard_forms_, &free_way_, &displacement_})
+  for (auto* v : {&free_, &velocity_, &drive_nodes_, &bristle_nodes_, &guard_forms_, &free_way_, &moved_})
     *v = Eigen::VectorXd::Zero(kNodes * nc_);
   way_nodes_ = Eigen::VectorXd::Zero(kNodes);
   forces_ = Eigen::VectorXd::Zero(kNodes * (nc_ + given_));

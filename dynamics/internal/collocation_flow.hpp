@@ -166,16 +166,18 @@ class CollocationFlow {
     const auto i = static_cast<std::size_t>(c);
     return modes[i] == ContactMode::kStick && laws()[i].kind != LawKind::kCompliant;
   }
-  /// λ = constant + stiffness (way of the drive, where it is followed, − wᵀq) − damping wᵀq̇ within a step.
+  /// λ = constant + stiffness (way of the drive, where it is followed, − that of wᵀq since the step's start) − damping
+  /// wᵀq̇ within a step.
   struct OwnForce {
     double constant = 0.0, stiffness = 0.0, damping = 0.0;
+    double place = 0.0;  ///< wᵀq at the step's start
     bool follows = false;
 
     [[nodiscard]] bool moves() const { return stiffness != 0.0 || damping != 0.0; }
     /// What it changes by at most, of a change of the speed within a step of this length.
     [[nodiscard]] double lipschitz(double h) const { return std::abs(stiffness) * h + std::abs(damping); }
-    [[nodiscard]] double at(double way, double y, double v) const {
-      return constant + stiffness * ((follows ? way : 0.0) - y) - damping * v;
+    [[nodiscard]] double at(double way, double moved, double v) const {
+      return constant + stiffness * ((follows ? way : 0.0) - moved) - damping * v;
     }
     [[nodiscard]] double rate(double drive, double v, double acceleration) const {
       return stiffness * ((follows ? drive : 0.0) - v) - damping * acceleration;
@@ -188,6 +190,7 @@ class CollocationFlow {
   void search_own_guards(int c, Guarded& first) const;
   struct GuardValue {
     double value = 0.0, rate = 0.0;
+    double second = 0.0;  ///< of a guard of place or stretch alone, where it is told from rounding; else 0
     double size = 0.0, rate_size = 0.0;  ///< of the terms that are summed
   };
   /// Of the zero with which a guard starts, 0 if with none. @param now  of the guard at the step's start
@@ -314,7 +317,7 @@ class CollocationFlow {
   std::vector<int> start_level_;  ///< remembered first step size after an event, by number of sticking contacts
 
   // One step's scalars, contact after contact, eight nodes each.
-  Eigen::VectorXd free_, velocity_, drive_nodes_, bristle_nodes_, free_way_, displacement_, way_nodes_;
+  Eigen::VectorXd free_, velocity_, drive_nodes_, bristle_nodes_, free_way_, moved_, way_nodes_;
   Eigen::VectorXd forces_;        ///< a drive's after the contacts'
   Eigen::VectorXd given_speeds_;  ///< what a drive's forces and the load add to one contact's velocity
 

@@ -96,8 +96,7 @@ bool CollocationFlow::solve_forces(int level) {
   without_contacts(displacements, free_way_);
   for (int j = 0; j < kNodes; ++j) way_nodes_(j) = drive().way(begin_, begin_ + h * nodes_.node(j));
   if (!solve_coupled(table, &displacements, h)) return false;
-  displacement_ =
-      free_way_ + displacements.kernel.topLeftCorner(free_.size(), free_.size()) * forces_.head(free_.size());
+  moved_ = free_way_ + displacements.kernel.topLeftCorner(free_.size(), free_.size()) * forces_.head(free_.size());
   return true;
 }
 
@@ -202,7 +201,7 @@ bool CollocationFlow::solve_coupled(const Collocation& table, const AtNodes* dis
     // Sliding contacts: λ − law(v) = 0. Sticking ones: v − v_drive = 0.
     velocity_.noalias() = free_ + kernel * forces;
     if (displacements != nullptr)
-      displacement_.noalias() = free_way_ + displacements->kernel.topLeftCorner(size, size) * forces;
+      moved_.noalias() = free_way_ + displacements->kernel.topLeftCorner(size, size) * forces;
     double curvature = 0.0;
     for (int c = 0; c < nc_; ++c) {
       const auto i = static_cast<std::size_t>(c);
@@ -220,7 +219,7 @@ bool CollocationFlow::solve_coupled(const Collocation& table, const AtNodes* dis
         const OwnForce& own = own_forces_[i];
         for (int j = 0; j < kNodes; ++j) {
           const Eigen::Index row = kNodes * c + j;
-          residual(row) = own.at(way_nodes_(j), displacement_(row), velocity_(row)) - forces_(row);
+          residual(row) = own.at(way_nodes_(j), moved_(row), velocity_(row)) - forces_(row);
           jacobian.row(row) = own.stiffness * displacements->kernel.row(row).head(size) + own.damping * kernel.row(row);
           jacobian(row, row) += 1.0;
         }

@@ -110,10 +110,12 @@ void CollocationFlow::push_tangents(int level, double tau) {
       right.middleRows<kNodes>(first) =
           -own.damping * speeds.middleRows<kNodes>(first) -
           own.stiffness * (displacements->free.middleCols(2 * np * c, 2 * np) * tangents_.topRows(2 * np));
+      const Eigen::RowVectorXd place = model_.displacement_row.col(c).transpose() * tangents_.topRows(2 * np);
       if (own.follows) {
-        points[i] =
-            tangents_.row(2 * np + own_at_[i]) + model_.displacement_row.col(c).transpose() * tangents_.topRows(2 * np);
-        right.middleRows<kNodes>(first).rowwise() += own.stiffness * points[i];
+        points[i] = place + tangents_.row(2 * np + own_at_[i]);
+        right.middleRows<kNodes>(first).rowwise() += own.stiffness * tangents_.row(2 * np + own_at_[i]);
+      } else {
+        right.middleRows<kNodes>(first).rowwise() -= own.stiffness * place;
       }
       continue;
     }
