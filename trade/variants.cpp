@@ -52,6 +52,9 @@ std::vector<Variant> flows(const scene::Scene& scene) {
     all.push_back({.name = "closed form", .axis = Axis::kFlow, .scene = scene});
     all.back().scene.flow.method = FlowMethod::kClosedForm;
   }
+  // Springs and stops in closed form are exact, and collocated no cheaper.
+  const auto elaborate = [](const friction::Contact& contact) { return contact_forces(contact).is_elaborate(); };
+  if (own == FlowMethod::kClosedForm && std::ranges::any_of(system.contacts(), elaborate)) return all;
   if (!can_run_with(system, FlowMethod::kCollocation)) return all;
   for (const double tolerance : kTolerances) {
     if (own == FlowMethod::kCollocation && tolerance == scene.flow.tolerance) continue;

@@ -38,12 +38,15 @@ Eigen::VectorXd CollocationFlow::point_rate() const {
   rate.tail(point_.internal.size()).setZero();
   for (int c = 0; c < nc_; ++c) {
     const auto i = static_cast<std::size_t>(c);
+    const bool sprung = laws()[i].kind == LawKind::kCompliant && point_.modes[i] != ContactMode::kSeparated;
+    if (!bristled(c) && !sprung) continue;
     const double s = drive().velocity(point_.time) - resolver_.contact_velocity(c, point_.x.data());
     double& own = rate(point_.x.size() + own_at_[i]);
-    if (bristled(c)) own = laws()[i].bristle.rate(sign_of(point_.modes[i]), s, point_.internal(own_at_[i]));
-    if (laws()[i].kind != LawKind::kCompliant || point_.modes[i] == ContactMode::kSeparated) continue;
-    own = s;
-    if (point_.modes[i] != ContactMode::kStick)
+    if (bristled(c))
+      own = laws()[i].bristle.rate(sign_of(point_.modes[i]), s, point_.internal(own_at_[i]));
+    else if (point_.modes[i] == ContactMode::kStick)
+      own = s;
+    else
       own = resolver_.slide_stretch_gradient(point_, c).head(point_.x.size()) * rate.head(point_.x.size());
   }
   return rate;
@@ -215,7 +218,8 @@ void CollocationFlow::salt_tangents(Eigen::VectorXd rate_before, const Guarded& 
     const double h = tables_.step(step_level_);
     rate = -forces_.segment<kNodes>(kNodes * contact).dot(nodes_.lagrange_slope(tau / h)) / h;
   }
-  const Eigen::RowVectorXd delay = gradient * tangents_ / rate;
+  // Reached at rest: when is nobody's.
+  const Eigen::RowVectorXd delay = gradient * tangents_ * (rate != 0.0 ? 1.0 / rate : 0.0);
   for (int c = 0; c < nc_; ++c) {
     const auto i = static_cast<std::size_t>(c);
     if (laws()[i].kind != LawKind::kCompliant || !resolver_.has_event(c)) continue;

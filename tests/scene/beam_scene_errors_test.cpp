@@ -78,7 +78,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadValue{"at = \"tip\"", "at = 0", {"contact.0.at = 0: impossible value"}},
         BadValue{"[drive]",
                  "[[contact]]\nat = 0.464\nlaw = \"coulomb\"\nmu_s = 0\nmu_k = 0\nnormal_load = 1\n[drive]",
-                 {"contact.1.at = 0.464: contact.0 is on this place already", "one contact per place"}},
+                 {"contact.1.at = 0.464: contact.0 is on this place already", "one per place"}},
         BadValue{"stiffness = 20e3", "stiffness = 0", {"s.toml:24: contact.0.stiffness = 0", "a number > 0"}},
         BadValue{"stiffness = 20e3", "", {"contact.0.stiffness: missing key"}},
         BadValue{"mu_s = 0.748", "mu_s = 0.5", {"contact.0.mu_s = 0.5: less than mu_k = 0.55"}},

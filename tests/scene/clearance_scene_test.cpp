@@ -238,8 +238,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadValue{"between = [1, 2]\nlaw", "between = [1, 3]\nlaw", {"contact.0.between", "from 1 to 2"}},
         BadValue{"between = [1, 2]\nlaw", "between = [1]\nlaw", {"contact.0.between = [1]", "two different masses"}},
         BadValue{"[drive]",
-                 "[[contact]]\nbetween = [2, 1]\nlaw = \"coulomb\"\nmu_s = 0.1\nmu_k = 0.1\nnormal_load = 1\n[drive]",
-                 {"contact.1.between", "contact.0 is on this pair of masses already"}}),
+                 "[[contact]]\nbetween = [2, 1]\nlaw = \"coulomb\"\nmu_s = 0.1\nmu_k = 0.1\nnormal_load = 1\n"
+                 "[[contact]]\nbetween = [1, 2]\nlaw = \"compliant\"\nstiffness = 1\nmu_s = 0.1\nmu_k = 0.1\n"
+                 "normal_load = 1\n[drive]",
+                 {"contact.2.between", "contact.1 is on this pair of masses already"}}),
     tests::bad_value_name);
 
 INSTANTIATE_TEST_SUITE_P(

@@ -225,7 +225,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadValue{"[[contact]]", "[contact]", {"contact", "wrong type", "[[contact]]"}},
         BadValue{"[drive]",
                  "[[contact]]\nat = 10\nlaw = \"coulomb\"\nmu_s = 0\nmu_k = 0\nnormal_load = 1\n[drive]",
-                 {"contact.1.at = 10: contact.0 is on this mass already", "\"compliant\" or \"clearance\""}}),
+                 {"contact.1.at = 10: contact.0 is on this mass already", "one per mass of those that stick rigidly"}}),
     tests::bad_value_name);
 
 TEST(Scene, KeysCanBeReadAndSetByPath) {

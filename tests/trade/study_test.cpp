@@ -81,7 +81,7 @@ const Row& row_of(const Study& study, const std::string& name) {
 TEST(Variants, AreAlongTheAxesTheSceneHas) {
   const std::vector<std::string> chain = {"modes", "flow", "law"};
   EXPECT_EQ(names(axes_of(scene::parse_scene(tests::kFreeEnds))), chain);
-  // A compliant, tilted contact leaves no choice of flow, and no regularised law.
+  // A compliant, tilted contact is not offered the other flow, and no regularised law.
   const scene::Scene beam = scene::parse_scene(kBeam);
   const std::vector<std::string> shaken = {"modes", "theory", "elements", "law", "load"};
   EXPECT_EQ(names(axes_of(beam)), shaken);
