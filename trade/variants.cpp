@@ -90,6 +90,7 @@ std::vector<Variant> meshes(const scene::Scene& scene) {
 
 std::vector<Variant> of(Axis axis, std::vector<OtherContacts> others) {
   std::vector<Variant> all;
+  all.reserve(others.size());
   for (OtherContacts& other : others) {
     all.push_back({.name = std::move(other.name), .axis = axis, .scene = std::move(other.scene)});
   }
