@@ -150,7 +150,9 @@ CollocationFlow::GuardValue CollocationFlow::evaluate(const OwnGuard& guard, int
       force_rate_size = std::abs(own.stiffness) * speeds + std::abs(own.damping) * accelerations;
     }
   }
-  const double size = std::abs(guard.constant) + std::abs(guard.y) * row_size(model_.displacement_row) +
+  // Where a motion passes its origin, places round by what speeds make of them.
+  const double places = row_size(model_.displacement_row) + 0.25 * tables_.step(0) * speeds;
+  const double size = std::abs(guard.constant) + std::abs(guard.y) * places +
                       std::abs(guard.v) * row_size(model_.velocity_row) + std::abs(guard.force * force) +
                       std::abs(guard.drive) * drive().velocity_scale(begin_);
   double second = 0.0;

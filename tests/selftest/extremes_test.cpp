@@ -104,7 +104,8 @@ TEST(RandomScenes, OfTenSeedsThatOnceFailedHold) {
   // and a stick force that vanish together, of what does not accelerate (62_449); a spring without friction under a
   // load that varies (71_358: Zeno); the work of a stop beside a contact that is held (71_3089); a spring of 1e6 by
   // collocation, whose force felt the rounding of its place (73_41: Zeno); a start at rest between stops without a gap,
-  // left 9e-6 late (74_4392); a stop on what nothing moves (75_3504: a run without end).
+  // left 9e-6 late (74_4392); one mass that meets a stop at its origin (76_388: Zeno); a stop on what nothing moves
+  // (75_3504: a run without end).
   std::vector<std::pair<std::uint64_t, std::uint64_t>> scenes;
   for (const auto& file : std::filesystem::directory_iterator(SLIPMODE_SOURCE_DIR "/tests/selftest/scenes")) {
     const std::string name = file.path().stem();
