@@ -81,22 +81,32 @@ std::vector<CollocationFlow::OwnGuard> CollocationFlow::own_guards(int c, Contac
   return guards;
 }
 
-void CollocationFlow::search_own_guards(int c, Guarded& first) const {
-  const auto i = static_cast<std::size_t>(c);
+BernsteinPolynomial CollocationFlow::interpolant(double start, const RadauTables::Vector8& at_nodes) const {
+  BernsteinPolynomial p;
+  p.degree = kNodes;
+  p.coefficient[0] = start;
+  Eigen::Map<RadauTables::Vector8>(p.coefficient.data() + 1) =
+      nodes_.bernstein8 * at_nodes + nodes_.bernstein8_start * start;
+  return p;
+}
+
+BernsteinPolynomial CollocationFlow::form_of(const OwnGuard& guard, int c) const {
   const double y = resolver_.contact_displacement(c, x_begin_.data()),
                v = resolver_.contact_velocity(c, x_begin_.data()), V = drive_velocity(begin_, 0.0);
-  const auto at_nodes = [&](const Eigen::VectorXd& of) { return of.segment<kNodes>(kNodes * c); };
+  const auto at_nodes = [&](const Eigen::VectorXd& of) { return of.segment<kNodes>(kNodes * c).array(); };
+  const RadauTables::Vector8 values =
+      (guard.constant + guard.y * (y + at_nodes(moved_)) + guard.v * at_nodes(velocity_) +
+       guard.force * at_nodes(forces_) + guard.drive * at_nodes(drive_nodes_))
+          .matrix();
+  return interpolant(guard.value(y, v, point_.force(c), V), values);
+}
+
+void CollocationFlow::search_own_guards(int c, Guarded& first) const {
+  const auto i = static_cast<std::size_t>(c);
   for (const OwnGuard& guard : own_guards(c, point_.modes[i])) {
-    const double start = guard.value(y, v, point_.force(c), V);
-    const RadauTables::Vector8 value =
-        (guard.constant + guard.y * (y + at_nodes(moved_).array()) + guard.v * at_nodes(velocity_).array() +
-         guard.force * at_nodes(forces_).array() + guard.drive * at_nodes(drive_nodes_).array())
-            .matrix();
-    BernsteinPolynomial p;
-    p.degree = kNodes;
-    p.coefficient[0] = start;
+    BernsteinPolynomial p = form_of(guard, c);
+    const double start = p.coefficient[0];
     Eigen::Map<RadauTables::Vector8> form(p.coefficient.data() + 1);
-    form = nodes_.bernstein8 * value + nodes_.bernstein8_start * start;
     const GuardValue now = evaluate(guard, c, 0.0, x_begin_);
     if (start > kStarting * now.size && form.minCoeff() > 0.0) continue;
     if (std::max(std::abs(start), form.cwiseAbs().maxCoeff()) <= kTouching * now.size)
@@ -187,15 +197,7 @@ Eigen::RowVectorXd CollocationFlow::gradient(const OwnGuard& guard, int c) const
   Eigen::RowVectorXd gradient = Eigen::RowVectorXd::Zero(2 * model_.np + point_.internal.size());
   gradient.head(2 * model_.np) = guard.y * model_.displacement_row.col(c) + guard.v * model_.velocity_row.col(c);
   if (guard.force == 0.0) return gradient;
-  if (!held(step_modes_, c)) return gradient + guard.force * own_force_gradient(c);
-  std::vector<Eigen::Index> stuck;
-  Eigen::Index position = 0;
-  for (int d = 0; d < nc_; ++d)
-    if (held(step_modes_, d)) {
-      if (d == c) position = static_cast<Eigen::Index>(stuck.size());
-      stuck.push_back(d);
-    }
-  return gradient + guard.force * held_force_gradient(stuck).row(position);
+  return gradient + guard.force * (held(step_modes_, c) ? held_force_gradient(c) : own_force_gradient(c));
 }
 
 void CollocationFlow::slave_stretches() {

@@ -41,18 +41,7 @@ bool CollocationFlow::proves_own(int c, const Guarded* found, const Deviation& o
   const auto i = static_cast<std::size_t>(c);
   const OwnForce& own = own_forces_[i];
   const bool by_law = !held(point_.modes, c);
-  const OwnMotion motion = own_motion(c, h);
-  const double y = resolver_.contact_displacement(c, x_begin_.data()),
-               v = resolver_.contact_velocity(c, x_begin_.data()), V = drive_velocity(begin_, 0.0);
-  const auto at_nodes = [&](const Eigen::VectorXd& of) { return of.segment<kNodes>(kNodes * c); };
-  const auto interpolant = [&](double start, const RadauTables::Vector8& values) {
-    BernsteinPolynomial p;
-    p.degree = kNodes;
-    p.coefficient[0] = start;
-    Eigen::Map<RadauTables::Vector8>(p.coefficient.data() + 1) =
-        nodes_.bernstein8 * values + nodes_.bernstein8_start * start;
-    return p;
-  };
+  const OwnMotion& motion = own_motions_[i];
   for (const OwnGuard& guard : own_guards(c, point_.modes[i])) {
     const double by_y = std::abs(guard.y), by_v = std::abs(guard.v), by_force = std::abs(guard.force);
     const double beyond = by_y * motion.way + by_v * ninth_(c) + std::abs(guard.drive) * drive_ninth(h) +
@@ -67,20 +56,16 @@ bool CollocationFlow::proves_own(int c, const Guarded* found, const Deviation& o
       error += by_force * (off.force + motion.start);
       slope_error += by_force * (off.force_slope + kSteepest * motion.start);
     }
-    const GuardValue now = evaluate(guard, c, 0.0, x_begin_);
-    BernsteinPolynomial p =
-        interpolant(guard.value(y, v, point_.force(c), V),
-                    (guard.constant + guard.y * (y + at_nodes(moved_).array()) + guard.v * at_nodes(velocity_).array() +
-                     guard.force * at_nodes(forces_).array() + guard.drive * at_nodes(drive_nodes_).array())
-                        .matrix());
-    const int order = start_order(guard, c, now);
+    BernsteinPolynomial p = form_of(guard, c);
+    const int order = start_order(guard, c, evaluate(guard, c, 0.0, x_begin_));
     if (order > 0) p.coefficient[0] = 0.0;
     double from = 0.0;
     if (order == 2) {
       // The limit of a spring whose contact has ceased to slide: it is left as long as the sliding speed, zero at the
       // start, falls.
       if (!(own.follows && guard.force != 0.0 && guard.y == 0.0)) return false;
-      BernsteinPolynomial speed = interpolant(0.0, at_nodes(drive_nodes_) - at_nodes(velocity_));
+      BernsteinPolynomial speed =
+          interpolant(0.0, drive_nodes_.segment<kNodes>(kNodes * c) - velocity_.segment<kNodes>(kNodes * c));
       for (double& b : speed.coefficient) b *= guard.force;
       const BernsteinPolynomial slope = derivative(speed);
       const double most = by_force * (nodes_.remainder[1] * ninth_(c) + off.speed_slope);

@@ -188,6 +188,10 @@ class CollocationFlow {
   [[nodiscard]] double own_force(int c, double tau, const double* x) const;
   [[nodiscard]] std::vector<OwnGuard> own_guards(int c, ContactMode mode) const;
   void search_own_guards(int c, Guarded& first) const;
+  /// Of degree 8 through a start and the nodes.
+  [[nodiscard]] BernsteinPolynomial interpolant(double start, const RadauTables::Vector8& at_nodes) const;
+  /// A guard over the step.
+  [[nodiscard]] BernsteinPolynomial form_of(const OwnGuard& guard, int c) const;
   struct GuardValue {
     double value = 0.0, rate = 0.0;
     double second = 0.0;  ///< of a guard of place or stretch alone, where it is told from rounding; else 0
@@ -198,8 +202,8 @@ class CollocationFlow {
   [[nodiscard]] GuardValue evaluate(const OwnGuard& guard, int c, double tau, const Eigen::VectorXd& x) const;
   /// d(guard)/d(state, contacts' own states).
   [[nodiscard]] Eigen::RowVectorXd gradient(const OwnGuard& guard, int c) const;
-  /// d(λ)/d(state, contacts' own states) of the held contacts in the step's modes, rows of `stuck`.
-  [[nodiscard]] Eigen::MatrixXd held_force_gradient(const std::vector<Eigen::Index>& stuck) const;
+  /// d(λ)/d(state, contacts' own states) of a held contact in the step's modes.
+  [[nodiscard]] Eigen::RowVectorXd held_force_gradient(int c) const;
   /// Of an elaborate contact's force, not held, in the step's modes.
   [[nodiscard]] Eigen::RowVectorXd own_force_gradient(int c) const;
 
@@ -324,8 +328,9 @@ class CollocationFlow {
   // Of the proof: what has guards, and whether they are of laws it knows.
   bool guarded_ = false, provable_ = false, halving_proves_ = false;
   Eigen::VectorXd guard_forms_, guard_start_,
-      guard_least_;        ///< Bernstein form of each guard, its start and least [8nc]
-  Eigen::VectorXd ninth_;  ///< h⁹ max |(V − v_c)⁽⁹⁾| [nc]
+      guard_least_;                     ///< Bernstein form of each guard, its start and least [8nc]
+  Eigen::VectorXd ninth_;               ///< h⁹ max |(V − v_c)⁽⁹⁾| [nc]
+  std::vector<OwnMotion> own_motions_;  ///< of elaborate contacts [nc]
 
   /// Of each level: cos and sin of a force's harmonics at the nodes, from the step's begin on [16 x harmonics].
   std::vector<Eigen::MatrixXd> turned_;

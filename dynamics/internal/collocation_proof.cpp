@@ -45,6 +45,7 @@ void CollocationFlow::prepare_proof() {
   guarded_ = any_elaborate_ || std::ranges::any_of(laws(), has_guard);
   provable_ = halving_proves_ = options_.certify && (!guarded_ || std::ranges::all_of(laws(), known));
   ninth_.resize(nc_);
+  own_motions_.resize(laws().size());
 }
 
 double CollocationFlow::drive_ninth(double h) const {
@@ -103,7 +104,7 @@ CollocationFlow::Deviation CollocationFlow::deviation(const StepBounds& bounds, 
       out.room = std::min(out.room, own.room);
     }
     if (elaborate(c) && own_forces_[i].moves()) {
-      const OwnMotion own = own_motion(c, h);
+      const OwnMotion& own = own_motions_[i];
       defect = std::max(defect, 2.0 * nodes_.lebesgue * own.left + own.start + nodes_.remainder[0] * own.force);
       slope = std::max(slope, own_forces_[i].lipschitz(h));
     }
@@ -290,6 +291,8 @@ bool CollocationFlow::proves(const Guarded& found, double end) {
                        .dot(Eigen::Map<const RadauTables::Vector8>(series.data()).cwiseAbs());
   }
   const double between = nodes_.remainder[0] * ninth_.maxCoeff();
+  for (int c = 0; c < nc_; ++c)
+    if (elaborate(c)) own_motions_[static_cast<std::size_t>(c)] = own_motion(c, h);
 
   const auto faster_than = [&](double speed) {  // of the computed motion
     for (int c = 0; c < nc_; ++c) {

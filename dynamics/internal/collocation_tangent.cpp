@@ -171,8 +171,15 @@ void CollocationFlow::push_bristle_tangents(const std::vector<BristleVariation>&
   }
 }
 
-Eigen::MatrixXd CollocationFlow::held_force_gradient(const std::vector<Eigen::Index>& stuck) const {
+Eigen::RowVectorXd CollocationFlow::held_force_gradient(int c) const {
   // λ of the held contacts from a = Gᵀrow x + mobility λ, the others following their own laws.
+  std::vector<Eigen::Index> stuck;
+  Eigen::Index position = 0;
+  for (int d = 0; d < nc_; ++d)
+    if (held(step_modes_, d)) {
+      if (d == c) position = static_cast<Eigen::Index>(stuck.size());
+      stuck.push_back(d);
+    }
   const Eigen::Index size = 2 * model_.np;
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(stuck.size()), size + point_.internal.size());
   rows.leftCols(size) = model_.acceleration_row(Eigen::all, stuck).transpose();
@@ -188,7 +195,7 @@ Eigen::MatrixXd CollocationFlow::held_force_gradient(const std::vector<Eigen::In
           reach * laws()[i].bristle.slopes(sign_of(step_modes_[i]), V - v, point_.internal(own_at_[i])).by_deflection;
   }
   const Eigen::MatrixXd mobility = model_.mobility(stuck, stuck);
-  return -mobility.ldlt().solve(rows);
+  return -mobility.ldlt().solve(rows).row(position);
 }
 
 void CollocationFlow::salt_tangents(Eigen::VectorXd rate_before, const Guarded& guard) {
@@ -207,14 +214,7 @@ void CollocationFlow::salt_tangents(Eigen::VectorXd rate_before, const Guarded& 
     gradient.head(2 * model_.np) = -model_.velocity_row.col(contact).transpose();
     rate = drive_acceleration(begin_, tau) - contact_acceleration(contact, point_.x, tau, basis);
   } else {
-    std::vector<Eigen::Index> stuck;
-    Eigen::Index position = 0;
-    for (int c = 0; c < nc_; ++c)
-      if (held(step_modes_, c)) {
-        if (c == contact) position = static_cast<Eigen::Index>(stuck.size());
-        stuck.push_back(c);
-      }
-    gradient = -held_force_gradient(stuck).row(position);
+    gradient = -held_force_gradient(contact);
     const double h = tables_.step(step_level_);
     rate = -forces_.segment<kNodes>(kNodes * contact).dot(nodes_.lagrange_slope(tau / h)) / h;
   }
