@@ -61,7 +61,9 @@ Trap measure_trap(const dynamics::HybridSystem& system, const dynamics::State& c
   const auto draws_in = [&](double radius) {
     for (Eigen::Index k = 0; k < from.cols(); ++k) {
       try {
-        const dynamics::State state = with_coordinates(centre, trap.centre + radius * from.col(k));
+        // Springs keep their modes; what sticks rigidly at the centre need not, away from it.
+        const dynamics::State state =
+            dynamics::handed_on(system, with_coordinates(centre, trap.centre + radius * from.col(k)), centre.time);
         const Eigen::VectorXd end = stacked(advanced(system, state, duration));
         if (!((trap.L * (end - trap.centre)).norm() <= wanted * radius)) return false;
       } catch (const NumericalFailure&) {

@@ -3,6 +3,7 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/core/random.hpp>
 #include <slipmode/diagnostics/exponents/lyapunov.hpp>
+#include <slipmode/fem/chain.hpp>
 #include "orbits/clearance_systems.hpp"
 
 #include <gtest/gtest.h>
@@ -246,6 +247,22 @@ TEST(Trap, EveryPointOfItEndsOnTheOrbit) {
     const dynamics::State end = advanced(system, at(inside(0), inside(1)), 80.0 * orbit->orbit.period);
     EXPECT_LT((stacked(end) - trap.centre).norm(), 1e-9);  // the multiplier 0.724 to the 80th is 6e-12
   }
+}
+
+TEST(Trap, IsMeasuredWhereContactsStickBesideSprings) {
+  // At the orbit's origin the first mass may stick on its rigid contact; the trap's own starts move it, while the
+  // second one's spring keeps its mode.
+  const friction::Contact rigid{Eigen::VectorXd::Unit(2, 0), friction::Stribeck{0.4, 0.3, 2.0}, 0.5},
+      sprung{Eigen::VectorXd::Unit(2, 1), friction::CompliantCoulomb{0.3, 0.3, 3.0}, 0.5};
+  const dynamics::HybridSystem system(fem::chain({.masses = 2, .damping = 0.1}), {rigid, sprung},
+                                      friction::Force{0.7, {{.amplitude = 1.0, .phase = 0.3}}}, {},
+                                      Eigen::VectorXd::Unit(2, 1));
+  const auto start = [](double x, double v) {
+    return dynamics::State{.q = Eigen::Vector2d(x, 0.0), .v = Eigen::Vector2d(v, 0.0)};
+  };
+  const Basins found = basins(BasinFinder(system, {}), start, square(-0.5, 0.5, 4));
+  EXPECT_FALSE(found.attractors.empty());
+  EXPECT_EQ((found.labels().array() < 0).count(), 0);
 }
 
 TEST(Basins, SayWhatIsWrong) {
