@@ -90,7 +90,8 @@ RandomScene piecewise_linear(std::uint64_t seed) {
     }
     const auto [mu_s, mu_k] = random_coefficients(random);
     const friction::Law law = kind == 1 ? random_spring(random) : friction::Coulomb{mu_s, mu_k};
-    friction::Contact& contact = contacts.emplace_back(unit(n, c), law);
+    contacts.push_back({unit(n, c), law});
+    friction::Contact& contact = contacts.back();
     if (random.chance(0.25)) {
       const double constant = random.uniform(0.5, 1.5);
       contact.normal_load = {constant, random.uniform(-1.0, 1.0)};
