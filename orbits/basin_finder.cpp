@@ -148,6 +148,7 @@ BasinFinder::Arrival BasinFinder::follow(const dynamics::State& start, const std
   Arrival arrival;
   try {
     Path path{.state = start};
+    if (start.internal.size() == 0) path.state.internal = Eigen::VectorXd::Zero(system_.internal_size());
     bool arrived = arrives(known, path, arrival.cell);
     while (!arrived && arrival.cell.periods < options_.patience) {
       advance(path, arrival.cell);
