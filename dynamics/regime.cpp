@@ -5,6 +5,7 @@
 #include "dynamics/internal/regime_build.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace slipmode::dynamics {
@@ -14,6 +15,8 @@ namespace {
 constexpr double kPerhapsZero = 1e-12;
 /// Rates of displacements, as rows of their own and by the pairs' motion, are the same to this share of a column.
 constexpr double kSameRates = 1e-12;
+/// Of a state, that need no heap.
+constexpr Eigen::Index kFewComponents = 64;
 
 }  // namespace
 
@@ -68,7 +71,10 @@ void Regime::lift(const Eigen::VectorXd& x, const Eigen::VectorXd& inputs, Eigen
     vector.product(to_slipping.data(), size, to_slipping.cols(), x.data(), out_slipping.data());
   } else {
     const auto np = pairs.np;
-    Eigen::VectorXd moving(2 * np);
+    alignas(64) std::array<double, kFewComponents> few;
+    Eigen::VectorXd many;
+    if (2 * np > kFewComponents) many.resize(2 * np);
+    Eigen::Map<Eigen::VectorXd> moving(2 * np > kFewComponents ? many.data() : few.data(), 2 * np);
     moving.head(np) = pairs.g11.cwiseProduct(x.head(np)) + pairs.g12.cwiseProduct(x.tail(np));
     moving.tail(np) = pairs.g21.cwiseProduct(x.head(np)) + pairs.g22.cwiseProduct(x.tail(np));
     vector.two_products(to_displacements.data(), size / 2, 2 * np, x.data(), moving.data(), out_slipping.data(),

@@ -2,6 +2,7 @@
 
 #include <slipmode/core/errors.hpp>
 #include <slipmode/dynamics/cache.hpp>
+#include <slipmode/dynamics/kernels/kernels.hpp>
 #include <slipmode/dynamics/prepare.hpp>
 #include "dynamics/internal/closed_form_flow.hpp"
 #include "dynamics/internal/collocation_flow.hpp"
@@ -55,9 +56,13 @@ class Recorder {
 
   void sample(double t, const Eigen::VectorXd& x, const Eigen::VectorXd& force) {
     out_.times(filled_) = t;
-    out_.contact_q.col(filled_) = model_.displacement_row.transpose() * x + model_.contact_offset;
-    out_.contact_v.col(filled_) = model_.velocity_row.transpose() * x;
-    out_.lambda.col(filled_) = force;
+    const kernels::Kernels& vector = kernels::kernels();
+    for (Eigen::Index c = 0; c < model_.contacts; ++c) {
+      out_.contact_q(c, filled_) =
+          vector.dot(model_.displacement_row.col(c).data(), x.data(), x.size()) + model_.contact_offset(c);
+      out_.contact_v(c, filled_) = vector.dot(model_.velocity_row.col(c).data(), x.data(), x.size());
+      out_.lambda(c, filled_) = force(c);
+    }
     if (all_) {
       block_.col(filled_ - flushed_) = x;
       if (filled_ + 1 - flushed_ == block_.cols()) flush(filled_ + 1);

@@ -24,8 +24,9 @@ constexpr double kSameInstant = 1e-6;
 constexpr double kLittleLeft = 1e-3;
 
 /// Of a regime's state, in the scales in which free motion does not grow.
-double scaled_size(const Regime& r, const Eigen::VectorXd& x) {
-  return std::hypot(r.scale1.cwiseProduct(x.head(r.pairs.np)).norm(), r.scale2.cwiseProduct(x.tail(r.pairs.np)).norm());
+double squared_size(const Regime& r, const Eigen::VectorXd& x) {
+  return r.scale1.cwiseProduct(x.head(r.pairs.np)).squaredNorm() +
+         r.scale2.cwiseProduct(x.tail(r.pairs.np)).squaredNorm();
 }
 
 }  // namespace
@@ -146,23 +147,28 @@ void ClosedFormFlow::measure_amplitudes() {
 }
 
 void ClosedFormFlow::move(double tau) {
-  const Regime& r = tables_->regime();
   measured_ = false;
-  if (r.motion.available()) {
-    r.motion.add(tau, free_.data(), x_.data());
-    follow_inputs(tau);
-  } else {
-    advance(*tables_, tau, x_, inputs_);
-  }
-  if (swells()) regime_->overlay->move_resonances(r, tau, phase_, x_);
+  move(*regime_, tau, free_, x_, inputs_);
 }
 
-void ClosedFormFlow::follow_inputs(double tau) {
-  if (regime_->overlay) return;  // then all inputs are constant
-  const Regime& r = tables_->regime();
-  r.advance_inputs(inputs_, tau);
+void ClosedFormFlow::move(const Visited& in, double tau, const Eigen::VectorXd& free, Eigen::VectorXd& x,
+                          Eigen::VectorXd& inputs) const {
+  const Regime& r = in.tables->regime();
+  if (r.motion.available()) {
+    r.motion.add(tau, free.data(), x.data());
+    follow_inputs(in, tau, x, inputs);
+  } else {
+    advance(*in.tables, tau, x, inputs);
+  }
+  if (in.overlay) in.overlay->move_resonances(r, tau, phase_, x);
+}
+
+void ClosedFormFlow::follow_inputs(const Visited& in, double tau, Eigen::VectorXd& x, Eigen::VectorXd& inputs) const {
+  if (in.overlay) return;  // then all inputs are constant
+  const Regime& r = in.tables->regime();
+  r.advance_inputs(inputs, tau);
   for (Eigen::Index k = 0; k <= r.speed_input(); ++k)
-    if (const double change = inputs_(k) - inputs_begin_(k); change != 0.0) x_ += change * r.particular.col(k);
+    if (const double change = inputs(k) - inputs_begin_(k); change != 0.0) x += change * r.particular.col(k);
 }
 
 void ClosedFormFlow::pass_window() {
@@ -172,7 +178,7 @@ void ClosedFormFlow::pass_window() {
   kernels::kernels().pass(
       {r.pairs.np, d.d11.data(), d.d12.data(), d.d21.data(), d.d22.data(), r.scale1.data(), r.scale2.data()}, x_.data(),
       free_.data(), amplitude_.data());
-  follow_inputs(tables_->length(level_));
+  follow_inputs(*regime_, tables_->length(level_), x_, inputs_);
 }
 
 bool ClosedFormFlow::step(double t_limit) {
@@ -215,6 +221,7 @@ bool ClosedFormFlow::step(double t_limit) {
     ++statistics_.rejected;
   }
   x_begin_ = x_;
+  free_begin_ = free_;
   inputs_begin_ = inputs_;
   if (found.guard >= 0 && !found.touching) {
     // Up to the part that is proved clear; beyond it Newton, which may prove itself.
@@ -293,10 +300,10 @@ bool ClosedFormFlow::settle(int guard, bool touching) {
 
 bool ClosedFormFlow::cancels(const Visited& in, double t, const Eigen::VectorXd& x) const {
   if (in.overlay == nullptr || t < in.entered) return false;
-  Eigen::VectorXd sum = x;
-  in.overlay->state.add(phase_at(t), 1.0, sum);
+  sum_ = x;
+  in.overlay->state.add(phase_at(t), 1.0, sum_);
   const Regime& r = in.tables->regime();
-  return scaled_size(r, sum) < kLittleLeft * scaled_size(r, x);
+  return squared_size(r, sum_) < kLittleLeft * kLittleLeft * squared_size(r, x);
 }
 
 void ClosedFormFlow::anew(const Visited& in, double t, Eigen::VectorXd& out_x, Eigen::VectorXd& out_inputs) const {
@@ -348,11 +355,10 @@ void ClosedFormFlow::lift_point() {
 }
 
 void ClosedFormFlow::evaluate(double t, Eigen::VectorXd& out_x, Eigen::VectorXd& out_force) const {
-  Eigen::VectorXd x = x_begin_, inputs = inputs_begin_;
-  const double tau = std::max(0.0, t - begin_);
-  advance(*step_regime_->tables, tau, x, inputs);
-  if (step_regime_->overlay) step_regime_->overlay->move_resonances(step_regime_->tables->regime(), tau, phase_, x);
-  lift(*step_regime_, t, x, inputs, out_x, out_force);
+  x_then_ = x_begin_;
+  inputs_then_ = inputs_begin_;
+  move(*step_regime_, std::max(0.0, t - begin_), free_begin_, x_then_, inputs_then_);
+  lift(*step_regime_, t, x_then_, inputs_then_, out_x, out_force);
 }
 
 }  // namespace slipmode::dynamics

@@ -122,10 +122,13 @@ class ClosedFormFlow {
   void drop_idle_guards();
   /// Takes the state, which is that of the step's begin, on by tau.
   void move(double tau);
+  /// The same of any state and its free part, that of the last step's begin.
+  void move(const Visited& in, double tau, const Eigen::VectorXd& free, Eigen::VectorXd& x,
+            Eigen::VectorXd& inputs) const;
   /// The same over a whole window of the level.
   void pass_window();
   /// Inputs that vary, and the state with them.
-  void follow_inputs(double tau);
+  void follow_inputs(const Visited& in, double tau, Eigen::VectorXd& x, Eigen::VectorXd& inputs) const;
   void foresee_starts();
   [[nodiscard]] GuardStart start_of(const Guard& guard) const;
   /// At the end of guards' exemptions: whether they have left zero.
@@ -207,10 +210,12 @@ class ClosedFormFlow {
   std::vector<int> compliant_;                   ///< contacts behind a contact spring
   Eigen::VectorXd x_, inputs_, x_begin_, inputs_begin_;
   Eigen::VectorXd free_, amplitude_;  ///< at the step's begin: x less what follows the inputs, and its pairs' sizes
+  Eigen::VectorXd free_begin_;        ///< that of x_begin_
   Eigen::VectorXd resting_;           ///< what follows the inputs, where those are constant: under a periodic drive
   bool measured_ = false;             ///< these two belong to x_
   double begin_ = 0.0;
-  DrivePhase phase_;  ///< at begin_, of a periodic drive
+  DrivePhase phase_;                                    ///< at begin_, of a periodic drive
+  mutable Eigen::VectorXd x_then_, inputs_then_, sum_;  ///< worked in: samples are asked for by the thousand
   mutable double phase_time_ = std::numeric_limits<double>::quiet_NaN();
   mutable DrivePhase phase_then_;
   int level_ = 0;
