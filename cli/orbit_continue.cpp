@@ -45,7 +45,7 @@ Json branch_json(const results::NamedBranch& named) {
                {"points", branch.points.size()},
                {"stable", stable},
                {"end", orbits::to_string(branch.end)},
-               {"complete", branch.end != orbits::BranchEnd::kLost},
+               {"complete", orbits::is_complete(branch.end)},
                {"reason", branch.reason},
                {"special", special}};
   if (!branch.points.empty()) {
@@ -86,7 +86,7 @@ struct Followed {
   studies::ContinuationRequest request;
 };
 
-/// The branches stored and told; exit 3 where the main one was lost on its way.
+/// The branches stored and told; exit 3 where the main one was lost on its way, 130 where one was interrupted.
 Report store_and_tell(const OrbitContinueArguments& arguments, const Followed& followed, const std::string& command,
                       double start, const std::shared_ptr<const std::vector<results::NamedBranch>>& branches) {
   const studies::Family model(followed.scene, {followed.key}, followed.basis);
@@ -102,11 +102,10 @@ Report store_and_tell(const OrbitContinueArguments& arguments, const Followed& f
       {"verb", "orbit continue"},      {"model", model.title()},    {"file", arguments.output}, {"key", followed.key},
       {"from", followed.request.from}, {"to", followed.request.to}, {"start", start},           {"branches", list}};
   report.text += fmt::format("Branches: {}\n", arguments.output);
-  if (branches->front().branch.end == orbits::BranchEnd::kLost) {
-    report.exit_code = kNumericalFailure;
-    report.text = "the branch was lost before the end of its range; what was found is kept\n" + report.text;
-    report.data["message"] = report.text;
-    report.data["incomplete"] = true;
+  if (studies::is_interrupted(*branches)) {
+    incomplete(report, kInterrupted, "interrupted; what was found is kept");
+  } else if (branches->front().branch.end == orbits::BranchEnd::kLost) {
+    incomplete(report, kNumericalFailure, "the branch was lost before the end of its range; what was found is kept");
   }
   return report;
 }

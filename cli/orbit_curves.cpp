@@ -2,6 +2,7 @@
 
 #include <slipmode/core/numbers.hpp>
 #include "cli/json_values.hpp"
+#include "cli/orbit_report.hpp"
 #include "cli/text_table.hpp"
 
 #include <fmt/format.h>
@@ -54,15 +55,9 @@ Json curve_json(const results::NamedBranch& named) {
           {"over", over},
           {"along", along},
           {"end", orbits::to_string(curve.end)},
-          {"complete", curve.end != orbits::BranchEnd::kLost},
+          {"complete", orbits::is_complete(curve.end)},
           {"reason", curve.reason},
           {"special", special}};
-}
-
-void fail_with(Report& out_report, const std::string& message) {
-  out_report.exit_code = kNumericalFailure;
-  out_report.text = message + "\n" + out_report.text;
-  out_report.data["message"] = message;
 }
 
 }  // namespace
@@ -104,17 +99,20 @@ Report curves_report(const studies::Family& model, const std::shared_ptr<const s
                  {"curves", list}};
   for (const std::string& refused : found->refused) report.text += "not followed: " + refused + "\n";
   if (found->curves.empty()) {
-    fail_with(report, studies::nothing_followed(*found, keys[0], request, curve));
+    if (found->interrupted)
+      incomplete(report, kInterrupted, "interrupted before a curve was begun; nothing is kept");
+    else
+      incomplete(report, kNumericalFailure, studies::nothing_followed(*found, keys[0], request, curve));
     return report;
   }
   studies::content_of(model, found, command).save(output);
   report.data["file"] = output;
   report.text += fmt::format("Curves: {}\n", output);
   const auto lost = [](const results::NamedBranch& one) { return one.branch.end == orbits::BranchEnd::kLost; };
-  if (std::ranges::any_of(found->curves, lost)) {
-    fail_with(report, "a curve was lost before the end of its ranges; what was found is kept");
-    report.data["incomplete"] = true;
-  }
+  if (found->interrupted)
+    incomplete(report, kInterrupted, "interrupted; what was found is kept");
+  else if (std::ranges::any_of(found->curves, lost))
+    incomplete(report, kNumericalFailure, "a curve was lost before the end of its ranges; what was found is kept");
   return report;
 }
 

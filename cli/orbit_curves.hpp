@@ -17,7 +17,8 @@ struct OrbitRange {
 /// @throws InvalidInput  for a text without key or range, and one without length
 [[nodiscard]] OrbitRange parse_range(const std::string& option, const std::string& text, const std::string& example);
 
-/// Curves of special points, told and stored; exit 3 where there is none, or one was lost on its way.
+/// Curves of special points, told and stored; exit 3 where there is none, or one was lost on its way, 130 where it was
+/// interrupted.
 /// @param model    over both keys, at their values where the curves begin
 /// @param command  for provenance @param output  result file
 [[nodiscard]] Report curves_report(const studies::Family& model,

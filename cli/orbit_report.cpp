@@ -116,6 +116,13 @@ std::string orbit_text(const dynamics::HybridSystem& system, const PeriodicOrbit
   return text + amplitude_table(system, amplitudes);
 }
 
+void incomplete(Report& out_report, int exit_code, const std::string& message) {
+  out_report.exit_code = exit_code;
+  out_report.text = message + "\n" + out_report.text;
+  out_report.data["message"] = message;
+  out_report.data["incomplete"] = true;
+}
+
 Report not_found(const std::string& verb, const orbits::ShootingResult& result) {
   const orbits::PeriodicOrbit& best = result.orbit;
   Report report;

@@ -42,6 +42,8 @@ const char* to_string(BranchEnd end) {
       return "closed";
     case BranchEnd::kLost:
       return "lost";
+    case BranchEnd::kInterrupted:
+      return "interrupted";
   }
   return "unknown";
 }

@@ -26,15 +26,20 @@ enum class SpecialKind : std::uint8_t {
 };
 
 enum class BranchEnd : std::uint8_t {
-  kRange,      ///< the parameter left its range; the last point is on its end
-  kMaxPoints,  ///< options.max_points reached
-  kClosed,     ///< back at the start
-  kMerged,     ///< it joins another one: asymmetric orbits became symmetric; of a curve, see `reason`
-  kLost,       ///< no step however small found the branch again; `reason` says what was seen
+  kRange,        ///< the parameter left its range; the last point is on its end
+  kMaxPoints,    ///< options.max_points reached
+  kClosed,       ///< back at the start
+  kMerged,       ///< it joins another one: asymmetric orbits became symmetric; of a curve, see `reason`
+  kLost,         ///< no step however small found the branch again; `reason` says what was seen
+  kInterrupted,  ///< the family was stopped (it threw Interrupted): what was found before is there
 };
 
 [[nodiscard]] const char* to_string(SpecialKind kind);
 [[nodiscard]] const char* to_string(BranchEnd end);
+/// Whether a branch was followed as far as was asked.
+[[nodiscard]] constexpr bool is_complete(BranchEnd end) {
+  return end != BranchEnd::kLost && end != BranchEnd::kInterrupted;
+}
 
 struct ContinuationOptions {
   double from = 0.0, to = 1.0;  ///< range of the parameter, in either order

@@ -183,6 +183,7 @@ Result continue_balance(const Scene& scene, const std::string& over, const Metho
     const auto basis = choice.basis(scene, call.options());
     studies::BalanceContinuation own = studies::continue_balance(scene, over, basis, method.balance, request, every,
                                                                  certifying(method.search), call.options());
+    call.options().check_interrupt();
     std::optional<Result> kept;
     if (!own.branch.points.empty())
       kept.emplace(studies::content_of(
@@ -219,6 +220,7 @@ Result continue_special(const Scene& scene, const std::string& over, const studi
     const auto basis = choice.basis(scene, call.options());
     const auto own = std::make_shared<const studies::SpecialCurves>(
         studies::special_curves(scene, over, basis, search, request, curve, call.options()));
+    call.options().check_interrupt();
     std::optional<Result> kept;
     if (!own->curves.empty())
       kept.emplace(studies::content_of(studies::plane_of(scene, over, basis, curve, *own), own,
@@ -256,6 +258,7 @@ Result continue_orbit(const Scene& scene, const std::string& over, double to, co
   const auto [found, result] = call([&] {
     const auto basis = choice.basis(scene, call.options());
     studies::Continuation continuation = studies::continue_orbit(scene, over, basis, search, request, call.options());
+    call.options().check_interrupt();
     std::optional<Result> kept;
     if (continuation.found.converged()) {
       kept.emplace(studies::content_of(studies::Family(scene, {over}, basis), continuation.start,

@@ -161,8 +161,9 @@ BalanceContinuation continue_balance(const scene::Scene& scene, const std::strin
   while (out.found.balance.converged && out.found.met) {
     const orbits::Balance& first = out.found.balance;
     out.branch = orbits::continue_balance(over.systems, first, over.start, over.options);
+    if (out.branch.end == orbits::BranchEnd::kInterrupted) break;
     if (search.certify) out.certificate = orbits::certify_branch(over.systems, out.branch, every.value_or(1), shooting);
-    if (!error) break;
+    if (!error || out.branch.end == orbits::BranchEnd::kInterrupted) break;
     out.trials.push_back(
         {first.harmonics, first.iterations,
          out.certificate->behind > 0 ? out.certificate->worst : std::numeric_limits<double>::quiet_NaN()});

@@ -107,7 +107,7 @@ struct BalanceContinuation {
 /// 1.3 at a time, until every certified point that has an orbit behind meets the error.
 /// @param every  certify every k-th point and the last, where `search` asks for certificates; ≥ 1, else all
 /// @throws InvalidInput  as family_over, find_balance and continue_balance
-/// @throws Interrupted   when the stop flag was set
+/// Where the stop flag is set on its way, the branch ends there (BranchEnd::kInterrupted).
 [[nodiscard]] BalanceContinuation continue_balance(const scene::Scene& scene, const std::string& key,
                                                    const std::optional<pod::NamedBasis>& basis, BalanceSearch search,
                                                    const ContinuationRequest& request, std::optional<int> every,

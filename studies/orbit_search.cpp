@@ -1,6 +1,7 @@
 #include <slipmode/studies/orbit_search.hpp>
 
 #include <slipmode/core/errors.hpp>
+#include <slipmode/core/parallel.hpp>
 #include <slipmode/orbits/continuation.hpp>
 #include <slipmode/results/orbit_records.hpp>
 #include <slipmode/results/provenance.hpp>
@@ -72,6 +73,9 @@ results::NamedBranch switched(const dynamics::SystemFamily& family, const orbits
   } catch (const NumericalFailure& failure) {
     side.branch.end = orbits::BranchEnd::kLost;
     side.branch.reason = failure.what();
+  } catch (const Interrupted&) {
+    side.branch.end = orbits::BranchEnd::kInterrupted;
+    side.branch.reason = "interrupted before it was begun";
   }
   return side;
 }
@@ -85,6 +89,7 @@ std::vector<results::NamedBranch> follow(const dynamics::SystemFamily& family, c
   for (const orbits::SpecialPoint& point : special) {
     if (point.kind != SpecialKind::kSymmetryBreaking && point.kind != SpecialKind::kPeriodDoubling) continue;
     if (point.orbit.crossings == 0) continue;  // in one regime: a floating structure's shift, which breaks nothing
+    if (is_interrupted(branches)) break;
     branches.push_back(switched(family, point, options));
   }
   return branches;
@@ -172,6 +177,11 @@ Continuation continue_orbit(const scene::Scene& scene, const std::string& key,
   over.options.shooting = start.options;
   out.branches = follow(over.systems, out.found.orbit, out.start, over.options, request.switches);
   return out;
+}
+
+bool is_interrupted(const std::vector<results::NamedBranch>& branches) {
+  return std::ranges::any_of(
+      branches, [](const results::NamedBranch& one) { return one.branch.end == orbits::BranchEnd::kInterrupted; });
 }
 
 void store(results::StoreWriter& writer, const Family& model, const orbits::PeriodicOrbit* orbit) {

@@ -109,10 +109,14 @@ struct Continuation {
 /// Finds an orbit at the scene's own value of the key when that lies in the range, and follows it both ways; else at
 /// `from`, one way.
 /// @throws InvalidInput  as family_over and search_start
-/// @throws Interrupted   when the stop flag was set
+/// Where the stop flag is set on its way, the branch being followed ends there (BranchEnd::kInterrupted).
+/// @throws Interrupted   when it was set before the first orbit was found
 [[nodiscard]] Continuation continue_orbit(const scene::Scene& scene, const std::string& key,
                                           const std::optional<pod::NamedBasis>& basis, const OrbitSearch& search,
                                           const ContinuationRequest& request, const RunOptions& run = {});
+
+/// Whether one of them was stopped on its way.
+[[nodiscard]] bool is_interrupted(const std::vector<results::NamedBranch>& branches);
 
 /// Writes an orbit, if there is one, with one period of it, sampled, and where it came from.
 void store(results::StoreWriter& writer, const Family& model, const orbits::PeriodicOrbit* orbit);

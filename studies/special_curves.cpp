@@ -2,6 +2,7 @@
 
 #include <slipmode/core/errors.hpp>
 #include <slipmode/core/numbers.hpp>
+#include <slipmode/core/parallel.hpp>
 #include <slipmode/results/provenance.hpp>
 
 #include <fmt/format.h>
@@ -116,7 +117,9 @@ SpecialCurves special_curves(const scene::Scene& scene, const std::string& key,
                                       .max_step = request.max_step,
                                       .max_points = request.max_points,
                                       .shooting = shooting_options(plane, search)};
+  out.interrupted = is_interrupted(out.base.branches);
   for (const SpecialPoint* point : points_of(out.base, curve)) {
+    if (out.interrupted) break;
     const auto followed = [&](const results::NamedBranch& other) {
       return passes(other.branch, *point, request, curve, along);
     };
@@ -129,8 +132,11 @@ SpecialCurves special_curves(const scene::Scene& scene, const std::string& key,
                                          return plane.at({over, value});
                                        },
                                        *point, along, {request.from, request.to}, options)});
+      out.interrupted = is_interrupted(out.curves);
     } catch (const InvalidInput& refused) {
       out.refused.emplace_back(refused.what());
+    } catch (const Interrupted&) {
+      out.interrupted = true;  // before this one was begun
     }
   }
   return out;

@@ -31,13 +31,13 @@ struct SpecialCurves {
   double along = 0.0;  ///< value of the second key there
   std::vector<results::NamedBranch> curves = {};
   std::vector<std::string> refused = {};  ///< special points of the kind that cannot be followed, and why
+  bool interrupted = false;               ///< the stop flag was set: what was found before is there
 };
 
 /// Finds branches over a key as continue_orbit does, at the scene's own value of the second key where its range holds
 /// that, else at its first end; then follows their special points of the kind. A point on a curve that was followed
 /// already is not followed again.
 /// @throws InvalidInput  for a second key that is the first one, or cannot be varied continuously; as continue_orbit
-/// @throws Interrupted   when the stop flag was set
 [[nodiscard]] SpecialCurves special_curves(const scene::Scene& scene, const std::string& key,
                                            const std::optional<pod::NamedBasis>& basis, const OrbitSearch& search,
                                            const ContinuationRequest& request, const CurveRequest& curve,

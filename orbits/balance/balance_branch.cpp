@@ -1,6 +1,7 @@
 #include <slipmode/orbits/balance/balance_branch.hpp>
 
 #include <slipmode/core/errors.hpp>
+#include <slipmode/core/parallel.hpp>
 #include "orbits/balance/internal/balance_branch_solver.hpp"
 #include "orbits/balance/internal/balance_orbit.hpp"
 #include "orbits/internal/branch_walk.hpp"
@@ -30,7 +31,14 @@ BranchCertificate certify_branch(const dynamics::SystemFamily& family, Branch& o
   for (std::size_t k = 0; k < count; ++k) {
     if (k % static_cast<std::size_t>(every) != 0 && k + 1 != count) continue;
     BranchPoint& point = out_branch.points[k];
-    const Certificate certificate = certify(family(point.parameter), *point.balance, shooting);
+    Certificate certificate;
+    try {
+      certificate = certify(family(point.parameter), *point.balance, shooting);
+    } catch (const Interrupted&) {
+      out_branch.end = BranchEnd::kInterrupted;
+      out_branch.reason = fmt::format("interrupted as its points were certified, beyond {} of {}", k, count);
+      return out;
+    }
     ++out.certified;
     point.true_error = certificate.behind ? certificate.error.front() : std::numeric_limits<double>::infinity();
     if (!certificate.behind) continue;

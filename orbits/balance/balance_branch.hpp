@@ -24,7 +24,8 @@ struct BranchCertificate {
   double worst = 0.0;  ///< largest Certificate::relative of these
 };
 
-/// Shoots from every k-th point of a branch, and from its last one, and fills in `BranchPoint::true_error`.
+/// Shoots from every k-th point of a branch, and from its last one, and fills in `BranchPoint::true_error`. Where the
+/// family is stopped, the branch ends as interrupted and its other points stay unseen.
 /// @param every  k ≥ 1
 [[nodiscard]] BranchCertificate certify_branch(const dynamics::SystemFamily& family, Branch& out_branch, int every,
                                                const ShootingOptions& shooting = {});

@@ -1,6 +1,7 @@
 #include "orbits/internal/branch_walk.hpp"
 
 #include <slipmode/core/errors.hpp>
+#include <slipmode/core/parallel.hpp>
 #include "orbits/balance/internal/balance_branch_solver.hpp"
 #include "orbits/internal/branch_solver.hpp"
 #include "orbits/internal/branch_tests.hpp"
@@ -48,6 +49,8 @@ class Walk {
           fmt::format("the family refuses a parameter beyond {:.9g}: {}", current_.at.at.parameter, refused.what()));
     } catch (const NumericalFailure& failure) {
       end(BranchEnd::kLost, fmt::format("beyond parameter {:.9g}: {}", current_.at.at.parameter, failure.what()));
+    } catch (const Interrupted&) {
+      end(BranchEnd::kInterrupted, fmt::format("interrupted beyond parameter {:.9g}", current_.at.at.parameter));
     }
     return std::move(branch_);
   }
@@ -353,7 +356,7 @@ Branch joined(Branch backward, Branch forward) {
     special.before += offset;
     out.special.push_back(std::move(special));
   }
-  out.end = backward.end == BranchEnd::kLost ? backward.end : forward.end;
+  out.end = is_complete(backward.end) ? forward.end : backward.end;
   out.reason = "one way: " + backward.reason + "; other way: " + forward.reason;
   return out;
 }
@@ -376,7 +379,7 @@ template <class Solver>
 Branch walk_branch(const Solver& solver, const ContinuationOptions& options, const BranchPoint& from) {
   const int direction = options.direction < 0 ? -1 : 1;
   Branch first = Walk<Solver>(solver, options).follow(from, direction);
-  if (!options.both_ways || first.end == BranchEnd::kClosed) return first;
+  if (!options.both_ways || first.end == BranchEnd::kClosed || first.end == BranchEnd::kInterrupted) return first;
   return joined(Walk<Solver>(solver, options).follow(from, -direction), std::move(first));
 }
 

@@ -6,7 +6,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <chrono>
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <numbers>
 
@@ -417,6 +419,44 @@ TEST_F(OrbitVerbs, SequentialContinuationEndsAtAFoldAndKeepsWhatItFound) {
   const results::StoreReader store(folder.path() / "branch.h5");
   const Eigen::VectorXd parameter = store.vector("branches/0/points/parameter");
   EXPECT_NEAR(parameter.maxCoeff(), 1.4208, 2e-3);  // the fold that arclength finds
+}
+
+TEST_F(OrbitVerbs, AnInterruptedContinuationKeepsWhatItFound) {
+  // A branch, a certificate and a curve that would take minutes; each is stopped later until something was found.
+  const std::string chain = SLIPMODE_SOURCE_DIR "/datasets/jenkins_chain/scene.toml";
+  const std::vector<std::vector<std::string>> each = {
+      {"continue", kSdof, "--over", "drive.omega=1.8:0.65", "--start", "2.5,0", "--max-step", "2e-6", "--points",
+       "1000000"},
+      {"continue", chain, "--over", "drive.omega=0.1:1", "--by", "balance", "--harmonics", "25", "--certify",
+       "--max-step", "1e-5", "--points", "1000000"},
+      {"continue", kSdof, "--over", "drive.omega=1.3:1.5", "--start", "2.5,0", "--point", "fold", "--along",
+       "drive.amplitude=0.2:2", "--max-step", "3e-4", "--points", "1000000"}};
+  for (std::vector<std::string> arguments : each) {
+    arguments.insert(arguments.begin(), "orbit");
+    arguments.insert(arguments.end(), {"-o", "stopped.h5", "--json"});
+    Outcome stopped;
+    for (double seconds = 0.5; seconds < 100.0 && !std::filesystem::exists(folder.path() / "stopped.h5");
+         seconds *= 2.0) {
+      SlipmodeProcess process(arguments, folder.path());
+      const auto begin = std::chrono::steady_clock::now();
+      const auto late = [&] {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() > seconds;
+      };
+      ASSERT_TRUE(process.signal_when(late, SIGINT)) << "over before it was stopped";
+      stopped = process.wait();
+      ASSERT_EQ(stopped.exit_code, 130) << stopped.err;
+    }
+    const auto said = stopped.json();
+    EXPECT_TRUE(said["incomplete"]);
+    const bool curve = said.contains("curves");
+    const auto& found = said[curve ? "curves" : "branches"][0];
+    EXPECT_EQ(found["end"], "interrupted");
+    EXPECT_FALSE(found["complete"]);
+    const results::StoreReader store(folder.path() / "stopped.h5");
+    EXPECT_EQ(store.vector(curve ? "curves/0/points/over" : "branches/0/points/parameter").size(), found["points"]);
+    EXPECT_EQ(slipmode_in(folder, {"plot", "stopped.h5", "-o", "stopped.svg"}).exit_code, 0);
+    std::filesystem::remove(folder.path() / "stopped.h5");
+  }
 }
 
 TEST_F(OrbitVerbs, ContinueRefusesWhatIsNotContinuous) {

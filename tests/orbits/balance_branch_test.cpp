@@ -1,5 +1,6 @@
 // Hill's multipliers against saltated ones, and branches of balances against branches of orbits.
 #include <slipmode/core/errors.hpp>
+#include <slipmode/core/parallel.hpp>
 #include <slipmode/orbits/balance/balance_branch.hpp>
 #include <slipmode/orbits/balance/hill.hpp>
 #include <slipmode/orbits/floquet.hpp>
@@ -233,6 +234,14 @@ TEST(BalanceBranch, IsCertifiedPointByPoint) {
   EXPECT_NEAR(contact_amplitudes(*last.balance)[0].alternating, contact_amplitudes(there, orbit)[0].alternating,
               last.true_error);
   EXPECT_THROW((void)certify_branch(over_frequency(base), branch, 0), InvalidInput);
+  // Stopped, its first points are certified and it is no longer whole.
+  int left = 3;
+  const auto stopped = [&](double omega) {
+    if (left-- == 0) throw Interrupted();
+    return over_frequency(base)(omega);
+  };
+  EXPECT_EQ(certify_branch(stopped, branch, 1).certified, 3);
+  EXPECT_EQ(branch.end, BranchEnd::kInterrupted);
 }
 
 TEST(BalanceBranch, RefusesWhatItCannotFollow) {

@@ -1,5 +1,6 @@
 // Branches and their special points against closed forms, against orbits found one by one, and against S0 and S1.
 #include <slipmode/core/errors.hpp>
+#include <slipmode/core/parallel.hpp>
 #include <slipmode/orbits/floquet.hpp>
 #include "clearance_systems.hpp"
 #include "fixtures/belt_oscillator.hpp"
@@ -95,6 +96,31 @@ TEST(Continuation, FollowsASelfExcitedOrbitInClosedForm) {
     EXPECT_NEAR(point.orbit.period, here.period(), 1e-8 * here.period());
     EXPECT_TRUE(point.orbit.superstable);
   }
+}
+
+TEST(Continuation, KeepsWhatWasFoundWhereTheFamilyIsStopped) {
+  const HybridSystem base = Backlash{.omega = 1.2}.system();
+  const dynamics::SystemFamily family = over_frequency(base);
+  const PeriodicOrbit first = find_orbit(base, settle_guess(base, base.rest(), 50.0));
+  const ContinuationOptions options{.from = 1.1, .to = 1.4, .both_ways = true};
+  const Branch whole = continue_orbit(family, first, 1.2, {.from = 1.1, .to = 1.4});
+  int left = 0;
+  const dynamics::SystemFamily stopped = [&](double omega) {
+    if (left-- == 0) throw Interrupted();
+    return family(omega);
+  };
+  std::size_t before = 0;
+  for (const int after : {20, 60, 100}) {
+    left = after;
+    const Branch branch = continue_orbit(stopped, first, 1.2, options);
+    EXPECT_EQ(branch.end, BranchEnd::kInterrupted) << branch.reason;
+    ASSERT_GT(branch.points.size(), before);  // one way alone: the other one is not begun
+    before = branch.points.size();
+    ASSERT_LT(before, whole.points.size());
+    for (std::size_t k = 0; k < before; ++k) EXPECT_EQ(branch.points[k].parameter, whole.points[k].parameter);
+  }
+  left = 0;
+  EXPECT_THROW((void)continue_orbit(stopped, first, 1.2, options), Interrupted);
 }
 
 TEST(Continuation, ChainOverBeltSpeedArrivesAtTheOrbitFoundThere) {
