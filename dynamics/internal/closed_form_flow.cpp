@@ -49,6 +49,7 @@ ClosedFormFlow::ClosedFormFlow(const HybridSystem& system, HybridPoint start, co
   }
   resolver_.start(point_);
   enter_regime();
+  begin_step();
 }
 
 void ClosedFormFlow::restart(HybridPoint start) {
@@ -61,6 +62,17 @@ void ClosedFormFlow::restart(HybridPoint start) {
   level_ = 0;
   resolver_.start(point_);
   enter_regime();
+  begin_step();
+}
+
+void ClosedFormFlow::begin_step() {
+  begin_ = point_.time;
+  step_regime_ = regime_;
+  if (regime_->overlay) phase_ = phase_at(begin_);
+  if (!measured_) measure_amplitudes();
+  x_begin_ = x_;
+  free_begin_ = free_;
+  inputs_begin_ = inputs_;
 }
 
 void ClosedFormFlow::enter_regime() {
@@ -183,9 +195,7 @@ void ClosedFormFlow::pass_window() {
 
 bool ClosedFormFlow::step(double t_limit) {
   resolver_.clear();
-  begin_ = point_.time;
-  step_regime_ = regime_;
-  if (regime_->overlay) phase_ = phase_at(begin_);
+  begin_step();
   double limit = t_limit;
   bool corner = false;
   if (!resolver_.drive().is_constant()) {
@@ -194,7 +204,6 @@ bool ClosedFormFlow::step(double t_limit) {
       corner = true;
     }
   }
-  if (!measured_) measure_amplitudes();
   look_again();
   double end = limit;
   for (const Guard& guard : guards_)
@@ -220,9 +229,6 @@ bool ClosedFormFlow::step(double t_limit) {
     level_ = std::min(level_ + found.refinement, RegimeTables::kLevels - 1);
     ++statistics_.rejected;
   }
-  x_begin_ = x_;
-  free_begin_ = free_;
-  inputs_begin_ = inputs_;
   if (found.guard >= 0 && !found.touching) {
     // Up to the part that is proved clear; beyond it Newton, which may prove itself.
     if (!found.resolved) tau *= kUsed;

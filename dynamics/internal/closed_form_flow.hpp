@@ -114,6 +114,8 @@ class ClosedFormFlow {
   };
 
   void enter_regime();
+  /// What the step that begins at the point begins with: it is readable from here on.
+  void begin_step();
   void set_guards();
   void add_clearance_guards(const Guard& guard, RegimeOutput::Kind kind);
   /// What moves freely, and bounds on it.
@@ -122,7 +124,7 @@ class ClosedFormFlow {
   void drop_idle_guards();
   /// Takes the state, which is that of the step's begin, on by tau.
   void move(double tau);
-  /// The same of any state and its free part, that of the last step's begin.
+  /// The same of the last step's begin, whose state, free part and inputs are given.
   void move(const Visited& in, double tau, const Eigen::VectorXd& free, Eigen::VectorXd& x,
             Eigen::VectorXd& inputs) const;
   /// The same over a whole window of the level.

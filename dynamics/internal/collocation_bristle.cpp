@@ -14,11 +14,11 @@ void CollocationFlow::start_bristles() {
     point_.modes[i] = s < 0.0 ? ContactMode::kSlipNegative : ContactMode::kSlipPositive;
   }
   // What they pull with, the resolver takes for given.
-  forces_at(begin_, point_.modes, point_.x.data(), point_.internal, point_.force);
+  forces_at(resolver_.instant(begin_, point_.x.data()), point_.modes, point_.internal, point_.force);
 }
 
 void CollocationFlow::refresh_bristles() {
-  forces_at(point_.time, point_.modes, point_.x.data(), point_.internal, point_.force);
+  forces_at(resolver_.instant(point_.time, point_.x.data()), point_.modes, point_.internal, point_.force);
   for (int c = 0; c < nc_; ++c) {
     if (!bristled(c)) continue;
     const double s = drive().velocity(point_.time) - resolver_.contact_velocity(c, point_.x.data());
@@ -49,19 +49,19 @@ Eigen::VectorXd CollocationFlow::internal_within(double tau, const double* x) co
   return internal;
 }
 
-void CollocationFlow::forces_at(double t, const std::vector<ContactMode>& modes, const double* x,
+void CollocationFlow::forces_at(const Instant& now, const std::vector<ContactMode>& modes,
                                 const Eigen::VectorXd& internal, Eigen::VectorXd& out_force) const {
   std::vector<bool> stuck(modes.size());
   for (int c = 0; c < nc_; ++c) {
     const auto i = static_cast<std::size_t>(c);
     stuck[i] = held(modes, c);
-    const double s = drive().velocity(t) - resolver_.contact_velocity(c, x);
+    const double s = now.belt_velocity - resolver_.contact_velocity(c, now.x);
     if (bristled(c))
       out_force(c) = laws()[i].bristle.force(sign_of(modes[i]), s, internal(own_at_[i]));
     else if (!stuck[i] && !elaborate(c))
       out_force(c) = laws()[i].sliding(sign_of(modes[i]), s);
   }
-  stick_forces(resolver_.instant(t, x), stuck, out_force);
+  stick_forces(now, stuck, out_force);
 }
 
 void CollocationFlow::collocate_bristles(double h) {
@@ -120,7 +120,7 @@ void CollocationFlow::settle_bristle(int c, bool touching) {
         before == ContactMode::kSlipPositive ? ContactMode::kSlipNegative : ContactMode::kSlipPositive;
     point_.modes[i] = after;
     start_from_rest(c);
-    forces_at(point_.time, point_.modes, point_.x.data(), point_.internal, point_.force);
+    forces_at(resolver_.instant(point_.time, point_.x.data()), point_.modes, point_.internal, point_.force);
   } else {
     point_.multiplicity[i] = 2;
   }

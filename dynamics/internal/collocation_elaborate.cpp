@@ -152,7 +152,7 @@ CollocationFlow::GuardValue CollocationFlow::evaluate(const OwnGuard& guard, int
   double force = 0.0, force_rate = 0.0, force_rate_size = 0.0;
   if (guard.force != 0.0) {
     if (held(step_modes_, c)) {
-      force = stick_force(c, x, tau, basis);
+      force = stick_force(c, x, tau);
       force_rate = forces_.segment<kNodes>(kNodes * c).dot(nodes_.lagrange_slope(tau / h)) / h;
     } else {
       force = own_force(c, tau, x.data());

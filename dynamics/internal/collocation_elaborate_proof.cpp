@@ -9,8 +9,6 @@
 namespace slipmode::dynamics {
 namespace {
 
-/// Largest slope of a polynomial of degree 8 that stays within one, on [0, 1] (Markov).
-constexpr double kSteepest = 2.0 * kNodes * kNodes;
 /// Shares of a step tried, by halving, over which a speed that starts at zero is shown to rise.
 constexpr int kSpeedHalvings = 8;
 

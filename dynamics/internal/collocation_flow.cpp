@@ -54,6 +54,11 @@ int coarsest_level(double omega, const StepTables& tables, double tolerance) {
   return level;
 }
 
+/// The static limit, of a load that varies under its constant part; 0 where there is none.
+double usual_limit(const ContactForces& law, const friction::LoadForm& load) {
+  return (law.varies ? law.under(std::abs(load.constant)) : law).static_limit;
+}
+
 /// Level of the largest step that follows the drive's velocity, or each harmonic of its force to a share of the least
 /// friction limit, as contacts' forces are followed.
 int coarsest_level(const friction::Drive& drive, const StepTables& tables, const std::vector<ContactForces>& laws,
@@ -62,7 +67,8 @@ int coarsest_level(const friction::Drive& drive, const StepTables& tables, const
   const friction::Force* force = drive.force();
   if (force == nullptr) return 0;
   double least = std::numeric_limits<double>::infinity();
-  for (const ContactForces& law : laws) least = std::min(least, law.static_limit);
+  for (const ContactForces& law : laws)
+    if (law.static_limit > 0.0) least = std::min(least, law.static_limit);
   int level = 0;
   for (const friction::ForceHarmonic& h : force->harmonics) {
     const double share = std::clamp(least / std::abs(h.amplitude), kLeastForceShare, 1.0);
@@ -102,8 +108,9 @@ CollocationFlow::CollocationFlow(const HybridSystem& system, const StepTables& t
     steep_fall_.push_back(std::numbers::ln2 / laws()[c].alpha);
     const double growth = laws()[c].onset_slope() * model_.mobility(i, i) * tables_.step(0);
     slow_start_level_.push_back(growth > kGrowthAtStart ? std::ilogb(growth / kGrowthAtStart) + 1 : 0);
-    over_limit_.push_back(1.0 / laws()[c].static_limit);
-    if (laws()[c].static_limit > 0.0) least_limit_ = std::min(least_limit_, laws()[c].static_limit);
+    const double limit = usual_limit(laws()[c], resolver_.load_form(static_cast<int>(c)));
+    over_limit_.push_back(limit > 0.0 ? 1.0 / limit : 0.0);
+    if (limit > 0.0) least_limit_ = std::min(least_limit_, limit);
     elaborate_.push_back(laws()[c].is_elaborate());
   }
   own_forces_.resize(laws().size());
@@ -220,6 +227,7 @@ bool CollocationFlow::step(double t_limit) {
     step_modes_ = point_.modes;
   }
   const bool at_guard = guard.contact >= 0 && guard.theta * h <= remaining;
+  if (!at_guard) guard = {};  // what lies beyond the step is nothing of its end's
   if (at_guard && point_.modes[static_cast<std::size_t>(guard.contact)] != ContactMode::kStick)
     stop_level_ = error < tolerance * kGrowth ? level - 1 : level;
 
@@ -274,7 +282,7 @@ bool CollocationFlow::step(double t_limit) {
       if (bristled(c) && unmoved(c)) point_.multiplicity[static_cast<std::size_t>(c)] = 2;
     }
     point_.internal = internal_within(tau, point_.x.data());
-    forces_at(point_.time, point_.modes, point_.x.data(), point_.internal, point_.force);
+    forces_at(resolver_.instant(point_.time, point_.x.data()), point_.modes, point_.internal, point_.force);
   }
   if (!at_guard && !(corner && point_.time == limit)) return false;
 
@@ -306,8 +314,8 @@ bool CollocationFlow::step(double t_limit) {
 
 double CollocationFlow::over_scale(int c) const {
   const auto i = static_cast<std::size_t>(c);
-  if (laws()[i].kind != LawKind::kClearance) return over_limit_[i];
   const double most = forces_.segment<kNodes>(kNodes * c).cwiseAbs().maxCoeff();
+  if (over_limit_[i] > 0.0) return laws()[i].varies ? 1.0 / std::max(1.0 / over_limit_[i], most) : over_limit_[i];
   if (most == 0.0) return 0.0;
   return 1.0 / (std::isfinite(least_limit_) ? std::max(least_limit_, kLeastForceShare * most) : most);
 }
@@ -317,8 +325,7 @@ double CollocationFlow::rounding_of_sticks() const {
   double most = 0.0;
   for (int c = 0; c < nc_; ++c)
     if (held(point_.modes, c))
-      most = std::max(most,
-                      velocity_scale(c, x_begin_) / model_.mobility(c, c) * over_limit_[static_cast<std::size_t>(c)]);
+      most = std::max(most, velocity_scale(c, x_begin_) / model_.mobility(c, c) * over_scale(c));
   return kRoundsBy * most * over_top_;
 }
 
@@ -403,10 +410,17 @@ void CollocationFlow::evaluate(double t, Eigen::VectorXd& out_x, Eigen::VectorXd
   within_.begin(x_begin_.data(), forces_.data(), step_level_);
   within_.state(tau, out_x.data());
   resolver_.hold(t, step_modes_, out_x.data());
-  out_force.resize(nc_);
+  out_force = forces_within(tau, out_x);
+}
+
+Eigen::VectorXd CollocationFlow::forces_within(double tau, const Eigen::VectorXd& x) const {
+  Eigen::VectorXd force(nc_);
   for (int c = 0; c < nc_; ++c)
-    if (elaborate(c) && !held(step_modes_, c)) out_force(c) = own_force(c, tau, out_x.data());
-  forces_at(t, step_modes_, out_x.data(), internal_within(tau, out_x.data()), out_force);
+    if (elaborate(c) && !held(step_modes_, c)) force(c) = own_force(c, tau, x.data());
+  Instant now{model_, laws(), x.data(), begin_ + tau, drive_velocity(begin_, tau), drive_acceleration(begin_, tau)};
+  now.force = given_force(tau);
+  forces_at(now, step_modes_, internal_within(tau, x.data()), force);
+  return force;
 }
 
 }  // namespace slipmode::dynamics

@@ -71,7 +71,7 @@ class CollocationFlow {
   };
 
   struct Guarded {
-    double theta = 1.0;  ///< fraction of the step at which the first guard is reached
+    double theta = 2.0;  ///< fraction of the step at which the first guard is reached; beyond it: none
     int contact = -1;
     bool touching = false;
     std::optional<OwnGuard> own = {};  ///< of an elaborate contact
@@ -97,6 +97,8 @@ class CollocationFlow {
   /// Keeps the guards' Bernstein forms for the proof.
   [[nodiscard]] Guarded first_guard();
 
+  /// Largest slope of a polynomial of degree 8 that stays within one, on [0, 1] (Markov).
+  static constexpr double kSteepest = 2.0 * kNodes * kNodes;
   /// How far the true motion from the step's start may be from the computed one, within the step.
   struct Deviation {
     double force = 0.0, force_slope = 0.0;  ///< of any contact force, and of a sticking one's rate times the step [N]
@@ -123,6 +125,11 @@ class CollocationFlow {
   [[nodiscard]] BristleDefect bristle_defect(int c, double reach, double h, bool at_rest) const;
   /// Share of the step for which a slip that starts with neither speed nor acceleration goes on; 0: not known.
   [[nodiscard]] double clear_after_release(const StepBounds& bounds, const Deviation& off, double h, int c) const;
+  /// Its law's force is the same throughout the step, as long as it is not held.
+  [[nodiscard]] bool stays(int c) const {
+    const auto i = static_cast<std::size_t>(c);
+    return elaborate(c) ? !own_forces_[i].moves() : laws()[i].is_constant();
+  }
   /// |dλ/dt| of a contact within the step, of the true motion [N/s].
   [[nodiscard]] double largest_force_rate(int d, const Deviation& off, double h) const;
   /// A guard known with these errors of it and of its slope, positive before `from`. @param found  the event, if it is
@@ -148,8 +155,7 @@ class CollocationFlow {
   [[nodiscard]] bool too_early(const Guarded& guard) const;
   [[nodiscard]] double deepest_overshoot() const;
   void refine_event(const Guarded& guard, double& tau, Eigen::VectorXd& x);
-  [[nodiscard]] double stick_force(int c, const Eigen::VectorXd& x, double tau,
-                                   const RadauTables::Vector8& basis) const;
+  [[nodiscard]] double stick_force(int c, const Eigen::VectorXd& x, double tau) const;
   /// wᵀq̈ at `begin_ + tau`. @param basis  Lagrange's there
   [[nodiscard]] double contact_acceleration(int c, const Eigen::VectorXd& x, double tau,
                                             const RadauTables::Vector8& basis) const;
@@ -218,8 +224,10 @@ class CollocationFlow {
   /// The contacts' own states within the last step, at `begin_ + tau`.
   [[nodiscard]] Eigen::VectorXd internal_within(double tau, const double* x) const;
   /// λ of every contact, but for elaborate ones that are not held: theirs are there.
-  void forces_at(double t, const std::vector<ContactMode>& modes, const double* x, const Eigen::VectorXd& internal,
+  void forces_at(const Instant& now, const std::vector<ContactMode>& modes, const Eigen::VectorXd& internal,
                  Eigen::VectorXd& out_force) const;
+  /// λ of every contact within the last step, at `begin_ + tau`, as its law or its stick has it there. @param x  state
+  [[nodiscard]] Eigen::VectorXd forces_within(double tau, const Eigen::VectorXd& x) const;
   /// Turns bristle contacts whose acceleration at rest was rounding towards where the solved step takes them. True if
   /// any turned.
   bool turn_resting_bristles();

@@ -24,7 +24,7 @@ constexpr int kRefinements = 20;
 }  // namespace
 
 CollocationFlow::Guarded CollocationFlow::first_guard() {
-  Guarded first{2.0, -1, false};
+  Guarded first;
   const auto consider = [&](const BernsteinPolynomial& p, int c) {
     if (const auto root = first_root(p); root && root->at < first.theta) first = {root->at, c, root->touching};
   };
@@ -143,7 +143,7 @@ void CollocationFlow::refine_event(const Guarded& guard, double& tau, Eigen::Vec
       usual_rate = now.size / h;
     } else if (point_.modes[i] == ContactMode::kStick) {
       const double sign = forces_.segment<kNodes>(kNodes * c).dot(basis) > 0 ? 1.0 : -1.0;
-      value = laws()[i].static_limit - sign * stick_force(c, x, tau, basis);
+      value = laws()[i].static_limit - sign * stick_force(c, x, tau);
       rate = -sign * forces_.segment<kNodes>(kNodes * c).dot(nodes_.lagrange_slope(tau / h)) / h;
       usual_rate = laws()[i].static_limit / h;
     } else {
@@ -175,23 +175,12 @@ double CollocationFlow::contact_acceleration(int c, const Eigen::VectorXd& x, do
   return acceleration;
 }
 
-double CollocationFlow::stick_force(int c, const Eigen::VectorXd& x, double tau,
-                                    const RadauTables::Vector8& basis) const {
-  const double a = drive_acceleration(begin_, tau);
+double CollocationFlow::stick_force(int c, const Eigen::VectorXd& x, double tau) const {
   if (nc_ == 1)
-    return (a - kernels_.dot(model_.acceleration_row.data(), x.data(), 2 * model_.np) - model_.load_acceleration(0) -
-            given_acceleration(0, tau)) /
+    return (drive_acceleration(begin_, tau) - kernels_.dot(model_.acceleration_row.data(), x.data(), 2 * model_.np) -
+            model_.load_acceleration(0) - given_acceleration(0, tau)) /
            model_.mobility(0, 0);
-  Eigen::VectorXd force(nc_);
-  std::vector<bool> stuck(point_.modes.size());
-  for (int d = 0; d < nc_; ++d) {
-    stuck[static_cast<std::size_t>(d)] = held(step_modes_, d);
-    force(d) = forces_.segment<kNodes>(kNodes * d).dot(basis);
-  }
-  Instant now{model_, laws(), x.data(), begin_ + tau, drive_velocity(begin_, tau), a};
-  now.force = given_force(tau);
-  stick_forces(now, stuck, force);
-  return force(c);
+  return forces_within(tau, x)(c);
 }
 
 }  // namespace slipmode::dynamics

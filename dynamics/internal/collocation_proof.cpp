@@ -129,8 +129,7 @@ CollocationFlow::Deviation CollocationFlow::deviation(const StepBounds& bounds, 
       const Eigen::MatrixXd own = model_.mobility(stuck, stuck);
       hold = own.inverse().cwiseAbs().rowwise().sum().maxCoeff();
       for (int d = 0; d < nc_; ++d) {
-        const auto i = static_cast<std::size_t>(d);
-        if (held(point_.modes, d) || laws()[i].is_constant() || (elaborate(d) && !own_forces_[i].moves())) continue;
+        if (held(point_.modes, d) || stays(d)) continue;
         cross += model_.mobility(stuck, d).cwiseAbs().maxCoeff();
       }
     }
@@ -161,11 +160,13 @@ double CollocationFlow::largest_force_rate(int d, const Deviation& off, double h
     const double start = drive_velocity(begin_, 0.0) - resolver_.contact_velocity(d, x_begin_.data());
     const ChebyshevSeries series(kernels_, start, speed);
     const double left = nodes_.remainder[0] * ninth_(d) + off.speed, fastest = std::abs(start) + 2.0 * series.spread();
-    const double drive_fast = own_forces_[i].follows ? 0.0 : drive().velocity_scale(begin_);
+    const friction::Shaker* shaker = drive().shaker();
+    const double pulled = shaker != nullptr ? shaker->omega() * drive().velocity_scale(begin_)
+                                            : std::abs(drive_acceleration(begin_, 0.0));
+    const double drive_fast = own_forces_[i].follows ? 0.0 : drive().velocity_scale(begin_) + pulled * h;
     return std::abs(own_forces_[i].stiffness) * (fastest + drive_fast + left) +
            std::abs(own_forces_[i].damping) *
-               ((2.0 * kNodes * kNodes * series.spread() + nodes_.remainder[1] * ninth_(d) + off.speed_slope) / h +
-                std::abs(drive_acceleration(begin_, 0.0)));
+               ((kSteepest * series.spread() + nodes_.remainder[1] * ninth_(d) + off.speed_slope) / h + pulled);
   }
   const auto form = guard_forms_.segment<kNodes>(kNodes * d);
   const double steps = (form.tail<kNodes - 1>() - form.head<kNodes - 1>()).cwiseAbs().maxCoeff();
@@ -204,7 +205,7 @@ double CollocationFlow::clear_after_release(const StepBounds& bounds, const Devi
                             ? nodes_.lebesgue * forces_.segment<kNodes>(kNodes * d).cwiseAbs().maxCoeff() + off.force
                             : other.static_limit;
     change += (h * bounds.third_by_force(c, d) + std::abs(bounds.response2(c, d))) * most;
-    if (other.is_constant() && point_.modes[static_cast<std::size_t>(d)] != ContactMode::kStick) continue;
+    if (stays(d) && point_.modes[static_cast<std::size_t>(d)] != ContactMode::kStick) continue;
     if (d == c) {
       by_rate = std::abs(bounds.response1(c, c)) * other.alpha * other.drop;
     } else if (model_.mobility(c, d) != 0.0 || bounds.response1(c, d) != 0.0) {

@@ -167,10 +167,10 @@ bool CollocationFlow::solve_coupled(const Collocation& table, const AtNodes* dis
   auto forces = forces_.head(size);
   const auto block = [](auto& vector, int c) { return vector.template segment<kNodes>(kNodes * c); };
   std::vector<bool> stuck(static_cast<std::size_t>(nc_));
-  bool any_stuck = false, all_stuck = true, any_nonlinear = false;
+  bool any_unknown = false, all_stuck = true, any_nonlinear = false;
   for (std::size_t c = 0; c < stuck.size(); ++c) {
     stuck[c] = held(point_.modes, static_cast<int>(c));
-    any_stuck |= stuck[c] || (any_elaborate_ && own_forces_[c].moves());
+    any_unknown |= stuck[c] || (any_elaborate_ && own_forces_[c].moves());
     all_stuck &= stuck[c];
     any_nonlinear |= !stuck[c] && !is_piecewise_linear(laws()[c].kind);
   }
@@ -190,7 +190,7 @@ bool CollocationFlow::solve_coupled(const Collocation& table, const AtNodes* dis
         .setConstant(laws()[i].is_constant() && !stuck[i] ? sign_of(point_.modes[i]) * laws()[i].kinetic
                                                           : point_.force(c));
   }
-  if (!any_stuck && !any_nonlinear) {
+  if (!any_unknown && !any_nonlinear) {
     velocity_.noalias() = free_ + kernel * forces;
     return true;
   }

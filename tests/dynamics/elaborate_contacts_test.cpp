@@ -201,6 +201,38 @@ TEST(ElaborateContacts, AStopBesideRigidFrictionAtOnePlaceInBothFlows) {
   EXPECT_GT(events, 500U);
 }
 
+TEST(ElaborateContacts, ALoadMayHaveNoConstantPart) {
+  // N = wᵀq and N = wᵀq + 1e-9: what its force is compared with must not vanish with it.
+  for (const double constant : {1.0, 1e-9, 0.0}) {
+    friction::Contact contact{unit(2, 1), friction::Coulomb{0.4, 0.2}, friction::NormalLoad(constant, 1.0)};
+    contact.offset = 1.0 - constant;
+    for (const double offset : {contact.offset, 0.0}) {
+      contact.offset = offset;
+      const HybridSystem system(fem::chain({.masses = 2, .damping = 0.02}), {contact}, friction::Belt::constant(0.1));
+      const State start = fixtures::state(Eigen::Vector2d(0.5, 1.0), Eigen::Vector2d::Zero());
+      const Trajectory exact = simulate(system, start, {.duration = 20.0});
+      const Trajectory run = simulate(system, start, {.duration = 20.0, .flow = kFine});
+      EXPECT_EQ(run.events.size(), exact.events.size()) << constant;
+      EXPECT_LT((run.final_state.q - exact.final_state.q).cwiseAbs().maxCoeff(), 1e-9) << constant;
+      EXPECT_LT(run.statistics.steps, 4000) << constant;
+    }
+  }
+}
+
+TEST(ElaborateContacts, AStopThatIsNotReachedCostsNoSteps) {
+  // Under a force drive, whose harmonics are followed to a share of the least limit: a stop has none.
+  std::vector<friction::Contact> contacts = {{unit(4, 3), friction::Stribeck{0.4, 0.2, 2.0}, 1.0}};
+  std::array<std::int64_t, 2> steps{};
+  for (std::int64_t& count : steps) {
+    const HybridSystem system(fem::chain({.masses = 4, .damping = 0.02}), contacts,
+                              friction::Force{1.0, {{.amplitude = 1.0, .order = 8}}}, {}, unit(4, 0));
+    count = simulate(system, fixtures::swinging(4, 1, 1.0), {.duration = 50.0}).statistics.steps;
+    const friction::Stop far{.stiffness = 1.0, .gap = 1e3};
+    contacts.push_back({unit(4, 1), friction::Clearance{far, far}});
+  }
+  EXPECT_EQ(steps[0], steps[1]);
+}
+
 TEST(ElaborateContacts, EnergyBalancesAtTheDefaultTolerance) {
   for (std::uint64_t seed = 200; seed < 300; ++seed) {
     const RandomScene scene = mixed(seed, seed % 2 == 0);

@@ -79,6 +79,17 @@ TEST(Flow, SamplesAgreeWithTheReferenceBetweenEvents) {
   }
 }
 
+TEST(Flow, ARunOfNoLengthHasItsStartForASample) {
+  const HybridSystem system = fixtures::belt_chain(friction::Coulomb{0.4, 0.2}, friction::Belt::constant(0.3), 4);
+  const State start = fixtures::swinging(4, 1, 1.0);
+  for (const FlowMethod method : {FlowMethod::kClosedForm, FlowMethod::kCollocation}) {
+    const Trajectory run = simulate(system, start, {.duration = 0.0, .sample = 0.1, .flow = {.method = method}});
+    ASSERT_EQ(run.times.size(), 1);
+    EXPECT_LT((run.q.col(0) - start.q).cwiseAbs().maxCoeff(), 1e-14);
+    EXPECT_LT((run.v.col(0) - start.v).cwiseAbs().maxCoeff(), 1e-14);
+  }
+}
+
 TEST(Flow, ContactOutputIsTheProjectionOfTheFullOutput) {
   const HybridSystem chain = stribeck_chain();
   const State start = swinging(10, 3, 1.0);

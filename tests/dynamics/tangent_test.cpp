@@ -155,6 +155,26 @@ TEST(Tangent, EnteringStickProjectsOutOneDirection) {
   }
 }
 
+TEST(Tangent, ACornerOfTheBeltWhileStuckChangesNothing) {
+  // Stuck from rest on a belt that speeds up until T, one mass goes with it: d(q, v)/d(q, v at the start) = diag(1, 0).
+  // The step that ends at the corner may foresee a release beyond it.
+  for (const double T : {0.3, 0.7, 1.0, 1.3})
+    for (const double spare : {0.01, 0.05, 0.1, 0.2, 0.4, 10.0}) {
+      const double mu_s = 1.0 + 0.1 * T + 0.5 * T * T + spare;  // of m a + c v + k q at T
+      for (const friction::Law& law :
+           {friction::Law(friction::Stribeck{mu_s, 0.5, 2.0}), friction::Law(friction::Coulomb{mu_s, 0.5})}) {
+        const HybridSystem system = fixtures::oscillator(1.0, 1.0, 0.1, law, 1.0, friction::Belt::ramp(0.0, T, 0.0, T));
+        const State start = fixtures::state(Eigen::VectorXd::Zero(1), Eigen::VectorXd::Zero(1));
+        for (const FlowMethod method : {FlowMethod::kClosedForm, FlowMethod::kCollocation}) {
+          if (method == FlowMethod::kClosedForm && std::holds_alternative<friction::Stribeck>(law)) continue;
+          const TangentResult run = tangent_flow(system, start, T, {.method = method, .tolerance = 1e-6});
+          const Eigen::Matrix2d exact = Eigen::Vector2d(1.0, 0.0).asDiagonal();
+          EXPECT_LT((run.monodromy - exact).cwiseAbs().maxCoeff(), 1e-9) << T << ' ' << spare;
+        }
+      }
+    }
+}
+
 TEST(Tangent, CarriesTheFieldAlongTheTrajectory) {
   const HybridSystem chain = belt_chain(Stribeck{0.4, 0.2, 8.0}, Belt::constant(0.2));
   const State start = swinging(10, 1, 1.5);
