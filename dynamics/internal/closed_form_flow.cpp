@@ -56,6 +56,7 @@ void ClosedFormFlow::restart(HybridPoint start) {
   point_ = std::move(start);
   resolver_.forget();
   carries_ = false;
+  blind_start_ = false;
   work_ = {};
   statistics_ = {};
   statistics_.stick_time.assign(static_cast<std::size_t>(nc_), 0.0);
