@@ -100,9 +100,9 @@ Report curves_report(const studies::Family& model, const std::shared_ptr<const s
   for (const std::string& refused : found->refused) report.text += "not followed: " + refused + "\n";
   if (found->curves.empty()) {
     if (found->interrupted)
-      incomplete(report, kInterrupted, "interrupted before a curve was begun; nothing is kept");
+      fail_with(report, kInterrupted, "interrupted before a curve was begun; nothing is kept");
     else
-      incomplete(report, kNumericalFailure, studies::nothing_followed(*found, keys[0], request, curve));
+      fail_with(report, kNumericalFailure, studies::nothing_followed(*found, keys[0], request, curve));
     return report;
   }
   studies::content_of(model, found, command).save(output);

@@ -116,10 +116,14 @@ std::string orbit_text(const dynamics::HybridSystem& system, const PeriodicOrbit
   return text + amplitude_table(system, amplitudes);
 }
 
-void incomplete(Report& out_report, int exit_code, const std::string& message) {
+void fail_with(Report& out_report, int exit_code, const std::string& message) {
   out_report.exit_code = exit_code;
   out_report.text = message + "\n" + out_report.text;
   out_report.data["message"] = message;
+}
+
+void incomplete(Report& out_report, int exit_code, const std::string& message) {
+  fail_with(out_report, exit_code, message);
   out_report.data["incomplete"] = true;
 }
 

@@ -22,7 +22,9 @@ namespace slipmode::cli {
 [[nodiscard]] std::string orbit_text(const dynamics::HybridSystem& system, const orbits::PeriodicOrbit& orbit,
                                      const std::vector<orbits::Amplitude>& amplitudes);
 
-/// Says of a result that it is not what was asked for, and ends with that exit code.
+/// Ends with that exit code, the reason first.
+void fail_with(Report& out_report, int exit_code, const std::string& message);
+/// The same, of a result that is kept as far as it came.
 void incomplete(Report& out_report, int exit_code, const std::string& message);
 
 /// How far a search came that found no orbit; what to try is in its message.

@@ -49,7 +49,7 @@ struct Claim {
   const char* name;
   int crossings = 0;
   int points = 0;  ///< at which it is compared
-  std::function<Samples(double start, double period, int points)> contacts;
+  std::function<Samples(double start, double period, int points)> samples;
 };
 
 /// Between them an error of the first order left out is a cubic to 0.02 % of itself (h⁴/384), and one that comes of a
@@ -96,7 +96,7 @@ double larger_of_cubic(double most, double y0, double slope0, double y1, double 
 /// sup over the period of the distance of each contact's displacements.
 std::vector<double> distances(const Claim& claim, const Samples& orbit) {
   const Eigen::Index points = orbit.y.cols();
-  const Samples other = claim.contacts(orbit.start, orbit.period, static_cast<int>(points));
+  const Samples other = claim.samples(orbit.start, orbit.period, static_cast<int>(points));
   const Eigen::MatrixXd error = orbit.y - other.y;
   const Eigen::MatrixXd slope = (orbit.period / static_cast<double>(points)) * (orbit.v - other.v);
   std::vector<double> largest;

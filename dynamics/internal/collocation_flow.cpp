@@ -55,20 +55,21 @@ int coarsest_level(double omega, const StepTables& tables, double tolerance) {
 }
 
 /// The static limit, of a load that varies under its constant part; 0 where there is none.
-double usual_limit(const ContactForces& law, const friction::LoadForm& load) {
-  return (law.varies ? law.under(std::abs(load.constant)) : law).static_limit;
+double usual_limit(const EventResolver& resolver, int c) {
+  const ContactForces& law = resolver.laws()[static_cast<std::size_t>(c)];
+  return (law.varies ? law.under(std::abs(resolver.load_form(c).constant)) : law).static_limit;
 }
 
 /// Level of the largest step that follows the drive's velocity, or each harmonic of its force to a share of the least
 /// friction limit, as contacts' forces are followed.
-int coarsest_level(const friction::Drive& drive, const StepTables& tables, const std::vector<ContactForces>& laws,
-                   double tolerance) {
-  if (const friction::Shaker* shaker = drive.shaker()) return coarsest_level(shaker->omega(), tables, tolerance);
-  const friction::Force* force = drive.force();
+int coarsest_level(const StepTables& tables, const EventResolver& resolver, double tolerance) {
+  if (const friction::Shaker* shaker = resolver.drive().shaker())
+    return coarsest_level(shaker->omega(), tables, tolerance);
+  const friction::Force* force = resolver.drive().force();
   if (force == nullptr) return 0;
   double least = std::numeric_limits<double>::infinity();
-  for (const ContactForces& law : laws)
-    if (law.static_limit > 0.0) least = std::min(least, law.static_limit);
+  for (int c = 0; c < static_cast<int>(resolver.laws().size()); ++c)
+    if (const double limit = usual_limit(resolver, c); limit > 0.0) least = std::min(least, limit);
   int level = 0;
   for (const friction::ForceHarmonic& h : force->harmonics) {
     const double share = std::clamp(least / std::abs(h.amplitude), kLeastForceShare, 1.0);
@@ -92,7 +93,7 @@ CollocationFlow::CollocationFlow(const HybridSystem& system, const StepTables& t
       begin_(start.time),
       point_(std::move(start)),
       x_begin_(point_.x),
-      coarsest_(coarsest_level(system.drive(), tables, resolver_.laws(), options.tolerance)),
+      coarsest_(coarsest_level(tables, resolver_, options.tolerance)),
       newton_change_(std::min(1e-3, std::sqrt(kNewtonShare * options.tolerance))),
       start_level_(static_cast<std::size_t>(nc_) + 1, std::max(3, coarsest_)) {
   for (auto* v : {&free_, &velocity_, &drive_nodes_, &bristle_nodes_, &guard_forms_, &free_way_, &moved_})
@@ -108,7 +109,7 @@ CollocationFlow::CollocationFlow(const HybridSystem& system, const StepTables& t
     steep_fall_.push_back(std::numbers::ln2 / laws()[c].alpha);
     const double growth = laws()[c].onset_slope() * model_.mobility(i, i) * tables_.step(0);
     slow_start_level_.push_back(growth > kGrowthAtStart ? std::ilogb(growth / kGrowthAtStart) + 1 : 0);
-    const double limit = usual_limit(laws()[c], resolver_.load_form(static_cast<int>(c)));
+    const double limit = usual_limit(resolver_, static_cast<int>(c));
     over_limit_.push_back(limit > 0.0 ? 1.0 / limit : 0.0);
     if (limit > 0.0) least_limit_ = std::min(least_limit_, limit);
     elaborate_.push_back(laws()[c].is_elaborate());
