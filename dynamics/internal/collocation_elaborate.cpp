@@ -108,13 +108,17 @@ void CollocationFlow::search_own_guards(int c, Guarded& first) const {
     const double start = p.coefficient[0];
     Eigen::Map<RadauTables::Vector8> form(p.coefficient.data() + 1);
     const GuardValue now = evaluate(guard, c, 0.0, x_begin_);
-    if (start > kStarting * now.size && form.minCoeff() > 0.0) continue;
+    const bool by_start = guard.force != 0.0 && held(step_modes_, c) && tells_no_force(c);
+    if ((by_start ? now.value : start) > kStarting * now.size && (by_start || form.minCoeff() > 0.0)) continue;
     if (std::max(std::abs(start), form.cwiseAbs().maxCoeff()) <= kTouching * now.size)
       continue;  // at rest on its limit
     const int order = start_order(guard, c, now);
     const double h = tables_.step(step_level_);
-    if (order == 1) form(0) = now.rate * h / kNodes;
     const bool known = order == 2 && now.second != 0.0 && touched_ != c;
+    const bool rises = order == 1 ? now.rate > 0.0 : known && now.second > 0.0;
+    if (rises && (std::abs(now.rate) + std::abs(now.second) * h) * h <= kStarting * now.size)
+      continue;  // by less than its form rounds by
+    if (order == 1) form(0) = now.rate * h / kNodes;
     if (known) form(1) = now.second * h * h / (kNodes * (kNodes - 1));
     std::fill_n(p.coefficient.begin(), order, 0.0);
     const auto* leading = std::find_if(p.coefficient.begin(), p.coefficient.end(), [](double b) { return b != 0.0; });

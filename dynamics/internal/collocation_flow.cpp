@@ -31,6 +31,8 @@ constexpr double kLargestDrivePhase = 2.0;
 constexpr double kLeastForceShare = 1e-4;
 /// Of a step at once.
 constexpr int kMostHalvings = 4;
+/// Where rounding may be this share of a stick's force, the force at the step's start says more than those at its nodes.
+constexpr double kUntold = 1e-2;
 
 /// How many times to halve a step whose eighth-order error is too large by this factor: at least once.
 int halvings(double excess) {
@@ -268,7 +270,8 @@ bool CollocationFlow::step(double t_limit) {
     }
   }
   fresh_ = false;
-  std::fill(point_.multiplicity.begin(), point_.multiplicity.end(), 0);
+  for (int c = 0; c < nc_; ++c)
+    if (int& order = point_.multiplicity[static_cast<std::size_t>(c)]; order > 0 && !unmoved(c)) order = 0;
   touched_ = -1;
   if (tau < h) {
     const RadauTables::Vector8 last = nodes_.lagrange(tau / h);
@@ -321,13 +324,20 @@ double CollocationFlow::over_scale(int c) const {
   return 1.0 / (std::isfinite(least_limit_) ? std::max(least_limit_, kLeastForceShare * most) : most);
 }
 
-double CollocationFlow::rounding_of_sticks() const {
+double CollocationFlow::impulse_of_rounding(int c) const {
   constexpr double kRoundsBy = 64.0 * std::numeric_limits<double>::epsilon();
+  return kRoundsBy * velocity_scale(c, x_begin_) / model_.mobility(c, c);
+}
+
+double CollocationFlow::rounding_of_sticks() const {
   double most = 0.0;
   for (int c = 0; c < nc_; ++c)
-    if (held(point_.modes, c))
-      most = std::max(most, velocity_scale(c, x_begin_) / model_.mobility(c, c) * over_scale(c));
-  return kRoundsBy * most * over_top_;
+    if (held(point_.modes, c)) most = std::max(most, impulse_of_rounding(c) * over_scale(c));
+  return most * over_top_;
+}
+
+bool CollocationFlow::tells_no_force(int c) const {
+  return impulse_of_rounding(c) * over_scale(c) > kUntold * tables_.step(step_level_);
 }
 
 bool CollocationFlow::too_steep(int c, double speed, int level) const {

@@ -94,6 +94,10 @@ class CollocationFlow {
   /// What of that is the rounding of speeds, which sticks' forces hold within a step, whatever its length: by the time
   /// of a step it is the same, and shorter steps do not lower it.
   [[nodiscard]] double rounding_of_sticks() const;
+  /// The impulse that what speeds round by at a held contact takes [Ns].
+  [[nodiscard]] double impulse_of_rounding(int c) const;
+  /// The step is so short that of a held contact's force at its nodes little but that is known.
+  [[nodiscard]] bool tells_no_force(int c) const;
   /// Keeps the guards' Bernstein forms for the proof.
   [[nodiscard]] Guarded first_guard();
 

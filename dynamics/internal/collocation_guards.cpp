@@ -17,6 +17,8 @@ constexpr double kNegligibleShift = 1e-15;
 constexpr double kEarly = 1.0 / 64.0;
 /// A step that starts with more than this share of its largest speed does not start at rest.
 constexpr double kOwnStart = 0.1;
+/// A guard's Bernstein form rounds by this share of the terms that are summed at the nodes.
+constexpr double kFormRounds = 1e-12;
 /// Halvings tried to show that a stick force stays below its limit.
 constexpr int kMarginHalvings = 2;
 constexpr int kRefinements = 20;
@@ -41,7 +43,8 @@ CollocationFlow::Guarded CollocationFlow::first_guard() {
     double* guard = guard_forms_.data() + kNodes * c;
     if (point_.modes[i] == ContactMode::kStick) {
       const double most = kernels_.force_guard(t.bernstein7.data(), forces_.data() + kNodes * c, guard);
-      if (most < law.static_limit * (1.0 - kAtLimit)) continue;
+      const double below = law.static_limit * (1.0 - kAtLimit);
+      if (most < below || (tells_no_force(c) && std::abs(stick_force(c, x_begin_, 0.0)) < below)) continue;
       p.degree = kNodes - 1;
       for (const double sign : {1.0, -1.0}) {
         std::array<double, kNodes> margin;
@@ -81,8 +84,12 @@ CollocationFlow::Guarded CollocationFlow::first_guard() {
 }
 
 bool CollocationFlow::unmoved(int c) const {
-  // So soon after its start that sliding has no speed beyond rounding, and its sign means nothing.
-  return fastest_at_nodes(c) <= kUnmoved * velocity_scale(c, x_begin_);
+  // So soon after its start that sliding has no speed beyond rounding, and its sign means nothing. Where all is at rest,
+  // that is of what forces in balance would make of it in the step.
+  const double forces = model_.acceleration_row.col(c).cwiseAbs().dot(x_begin_.cwiseAbs()) +
+                        model_.mobility.row(c).cwiseAbs().dot(point_.force.cwiseAbs());
+  const double share = bristled(c) ? kUnmoved : kFormRounds;
+  return fastest_at_nodes(c) <= share * (velocity_scale(c, x_begin_) + forces * tables_.step(step_level_));
 }
 
 double CollocationFlow::fastest_at_nodes(int c) const {

@@ -201,6 +201,18 @@ TEST(ElaborateContacts, AStopBesideRigidFrictionAtOnePlaceInBothFlows) {
   EXPECT_GT(events, 500U);
 }
 
+TEST(ElaborateContacts, ARunThatEndsAMomentAfterAnEventHasNoOther) {
+  int ends = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    SCOPED_TRACE(::testing::Message() << "seed " << seed);
+    const RandomScene linear = piecewise_linear(seed);
+    ends += end_a_moment_after_events(linear, 10.0, FlowMethod::kClosedForm) +
+            end_a_moment_after_events(linear, 10.0, FlowMethod::kCollocation) +
+            end_a_moment_after_events(mixed(seed, seed % 2 == 0), 10.0, FlowMethod::kCollocation);
+  }
+  EXPECT_GT(ends, 1000);
+}
+
 TEST(ElaborateContacts, ALoadMayHaveNoConstantPart) {
   // N = wᵀq and N = wᵀq + 1e-9: what its force is compared with must not vanish with it.
   for (const double constant : {1.0, 1e-9, 0.0}) {

@@ -90,6 +90,15 @@ TEST(Flow, ARunOfNoLengthHasItsStartForASample) {
   }
 }
 
+TEST(Flow, ARunThatEndsAMomentAfterAnEventHasNoOther) {
+  int ends = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    SCOPED_TRACE(::testing::Message() << "seed " << seed);
+    ends += end_a_moment_after_events(random_scene(seed, Laws::kAll, 6), 10.0, FlowMethod::kCollocation);
+  }
+  EXPECT_GT(ends, 1000);
+}
+
 TEST(Flow, ContactOutputIsTheProjectionOfTheFullOutput) {
   const HybridSystem chain = stribeck_chain();
   const State start = swinging(10, 3, 1.0);
