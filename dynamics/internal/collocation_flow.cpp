@@ -31,7 +31,8 @@ constexpr double kLargestDrivePhase = 2.0;
 constexpr double kLeastForceShare = 1e-4;
 /// Of a step at once.
 constexpr int kMostHalvings = 4;
-/// Where rounding may be this share of a stick's force, the force at the step's start says more than those at its nodes.
+/// Where rounding may be this share of a stick's force, the force at the step's start says more than those at its
+/// nodes.
 constexpr double kUntold = 1e-2;
 
 /// How many times to halve a step whose eighth-order error is too large by this factor: at least once.
