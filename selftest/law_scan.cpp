@@ -289,7 +289,8 @@ class Scan {
     for (Index k = 0; k < run_.times.size(); ++k)
       drive = std::max(drive, std::abs(system_.drive().velocity(run_.times(k))));
     ContactScales scales;
-    scales.way = run_.contact_q.row(c).cwiseAbs().maxCoeff();
+    // What is held, or hardly moves, has a place that rounds by the motion around it.
+    scales.way = run_.contact_q.row(c).cwiseAbs().maxCoeff() + 1e-3 * run_.q.cwiseAbs().maxCoeff();
     const Eigen::VectorXd speeds = run_.v.cwiseAbs().rowwise().maxCoeff();
     scales.speed = W_.col(c).cwiseAbs().dot(speeds) + 1e-3 * speeds.maxCoeff() + drive;
     const double static_limit = friction::static_coefficient(law.law) * law.normal_load.constant;

@@ -15,6 +15,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <variant>
 
 namespace slipmode::selftest {
 namespace {
@@ -55,9 +56,21 @@ class Digest {
   std::uint64_t value_ = 0xcbf29ce484222325ULL;
 };
 
+/// A bound on the force of a contact: friction's limit, or what a stop that is met at this speed, or pressed from the
+/// start, answers with [N].
+double largest_force(const friction::Contact& contact, const dynamics::State& start, double mobility, double speed) {
+  double most = friction::static_coefficient(contact.law) * contact.normal_load.constant;
+  if (const auto* clearance = std::get_if<friction::Clearance>(&contact.law))
+    for (const friction::Stop& stop : clearance->stops())
+      most = std::max(most, stop.stiffness * std::abs(contact.direction.dot(start.q)) +
+                                speed * (std::sqrt(stop.stiffness / mobility) + stop.damping));
+  return most;
+}
+
 /// Bounds on the accelerations of contacts without their own forces: by motion, by what drives, by the other contacts
 /// [m/s²].
-Eigen::VectorXd accelerations(const dynamics::HybridSystem& system, const dynamics::ModalModel& model, double speed) {
+Eigen::VectorXd accelerations(const dynamics::HybridSystem& system, const dynamics::ModalModel& model,
+                              const dynamics::State& start, double speed) {
   const friction::Drive& drive = system.drive();
   double counterpart = 0.0;
   if (const auto* belt = drive.belt()) counterpart = std::abs(belt->acceleration(belt->ramp_begin));
@@ -69,7 +82,7 @@ Eigen::VectorXd accelerations(const dynamics::HybridSystem& system, const dynami
       bound += harmonic.amplitude * model.force_acceleration.col(harmonic.direction).cwiseAbs();
   for (Index d = 0; d < bound.size(); ++d) {
     const friction::Contact& other = system.contacts()[static_cast<std::size_t>(d)];
-    const double limit = friction::static_coefficient(other.law) * other.normal_load.constant;
+    const double limit = largest_force(other, start, model.mobility(d, d), speed);
     for (Index c = 0; c < bound.size(); ++c)
       if (c != d) bound(c) += limit * std::abs(model.mobility(c, d));
   }
@@ -82,7 +95,7 @@ double fastest_rate(const dynamics::HybridSystem& system, const dynamics::State&
   double rate = std::max(model.fastest, 1e-3);
   const double speed =
       start.v.cwiseAbs().maxCoeff() + start.q.cwiseAbs().maxCoeff() * rate + system.drive().velocity_scale(0.0);
-  const Eigen::VectorXd acceleration = accelerations(system, model, speed);
+  const Eigen::VectorXd acceleration = accelerations(system, model, start, speed);
   for (std::size_t c = 0; c < system.contacts().size(); ++c) {
     const friction::Contact& contact = system.contacts()[c];
     const auto at = static_cast<Index>(c);
