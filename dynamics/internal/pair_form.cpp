@@ -1,5 +1,6 @@
 #include "dynamics/internal/pair_form.hpp"
 
+#include <slipmode/core/coupled_parts.hpp>
 #include <slipmode/core/decompositions.hpp>
 #include <slipmode/core/errors.hpp>
 #include <slipmode/core/none.hpp>
@@ -29,9 +30,8 @@ void check_condition(double condition) {
                            kNone, {}, condition);
 }
 
-}  // namespace
-
-PairForm pair_form(const Eigen::MatrixXd& A) {
+/// `pair_form` of states that A couples.
+PairForm coupled_pair_form(const Eigen::MatrixXd& A) {
   const Eigen::Index n = A.rows() / 2;
   PairForm form;
   for (auto* g : {&form.g11, &form.g12, &form.g21, &form.g22}) *g = Eigen::VectorXd::Zero(n);
@@ -97,6 +97,31 @@ PairForm pair_form(const Eigen::MatrixXd& A) {
   const Eigen::VectorXd singular = Eigen::BDCSVD<Eigen::MatrixXd>(form.T).singularValues();
   check_condition(singular(0) / singular(2 * n - 1));
   form.T_inverse = form.T.inverse();
+  return form;
+}
+
+}  // namespace
+
+PairForm pair_form(const Eigen::MatrixXd& A) {
+  const Eigen::Index n = A.rows() / 2;
+  const std::vector<Part> parts =
+      coupled_parts(A.topLeftCorner(n, n).cwiseAbs() + A.topRightCorner(n, n).cwiseAbs() +
+                    A.bottomLeftCorner(n, n).cwiseAbs() + A.bottomRightCorner(n, n).cwiseAbs());
+  if (parts.size() == 1) return coupled_pair_form(A);
+  PairForm form;
+  for (auto* g : {&form.g11, &form.g12, &form.g21, &form.g22}) *g = Eigen::VectorXd::Zero(n);
+  form.T = form.T_inverse = Eigen::MatrixXd::Zero(2 * n, 2 * n);
+  for (const Part& part : parts) {
+    Part states = part;
+    for (const Eigen::Index i : part) states.push_back(n + i);
+    const PairForm own = coupled_pair_form(A(states, states));
+    form.g11(part) = own.g11;
+    form.g12(part) = own.g12;
+    form.g21(part) = own.g21;
+    form.g22(part) = own.g22;
+    form.T(states, states) = own.T;
+    form.T_inverse(states, states) = own.T_inverse;
+  }
   return form;
 }
 

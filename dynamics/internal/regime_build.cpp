@@ -1,5 +1,6 @@
 #include "dynamics/internal/regime_build.hpp"
 
+#include <slipmode/core/coupled_parts.hpp>
 #include <slipmode/core/decompositions.hpp>
 #include <slipmode/fem/modes.hpp>
 #include "dynamics/internal/sprung_pairs.hpp"
@@ -89,8 +90,13 @@ void RegimeBuilder::eliminate_held() {
   P_ = Eigen::MatrixXd::Zero(n_, ni_);
   if (s > 0) {
     const Eigen::MatrixXd W = modal_.directions(Eigen::all, held_);
-    const Eigen::MatrixXd Q = Eigen::HouseholderQR<Eigen::MatrixXd>(W).householderQ();
-    Z_ = Q.rightCols(n_ - s).eval();
+    std::vector<Eigen::Index> reached, others;
+    for (Eigen::Index i = 0; i < n_; ++i) (W.row(i).isZero(0.0) ? others : reached).push_back(i);
+    const auto m = static_cast<Eigen::Index>(reached.size());
+    const Eigen::MatrixXd Q = Eigen::HouseholderQR<Eigen::MatrixXd>(W(reached, Eigen::all)).householderQ();
+    Z_ = Eigen::MatrixXd::Zero(n_, n_ - s);
+    Z_(reached, Eigen::seqN(0, m - s)) = Q.rightCols(m - s);
+    for (std::size_t k = 0; k < others.size(); ++k) Z_(others[k], m - s + static_cast<Eigen::Index>(k)) = 1.0;
     const Eigen::MatrixXd pseudo = W * (W.transpose() * W).inverse();
     for (Eigen::Index k = 0; k < s; ++k) P_.col(held_[static_cast<std::size_t>(k)]) = pseudo.col(k);
   }
@@ -138,8 +144,12 @@ fem::Modes RegimeBuilder::base_modes() const {
   for (std::size_t k = 0; k < sprung.size(); ++k)
     root.row(n_ + static_cast<Eigen::Index>(k)) =
         std::sqrt(spring_(sprung[k])) * (modal_.directions.col(sprung[k]).transpose() * Z_);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(root, Eigen::ComputeThinV);
-  fem::Modes modes{svd.singularValues().reverse(), svd.matrixV().rowwise().reverse()};
+  const Eigen::MatrixXd size = root.cwiseAbs();
+  auto [omega, shapes] = spectrum_by_parts(coupled_parts(size.transpose() * size), [&](const Part& part) -> Spectrum {
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(root(Eigen::all, part), Eigen::ComputeThinV);
+    return {svd.singularValues().reverse(), svd.matrixV().rowwise().reverse()};
+  });
+  fem::Modes modes{std::move(omega), std::move(shapes)};
   // What holding contacts leaves may be a rigid-body motion alone: its rounding is a share of the whole structure's.
   const double slowest = std::max(kRigid * modes.omega.maxCoeff(), kRounding * modal_.omega.maxCoeff());
   for (double& w : modes.omega)

@@ -12,6 +12,19 @@ namespace {
 // Of the lowest to the highest eigenvalue: below it the direct method leaves fewer than ten digits of the lowest.
 constexpr double kWideSpectrum = 1e-6;
 
+/// What M and K couple.
+EigenPairs solve_coupled(const Structure& structure, const Eigen::MatrixXd& M, const Eigen::MatrixXd& K) {
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(K, M);
+  if (solver.info() != Eigen::Success) {
+    throw NumericalFailure("natural modes: the dense eigensolver did not converge", std::nan(""), {}, std::nan(""));
+  }
+  const Eigen::VectorXd& values = solver.eigenvalues();
+  if (values(0) < kWideSpectrum * values(values.size() - 1)) {
+    if (auto accurate = solve_by_factors(structure, Eigen::MatrixXd(0, structure.size()))) return *std::move(accurate);
+  }
+  return {values, solver.eigenvectors()};
+}
+
 }  // namespace
 
 std::optional<EigenPairs> solve_by_factors(const Structure& structure, const Eigen::MatrixXd& springs) {
@@ -29,16 +42,13 @@ std::optional<EigenPairs> solve_by_factors(const Structure& structure, const Eig
 }
 
 EigenPairs solve_dense(const Structure& structure) {
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(to_dense(structure.K()),
-                                                                         to_dense(structure.M()));
-  if (solver.info() != Eigen::Success) {
-    throw NumericalFailure("natural modes: the dense eigensolver did not converge", std::nan(""), {}, std::nan(""));
-  }
-  const Eigen::VectorXd& values = solver.eigenvalues();
-  if (values(0) < kWideSpectrum * values(values.size() - 1)) {
-    if (auto accurate = solve_by_factors(structure, Eigen::MatrixXd(0, structure.size()))) return *std::move(accurate);
-  }
-  return {values, solver.eigenvectors()};
+  const Eigen::MatrixXd M = to_dense(structure.M()), K = to_dense(structure.K());
+  const std::vector<Part> parts = coupled_parts(M.cwiseAbs() + K.cwiseAbs());
+  if (parts.size() == 1) return solve_coupled(structure, M, K);
+  return spectrum_by_parts(parts, [&](const Part& part) {
+    const Eigen::MatrixXd own_M = M(part, part), own_K = K(part, part);
+    return solve_coupled({own_M, Rayleigh{}, own_K}, own_M, own_K);
+  });
 }
 
 }  // namespace slipmode::fem::detail

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <slipmode/core/coupled_parts.hpp>
 #include <slipmode/fem/structure.hpp>
 #include "fem/internal/shift_invert.hpp"
 
@@ -14,11 +15,8 @@ inline constexpr Eigen::Index kDenseLimit = 500;
 /// Of Lanczos, before it is given up.
 inline constexpr int kMaxRestarts = 1000;
 
-/// Solutions of K φ = λ M φ with φᵀMφ = 1, ascending in λ = ω². Signs of the columns are arbitrary.
-struct EigenPairs {
-  Eigen::VectorXd values;   ///< λ [rad²/s²], k
-  Eigen::MatrixXd vectors;  ///< n x k
-};
+/// Solutions of K φ = λ M φ with φᵀMφ = 1, ascending in λ = ω² [rad²/s²]. Signs of the columns are arbitrary.
+using EigenPairs = Spectrum;
 
 /// A chain's eigenproblem after u = M^{1/2} φ: the symmetric tridiagonal matrix M^{-1/2} K M^{-1/2}.
 struct Tridiagonal {
@@ -30,9 +28,9 @@ struct Tridiagonal {
 /// @pre structure.is_chain_like()
 [[nodiscard]] Tridiagonal tridiagonal_form(const Structure& structure);
 
-/// All pairs, O(n³): Cholesky of M, Householder tridiagonalisation, implicit QR. When the lowest λ is below 1e-6 of the
-/// highest and K has a Cholesky factor, by solve_by_factors, whose error is ε ω_max in ω
-/// instead of ε ω²_max in λ.
+/// All pairs, part by part where M and K couple no others, O(n³): Cholesky of M, Householder tridiagonalisation,
+/// implicit QR. When the lowest λ is below 1e-6 of the highest and K has a Cholesky factor, by solve_by_factors, whose
+/// error is ε ω_max in ω instead of ε ω²_max in λ.
 [[nodiscard]] EigenPairs solve_dense(const Structure& structure);
 
 /// All pairs of the positive definite K + SᵀS by singular values of the factors of K and M and of S, O(n³): error ε
