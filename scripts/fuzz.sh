@@ -30,13 +30,20 @@ sources_of() {
   esac | sort -u
 }
 
-build() {
-  local objects=() source object
-  for source in $(sources_of "$1") "fuzz/$1_fuzz.cpp"; do
-    object=$out/${source//\//_}.o
-    "${compiler[@]}" "${flags[@]}" -fsanitize=fuzzer-no-link -c "$source" -o "$object"
-    objects+=("$object")
-  done
+object_of() { echo "$out/${1//\//_}.o"; }
+
+compile() {
+  local target source
+  for target in "${targets[@]}"; do
+    for source in $(sources_of "$target") "fuzz/${target}_fuzz.cpp"; do
+      printf '%s\0' "$(object_of "$source")" "$source"
+    done
+  done | xargs -0 -n 2 -P "$(nproc)" "${compiler[@]}" "${flags[@]}" -fsanitize=fuzzer-no-link -c -o
+}
+
+link() {
+  local objects=() source
+  for source in $(sources_of "$1") "fuzz/$1_fuzz.cpp"; do objects+=("$(object_of "$source")"); done
   # The library's objects hold several sources each: what they have of the readers too gives way to what comes first.
   clang++ -fsanitize=fuzzer,address,undefined -Wl,--allow-multiple-definition "${objects[@]}" "${libraries[@]}" -o "$out/$1_fuzz"
 }
@@ -64,8 +71,10 @@ run() {
     -max_len=65536 -print_final_stats=1 -artifact_prefix="$1_" "$1_corpus" "$1_seeds" >"$1.log" 2>&1)
 }
 
+for target in "${targets[@]}"; do sources_of "$target" >/dev/null; done
+compile
 for target in "${targets[@]}"; do
-  build "$target"
+  link "$target"
   seed "$target"
 done
 declare -A running
