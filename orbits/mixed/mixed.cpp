@@ -29,7 +29,13 @@ void check(const HybridSystem& system, const MixedOptions& options) {
   if (options.reach < 0) refuse(fmt::format("reach: {}; valid: 0 or more", options.reach));
   if (system.drive().force() == nullptr)
     refuse("the mixed method needs a force drive (drive.kind = \"force\"); find this orbit by shooting");
-  static_cast<void>(dynamics::choose_method(system, dynamics::FlowMethod::kClosedForm));
+  for (std::size_t c = 0; c < system.contacts().size(); ++c)
+    if (const friction::Contact& contact = system.contacts()[c]; !friction::is_piecewise_linear(contact.law))
+      refuse(
+          fmt::format("the mixed method holds piecewise-linear laws (contact.{}.law = \"coulomb\", \"compliant\", "
+                      "\"iwan\" or \"clearance\"), and contact '{}' has another law; find this orbit by shooting, "
+                      "which holds every law",
+                      c, contact.name));
 }
 
 /// Newton's method. A start that the flow refuses is one of several, and no fault of the caller's.
