@@ -52,6 +52,7 @@ struct Sums {
   double shift = 0.0, time = 0.0, first = 0.0, second = 0.0;
   double min = std::numeric_limits<double>::infinity(), max = -std::numeric_limits<double>::infinity();
   double min_time = 0.0, max_time = 0.0;
+  double terms = 0.0;  ///< largest of what y is a sum of
 
   void candidate(double t, double y) {
     if (y < min) min = y, min_time = t;
@@ -106,11 +107,12 @@ class Measure {
     const double half = 0.5 * length / panels;
     for (int p = 0; p < panels; ++p) {
       Eigen::VectorXd given(kConditions);
-      given << y.segment<kIntervals + 1>(kIntervals * p).array() - sums.shift,
-          half * slope.segment<kIntervals + 1>(kIntervals * p);
+      const Eigen::Index at = Eigen::Index{kIntervals} * p;
+      given << y.segment<kIntervals + 1>(at).array() - sums.shift, half * slope.segment<kIntervals + 1>(at);
       add_panel(from.time + half * (2 * p + 1), half, given, sums);
     }
     sums.time += length;
+    sums.terms = std::max(sums.terms, row_.lpNorm<1>() * run.q.cwiseAbs().maxCoeff());
     return run.final_state;
   }
 
@@ -141,6 +143,9 @@ class Measure {
   Eigen::Matrix<double, kGauss, kConditions> at_gauss_;
 };
 
+/// What a place rounds by, of the terms it is a sum of: the range of a contact that sticks throughout.
+constexpr double kRoundingOfTerms = 1e-13;
+
 Amplitude from_sums(const Sums& sums) {
   const double mean = sums.first / sums.time;
   const double variance = sums.second / sums.time - mean * mean;
@@ -162,10 +167,12 @@ Amplitude amplitude(const dynamics::HybridSystem& system, const PeriodicOrbit& o
   const Measure measure(system, orbit, row);
   Amplitude coarse = from_sums(measure.over_period(4));
   for (int panels = 8; panels <= kMaxPanels; panels *= 2) {
-    const Amplitude fine = from_sums(measure.over_period(panels));
+    const Sums sums = measure.over_period(panels);
+    const Amplitude fine = from_sums(sums);
     const double change = std::max({std::abs(fine.mean - coarse.mean), std::abs(fine.effective - coarse.effective),
                                     std::abs(fine.alternating - coarse.alternating)});
-    if (change <= 1e-10 * std::max(fine.alternating, 1e-3 * std::abs(fine.mean))) return fine;
+    const double range = std::max(fine.alternating, 1e-3 * std::abs(fine.mean));
+    if (change <= std::max(1e-10 * range, kRoundingOfTerms * sums.terms)) return fine;
     coarse = fine;
   }
   throw NumericalFailure("the amplitude of an orbit did not settle to 1e-10 of its range with " +

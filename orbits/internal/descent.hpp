@@ -66,7 +66,7 @@ Descent<typename Problem::Evaluation> descend(Problem& problem, const typename P
       d.status = ShootingStatus::kIterations;
       return d;
     }
-    const NewtonSystem system = problem.linearised(d.best);
+    const NewtonSystem& system = problem.linearised(d.best);
     std::optional<Evaluation> accepted;
     while (!accepted) {
       const BoundedLeastSquares solved = bounded_least_squares(system.J, system.r, radius);

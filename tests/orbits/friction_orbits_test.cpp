@@ -54,6 +54,18 @@ void expect_chain_orbit(const PeriodicOrbit& orbit, double period, const std::ve
   EXPECT_EQ(orbit.crossings, static_cast<int>(2 * slips.size()));
 }
 
+TEST(FrictionOrbits, AContactThatSticksThroughoutHasTheAmplitudeOfRounding) {
+  // Two masses that friction holds together move, and their distance does not: it has no range to be measured by.
+  const double omega = 0.6;
+  const HybridSystem system(
+      fem::chain({.masses = 3, .damping = 0.05}), {{unit(3, 2) - unit(3, 0), Coulomb{0.5, 0.3}, 100.0}},
+      friction::Force{omega, {{.amplitude = 1.0, .phase = 0.3}}}, {}, Eigen::MatrixXd(unit(3, 1)));
+  const PeriodicOrbit orbit = find_orbit(system, system.rest(), {.period = 2.0 * std::numbers::pi / omega});
+  EXPECT_EQ(orbit.word, "0");
+  EXPECT_LT(contact_amplitudes(system, orbit)[0].alternating, 1e-13);
+  EXPECT_GT(amplitude(system, orbit, unit(3, 0)).alternating, 0.1);
+}
+
 TEST(FrictionOrbits, ChainPeriodOne) {
   expect_chain_orbit(chain_orbit(0.45, swinging(10, 3, 0.1)), 45.10211, {10.757284});
 }
