@@ -48,7 +48,8 @@ detail::EigenPairs solve(const Structure& structure, const Structure& sum, const
   if (n >= detail::kDenseLimit && 5 * count < n) {
     return detail::solve_spectra(structure, {W, stiffnesses.cwiseInverse()}, count);
   }
-  if (auto factored = detail::solve_by_factors(structure, springs)) return *std::move(factored);
+  if (auto factored = detail::solve_by_factors(to_dense(structure.M()), to_dense(structure.K()), springs))
+    return *std::move(factored);
   return detail::solve_dense(sum);  // a structure with rigid-body modes
 }
 

@@ -28,6 +28,7 @@ sources_of() {
     store) ls results/{store_reader,info,records}.cpp results/*_record*.cpp results/internal/*.cpp ;;
     *) echo "no such target: $1 (scene, csv, store)" >&2; exit 2 ;;
   esac | sort -u
+  echo "fuzz/$1_fuzz.cpp"
 }
 
 object_of() { echo "$out/${1//\//_}.o"; }
@@ -35,7 +36,7 @@ object_of() { echo "$out/${1//\//_}.o"; }
 compile() {
   local target source
   for target in "${targets[@]}"; do
-    for source in $(sources_of "$target") "fuzz/${target}_fuzz.cpp"; do
+    for source in $(sources_of "$target"); do
       printf '%s\0' "$(object_of "$source")" "$source"
     done
   done | xargs -0 -n 2 -P "$(nproc)" "${compiler[@]}" "${flags[@]}" -fsanitize=fuzzer-no-link -c -o
@@ -43,7 +44,7 @@ compile() {
 
 link() {
   local objects=() source
-  for source in $(sources_of "$1") "fuzz/$1_fuzz.cpp"; do objects+=("$(object_of "$source")"); done
+  for source in $(sources_of "$1"); do objects+=("$(object_of "$source")"); done
   # The library's objects hold several sources each: what they have of the readers too gives way to what comes first.
   clang++ -fsanitize=fuzzer,address,undefined -Wl,--allow-multiple-definition "${objects[@]}" "${libraries[@]}" -o "$out/$1_fuzz"
 }

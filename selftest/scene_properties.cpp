@@ -15,7 +15,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <variant>
 
 namespace slipmode::selftest {
 namespace {
@@ -60,7 +59,7 @@ class Digest {
 /// start, answers with [N].
 double largest_force(const friction::Contact& contact, const dynamics::State& start, double mobility, double speed) {
   double most = friction::static_coefficient(contact.law) * contact.normal_load.constant;
-  if (const auto* clearance = std::get_if<friction::Clearance>(&contact.law))
+  if (const friction::Clearance* clearance = friction::clearance(contact.law))
     for (const friction::Stop& stop : clearance->stops())
       most = std::max(most, stop.stiffness * std::abs(contact.direction.dot(start.q)) +
                                 speed * (std::sqrt(stop.stiffness / mobility) + stop.damping));

@@ -103,12 +103,13 @@ BernsteinPolynomial CollocationFlow::form_of(const OwnGuard& guard, int c) const
 
 void CollocationFlow::search_own_guards(int c, Guarded& first) const {
   const auto i = static_cast<std::size_t>(c);
+  const bool untold = held(step_modes_, c) && tells_no_force(c);
   for (const OwnGuard& guard : own_guards(c, point_.modes[i])) {
     BernsteinPolynomial p = form_of(guard, c);
     const double start = p.coefficient[0];
     Eigen::Map<RadauTables::Vector8> form(p.coefficient.data() + 1);
     const GuardValue now = evaluate(guard, c, 0.0, x_begin_);
-    const bool by_start = guard.force != 0.0 && held(step_modes_, c) && tells_no_force(c);
+    const bool by_start = untold && guard.force != 0.0;
     if ((by_start ? now.value : start) > kStarting * now.size && (by_start || form.minCoeff() > 0.0)) continue;
     if (std::max(std::abs(start), form.cwiseAbs().maxCoeff()) <= kTouching * now.size)
       continue;  // at rest on its limit

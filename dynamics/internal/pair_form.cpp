@@ -104,14 +104,11 @@ PairForm coupled_pair_form(const Eigen::MatrixXd& A) {
 
 PairForm pair_form(const Eigen::MatrixXd& A) {
   const Eigen::Index n = A.rows() / 2;
-  const std::vector<Part> parts =
-      coupled_parts(A.topLeftCorner(n, n).cwiseAbs() + A.topRightCorner(n, n).cwiseAbs() +
-                    A.bottomLeftCorner(n, n).cwiseAbs() + A.bottomRightCorner(n, n).cwiseAbs());
-  if (parts.size() == 1) return coupled_pair_form(A);
   PairForm form;
   for (auto* g : {&form.g11, &form.g12, &form.g21, &form.g22}) *g = Eigen::VectorXd::Zero(n);
   form.T = form.T_inverse = Eigen::MatrixXd::Zero(2 * n, 2 * n);
-  for (const Part& part : parts) {
+  for (const Part& part : coupled_parts(A.topLeftCorner(n, n).cwiseAbs() + A.topRightCorner(n, n).cwiseAbs() +
+                                        A.bottomLeftCorner(n, n).cwiseAbs() + A.bottomRightCorner(n, n).cwiseAbs())) {
     Part states = part;
     for (const Eigen::Index i : part) states.push_back(n + i);
     const PairForm own = coupled_pair_form(A(states, states));

@@ -13,25 +13,26 @@ namespace {
 constexpr double kWideSpectrum = 1e-6;
 
 /// What M and K couple.
-EigenPairs solve_coupled(const Structure& structure, const Eigen::MatrixXd& M, const Eigen::MatrixXd& K) {
+EigenPairs solve_coupled(const Eigen::MatrixXd& M, const Eigen::MatrixXd& K) {
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(K, M);
   if (solver.info() != Eigen::Success) {
     throw NumericalFailure("natural modes: the dense eigensolver did not converge", std::nan(""), {}, std::nan(""));
   }
   const Eigen::VectorXd& values = solver.eigenvalues();
   if (values(0) < kWideSpectrum * values(values.size() - 1)) {
-    if (auto accurate = solve_by_factors(structure, Eigen::MatrixXd(0, structure.size()))) return *std::move(accurate);
+    if (auto accurate = solve_by_factors(M, K, Eigen::MatrixXd(0, M.rows()))) return *std::move(accurate);
   }
   return {values, solver.eigenvectors()};
 }
 
 }  // namespace
 
-std::optional<EigenPairs> solve_by_factors(const Structure& structure, const Eigen::MatrixXd& springs) {
+std::optional<EigenPairs> solve_by_factors(const Eigen::MatrixXd& M, const Eigen::MatrixXd& K,
+                                           const Eigen::MatrixXd& springs) {
   // With K = RᵀR and M = LLᵀ the frequencies are the singular values of [R; S] L⁻ᵀ.
-  const Eigen::LLT<Eigen::MatrixXd> mass(to_dense(structure.M())), stiffness(to_dense(structure.K()));
+  const Eigen::LLT<Eigen::MatrixXd> mass(M), stiffness(K);
   if (mass.info() != Eigen::Success || stiffness.info() != Eigen::Success) return std::nullopt;
-  const Eigen::Index n = structure.size();
+  const Eigen::Index n = M.rows();
   Eigen::MatrixXd root(springs.rows() + n, n);
   root << springs, Eigen::MatrixXd(stiffness.matrixU());
   mass.matrixU().solveInPlace<Eigen::OnTheRight>(root);
@@ -43,12 +44,8 @@ std::optional<EigenPairs> solve_by_factors(const Structure& structure, const Eig
 
 EigenPairs solve_dense(const Structure& structure) {
   const Eigen::MatrixXd M = to_dense(structure.M()), K = to_dense(structure.K());
-  const std::vector<Part> parts = coupled_parts(M.cwiseAbs() + K.cwiseAbs());
-  if (parts.size() == 1) return solve_coupled(structure, M, K);
-  return spectrum_by_parts(parts, [&](const Part& part) {
-    const Eigen::MatrixXd own_M = M(part, part), own_K = K(part, part);
-    return solve_coupled({own_M, Rayleigh{}, own_K}, own_M, own_K);
-  });
+  return spectrum_by_parts(coupled_parts(M.cwiseAbs() + K.cwiseAbs()),
+                           [&](const Part& part) { return solve_coupled(M(part, part), K(part, part)); });
 }
 
 }  // namespace slipmode::fem::detail

@@ -36,7 +36,8 @@ struct Tridiagonal {
 /// All pairs of the positive definite K + SᵀS by singular values of the factors of K and M and of S, O(n³): error ε
 /// ω_max in ω. Nothing when K has no Cholesky factor.
 /// @param springs  S [m x n], one row √k wᵀ for each spring; m = 0 for none
-[[nodiscard]] std::optional<EigenPairs> solve_by_factors(const Structure& structure, const Eigen::MatrixXd& springs);
+[[nodiscard]] std::optional<EigenPairs> solve_by_factors(const Eigen::MatrixXd& M, const Eigen::MatrixXd& K,
+                                                         const Eigen::MatrixXd& springs);
 
 /// The lowest `count` pairs of a chain by LAPACK's dstemr (MRRR), O(n·count).
 [[nodiscard]] EigenPairs solve_tridiagonal(const Structure& structure, Eigen::Index count);
