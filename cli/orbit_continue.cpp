@@ -59,7 +59,11 @@ std::string branch_text(const results::NamedBranch& named) {
   const orbits::Branch& branch = named.branch;
   std::string text = fmt::format("{}: {} orbits", named.title, branch.points.size());
   if (!branch.points.empty()) {
-    text += fmt::format(" from {:.10g} to {:.10g}", branch.points.front().parameter, branch.points.back().parameter);
+    const double first = branch.points.front().parameter, last = branch.points.back().parameter;
+    const auto [least, most] = std::ranges::minmax(branch.points, {}, &orbits::BranchPoint::parameter);
+    text += fmt::format(" from {:.10g} to {:.10g}", first, last);
+    if (least.parameter < std::min(first, last) || most.parameter > std::max(first, last))
+      text += fmt::format(" by way of {:.10g} … {:.10g}", least.parameter, most.parameter);
   }
   text +=
       fmt::format(", end: {}{}{}\n", orbits::to_string(branch.end), branch.reason.empty() ? "" : ", ", branch.reason);

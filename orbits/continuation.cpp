@@ -24,6 +24,8 @@ const char* to_string(SpecialKind kind) {
       return "word change";
     case SpecialKind::kNonSmoothFold:
       return "non-smooth fold";
+    case SpecialKind::kHopf:
+      return "Hopf";
     case SpecialKind::kCusp:
       return "cusp";
   }

@@ -22,6 +22,7 @@ enum class SpecialKind : std::uint8_t {
   kStickChange,       ///< the word gains or loses a stick
   kWordChange,        ///< the word changes in another way (a reversal comes or goes)
   kNonSmoothFold,     ///< the branch turns back where its word changes: no multiplier need pass 1
+  kHopf,              ///< self-excited orbits shrink to a state of rest, which a complex pair of its rates leaves
   kCusp,              ///< of curves of folds (special_curve.hpp): two of them end in one another
 };
 
@@ -29,7 +30,7 @@ enum class BranchEnd : std::uint8_t {
   kRange,        ///< the parameter left its range; the last point is on its end
   kMaxPoints,    ///< options.max_points reached
   kClosed,       ///< back at the start
-  kMerged,       ///< it joins another one: asymmetric orbits became symmetric; of a curve, see `reason`
+  kMerged,       ///< it joins another one, of symmetric orbits or of rest; of a curve, see `reason`
   kLost,         ///< no step however small found the branch again; `reason` says what was seen
   kInterrupted,  ///< the family was stopped (it threw Interrupted): what was found before is there
 };

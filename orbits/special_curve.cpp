@@ -41,6 +41,7 @@ bool can_be_followed(SpecialKind kind) {
       return true;
     case SpecialKind::kStickChange:
     case SpecialKind::kWordChange:
+    case SpecialKind::kHopf:
     case SpecialKind::kCusp:
       return false;
   }

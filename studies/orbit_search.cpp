@@ -80,6 +80,16 @@ results::NamedBranch switched(const dynamics::SystemFamily& family, const orbits
   return side;
 }
 
+/// A branch between two special points is followed from the first of them.
+bool was_reached(const orbits::SpecialPoint& point, const std::vector<results::NamedBranch>& branches, double range) {
+  constexpr double kSame = 1e-6;
+  return std::any_of(branches.begin() + 1, branches.end(), [&](const results::NamedBranch& side) {
+    if (side.branch.end != orbits::BranchEnd::kMerged || side.branch.special.empty()) return false;
+    const orbits::SpecialPoint& last = side.branch.special.back();
+    return last.kind == point.kind && std::abs(last.parameter - point.parameter) <= kSame * range;
+  });
+}
+
 std::vector<results::NamedBranch> follow(const dynamics::SystemFamily& family, const orbits::PeriodicOrbit& orbit,
                                          double start, const orbits::ContinuationOptions& options, bool switches) {
   std::vector<results::NamedBranch> branches = {
@@ -90,6 +100,7 @@ std::vector<results::NamedBranch> follow(const dynamics::SystemFamily& family, c
     if (point.kind != SpecialKind::kSymmetryBreaking && point.kind != SpecialKind::kPeriodDoubling) continue;
     if (point.orbit.crossings == 0) continue;  // in one regime: a floating structure's shift, which breaks nothing
     if (is_interrupted(branches)) break;
+    if (was_reached(point, branches, std::abs(options.to - options.from))) continue;
     branches.push_back(switched(family, point, options));
   }
   return branches;

@@ -181,8 +181,9 @@ Eigen::VectorXd BalanceBranchSolver::skew(const BalanceBranchEvaluation& at) con
   return picked(at.at.x, even_) / size_;
 }
 
-BalanceBranchSolver::Symmetric BalanceBranchSolver::symmetric_beside(const BalanceBranchEvaluation& near,
-                                                                     const PeriodicOrbit& /*orbit*/) const {
+BalanceBranchSolver::Simpler BalanceBranchSolver::simpler_beside(SpecialKind /*kind*/,
+                                                                 const BalanceBranchEvaluation& near,
+                                                                 const PeriodicOrbit& /*orbit*/) const {
   BalanceBranchSolver solver(family_, *balance_of(near), near.at.parameter, options_, true);
   BalanceUnknowns guess = near.at;
   solver.clear_even(guess.x);

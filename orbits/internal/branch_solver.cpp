@@ -191,18 +191,22 @@ std::vector<Eigen::VectorXd> BranchSolver::parameter_columns(const BranchUnknown
   // At the ends of the range the family need not go further.
   const double high = std::min(own + h, key.high), low = std::max(own - h, key.low);
   const bool has_above = high - own > 0.1 * h, has_below = own - low > 0.1 * h;
-  const Eigen::MatrixXd above = ends_at(high);
+  const ShootingProblem::Ends above = ends_at(high);
   const double cleared_above = cleared;
-  const Eigen::MatrixXd below = ends_at(low);
+  const ShootingProblem::Ends below = ends_at(low);
   const bool clearer_above = cleared_above > cleared;
+  const bool same_above = above.events == here.events.size(), same_below = below.events == here.events.size();
   std::vector<Eigen::VectorXd> columns;
-  for (Eigen::Index k = 0; k < above.cols(); ++k) {
+  for (Eigen::Index k = 0; k < above.states.cols(); ++k) {
     const Eigen::VectorXd end = stacked(here.ends[static_cast<std::size_t>(k)]).cwiseQuotient(scale_);
-    const Eigen::VectorXd up = (above.col(k) - end) * (key.range() / std::max(high - own, 1e-300));
-    const Eigen::VectorXd down = (end - below.col(k)) * (key.range() / std::max(own - low, 1e-300));
-    // Where an event comes or goes within the step one side jumps: the other is right. Of a touch it is the clear one.
-    const bool jumps = grazes || (up - down).norm() > 0.1 * std::max(up.norm(), down.norm());
-    const bool take_up = !has_below || (has_above && jumps && (grazes ? clearer_above : up.norm() < down.norm()));
+    const Eigen::VectorXd up = (above.states.col(k) - end) * (key.range() / std::max(high - own, 1e-300));
+    const Eigen::VectorXd down = (end - below.states.col(k)) * (key.range() / std::max(own - low, 1e-300));
+    // Where an event comes or goes within the step one side is of another motion: the one with the events of this is
+    // right; of a touch the clear one.
+    const bool differs = same_above != same_below;
+    const bool jumps = grazes || differs || (up - down).norm() > 0.1 * std::max(up.norm(), down.norm());
+    const bool up_is_right = grazes ? clearer_above : differs ? same_above : up.norm() < down.norm();
+    const bool take_up = !has_below || (has_above && jumps && up_is_right);
     const bool take_down = !has_above || (has_below && jumps && !take_up);
     columns.emplace_back(take_up ? up : take_down ? down : Eigen::VectorXd(0.5 * (up + down)));
   }
@@ -318,14 +322,21 @@ Eigen::VectorXd BranchSolver::difference(const BranchUnknowns& b, const BranchUn
   return out;
 }
 
-BranchSolver::Symmetric BranchSolver::symmetric_beside(const BranchEvaluation& near, const PeriodicOrbit& orbit) const {
-  ContinuationOptions halves = options_;
-  halves.shooting.half_period = true;
-  PeriodicOrbit middle = orbit;
-  middle.start.modes.clear();
-  middle.start = with_coordinates(middle.start, stacked(middle.start) - 0.5 * scale_.cwiseProduct(skew(near)));
-  BranchSolver solver(family_, middle, near.at.parameter, near.at.other, halves, std::nullopt);
-  BranchUnknowns guess = solver.unknowns_of(middle, near.at.parameter);
+BranchSolver::Simpler BranchSolver::simpler_beside(SpecialKind kind, const BranchEvaluation& near,
+                                                   const PeriodicOrbit& orbit) const {
+  const bool doubled = kind == SpecialKind::kPeriodDoubling;
+  ContinuationOptions own = options_;
+  own.shooting.half_period = !doubled;
+  PeriodicOrbit simpler = orbit;
+  if (doubled) {
+    simpler.period *= 0.5;
+    if (kind_ == OrbitKind::kDriven) simpler.order /= 2;
+  }
+  const Eigen::VectorXd middle = doubled ? Eigen::VectorXd(0.5 * halves_apart(near)) : -0.5 * skew(near);
+  simpler.start.modes.clear();
+  simpler.start = with_coordinates(simpler.start, stacked(simpler.start) + scale_.cwiseProduct(middle));
+  BranchSolver solver(family_, simpler, near.at.parameter, near.at.other, own, std::nullopt);
+  BranchUnknowns guess = solver.unknowns_of(simpler, near.at.parameter);
   return {std::move(solver), std::move(guess)};
 }
 
@@ -340,6 +351,15 @@ Eigen::VectorXd BranchSolver::skew(const BranchEvaluation& at) const {
   const Eigen::VectorXd& half = at.shooting.half_state;
   if (half.size() == 0) return {};
   return half + at.problem->scaled(stacked(at.at.point.nodes[0]));
+}
+
+Eigen::VectorXd BranchSolver::halves_apart(const BranchEvaluation& at) const {
+  const bool may_be_doubled = period_unknown() || options_.shooting.order % 2 == 0;
+  if (!may_be_doubled || half_period() || on_curve()) return {};
+  const dynamics::State& start = at.at.point.nodes[0];
+  const dynamics::HybridSystem& system = at.problem->system();
+  return at.problem->scaled(stacked(advanced(system, runnable(system, start), 0.5 * at.at.point.period)) -
+                            stacked(start));
 }
 
 PeriodicOrbit BranchSolver::describe(const BranchEvaluation& at) const {

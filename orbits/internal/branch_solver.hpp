@@ -107,10 +107,22 @@ class BranchSolver {
   /// b − a, scaled [N + e]; both at the same phase of the drive.
   [[nodiscard]] Eigen::VectorXd difference(const BranchUnknowns& b, const BranchUnknowns& a) const;
 
-  /// The same family solved by half periods, for the symmetric orbits near a point that is nearly symmetric, and the
-  /// nearest of them as a guess.
-  struct Symmetric;
-  [[nodiscard]] Symmetric symmetric_beside(const BranchEvaluation& near, const PeriodicOrbit& orbit) const;
+  /// The same family solved for the simpler orbits that a branch is about to join, and the nearest of them as a guess:
+  /// for the symmetric ones by half periods at a symmetry breaking, for those of half the period at a period doubling.
+  struct Simpler;
+  [[nodiscard]] Simpler simpler_beside(SpecialKind kind, const BranchEvaluation& near,
+                                       const PeriodicOrbit& orbit) const;
+
+  /// ẋ at the origin of an orbit whose period is unknown, scaled [N]; else empty.
+  [[nodiscard]] Eigen::VectorXd rate(const BranchEvaluation& at) const {
+    return period_unknown() ? at.shooting.rate.back() : Eigen::VectorXd{};
+  }
+  /// Where a state of rest sends off oscillations that neither grow nor decay, and their period.
+  struct HopfPoint {
+    double parameter = 0.0, period = 0.0;
+  };
+  /// Of the rest that a small orbit goes round. Nothing where none is found.
+  [[nodiscard]] std::optional<HopfPoint> hopf_beside(const BranchEvaluation& near) const;
 
   /// Largest coordinate of the start, scaled.
   [[nodiscard]] double size(const BranchEvaluation& at) const {
@@ -123,6 +135,9 @@ class BranchSolver {
   [[nodiscard]] Eigen::MatrixXd half_map(const BranchEvaluation& at) const;
   /// x(T/2) + x(0), scaled [N], where the passes are run in halves; else empty.
   [[nodiscard]] Eigen::VectorXd skew(const BranchEvaluation& at) const;
+  /// x(T/2) − x(0), scaled [N], of orbits that may have come from a doubling of the period: those of even order, and of
+  /// a period that is unknown; else empty.
+  [[nodiscard]] Eigen::VectorXd halves_apart(const BranchEvaluation& at) const;
   /// The unit vector of the parameter [N + e].
   [[nodiscard]] Eigen::VectorXd parameter_row() const;
   [[nodiscard]] double range() const { return range_; }
@@ -171,7 +186,7 @@ class BranchSolver {
   Eigen::VectorXd scale_;
 };
 
-struct BranchSolver::Symmetric {
+struct BranchSolver::Simpler {
   BranchSolver solver;
   BranchUnknowns guess;
 };

@@ -5,9 +5,12 @@
 #include "orbits/internal/branch_solver.hpp"
 
 #include <fmt/format.h>
+#include <Eigen/LU>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <utility>
 
 namespace slipmode::orbits {
@@ -31,6 +34,17 @@ std::vector<std::complex<double>> watched_multipliers(const PeriodicOrbit& orbit
   for (Eigen::Index i = 0; i < orbit.multipliers.size(); ++i)
     if (std::find(trivial.begin(), trivial.end(), i) == trivial.end()) result.push_back(orbit.multipliers[i]);
   return result;
+}
+
+/// The sign of det [J; tᵀ]; 0 in a family of orbits, where it is rounding.
+template <class Solver>
+int orientation(const WatchedPoint<Solver>& point) {
+  if (point.orbit.family.cols() > 0) return 0;
+  Eigen::MatrixXd J(point.at.J.cols(), point.at.J.cols());
+  J << point.at.J, point.tangent.transpose();
+  const Eigen::PartialPivLU<Eigen::MatrixXd> lu(J);
+  const auto negative = (lu.matrixLU().diagonal().array() < 0).count();
+  return (negative % 2 == 0 ? 1 : -1) * static_cast<int>(lu.permutationP().determinant());
 }
 
 /// The multiplier that is critical for a kind, and its distance from criticality.
@@ -59,13 +73,15 @@ struct Located {
 
 /// The point a share of the way from the low side to the high one, corrected across a's tangent.
 template <class Solver>
-std::optional<WatchedPoint<Solver>> between(const Solver& solver, const Eigen::VectorXd& tangent,
+std::optional<WatchedPoint<Solver>> between(const Solver& solver, const WatchedPoint<Solver>& a,
                                             const Located<Solver>& sides, double share) {
   const Eigen::VectorXd chord = solver.difference(sides.high.at.at, sides.low.at.at);
   const typename Solver::Unknowns guess = solver.moved(sides.low.at, share * chord, 0.0);
-  auto corrected = solver.correct(guess, tangent);
+  auto corrected = solver.correct(guess, a.tangent);
   if (!corrected) return std::nullopt;
-  return watch(solver, solver.polished(std::move(corrected->at), guess, tangent), tangent);
+  WatchedPoint<Solver> found = watch(solver, solver.polished(std::move(corrected->at), guess, a.tangent), a.tangent);
+  keep_orientation(a, found);
+  return found;
 }
 
 /// Narrows [low at s = 0, high at s] until the sides are the same to rounding or the parameter is known.
@@ -86,7 +102,7 @@ Located<Solver> narrow(const Solver& solver, const WatchedPoint<Solver>& a, cons
     }
     std::optional<WatchedPoint<Solver>> next;
     for (const double at : {middle, low + 0.5 * (high - low), low + 0.2 * (high - low), low + 0.8 * (high - low)}) {
-      next = between(solver, a.tangent, found, (at - low) / (high - low));
+      next = between(solver, a, found, (at - low) / (high - low));
       middle = at;
       if (next) break;
     }
@@ -132,6 +148,25 @@ SpecialPoint special_of(const Solver& solver, const Located<Solver>& found, Spec
   return out;
 }
 
+/// The corner in which two pieces of a branch end, where both have orbits on the same side of it: pieces are found
+/// beside each other before it, and their tangents meet in it.
+template <class Solver>
+SpecialPoint corner_of(const Solver& solver, const Located<Solver>& found, double tolerance) {
+  SpecialPoint out = special_of(solver, found, SpecialKind::kNonSmoothFold, std::numeric_limits<double>::infinity());
+  const Eigen::VectorXd apart = solver.difference(found.high.at.at, found.low.at.at);
+  Eigen::MatrixXd ways(apart.size(), 2);
+  ways << found.low.tangent, -found.high.tangent;
+  const Eigen::Vector2d lengths = ways.colPivHouseholderQr().solve(apart);
+  const double by_low = found.low.at.at.parameter + lengths[0] * found.low.fold * solver.range();
+  const double by_high = found.high.at.at.parameter + lengths[1] * found.high.fold * solver.range();
+  const double left = (ways * lengths - apart).norm() + lengths.squaredNorm();  // what lines miss, and curves leave
+  out.parameter = 0.5 * (by_low + by_high);
+  out.uncertainty = std::abs(by_high - by_low) + left * solver.range();
+  if (out.uncertainty > tolerance) out.note = fmt::format("located to {:.1e} only. ", out.uncertainty);
+  out.note += word_change(found.low.orbit, found.high.orbit);
+  return out;
+}
+
 struct Found {
   double s;
   SpecialPoint point;
@@ -157,8 +192,7 @@ void add_smooth(const Solver& solver, const WatchedPoint<Solver>& a, const Watch
   SpecialPoint special = special_of(solver, at, kind, tolerance);
   if (jumps && critical.distance > 1e-3) {
     if (kind != SpecialKind::kFold) return;  // the multiplier jumps with the word, which is reported as such
-    special.kind = SpecialKind::kNonSmoothFold;
-    special.note += word_change(at.low.orbit, at.high.orbit);
+    special = corner_of(solver, at, tolerance);
   } else {
     special.multiplier = critical.multiplier;
     special.direction = critical_direction(at.low, kind, critical.multiplier);
@@ -166,60 +200,95 @@ void add_smooth(const Solver& solver, const WatchedPoint<Solver>& a, const Watch
   out_found.push_back({at.s, std::move(special)});
 }
 
-/// True when the branch passed through a symmetric orbit to the mirror images of its own: a pitchfork from its side.
+/// A simpler branch that orbits may join: symmetric ones (seen from the asymmetric side of a pitchfork), those of half
+/// the period, or a state of rest. Beyond, the orbits are the same ones again: mirror images, or half a period later.
 template <class Solver>
-bool turns_over(const WatchedPoint<Solver>& a, const WatchedPoint<Solver>& b) {
-  const bool asymmetric = !a.orbit.symmetric && !b.orbit.symmetric;
-  return asymmetric && a.skew.size() > 0 && b.skew.size() > 0 && a.skew.dot(b.skew) < 0;
+struct Joining {
+  SpecialKind kind;
+  Eigen::VectorXd WatchedPoint<Solver>::*apart;  ///< what passes through zero
+};
+
+template <class Solver>
+std::optional<Joining<Solver>> joining_between(const WatchedPoint<Solver>& a, const WatchedPoint<Solver>& b) {
+  using Point = WatchedPoint<Solver>;
+  for (const Joining<Solver>& to : {Joining<Solver>{SpecialKind::kHopf, &Point::rate},
+                                    Joining<Solver>{SpecialKind::kPeriodDoubling, &Point::halves},
+                                    Joining<Solver>{SpecialKind::kSymmetryBreaking, &Point::skew}}) {
+    const Eigen::VectorXd &before = a.*to.apart, &after = b.*to.apart;
+    const bool joined = to.kind == SpecialKind::kSymmetryBreaking && (a.orbit.symmetric || b.orbit.symmetric);
+    if (before.size() > 0 && before.size() == after.size() && before.dot(after) < 0 && !joined) return to;
+  }
+  return std::nullopt;
 }
 
-/// Where the symmetric orbits beside a nearly symmetric one lose their symmetry, by secants on ∏(1 + μ) of half
-/// periods: regular, where the asymmetric branch is not.
+/// Where the simpler orbits beside one that nearly joined them lose what makes them so, by secants on a test function:
+/// regular, where the joining branch is not.
 template <class Solver>
-std::optional<WatchedPoint<Solver>> breaking_beside(const Solver& solver, const WatchedPoint<Solver>& near) {
+std::optional<WatchedPoint<Solver>> loss_beside(const Solver& solver, SpecialKind kind,
+                                                const WatchedPoint<Solver>& near) {
+  const Test<Solver> test =
+      kind == SpecialKind::kPeriodDoubling ? &WatchedPoint<Solver>::doubling : &WatchedPoint<Solver>::breaking;
   const double start = near.at.at.parameter, reach = 1e-2 * solver.range();
-  const auto symmetric = solver.symmetric_beside(near.at, near.orbit);
-  const Solver& halves = symmetric.solver;
+  const auto simpler = solver.simpler_beside(kind, near.at, near.orbit);
   const auto orbit_at = [&](double parameter) -> std::optional<WatchedPoint<Solver>> {
-    typename Solver::Unknowns guess = symmetric.guess;
+    typename Solver::Unknowns guess = simpler.guess;
     guess.parameter = parameter;
-    const auto corrected = halves.correct(guess, halves.parameter_row());
+    const auto corrected = simpler.solver.correct(guess, simpler.solver.parameter_row());
     if (!corrected) return std::nullopt;
-    return watch(halves, corrected->at, halves.parameter_row());
+    return watch(simpler.solver, corrected->at, simpler.solver.parameter_row());
   };
   double last = start, here = start + 1e-3 * reach;
   std::optional<WatchedPoint<Solver>> found = orbit_at(last);
   if (!found) return std::nullopt;
-  double at_last = found->breaking;
+  double at_last = (*found).*test;
   for (int k = 0; k < 20; ++k) {
     found = orbit_at(here);
-    if (!found || found->breaking == at_last) return std::nullopt;
-    const double next = here - found->breaking * (here - last) / (found->breaking - at_last);
+    if (!found || (*found).*test == at_last) return std::nullopt;
+    const double value = (*found).*test, next = here - value * (here - last) / (value - at_last);
     if (std::abs(next - here) <= 1e-12 * solver.range()) return found;
     if (std::abs(next - start) > reach) return std::nullopt;
-    at_last = found->breaking;
+    at_last = value;
     last = std::exchange(here, next);
   }
   return std::nullopt;
 }
 
+/// The point itself by the simpler branch, as ever nearer orbits of the joining one are found ever worse.
 template <class Solver>
-void add_turning_over(const Solver& solver, const WatchedPoint<Solver>& a, const WatchedPoint<Solver>& b, double s,
-                      double tolerance, std::vector<Found>& out_found) {
-  const Located<Solver> at = narrow<Solver>(
-      solver, a, b, s, tolerance, [&](const WatchedPoint<Solver>& p) { return p.skew.dot(a.skew); }, true);
-  SpecialPoint special = special_of(solver, at, SpecialKind::kSymmetryBreaking, tolerance);
-  if (const auto exact = breaking_beside(solver, at.low)) {
-    special.parameter = exact->at.at.parameter;
-    special.uncertainty = 1e-12 * solver.range();
-    special.orbit = exact->orbit;
-    special.balance = exact->balance;
-    special.multiplier = critical_multiplier(exact->orbit, SpecialKind::kSymmetryBreaking).multiplier;
-    special.direction = critical_direction(*exact, SpecialKind::kSymmetryBreaking, special.multiplier);
-    special.note.clear();
+void tell_by_the_simpler(const Solver& solver, const WatchedPoint<Solver>& near, SpecialPoint& out_special) {
+  const double uncertainty = 1e-12 * solver.range();
+  if (out_special.kind == SpecialKind::kHopf) {
+    if constexpr (Solver::kByShooting) {
+      const auto rest = solver.hopf_beside(near.at);
+      if (!rest) return;
+      out_special.parameter = rest->parameter;
+      out_special.uncertainty = uncertainty;
+      out_special.note = fmt::format("orbits of period {:.9g} shrink to rest", rest->period);
+    }
+    return;
   }
-  special.note += "reached from the asymmetric side";
-  out_found.push_back({at.s, std::move(special)});
+  const bool doubled = out_special.kind == SpecialKind::kPeriodDoubling;
+  if (const auto exact = loss_beside(solver, out_special.kind, near)) {
+    out_special.parameter = exact->at.at.parameter;
+    out_special.uncertainty = uncertainty;
+    out_special.orbit = exact->orbit;
+    out_special.balance = exact->balance;
+    out_special.multiplier = critical_multiplier(exact->orbit, out_special.kind).multiplier;
+    out_special.direction = critical_direction(*exact, out_special.kind, out_special.multiplier);
+    out_special.note.clear();
+  }
+  out_special.note += doubled ? "reached from the doubled side" : "reached from the asymmetric side";
+}
+
+template <class Solver>
+SpecialPoint joining_point(const Solver& solver, const WatchedPoint<Solver>& a, const WatchedPoint<Solver>& b, double s,
+                           double tolerance, const Joining<Solver>& to, WatchedPoint<Solver>& out_last) {
+  Located<Solver> at = narrow<Solver>(
+      solver, a, b, s, tolerance, [&](const WatchedPoint<Solver>& p) { return (p.*to.apart).dot(a.*to.apart); }, true);
+  SpecialPoint special = special_of(solver, at, to.kind, tolerance);
+  tell_by_the_simpler(solver, at.low, special);
+  out_last = std::move(at.low);
+  return special;
 }
 
 /// How a curve's projection on the plane of its parameters goes, seen from a direction in that.
@@ -263,6 +332,10 @@ WatchedPoint<Solver> watch(const Solver& solver, typename Solver::Evaluation at,
   out.tangent = solver.tangent(at, along);
   out.half_map = solver.half_map(at);
   out.skew = solver.skew(at);
+  if constexpr (Solver::kByShooting) {
+    out.halves = solver.halves_apart(at);
+    out.rate = solver.rate(at);
+  }
   out.at = std::move(at);
   out.fold = solver.parameter_row().dot(out.tangent);
   const std::vector<std::complex<double>> multipliers = watched_multipliers(out.orbit);
@@ -278,14 +351,24 @@ WatchedPoint<Solver> watch(const Solver& solver, typename Solver::Evaluation at,
 }
 
 template <class Solver>
-std::vector<SpecialPoint> special_points_between(const Solver& solver, const WatchedPoint<Solver>& a,
-                                                 const WatchedPoint<Solver>& b, double s, double tolerance) {
+void keep_orientation(const WatchedPoint<Solver>& last, WatchedPoint<Solver>& out_point) {
+  if (out_point.orbit.word == last.orbit.word || orientation(out_point) * orientation(last) >= 0) return;
+  out_point.tangent = -out_point.tangent;
+  out_point.fold = -out_point.fold;
+}
+
+template <class Solver>
+SpecialPoints<Solver> special_points_between(const Solver& solver, const WatchedPoint<Solver>& a,
+                                             const WatchedPoint<Solver>& b, double s, double tolerance) {
   using Point = WatchedPoint<Solver>;
+  if (const auto to = solver.on_curve() ? std::nullopt : joining_between(a, b)) {
+    WatchedPoint<Solver> last;
+    SpecialPoint point = joining_point(solver, a, b, s, tolerance, *to, last);
+    return {{std::move(point)}, std::move(last)};
+  }
   std::vector<Found> found;
   if (solver.on_curve()) {
     add_cusp(solver, a, b, s, tolerance, found);
-  } else if (turns_over(a, b)) {
-    add_turning_over(solver, a, b, s, tolerance, found);
   } else {
     add_smooth(solver, a, b, s, tolerance, SpecialKind::kFold, &Point::fold, found);
   }
@@ -295,7 +378,9 @@ std::vector<SpecialPoint> special_points_between(const Solver& solver, const Wat
     add_smooth(solver, a, b, s, tolerance, SpecialKind::kPeriodDoubling, &Point::doubling, found);
     add_smooth(solver, a, b, s, tolerance, SpecialKind::kNeimarkSacker, &Point::torus, found);
   }
-  if (a.orbit.word != b.orbit.word && !turns_over(a, b)) {
+  const bool turns_back = std::ranges::any_of(
+      found, [](const Found& one) { return one.point.kind == SpecialKind::kNonSmoothFold; });
+  if (a.orbit.word != b.orbit.word && !turns_back) {
     const Located<Solver> at = narrow<Solver>(
         solver, a, b, s, tolerance, [&](const Point& p) { return p.orbit.word == a.orbit.word ? -1.0 : 1.0; }, false);
     SpecialPoint special =
@@ -304,18 +389,19 @@ std::vector<SpecialPoint> special_points_between(const Solver& solver, const Wat
     found.push_back({at.s, std::move(special)});
   }
   std::stable_sort(found.begin(), found.end(), [](const Found& x, const Found& y) { return x.s < y.s; });
-  std::vector<SpecialPoint> points;
-  points.reserve(found.size());
-  for (Found& one : found) points.push_back(std::move(one.point));
-  return points;
+  SpecialPoints<Solver> out;
+  for (Found& one : found) out.points.push_back(std::move(one.point));
+  return out;
 }
 
 template WatchedPoint<BranchSolver> watch(const BranchSolver&, BranchEvaluation, const Eigen::VectorXd&);
-template std::vector<SpecialPoint> special_points_between(const BranchSolver&, const WatchedPoint<BranchSolver>&,
+template void keep_orientation(const WatchedPoint<BranchSolver>&, WatchedPoint<BranchSolver>&);
+template SpecialPoints<BranchSolver> special_points_between(const BranchSolver&, const WatchedPoint<BranchSolver>&,
                                                           const WatchedPoint<BranchSolver>&, double, double);
 template WatchedPoint<BalanceBranchSolver> watch(const BalanceBranchSolver&, BalanceBranchEvaluation,
                                                  const Eigen::VectorXd&);
-template std::vector<SpecialPoint> special_points_between(const BalanceBranchSolver&,
+template void keep_orientation(const WatchedPoint<BalanceBranchSolver>&, WatchedPoint<BalanceBranchSolver>&);
+template SpecialPoints<BalanceBranchSolver> special_points_between(const BalanceBranchSolver&,
                                                           const WatchedPoint<BalanceBranchSolver>&,
                                                           const WatchedPoint<BalanceBranchSolver>&, double, double);
 

@@ -20,7 +20,11 @@ struct WatchedPoint {
   std::optional<Balance> balance;  ///< of a branch of these
   Eigen::VectorXd tangent;         ///< scaled [N + e]
   Eigen::MatrixXd half_map;        ///< −Φ(T/2), where the branch is solved by half periods; else empty
-  Eigen::VectorXd skew;            ///< what of the motion is not symmetric, scaled; else empty
+  /// What vanishes where orbits become those of a simpler branch, beyond which they are the same ones again; scaled,
+  /// empty where there is none.
+  Eigen::VectorXd skew;    ///< x(T/2) + x(0): symmetric ones
+  Eigen::VectorXd halves;  ///< x(T/2) − x(0): those of half the period
+  Eigen::VectorXd rate;    ///< ẋ(0): a state of rest
 
   /// Test functions: each changes sign where its kind of special point lies.
   double fold = 1.0;      ///< the parameter's share of the tangent
@@ -34,15 +38,27 @@ template <class Solver>
 [[nodiscard]] WatchedPoint<Solver> watch(const Solver& solver, typename Solver::Evaluation at,
                                          const Eigen::VectorXd& along);
 
+/// Where pieces of a branch meet, det [J; tᵀ] keeps its sign along it (as in piecewise-linear homotopies): beyond a
+/// corner at which the branch turns back, the other piece's tangent leads away from it. Turns that of a `point` with
+/// another word than the last one where it does not.
+template <class Solver>
+void keep_orientation(const WatchedPoint<Solver>& last, WatchedPoint<Solver>& out_point);
+
 /// A change of word in words.
 [[nodiscard]] std::string word_change(const PeriodicOrbit& before, const PeriodicOrbit& after);
 /// What a change of word is: sticks that come or go, touches, or reversals.
 [[nodiscard]] SpecialKind kind_of_word_change(const std::string& before, const std::string& after);
 
-/// Special points between two neighbours, in order along the branch. `b` lies at the length `s` along a's tangent.
+template <class Solver>
+struct SpecialPoints {
+  std::vector<SpecialPoint> points;           ///< in order along the branch
+  std::optional<WatchedPoint<Solver>> joins;  ///< the last orbit, where the last of them ends the branch
+};
+
+/// Special points between two neighbours. `b` lies at the length `s` along a's tangent.
 /// @param tolerance  of the parameter, absolute
 template <class Solver>
-[[nodiscard]] std::vector<SpecialPoint> special_points_between(const Solver& solver, const WatchedPoint<Solver>& a,
+[[nodiscard]] SpecialPoints<Solver> special_points_between(const Solver& solver, const WatchedPoint<Solver>& a,
                                                                const WatchedPoint<Solver>& b, double s,
                                                                double tolerance);
 

@@ -107,6 +107,7 @@ class Walk {
     const Eigen::VectorXd way = solver_.difference(corrected->at.at, current_.at.at);
     if ((way - length * current_.tangent).norm() > 0.5 * length + 1e-7) return std::nullopt;  // another branch
     Point next = watched(corrected->at, way);
+    keep_orientation(current_, next);
     why_not_ = solver_.curve_end(next.at, next.orbit);
     if (!why_not_.empty()) return std::nullopt;
     const bool lands = !current_.orbit.symmetric && next.orbit.symmetric;
@@ -150,11 +151,10 @@ class Walk {
     const double taken = current_.tangent.dot(solver_.difference(next.at.at, current_.at.at));
     const bool lands = !current_.orbit.symmetric && next.orbit.symmetric;
     if (options_.locate && !locate(next, taken)) return false;
+    if (ended_) return true;
     add(next, taken);
-    if (lands || reached_symmetric()) {
-      end(BranchEnd::kMerged, fmt::format("the orbits became symmetric near parameter {:.8g}: the branch joins that "
-                                          "of symmetric orbits there",
-                                          next.at.at.parameter));
+    if (lands) {
+      end_joined(SpecialKind::kSymmetryBreaking, next.at.at.parameter);
       return true;
     }
     current_ = std::move(next);
@@ -164,22 +164,32 @@ class Walk {
     return true;
   }
 
-  [[nodiscard]] bool reached_symmetric() const {
-    return !branch_.special.empty() && branch_.special.back().before + 2 == branch_.points.size() &&
-           branch_.special.back().kind == SpecialKind::kSymmetryBreaking && !current_.orbit.symmetric;
+  void end_joined(SpecialKind kind, double parameter) {
+    const char* what = "the orbits became symmetric near parameter {:.8g}: the branch joins that of symmetric orbits";
+    if (kind == SpecialKind::kHopf) what = "the orbits shrink to a state of rest at parameter {:.9g}: a Hopf point";
+    if (kind == SpecialKind::kPeriodDoubling)
+      what = "the orbits became those of half the period at parameter {:.9g}: the branch joins theirs";
+    end(BranchEnd::kMerged, fmt::format(fmt::runtime(what), parameter));
   }
 
   /// False where a curve does not go on to the next point: it passes a change of word that is not found between them.
   [[nodiscard]] bool locate(const Point& next, double length) {
     const double tolerance = std::min(options_.locate_tolerance * solver_.range(), 1e-8);
-    for (SpecialPoint& special : special_points_between(solver_, current_, next, length, tolerance)) {
+    SpecialPoints<Solver> found = special_points_between(solver_, current_, next, length, tolerance);
+    for (SpecialPoint& special : found.points) {
       if (solver_.on_curve() && special.kind != SpecialKind::kCusp && special.uncertainty > tolerance) {
         why_not_ =
             "the word changes, where multipliers jump or turn sharply: " + word_change(current_.orbit, next.orbit);
         return false;
       }
+      if (special.kind == SpecialKind::kNonSmoothFold && special.uncertainty > tolerance && length > options_.min_step)
+        return false;  // the corner is nearer at shorter steps
       special.before = branch_.points.size() - 1;
       branch_.special.push_back(std::move(special));
+    }
+    if (found.joins) {
+      add(*found.joins, solver_.difference(found.joins->at.at, current_.at.at).norm());
+      end_joined(branch_.special.back().kind, branch_.special.back().parameter);
     }
     return true;
   }
@@ -196,6 +206,7 @@ class Walk {
       if ((way - length * current_.tangent).norm() > 0.5 * length + 1e-7) return false;
       Point last = watched(corrected->at, way);
       if (options_.locate && !locate(last, current_.tangent.dot(way))) return false;
+      if (ended_) return true;
       add(last, way.norm());
     }
     end(BranchEnd::kRange, fmt::format("the {}parameter left its range at {:.8g}",
@@ -312,7 +323,14 @@ class Walk {
     const BranchPoint& first = branch_.points.front();
     if (std::abs(first.parameter - current_.at.at.parameter) > taken * solver_.range()) return false;
     const typename Solver::Unknowns began = solver_.unknowns_of(first);
-    return solver_.difference(began, with_origin_of(began).at).norm() < taken;
+    const typename Solver::Evaluation here = with_origin_of(began);
+    const Eigen::VectorXd way = solver_.difference(began, here.at);
+    if (way.norm() >= taken) return false;
+    // Another part of the branch may pass as near: of this part the orbit beside the first one is to be the first one.
+    constexpr double kSame = 1e-6;
+    const Eigen::VectorXd tangent = solver_.tangent(here, way);
+    const auto beside = solver_.correct(solver_.moved(here, tangent.dot(way) * tangent, 0.0), tangent);
+    return beside && solver_.difference(began, beside->at.at).norm() < kSame;
   }
 
   /// The current point with its origin at another one's phase of the drive, where origins move.

@@ -135,21 +135,23 @@ Eigen::MatrixXd ShootingProblem::in_scale(const Eigen::MatrixXd& transfer) const
   return scale_.cwiseInverse().asDiagonal() * transfer * scale_.asDiagonal();
 }
 
-State ShootingProblem::end_of(const State& start, double duration) {
-  return flow_.run(runnable(system_, start), duration, {.start = Eigen::MatrixXd::Zero(scale_.size(), 1)}).end;
+dynamics::TangentResult ShootingProblem::run(const State& start, double duration) {
+  return flow_.run(runnable(system_, start), duration, {.start = Eigen::MatrixXd::Zero(scale_.size(), 1)});
 }
 
-Eigen::MatrixXd ShootingProblem::ends_of(const ShootingPoint& point) {
+ShootingProblem::Ends ShootingProblem::ends_of(const ShootingPoint& point) {
   const auto count = static_cast<Eigen::Index>(point.nodes.size());
   const double length = covered() * point.period / static_cast<double>(count);
-  Eigen::MatrixXd ends(scale_.size(), count);
+  Ends out{.states = Eigen::MatrixXd(scale_.size(), count)};
   for (Eigen::Index k = 0; k < count; ++k) {
     State node = point.nodes[static_cast<std::size_t>(k)];
     node.time = point.nodes[0].time + length * static_cast<double>(k);
     put_on_constraint(system_, node);
-    ends.col(k) = scaled(stacked(end_of(node, length)));
+    const dynamics::TangentResult end = run(node, length);
+    out.states.col(k) = scaled(stacked(end.end));
+    out.events += end.events.size();
   }
-  return ends;
+  return out;
 }
 
 CondensedShooting ShootingProblem::condense(const ShootingEvaluation& at,

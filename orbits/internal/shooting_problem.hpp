@@ -61,9 +61,15 @@ class ShootingProblem {
   [[nodiscard]] ShootingEvaluation evaluate(const ShootingPoint& point);
   void use_scale(const Eigen::VectorXd& scale) { scale_ = scale; }
   /// The state a time later, by the same flow.
-  [[nodiscard]] dynamics::State end_of(const dynamics::State& start, double duration);
-  /// The ends of all segments alone, one column each, scaled [N x m].
-  [[nodiscard]] Eigen::MatrixXd ends_of(const ShootingPoint& point);
+  [[nodiscard]] dynamics::State end_of(const dynamics::State& start, double duration) {
+    return run(start, duration).end;
+  }
+  struct Ends {
+    Eigen::MatrixXd states;  ///< scaled, one column each [N x m]
+    std::size_t events = 0;  ///< of all segments
+  };
+  /// The ends of all segments alone.
+  [[nodiscard]] Ends ends_of(const ShootingPoint& point);
 
   /// @param extra  columns of extra unknowns, one [N x e] matrix per segment, scaled; may be empty
   [[nodiscard]] CondensedShooting condense(const ShootingEvaluation& at,
@@ -90,6 +96,8 @@ class ShootingProblem {
   [[nodiscard]] Eigen::VectorXd scaled(const Eigen::VectorXd& x) const { return x.cwiseQuotient(scale_); }
 
  private:
+  /// Without what the end changes by.
+  [[nodiscard]] dynamics::TangentResult run(const dynamics::State& start, double duration);
   [[nodiscard]] Eigen::MatrixXd in_scale(const Eigen::MatrixXd& transfer) const;
 
   dynamics::HybridSystem system_;

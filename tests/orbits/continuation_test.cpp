@@ -283,6 +283,40 @@ TEST(Continuation, SwitchesToTwiceThePeriod) {
   EXPECT_LT((stacked(whole) - stacked(beside[0].orbit.start)).norm(), 1e-9);
 }
 
+TEST(Continuation, OrbitsOfTwiceThePeriodEndWhereThePeriodDoublesAgain) {
+  // Between unlike stops the period doubles twice, and orbits of twice the period lead from one point to the other: no
+  // further, where they would be the same ones with their two periods exchanged.
+  const friction::Clearance stops{friction::Stop{.stiffness = 1e6, .gap = 4e-6},
+                                  friction::Stop{.stiffness = 2e6, .gap = 6e-6}, friction::ContactLoss::kGap};
+  const auto drive = [](double omega) { return friction::Force{omega, {{.amplitude = 2.0}}}; };
+  const HybridSystem base{fem::masses({.mass = {5e-3}, .links = {{.stiffness = 2e5, .damping = 1.5}}}),
+                          {{Eigen::VectorXd::Ones(1), stops}},
+                          drive(8400.0),
+                          {},
+                          Eigen::MatrixXd::Ones(1, 1)};
+  const dynamics::SystemFamily family = [&](double omega) { return base.with_drive(drive(omega)); };
+  const ContinuationOptions options{.from = 7500.0, .to = 9000.0, .both_ways = true};
+  const Branch single = continue_orbit(family, settled(base, 0.0), 8400.0, options);
+  const std::vector<SpecialPoint> doublings = of_kind(single, SpecialKind::kPeriodDoubling);
+  ASSERT_EQ(doublings.size(), 2u) << single.reason;
+  for (const std::size_t from : {0u, 1u}) {
+    const BranchPoint first = switch_branch(family, doublings[from], options).at(0);
+    const Branch doubled = continue_orbit(family, first.orbit, first.parameter,
+                                          {.from = 7500.0,
+                                           .to = 9000.0,
+                                           .direction = first.parameter > doublings[from].parameter ? 1 : -1,
+                                           .shooting = {.order = 2}});
+    EXPECT_EQ(doubled.end, BranchEnd::kMerged) << doubled.reason;
+    ASSERT_FALSE(doubled.special.empty());
+    const SpecialPoint& last = doubled.special.back();
+    EXPECT_EQ(last.kind, SpecialKind::kPeriodDoubling);
+    EXPECT_NEAR(last.parameter, doublings[1 - from].parameter, 1e-7);
+    EXPECT_EQ(last.orbit.order, 1);
+    EXPECT_EQ(of_kind(doubled, SpecialKind::kPeriodDoubling).size(), 1u);
+    for (const SpecialPoint& fold : of_kind(doubled, SpecialKind::kFold)) EXPECT_NEAR(std::abs(fold.multiplier), 1.0, 1e-3);
+  }
+}
+
 TEST(Continuation, SymmetryBreakingOfFourMasses) {
   // Printed: 0.98 on the main peak (with c_s = 0.5; Table 2.2's 0.05 would give 0.996). The asymmetric orbit at 0.93 is
   // the one that settles (clearance_orbits_test).
@@ -391,6 +425,53 @@ TEST(Continuation, AStickSlipCycleEndsWhereItNoLongerSticks) {
   EXPECT_FALSE(branch.reason.empty());
   EXPECT_GT(branch.points.size(), 10u);
   EXPECT_NEAR(branch.points.back().parameter, last_stick_slip_speed(c, 0.2), 1e-6);
+}
+
+/// Unit mass, spring and load on a belt, μ = 0.2 + 0.2 e^{−8v}.
+dynamics::SystemFamily stribeck_oscillator(double c) {
+  return [c](double speed) {
+    return fixtures::oscillator(1.0, 1.0, c, friction::Stribeck{0.4, 0.2, 8.0}, 1.0, friction::Belt::constant(speed));
+  };
+}
+
+void expect_turn_and_hopf_point(const Branch& branch, double turn, double hopf) {
+  EXPECT_TRUE(is_complete(branch.end)) << branch.reason;
+  ASSERT_EQ(branch.special.size(), 2u) << branch.reason;
+  for (const SpecialPoint& point : branch.special) {
+    const bool turns = point.kind == SpecialKind::kNonSmoothFold;
+    EXPECT_TRUE(turns || point.kind == SpecialKind::kHopf) << to_string(point.kind);
+    EXPECT_NEAR(point.parameter, turns ? turn : hopf, turns ? point.uncertainty : 1e-11) << to_string(point.kind);
+    EXPECT_LT(point.uncertainty, 1e-7);
+  }
+  const auto [least, most] = std::ranges::minmax(branch.points, {}, &BranchPoint::parameter);
+  EXPECT_NEAR(most.parameter, turn, 1e-4);
+}
+
+TEST(Continuation, AStickSlipCycleTurnsBackToTheHopfPointOfSteadySliding) {
+  // Sliding steadily, the slope of the friction undoes the damping: 1.6 e^{−8V} = c. The speed at which the slip just
+  // reaches the belt again where it left it: DOP853 at 1e-13 from the place of release.
+  const double turns[] = {0.6439495365660765, 1.4899227575794374}, dampings[] = {0.1, 0.03};
+  for (int k = 0; k < 2; ++k) {
+    const dynamics::SystemFamily family = stribeck_oscillator(dampings[k]);
+    const double hopf = std::log(1.6 / dampings[k]) / 8.0;
+    const RecurrenceGuess guess = recurrence_guess(
+        family(0.1), fixtures::state(Eigen::VectorXd::Zero(1), Eigen::VectorXd::Constant(1, 0.1)), 50.0, 100.0);
+    const PeriodicOrbit stick_slip = find_orbit(family(0.1), guess.state, {.period = guess.period});
+    const ContinuationOptions options{.from = 0.05, .to = 3.0, .both_ways = true};
+    const Branch branch = continue_orbit(family, stick_slip, 0.1, options);
+    expect_turn_and_hopf_point(branch, turns[k], hopf);
+    EXPECT_NEAR(branch.points.front().parameter, 0.05, 1e-12);
+    EXPECT_NEAR(branch.points.back().parameter, hopf, 1e-6);
+    // From an unstable cycle between, and from the other side of it.
+    const BranchPoint& between = branch.points[branch.points.size() - branch.points.size() / 8];
+    ASSERT_EQ(between.orbit.crossings, 0);
+    const HybridSystem there = family(between.parameter);
+    for (const double share : {0.0, 0.5}) {
+      const State start = advanced(there, between.orbit.start, share * between.orbit.period);
+      const PeriodicOrbit orbit = find_orbit(there, start, {.period = between.orbit.period});
+      expect_turn_and_hopf_point(continue_orbit(family, orbit, between.parameter, options), turns[k], hopf);
+    }
+  }
 }
 
 // --- bad input ------------------------------------------------------------------------------------------------------

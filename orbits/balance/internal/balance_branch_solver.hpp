@@ -82,8 +82,9 @@ class BalanceBranchSolver {
   /// The even orders where the system is its own mirror image and they are unknown; else empty.
   [[nodiscard]] Eigen::VectorXd skew(const BalanceBranchEvaluation& at) const;
   /// The family's odd orders alone, and what they are at a point.
-  struct Symmetric;
-  [[nodiscard]] Symmetric symmetric_beside(const BalanceBranchEvaluation& near, const PeriodicOrbit& orbit) const;
+  struct Simpler;
+  [[nodiscard]] Simpler simpler_beside(SpecialKind kind, const BalanceBranchEvaluation& near,
+                                       const PeriodicOrbit& orbit) const;
 
   [[nodiscard]] Eigen::VectorXd parameter_row() const;
   [[nodiscard]] double range() const { return range_; }
@@ -115,7 +116,7 @@ class BalanceBranchSolver {
   std::vector<Eigen::Index> solved_, even_;  ///< entries of x: those that are unknown, and those of even order
 };
 
-struct BalanceBranchSolver::Symmetric {
+struct BalanceBranchSolver::Simpler {
   BalanceBranchSolver solver;
   BalanceUnknowns guess;
 };
