@@ -36,6 +36,7 @@ Json exponents_json(const std::vector<results::ModelExponents>& models) {
                 {"bits", exponent_list(spectrum.bits())},
                 {"error_nats", exponent_list(spectrum.error)},
                 {"chaotic", spectrum.is_chaotic()},
+                {"undecided", spectrum.is_undecided()},
                 {"duration", spectrum.duration},
                 {"interval", spectrum.interval}});
     one.update(fields_json(spectrum));

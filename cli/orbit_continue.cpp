@@ -79,6 +79,8 @@ std::string branch_text(const results::NamedBranch& named) {
   }
   text += table.str();
   if (branch.special.size() > kShown) text += fmt::format("  and {} more\n", branch.special.size() - kShown);
+  if (branch.points.front().balance)
+    text += "  ± is of the balance's own equations; by how much its orders miss such a point is not in it\n";
   return text;
 }
 

@@ -20,7 +20,9 @@ struct OrbitMapArguments {
   studies::OrbitMapOptions options;
 };
 
-/// How often each order was met from one start; 0: motion that is not periodic.
+constexpr const char* kNoneFound = "none found";
+
+/// How often each order was met from one start; 0: no orbit found.
 struct OrderCount {
   std::map<int, std::size_t> orders;
   std::size_t failed = 0;
@@ -32,7 +34,7 @@ void say(const std::string& start, const OrderCount& count, Report& out_report) 
   TextTable table({"from " + start, "points"});
   Json json = Json::object();
   for (const auto& [order, points] : count.orders) {
-    const std::string name = order == 0 ? "not periodic" : fmt::format("period {}", order);
+    const std::string name = order == 0 ? kNoneFound : fmt::format("period {}", order);
     table.add({name, std::to_string(points)});
     json[name] = points;
   }
@@ -42,7 +44,7 @@ void say(const std::string& start, const OrderCount& count, Report& out_report) 
 }
 
 Report summary(const studies::Family& family, const studies::OrbitMapStudy& study,
-               const std::vector<studies::Over>& over) {
+               const std::vector<studies::Over>& over, const studies::OrbitMapOptions& options) {
   Report report;
   const std::string& title = family.scene().title;
   report.data = {{"verb", "orbit map"}, {"keys", family.keys()}};
@@ -65,6 +67,11 @@ Report summary(const studies::Family& family, const studies::OrbitMapStudy& stud
     for (const orbits::StrobePoint& point : points) count.add(point.settled.order, point.failure);
     say(start, count, report);
   }
+  if (report.text.find(kNoneFound) != std::string::npos)
+    report.text += fmt::format(
+        "  {}: no orbit up to period {} within {} periods: chaos, a torus, or still settling; "
+        "--max-order, --periods\n",
+        kNoneFound, options.max_order, options.periods);
   return report;
 }
 
@@ -97,7 +104,7 @@ Report run(const Session& session, const OrbitMapArguments& arguments) {
   }
   file.finish([&](results::StoreWriter& writer) { studies::store(writer, family, study); });
   if (session.has_a_share()) return part_made(session, file, arguments.output, "rows");
-  Report report = summary(family, study, over);
+  Report report = summary(family, study, over, arguments.options);
   report.data["file"] = arguments.output;
   tell_resumed(session, file.resumed(), "rows", report);
   report.text += fmt::format("Map: {}\n", arguments.output);

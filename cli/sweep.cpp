@@ -4,6 +4,7 @@
 #include <slipmode/results/driven_store.hpp>
 #include <slipmode/results/reduced_file.hpp>
 #include <slipmode/scene/own_times.hpp>
+#include <slipmode/scene/solver_options.hpp>
 #include <slipmode/studies/bases.hpp>
 #include <slipmode/studies/result_file.hpp>
 #include "cli/field_options.hpp"
@@ -32,7 +33,7 @@ void say_motions(const std::vector<Point>& points, Report& out_report) {
   out_report.text += motions.text.str();
 }
 
-void say_shaken(const SweepRequest& request, const studies::Sweep& sweep, Report& out_report) {
+void say_shaken(const SweepRequest& request, const studies::Sweep& sweep, double cycles, Report& out_report) {
   const auto& points = sweep.up.empty() ? sweep.down : sweep.up;
   double audit = 0.0;
   for (const auto& point : points)
@@ -40,6 +41,7 @@ void say_shaken(const SweepRequest& request, const studies::Sweep& sweep, Report
   out_report.data["largest_audit_residual"] = audit;
   out_report.text += fmt::format("largest energy residual {:.1e}\n", audit);
   say_motions(points, out_report);
+  out_report.text += results::unsettled_note(points, cycles);
   const auto peaks = diagnostics::amplitude_peaks(points);
   out_report.data["peaks"] = Json::array();
   for (const auto& peak : peaks)
@@ -60,7 +62,7 @@ Report summary(const SweepRequest& request, const studies::Family& family, const
   report.text = fmt::format("{}: {} values of {}\n", family.title(), values, key);
   Json failures;
   if (sweep.belt.empty()) {
-    say_shaken(request, sweep, report);
+    say_shaken(request, sweep, scene::driven_options(family.scene()).cycles, report);
     failures = failures_of(sweep.up.empty() ? sweep.down : sweep.up);
   } else {
     say_motions(sweep.belt, report);

@@ -123,9 +123,14 @@ double HybridSystem::energy(const State& state) const {
   return load_.size() > 0 ? energy - load_.dot(state.q) : energy;
 }
 
-bool can_stick(const HybridSystem& system) {
-  return std::ranges::none_of(
-      system.contacts(), [](const friction::Contact& contact) { return friction::clearance(contact.law) != nullptr; });
+double stick_share(const HybridSystem& system, std::span<const double> stick_time, double time) {
+  double stuck = 0.0, able = 0.0;
+  for (std::size_t c = 0; c < system.contacts().size(); ++c) {
+    if (!friction::sticks(friction::kind(system.contacts()[c].law))) continue;
+    stuck += stick_time[c];
+    able += 1.0;
+  }
+  return able > 0.0 ? stuck / (able * time) : 0.0;
 }
 
 const ModelTables& ModelCache::tables(const HybridSystem& system, bool rows_only) {

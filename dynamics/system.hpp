@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace slipmode::dynamics {
@@ -93,7 +94,8 @@ class HybridSystem {
   std::shared_ptr<DriveCache> drive_cache_;
 };
 
-/// True when every contact is a frictional one: with clearances there are no sticking modes.
-[[nodiscard]] bool can_stick(const HybridSystem& system);
+/// Share of a time that contacts stick, mean over those whose law sticks; 0 where none does.
+/// @param stick_time  of each contact [s]
+[[nodiscard]] double stick_share(const HybridSystem& system, std::span<const double> stick_time, double time);
 
 }  // namespace slipmode::dynamics

@@ -31,15 +31,27 @@ std::string_view colour_of(const std::string& role) {
   return role == "LNM" ? kLnmColour : kPomColour;
 }
 
-/// "x_{10}": the displacement of the scene's first contact as the figures call it.
-std::string contact_symbol(const scene::Scene& scene, const std::string& letter) {
-  return fmt::format("{}_{{{}}}", letter, scene::to_string(scene.contacts.front().at));
+/// "x_{10}": the displacement of one of the scene's contacts as the figures call it.
+std::string contact_symbol(const scene::Scene& scene, const std::string& letter, std::size_t contact = 0) {
+  return fmt::format("{}_{{{}}}", letter, scene::to_string(scene.contacts[contact].at));
+}
+
+/// The contact that slips most often in a sweep, the first of several.
+std::size_t slipping_contact(const StoreReader& store, std::size_t contacts) {
+  std::vector<std::size_t> slips(contacts, 0);
+  for (const std::string group : {"sweep/full", "sweep/reduced"}) {
+    if (!store.has(group)) continue;
+    const results::Table table = results::load_table(store, group + "/slips");
+    for (const double contact : table.numbers("contact")) ++slips.at(static_cast<std::size_t>(contact));
+  }
+  return static_cast<std::size_t>(std::ranges::max_element(slips) - slips.begin());
 }
 
 Figure bifurcation(const StoreReader& store) {
   const scene::Scene scene = results::load_scene_of(store);
   std::vector<BifurcationPanel> panels;
   std::string label, unit;
+  const std::size_t shown = slipping_contact(store, scene.contacts.size());
   for (const std::string group : {"sweep/full", "sweep/reduced"}) {
     if (!store.has(group)) continue;
     const results::Table slips = results::load_table(store, group + "/slips");
@@ -48,7 +60,7 @@ Figure bifurcation(const StoreReader& store) {
     const auto& displacement = slips.numbers("displacement");
     std::vector<double> x, y;
     for (std::size_t i = 0; i < contact.size(); ++i) {
-      if (contact[i] != 0.0) continue;
+      if (contact[i] != static_cast<double>(shown)) continue;
       x.push_back(parameter[i]);
       y.push_back(displacement[i]);
     }
@@ -59,7 +71,7 @@ Figure bifurcation(const StoreReader& store) {
   }
   return bifurcation_diagram(panels, {.parameter = label,
                                       .parameter_unit = unit,
-                                      .value = "slip-state displacement " + contact_symbol(scene, "x"),
+                                      .value = "slip-state displacement " + contact_symbol(scene, "x", shown),
                                       .value_unit = results::Units::of(scene.units).length});
 }
 

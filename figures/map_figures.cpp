@@ -74,7 +74,7 @@ Figure multipliers(const StoreReader& store) {
   HeatMapLayout layout = map_layout(store);
   layout.value_label = "largest |multiplier|";
   layout.colours = HeatMapLayout::Colours::kGrey;
-  layout.missing = "not periodic";
+  layout.missing = "none found";
   return heat_maps(map_panels(store, [&](const std::string& group) { return store.matrix(group + "/multiplier"); }),
                    layout);
 }
@@ -85,7 +85,7 @@ Figure orders(const StoreReader& store) {
   layout.low = 1.0;
   layout.high = 8.0;
   layout.steps = 8;
-  layout.missing = "not periodic";
+  layout.missing = "none found";
   return heat_maps(map_panels(store,
                               [&](const std::string& group) -> Eigen::MatrixXd {
                                 const Eigen::MatrixXd order = store.matrix(group + "/order");
@@ -106,7 +106,7 @@ Figure amplitudes(const StoreReader& store) {
   const std::string dataset =
       fmt::format("{}/from_{}/alternating", results::kMapGroup, starts_of(store, results::kMapGroup).front());
   layout.value_label = axis_label("alternating amplitude", store.entry(dataset).meaning.units);
-  layout.missing = "not periodic";
+  layout.missing = "none found";
   return heat_maps(panels, layout);
 }
 

@@ -89,7 +89,12 @@ void record_periods(const dynamics::HybridSystem& system, const dynamics::State&
 }  // namespace
 
 Section default_section(const dynamics::HybridSystem& system) {
-  return system.drive().period() ? Section::stroboscopic() : Section{};
+  if (system.drive().period()) return Section::stroboscopic();
+  const std::vector<friction::Contact>& contacts = system.contacts();
+  const auto sticks = [](const friction::Contact& one) { return friction::sticks(friction::kind(one.law)); };
+  const auto first = std::ranges::find_if(contacts, sticks);
+  if (first == contacts.end()) return {.event = dynamics::EventKind::kReversal};
+  return {.contact = static_cast<int>(first - contacts.begin())};
 }
 
 Metric Metric::of(const Eigen::MatrixXd& samples) {

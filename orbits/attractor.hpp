@@ -20,7 +20,8 @@ struct Section {
   [[nodiscard]] bool is_stroboscopic() const { return contact < 0; }
 };
 
-/// Stroboscopic for a drive with a period, else onsets of stick of the first contact.
+/// Stroboscopic for a drive with a period, else onsets of stick of the first contact whose law sticks, else reversals
+/// of the first contact.
 [[nodiscard]] Section default_section(const dynamics::HybridSystem& system);
 
 /// A measure of distance in which every coordinate counts by how far it moves.

@@ -5,11 +5,19 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 namespace slipmode::orbits {
 namespace {
 
 using dynamics::State;
+
+constexpr double kWatched = 20'000.0;
+/// Of a displacement: less is rounding.
+constexpr double kMoves = 1e-9;
 
 /// Largest coordinate of a set of states, displacements and velocities apart.
 struct Size {
@@ -29,6 +37,47 @@ double difference(const State& a, const State& b, const Size& size) {
   return std::max((a.q - b.q).cwiseAbs().maxCoeff() / size.q, (a.v - b.v).cwiseAbs().maxCoeff() / size.v);
 }
 
+/// Where a motion without events may come back: the first contact's displacement on its way up through its mean,
+/// between samples by straight lines.
+std::vector<State> upward_passes(const dynamics::Trajectory& run) {
+  std::vector<State> passes;
+  if (run.contact_q.rows() == 0) return passes;
+  const Eigen::VectorXd y = run.contact_q.row(0).array() - run.contact_q.row(0).mean();
+  if (y.cwiseAbs().maxCoeff() <= kMoves * run.contact_q.row(0).cwiseAbs().maxCoeff()) return passes;
+  for (Eigen::Index k = 1; k < y.size(); ++k) {
+    if (!(y[k - 1] < 0.0 && y[k] >= 0.0)) continue;
+    const double share = y[k - 1] / (y[k - 1] - y[k]);
+    State pass = run.final_state;
+    pass.time = run.times[k - 1] + share * (run.times[k] - run.times[k - 1]);
+    pass.q = (1.0 - share) * run.q.col(k - 1) + share * run.q.col(k);
+    pass.v = (1.0 - share) * run.v.col(k - 1) + share * run.v.col(k);
+    passes.push_back(std::move(pass));
+  }
+  return passes;
+}
+
+/// States at the events of the section that recurrence_guess() names.
+std::vector<State> passes_of(const dynamics::HybridSystem& system, const State& start, double duration) {
+  using dynamics::EventKind;
+  const auto rank = [](EventKind kind) {
+    return kind == EventKind::kRelease ? 0 : kind == EventKind::kReversal ? 1 : 2;
+  };
+  std::map<std::tuple<int, int, EventKind>, std::vector<State>> sections;
+  const auto note = [&](const dynamics::Event& event, const State& state) {
+    if (event.contact >= 0) sections[{rank(event.kind), event.contact, event.kind}].push_back(state);
+    return true;
+  };
+  const dynamics::Trajectory run = simulate(system, start,
+                                            {.duration = duration,
+                                             .sample = duration / kWatched,
+                                             .keep_events = false,
+                                             .flow = {.tolerance = 1e-12, .audit = false},
+                                             .on_event = note});
+  for (auto& [which, passes] : sections)
+    if (passes.size() >= 2) return std::move(passes);
+  return upward_passes(run);
+}
+
 }  // namespace
 
 State settle_guess(const dynamics::HybridSystem& system, const State& start, double periods, double unit) {
@@ -42,30 +91,18 @@ State settle_guess(const dynamics::HybridSystem& system, const State& start, dou
 }
 
 RecurrenceGuess recurrence_guess(const dynamics::HybridSystem& system, const State& start, double transient,
-                                 double duration, int max_returns, int contact,
-                                 std::optional<dynamics::EventKind> section) {
+                                 double duration, int max_returns) {
   if (!(transient >= 0 && duration > 0 && max_returns >= 1))
     throw InvalidInput(
         fmt::format("a recurrence needs a transient ≥ 0, a duration > 0 and max_returns ≥ 1; found {}, "
                     "{} and {}",
                     transient, duration, max_returns));
-  const auto c = static_cast<std::size_t>(contact);
-  const bool slides = c < system.contacts().size() && !friction::sticks(friction::kind(system.contacts()[c].law));
-  const dynamics::EventKind kind =
-      section.value_or(slides ? dynamics::EventKind::kReversal : dynamics::EventKind::kRelease);
-  std::vector<State> passes;
-  const auto note = [&](const dynamics::Event& event, const State& state) {
-    if (event.contact == contact && event.kind == kind) passes.push_back(state);
-    return true;
-  };
-  static_cast<void>(simulate(
-      system, advanced(system, start, transient),
-      {.duration = duration, .keep_events = false, .flow = {.tolerance = 1e-12, .audit = false}, .on_event = note}));
+  const std::vector<State> passes = passes_of(system, advanced(system, start, transient), duration);
   if (passes.size() < 2)
     throw NumericalFailure(
-        fmt::format("the section (events of one kind at contact {}) was passed {} times in {} s; two "
-                    "passages make a return. Simulate longer, or choose another section",
-                    contact + 1, passes.size(), duration),
+        fmt::format("no event and no swing came twice in {} s: the motion may rest, or slide steadily; else simulate "
+                    "longer (time.duration)",
+                    duration),
         start.time + transient, stacked(start), std::numeric_limits<double>::quiet_NaN());
   const Size size = size_of(passes);
   std::vector<RecurrenceGuess> best;  // for each number of returns

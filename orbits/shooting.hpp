@@ -84,13 +84,15 @@ struct RecurrenceGuess {
   double mismatch = 0.0;  ///< of the states one period apart, relative to the orbit's size
 };
 
-/// Settles for `transient`, then watches events of one kind at one contact (a section: releases if none is given, or
-/// reversals where the contact's law does not stick) for `duration` and hands out the return to it, of at most
+/// Settles for `transient`, then watches a section for `duration` and hands out the return to it, of at most
 /// `max_returns`, whose states match best; a shorter one is preferred where it matches within three times the best or
 /// 1e-4 of the size of the states.
-/// @throws NumericalFailure  when the section is met fewer than twice
+///
+/// The section are events of one kind at one contact that come twice at least: releases of the first contact that has
+/// them, else reversals, else others; where no events come, the first contact's displacement on its way up through its
+/// mean.
+/// @throws NumericalFailure  when nothing comes twice
 [[nodiscard]] RecurrenceGuess recurrence_guess(const dynamics::HybridSystem& system, const dynamics::State& start,
-                                               double transient, double duration, int max_returns = 16, int contact = 0,
-                                               std::optional<dynamics::EventKind> section = {});
+                                               double transient, double duration, int max_returns = 16);
 
 }  // namespace slipmode::orbits

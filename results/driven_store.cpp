@@ -38,7 +38,7 @@ class ValueTable {
     motion("mean", axes.reading_unit, "mean of the " + axes.reading, [](const DrivenMotion& m) { return m.mean(0); });
     motion("rms", axes.reading_unit, "root mean square about the mean of the " + axes.reading,
            [](const DrivenMotion& m) { return m.rms(0); });
-    motion("stick_fraction", "1", "share of time in stick, mean over contacts, micro-stick included",
+    motion("stick_fraction", "1", "share of time in stick, mean over contacts whose law sticks, micro-stick included",
            [](const DrivenMotion& m) { return m.stick_fraction; });
     motion("longest_stick", "1", "longest stick, in drive periods",
            [](const DrivenMotion& m) { return m.longest_stick; });
@@ -140,6 +140,16 @@ std::string motion_text(const DrivenMotion& motion) {
                                  : diagnostics::to_string(period.repeat);
   return fmt::format("{}, {}{}", diagnostics::to_string(motion.label), repeat,
                      motion.separations > 0 ? ", contact lost" : "");
+}
+
+std::string unsettled_note(const std::vector<DrivenPoint>& points, double cycles) {
+  const bool any = std::ranges::any_of(points, [](const DrivenPoint& point) {
+    const auto repeat = point.settled.period.repeat;
+    return point.ok() && (repeat == DrivenRepeat::kSettling || repeat == DrivenRepeat::kUndecided);
+  });
+  if (!any) return {};
+  return fmt::format("  settling, or undecided, after {0:g} cycles; to wait longer: --set validation.cycles={1:g}\n",
+                     cycles, 10.0 * cycles);
 }
 
 std::vector<MotionCount> count_motions(const std::vector<DrivenPoint>& points) {

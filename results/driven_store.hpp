@@ -37,6 +37,9 @@ void store_driven(StoreWriter& writer, const std::string& group, const std::stri
 /// How often each motion was met, most frequent first.
 [[nodiscard]] std::vector<MotionCount> count_motions(const std::vector<diagnostics::DrivenPoint>& points);
 
+/// How to wait longer, where motions still settle; else empty. @param cycles  run at each value
+[[nodiscard]] std::string unsettled_note(const std::vector<diagnostics::DrivenPoint>& points, double cycles);
+
 /// "16.9 Hz (1.2e-04), ..."
 [[nodiscard]] std::string peaks_text(const std::vector<diagnostics::AmplitudePeak>& peaks);
 

@@ -54,8 +54,8 @@ void store_map(StoreWriter& writer, const SweepAxis& x, const SweepAxis& y, cons
     const auto write = [&](const std::string& name, const Meaning& meaning, auto number) {
       writer.write(group + "/" + name, detail::layer(started.map.rows, grid.x.size(), number), meaning);
     };
-    write("order", {"", "period in periods of the drive; 0: not periodic"}, [](const MapPoint& p) { return p.order; });
-    write("crossings", {"", "changes of force law in a period; 0 also where not periodic"},
+    write("order", {"", "period in periods of the drive; 0: none found"}, [](const MapPoint& p) { return p.order; });
+    write("crossings", {"", "changes of force law in a period; 0 also where none is found"},
           [](const MapPoint& p) { return p.crossings; });
     write("multiplier", {"1", "largest |multiplier|; NaN: not periodic"},
           [](const MapPoint& p) { return p.multiplier; });

@@ -159,8 +159,9 @@ inline constexpr auto kFields<orbits::OrbitMatch> = [] {
 template <>
 inline constexpr auto kFields<orbits::SpecialPoint> = [] {
   using Own = orbits::SpecialPoint;
-  return std::tuple{required("uncertainty", &Own::uncertainty, "", "width of the last bracket"),
-                    required("note", &Own::note, "", "what was seen")};
+  return std::tuple{
+      required("uncertainty", &Own::uncertainty, "", "width of the last bracket; of a balance, of its own equations"),
+      required("note", &Own::note, "", "what was seen")};
 }();
 
 template <>

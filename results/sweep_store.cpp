@@ -91,7 +91,7 @@ void store_sweep(StoreWriter& writer, const std::string& group, const std::strin
               {"motion", {"", "periodic, aperiodic, undecided, sticking, sliding or failed"}, motion},
               {"period", {"", "slips per period; 0: not periodic"}, period},
               {"T", {units.time, "period; 0: not periodic"}, T},
-              {"stick_fraction", {"1", "share of time in stick, mean over contacts"}, stick},
+              {"stick_fraction", {"1", "share of time in stick, mean over contacts whose law sticks"}, stick},
               {"mean_energy", {units.energy, "mean energy over the last block"}, energy},
               {"slip_rate", {units.rate, "slips of all contacts per unit of time"}, rate},
               {"time", {units.time, "simulated in all"}, time},

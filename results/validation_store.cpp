@@ -72,9 +72,9 @@ Table share_table(const ValidationReport& report, const Units& units) {
             {"period", {"", "slips per period; 0: not periodic"}, settled([](const Settled& motion) {
                return static_cast<double>(motion.period.period);
              })},
-            {"stick_fraction", {"1", "share of time in stick"}, settled([](const Settled& motion) {
-               return motion.stick_fraction;
-             })},
+            {"stick_fraction",
+             {"1", "share of time in stick, mean over contacts whose law sticks"},
+             settled([](const Settled& motion) { return motion.stick_fraction; })},
             {"slip_rate", {units.rate, "slips per unit of time"}, settled([](const Settled& motion) {
                return motion.slip_rate;
              })}},
@@ -114,7 +114,8 @@ void store_full(StoreWriter& writer, const ValidationReport& report, const Units
   writer.write(group + "speed", report.speed, {units.velocity, "belt speed of the table"});
   writer.write(group + "motion", std::string(diagnostics::to_string(report.full.period.motion)),
                {"", "what the full model settles to"});
-  writer.write(group + "stick_fraction", report.full.stick_fraction, {"1", "share of time in stick"});
+  writer.write(group + "stick_fraction", report.full.stick_fraction,
+               {"1", "share of time in stick, mean over contacts whose law sticks"});
   writer.write(group + "slip_rate", report.full.slip_rate, {units.rate, "slips per unit of time"});
   writer.write(group + "mean_energy", report.full.mean_energy, {units.energy, "mean energy"});
   if (report.lyapunov) {

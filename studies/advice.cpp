@@ -64,7 +64,12 @@ Asked by_the_motion(const scene::Scene& scene, double bound, const RunOptions& r
       return out;
     }
     out.ask.question = trade::Question::kMotion;
-    out.sentence = fmt::format("The motion is regular ({}): it can be told where everything is.", figure);
+    out.sentence = found.is_undecided()
+                       ? fmt::format(
+                             "Whether the motion is chaotic is undecided ({}; a longer time.duration tells): "
+                             "paths do not part up to the horizon, and are told.",
+                             figure)
+                       : fmt::format("The motion is regular ({}): it can be told where everything is.", figure);
   } catch (const NumericalFailure& failure) {
     out.sentence = fmt::format("Whether paths part could not be measured: {}.", failure.what());
   }

@@ -1,6 +1,7 @@
 #include <slipmode/studies/natural_modes.hpp>
 
 #include <slipmode/core/errors.hpp>
+#include <slipmode/friction/places.hpp>
 #include <slipmode/results/provenance.hpp>
 #include <slipmode/results/units.hpp>
 
@@ -14,10 +15,10 @@ namespace {
 
 constexpr Eigen::Index kLowest = 20;
 
-/// Directions of all contacts, one per column.
-Eigen::MatrixXd contact_directions(const dynamics::HybridSystem& system) {
-  Eigen::MatrixXd w(system.size(), static_cast<Eigen::Index>(system.contacts().size()));
-  for (Eigen::Index c = 0; c < w.cols(); ++c) w.col(c) = system.contacts()[c].direction;
+/// Directions of contacts, one per column.
+Eigen::MatrixXd directions_of(const std::vector<friction::Contact>& contacts, Eigen::Index size) {
+  Eigen::MatrixXd w(size, std::ssize(contacts));
+  for (Eigen::Index c = 0; c < w.cols(); ++c) w.col(c) = contacts[static_cast<std::size_t>(c)].direction;
   return w;
 }
 
@@ -29,19 +30,28 @@ double contact_stiffness(const friction::Law& law) {
 
 }  // namespace
 
+fem::Modes sticking_modes(const dynamics::HybridSystem& system, Eigen::Index count) {
+  std::vector<friction::Contact> held;
+  for (const std::vector<std::size_t>& place : friction::by_place(system.contacts())) {
+    const auto is_frictional = [&](std::size_t c) { return friction::clearance(system.contacts()[c].law) == nullptr; };
+    if (std::ranges::any_of(place, is_frictional)) held.push_back(system.contacts()[place.front()]);
+  }
+  const Eigen::Index free = system.size() - std::ssize(held);
+  if (held.empty() || free <= 0) return {};
+  return fem::constrained_modes(system.structure(), directions_of(held, system.size()), std::min(count, free));
+}
+
 ModeSets natural_modes(const scene::Scene& scene, const dynamics::HybridSystem& system, Eigen::Index count) {
   if (count < 0 || count > system.size()) {
     throw InvalidInput(fmt::format("count = {}: expected 1..{} (the degrees of freedom), or 0 for the lowest {}", count,
                                    system.size(), kLowest));
   }
   if (count == 0) count = std::min(system.size(), kLowest);
-  const Eigen::MatrixXd w = contact_directions(system);
-  const Eigen::Index free = system.size() - w.cols();
-  ModeSets sets{
-      .slipping = fem::natural_modes(system.structure(), count), .sticking = {}, .compliant = {}, .theory = {}};
-  if (can_stick(system) && free > 0 && w.cols() > 0) {
-    sets.sticking = fem::constrained_modes(system.structure(), w, std::min(count, free));
-  }
+  const Eigen::MatrixXd w = directions_of(system.contacts(), system.size());
+  ModeSets sets{.slipping = fem::natural_modes(system.structure(), count),
+                .sticking = sticking_modes(system, count),
+                .compliant = {},
+                .theory = {}};
   Eigen::VectorXd stiffness(w.cols());
   std::ranges::transform(system.contacts(), stiffness.begin(),
                          [](const friction::Contact& contact) { return contact_stiffness(contact.law); });
@@ -63,7 +73,7 @@ results::Content content_of(const scene::Scene& scene, std::shared_ptr<const Mod
     };
     add("modes/slipping", sets->slipping, "natural modes with every contact slipping");
     if (sets->sticking.omega.size() > 0)
-      add("modes/sticking", sets->sticking, "natural modes with every contact stuck");
+      add("modes/sticking", sets->sticking, "natural modes with every frictional contact stuck");
     if (sets->compliant.omega.size() > 0)
       add("modes/compliant", sets->compliant, "natural modes with every contact held by its spring or stop");
   };

@@ -12,6 +12,7 @@
 #include <slipmode/scene/shaken.hpp>
 #include <slipmode/studies/bases.hpp>
 #include <slipmode/studies/ensemble.hpp>
+#include <slipmode/studies/natural_modes.hpp>
 #include <slipmode/studies/validation.hpp>
 
 #include <fmt/format.h>
@@ -87,12 +88,8 @@ class Pipeline {
 
   void modes() {
     constexpr Eigen::Index kShown = 20;
-    const Eigen::Index n = full_.size(), contacts = static_cast<Eigen::Index>(full_.contacts().size());
-    result_.slipping = fem::natural_modes(full_.structure(), std::min(kShown, n)).omega;
-    if (shaken_ || n <= contacts || !can_stick(full_)) return;  // a shaker's are not told
-    Eigen::MatrixXd w(n, contacts);
-    for (Eigen::Index c = 0; c < contacts; ++c) w.col(c) = full_.contacts()[c].direction;
-    result_.sticking = fem::constrained_modes(full_.structure(), w, std::min(kShown, n - contacts)).omega;
+    result_.slipping = fem::natural_modes(full_.structure(), std::min(kShown, full_.size())).omega;
+    if (!shaken_) result_.sticking = sticking_modes(full_, kShown).omega;  // a shaker's are not told
   }
 
   /// One run as [time] says; where an ensemble on a belt follows, only a stretch to look at.

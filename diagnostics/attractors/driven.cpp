@@ -96,23 +96,29 @@ std::vector<ContactMode> first_modes(const dynamics::Trajectory& run) {
   return modes;
 }
 
-void judge_contacts(const dynamics::Trajectory& run, double begin, double end, double T, double micro_stick,
-                    DrivenMotion& out) {
+/// Stops are met and left: that is no stick, no slip and no loss of a contact.
+void judge_contacts(const dynamics::HybridSystem& system, const dynamics::Trajectory& run, double begin, double end,
+                    double T, double micro_stick, DrivenMotion& out) {
   std::vector<ContactHistory> histories;
   for (const ContactMode mode : first_modes(run)) histories.emplace_back(begin, mode);
   for (const dynamics::Event& event : run.events) {
     if (event.contact >= 0) histories[static_cast<std::size_t>(event.contact)].turn(event);
   }
-  bool slides = histories.empty();
-  for (ContactHistory& history : histories) {
+  bool holds = false, slides = false;
+  std::vector<double> stick_time;
+  for (std::size_t c = 0; c < histories.size(); ++c) {
+    ContactHistory& history = histories[c];
     history.close(end);
+    stick_time.push_back(history.stuck());
+    if (friction::clearance(system.contacts()[c].law) != nullptr) continue;
+    holds = true;
     slides = slides || history.slides();
-    out.stick_fraction += history.stuck() / (static_cast<double>(histories.size()) * (end - begin));
     out.longest_stick = std::max(out.longest_stick, history.longest() / T);
     out.jumps += history.jumps();
     out.separations += history.separations();
   }
-  out.label = !slides                            ? DrivenLabel::kStick
+  out.stick_fraction = stick_share(system, stick_time, end - begin);
+  out.label = holds && !slides                   ? DrivenLabel::kStick
               : out.longest_stick <= micro_stick ? DrivenLabel::kSlip
                                                  : DrivenLabel::kStickSlip;
 }
@@ -145,9 +151,10 @@ double mismatch(const Eigen::MatrixXd& points, const Eigen::VectorXd& scale, Eig
   return largest;
 }
 
-/// Whether the difference of columns p apart falls from quarter to quarter, by a tenth at least in all.
+/// Whether the difference of columns p apart falls from eighth to eighth, by a tenth at least in all: differences of a
+/// chaotic motion fall in order once in 8! = 40,000 tries.
 bool shrinks(const Eigen::MatrixXd& points, const Eigen::VectorXd& scale, Eigen::Index p) {
-  constexpr Eigen::Index kParts = 4;
+  constexpr Eigen::Index kParts = 8;
   constexpr double kLeast = 0.9;
   const Eigen::Index length = (points.cols() - p) / kParts;
   if (length < p) return false;
@@ -225,12 +232,19 @@ DrivenPeriod driven_period(const Eigen::MatrixXd& points, const Eigen::VectorXd&
   return settling;
 }
 
+dynamics::State at_first_section(const dynamics::HybridSystem& system, const dynamics::State& start) {
+  const double first = shaker_of(system).next_upward_zero(0.0);
+  if (start.time > 0.0) return dynamics::handed_on(system, start, first);
+  if (first == 0.0) return start;
+  return dynamics::simulate(system, start, {.duration = first, .keep_events = false}).final_state;
+}
+
 DrivenMotion settle_driven(const dynamics::HybridSystem& system, const Readings& readings, const dynamics::State& start,
                            const DrivenOptions& options) {
   check(system, readings, options);
   const friction::Shaker& shaker = shaker_of(system);
   const double T = shaker.period();
-  const dynamics::State begin = dynamics::handed_on(system, start, shaker.next_upward_zero(0.0));
+  const dynamics::State begin = at_first_section(system, start);
   const double transient = (options.cycles - options.kept) * T, duration = options.cycles * T;
   const dynamics::Trajectory run = dynamics::simulate(system, begin,
                                                       {.duration = duration,
@@ -251,7 +265,7 @@ DrivenMotion settle_driven(const dynamics::HybridSystem& system, const Readings&
   out.period = driven_period(stacked(out.readings, out.contact_q, out.contact_v),
                              reach(stacked(values, run.contact_q.leftCols(count), run.contact_v.leftCols(count))),
                              options.tolerance, options.max_period);
-  judge_contacts(run, begin.time + transient, begin.time + duration, T, options.micro_stick, out);
+  judge_contacts(system, run, begin.time + transient, begin.time + duration, T, options.micro_stick, out);
   out.events = run.statistics.events;
   out.mean_energy = mean_energy(system, q, v);
   out.audit_residual = options.flow.audit ? run.audit.residual() : std::numeric_limits<double>::quiet_NaN();
@@ -263,6 +277,8 @@ DrivenMotion settle_driven(const dynamics::HybridSystem& system, const Readings&
                                      .interval = T,
                                      .flow = options.flow,
                                      .stop = options.stop});
+    const bool diverges = out.exponent->nats > 4.0 * out.exponent->error;
+    if (diverges && out.period.repeat == DrivenRepeat::kSettling) out.period = {.repeat = DrivenRepeat::kAperiodic};
   }
   return out;
 }

@@ -76,7 +76,8 @@ struct DrivenMotion {
   Eigen::VectorXd mean = {}, rms = {};  ///< of each reading; rms about the mean, over all samples [m]
   DrivenLabel label = DrivenLabel::kStickSlip;
   DrivenPeriod period = {};
-  double stick_fraction = 0.0;   ///< share of the time in stick, mean over contacts, micro-stick included
+  double stick_fraction =
+      0.0;  ///< share of the time in stick, mean over contacts whose law sticks, micro-stick included
   double longest_stick = 0.0;    ///< of any contact, in drive periods
   std::int64_t separations = 0;  ///< losses of contact
   std::int64_t jumps = 0;        ///< of contact points behind their springs
@@ -87,8 +88,11 @@ struct DrivenMotion {
   dynamics::State end = {};  ///< at a section, a whole number of periods after the start
 };
 
-/// Runs a shaken system for `cycles` of its drive from its first section after time 0, to which `start` is handed on:
-/// so phase is continuous from one drive to the next.
+/// The state at a shaken system's first section from time 0 on: run to it from a start at time 0, as simulate() would;
+/// one of a later time was at a section of another drive, and is handed on, so that phase is continuous.
+[[nodiscard]] dynamics::State at_first_section(const dynamics::HybridSystem& system, const dynamics::State& start);
+
+/// Runs a shaken system for `cycles` of its drive from its first section on, see at_first_section().
 /// @throws InvalidInput      for a drive that does not shake or stands still (amplitude 0 shakes), options out of
 /// range,
 ///                           readings of another size, and as simulate

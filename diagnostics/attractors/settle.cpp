@@ -158,10 +158,7 @@ class Settling {
     const std::vector<SlipState> slips = slip_states(block.events);
     slips_.insert(slips_.end(), slips.begin(), slips.end());
     forget_old_slips();
-    double stuck = 0.0;
-    for (const double time : block.statistics.stick_time) stuck += time;
-    const auto contacts = static_cast<double>(system_.contacts().size());
-    out_.stick_fraction = contacts > 0.0 ? stuck / (contacts * length) : 0.0;
+    out_.stick_fraction = stick_share(system_, block.statistics.stick_time, length);
     out_.slip_rate = static_cast<double>(slips.size()) / length;
     return block;
   }

@@ -27,7 +27,7 @@ struct SettleOptions {
 struct Settled {
   PeriodResult period;
   std::vector<SlipState> slips;  ///< the last p ones of a periodic motion, else the last max_slips
-  double stick_fraction = 0.0;   ///< share of the last block in stick, mean over contacts
+  double stick_fraction = 0.0;   ///< share of the last block in stick, mean over contacts whose law sticks
   /// Of HybridSystem::energy, over one period of a periodic motion, else over the last block (over one more where the
   /// waiting ended before the limit); NaN without samples [J].
   double mean_energy = 0.0;

@@ -28,7 +28,7 @@ struct VolumeBalance {
 /// Lyapunov exponents in descending order and how they were reached. Units of time are the system's.
 struct LyapunovSpectrum {
   Eigen::VectorXd nats = {};     ///< [k, 1/s]; −∞ for directions that are lost for good
-  Eigen::VectorXd error = {};    ///< standard errors from the scatter of eight equal stretches; 0 beside −∞ [k]
+  Eigen::VectorXd error = {};    ///< see standard errors in docs/theory/lyapunov-spectrum.md; 0 beside −∞ [k]
   Eigen::MatrixXd halves = {};   ///< exponents of either half of the record [k x 2]
   Eigen::Index size = 0;         ///< N, directions there are
   Eigen::Index lost = 0;         ///< exponents of −∞ among the N
@@ -49,6 +49,8 @@ struct LyapunovSpectrum {
   [[nodiscard]] Eigen::MatrixXd running() const;
   /// Largest exponent above zero by more than four standard errors.
   [[nodiscard]] bool is_chaotic() const;
+  /// Not so, but above zero by more than one, and neighbours part by more than a factor e over the record.
+  [[nodiscard]] bool is_undecided() const;
 };
 
 struct TangentOptions {

@@ -38,7 +38,8 @@ AmplitudeSpectrum amplitude_spectrum(const Eigen::VectorXd& series, double inter
   double mean_square = 0.0;
   for (Eigen::Index begin = 0; begin + n <= total; begin += std::max<Eigen::Index>(n / 2, 1)) {
     const Eigen::VectorXd part = series.segment(begin, n);
-    const double mean = part.mean();
+    // Under the window: the plain mean of a sine cut off within its period would stand out at the lowest frequencies.
+    const double mean = window.dot(part) / window.sum();
     sum += transform.forward((part.array() - mean).matrix().cwiseProduct(window)).cwiseAbs2();
     mean_square += mean * mean;
     ++out.segments;

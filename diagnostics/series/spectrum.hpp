@@ -13,7 +13,7 @@ struct AmplitudeSpectrum {
   Eigen::Index segments = 0;  ///< averaged
 };
 
-/// Averaged amplitude spectrum: segments that overlap by half, their mean removed, under Hann's window,
+/// Averaged amplitude spectrum: segments that overlap by half, their mean under Hann's window removed,
 /// transformed, squares averaged.
 /// @param series    equally spaced samples [T]
 /// @param interval  between samples, > 0 [s]

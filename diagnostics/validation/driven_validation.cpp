@@ -153,7 +153,7 @@ class DrivenValidationRun {
 
   DrivenCost clock(const dynamics::HybridSystem& system, const dynamics::State& start, double projection) const {
     const friction::Shaker& shaker = *system.drive().shaker();
-    const dynamics::State begin = dynamics::handed_on(system, start, shaker.next_upward_zero(0.0));
+    const dynamics::State begin = at_first_section(system, start);
     const dynamics::SimulateOptions run{.duration = options_.cost_cycles * shaker.period(),
                                         .keep_events = false,
                                         .output = dynamics::SimulateOptions::Output::kContacts,

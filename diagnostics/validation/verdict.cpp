@@ -75,7 +75,6 @@ void attempt(ModelFindings& findings, const char* what, const Tool& tool) {
 void take_record(ModelFindings& findings, const Subject& subject, dynamics::State state,
                  const ModelVerdictOptions& options) {
   const Eigen::Index half = options.samples / 2;
-  const auto contacts = static_cast<double>(subject.system->contacts().size());
   dynamics::FlowOptions flow = options.tangent.flow;
   flow.audit = false;
   findings.record.resize(2 * half);
@@ -85,9 +84,8 @@ void take_record(ModelFindings& findings, const Subject& subject, dynamics::Stat
         .duration = duration, .sample = options.sample, .keep_events = false, .flow = flow};
     const dynamics::Trajectory motion = dynamics::simulate(*subject.system, state, run);
     findings.record.segment(h * half, half) = (subject.channel * motion.v.leftCols(half)).transpose();
-    double stuck = 0.0;
-    for (const double time : motion.statistics.stick_time) stuck += time;
-    if (contacts > 0.0) findings.stick_fraction.halves[static_cast<std::size_t>(h)] = stuck / (contacts * duration);
+    findings.stick_fraction.halves[static_cast<std::size_t>(h)] =
+        stick_share(*subject.system, motion.statistics.stick_time, duration);
     state = motion.final_state;
   }
   findings.stick_fraction.value = 0.5 * (findings.stick_fraction.halves[0] + findings.stick_fraction.halves[1]);

@@ -35,7 +35,7 @@ struct ModelFindings {
   /// Of the record's averaged amplitude spectrum from the full model's, root mean square, of its root mean square.
   /// Beside the full model: between its own halves, all other halves are compared with the same half of the full model.
   Halved spectrum_distance;
-  Halved stick_fraction;                ///< share of the time in stick, mean over contacts
+  Halved stick_fraction;                ///< share of the time in stick, mean over contacts whose law sticks
   Eigen::VectorXd record = {};          ///< velocity of the channel [samples]
   std::string failure = {};             ///< why the model gave nothing; empty: it did
   std::vector<std::string> notes = {};  ///< figures that could not be had, and why

@@ -145,7 +145,8 @@ Figure response_diagram(const std::vector<ResponseBranch>& branches, const std::
   if (has_unstable) plots.push_back("NaN with lines dashtype 2 linewidth 1.5 linecolor rgb '#222222' title 'unstable'");
   add_marks(figure, marks, plots, drawn);
   figure.show({.panels = {{.series = drawn, .x_label = labels.parameter, .y_label = labels.value}}});
-  figure.command("set margins screen 0.09, screen 0.98, screen 0.11, screen 0.84");
+  // The left margin is what ticks and label need.
+  figure.command("set rmargin at screen 0.98; set bmargin at screen 0.11; set tmargin at screen 0.84");
   figure.command("set key at screen 0.985,0.985 right top horizontal maxrows 3 width 1");
   figure.command(fmt::format("set xrange {}; set yrange {}", padded_range(low_x, high_x), padded_range(low_y, high_y)));
   figure.command(fmt::format("set xlabel \"{}\"; set ylabel \"{}\"", labels.parameter, labels.value));

@@ -168,6 +168,23 @@ TEST(SpectrumOfASystem, LinearStructureHasTheRealPartsOfItsEigenvalues) {
   EXPECT_EQ(found.lost, 0);
 }
 
+TEST(SpectrumOfASystem, ErrorsOfARegularMotionReachTheTruth) {
+  // Pairs turn in ellipses, slowly seen every 6.3: equal stretches of the record then all err by nearly the same.
+  const fem::Structure structure = fem::chain({.masses = 2, .damping = 0.3, .mass_damping = 0.05});
+  const dynamics::HybridSystem chain(structure, {}, friction::Belt::constant(0.0));
+  const Eigen::VectorXd expected = decay_rates(
+      state_matrix(fem::to_dense(structure.M()), fem::to_dense(structure.C()), fem::to_dense(structure.K())));
+  for (const double interval : {0.7, 5.0, 6.3}) {
+    for (double duration = 100.0; duration < 700.0; duration += 41.0) {
+      const LyapunovSpectrum found = lyapunov_spectrum(
+          chain, chain.rest(), {.transient = 0.0, .duration = duration, .alignment = 0.1, .interval = interval});
+      for (Eigen::Index i = 0; i < expected.size(); ++i)
+        EXPECT_NEAR(found.nats[i], expected[i], 2.0 * found.error[i]) << i << " of " << duration << " by " << interval;
+      EXPECT_FALSE(found.is_chaotic() || found.is_undecided());
+    }
+  }
+}
+
 TEST(SpectrumOfASystem, SteadySlidingHasTheRealPartsOfTheLinearisedFlow) {
   // Slow enough for the Stribeck slope to matter, damped enough for sliding to be stable: C gains −αΔμ N e^{−αV} w wᵀ.
   const double alpha = 2.0, V = 0.8, N = 0.5;

@@ -313,7 +313,8 @@ TEST(Continuation, OrbitsOfTwiceThePeriodEndWhereThePeriodDoublesAgain) {
     EXPECT_NEAR(last.parameter, doublings[1 - from].parameter, 1e-7);
     EXPECT_EQ(last.orbit.order, 1);
     EXPECT_EQ(of_kind(doubled, SpecialKind::kPeriodDoubling).size(), 1u);
-    for (const SpecialPoint& fold : of_kind(doubled, SpecialKind::kFold)) EXPECT_NEAR(std::abs(fold.multiplier), 1.0, 1e-3);
+    for (const SpecialPoint& fold : of_kind(doubled, SpecialKind::kFold))
+      EXPECT_NEAR(std::abs(fold.multiplier), 1.0, 1e-3);
   }
 }
 

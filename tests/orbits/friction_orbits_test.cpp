@@ -195,6 +195,37 @@ Eigen::Matrix2d den_hartog_half_map(const DenHartog& d) {
   return -rotation * Eigen::Vector2d(1.0, (pull + d.friction) / (pull - d.friction)).asDiagonal();
 }
 
+TEST(FrictionOrbits, TheSectionIsOfWhateverContactComesBack) {
+  // The motion of a chain on a belt, whichever of its contacts is named first; a stop that is never met, a tanh law.
+  const auto chain = [](bool swapped) {
+    const HybridSystem belt = belt_chain(Stribeck{0.4, 0.2, 8.0}, Belt::constant(0.2), 3);
+    std::vector<friction::Contact> contacts = belt.contacts();
+    friction::Contact stop = contacts[0], smooth = contacts[0];
+    stop.law = friction::Clearance{friction::Stop{.stiffness = 10.0, .gap = 1e3}, std::nullopt};
+    smooth.law = friction::TanhRegularised{.mu_s = 1e-3, .mu_k = 1e-3, .alpha = 0.0, .epsilon = 0.1};
+    smooth.direction = unit(3, 0);
+    contacts.insert(swapped ? contacts.begin() : contacts.end(), {stop, smooth});
+    return HybridSystem(belt.structure(), contacts, belt.drive());
+  };
+  const RecurrenceGuess last = recurrence_guess(chain(true), swinging(3, 2, 0.1), 2000.0, 500.0);
+  const RecurrenceGuess first = recurrence_guess(chain(false), swinging(3, 2, 0.1), 2000.0, 500.0);
+  EXPECT_NEAR(last.period, first.period, 1e-9);
+  EXPECT_LT(last.mismatch, 1e-4);
+}
+
+TEST(FrictionOrbits, ACycleWithoutEventsIsFoundByItsSwing) {
+  // A tanh law that falls with the speed: the cycle never reaches the belt's speed.
+  const HybridSystem system = fixtures::oscillator(
+      1.0, 1.0, 0.05, friction::TanhRegularised{.mu_s = 0.4, .mu_k = 0.2, .alpha = 3.0, .epsilon = 0.1}, 1.0,
+      Belt::constant(0.55));
+  const RecurrenceGuess guess =
+      recurrence_guess(system, state(Eigen::VectorXd::Constant(1, 0.6), Eigen::VectorXd::Zero(1)), 400.0, 100.0);
+  const PeriodicOrbit orbit = find_orbit(system, guess.state, {.period = guess.period});
+  EXPECT_EQ(orbit.crossings, 0);
+  EXPECT_NEAR(orbit.period, guess.period, 1e-3);
+  EXPECT_EQ(orbit.stability, Stability::kStable);
+}
+
 TEST(FrictionOrbits, DenHartogSliding) {
   const DenHartog d;
   const HybridSystem system = shaken_mass(d);

@@ -18,7 +18,7 @@ namespace {
 constexpr double kPiece = 2e6;
 
 bool tells_stick(const dynamics::HybridSystem& system) {
-  return std::ranges::all_of(system.contacts(), [](const friction::Contact& contact) {
+  return std::ranges::any_of(system.contacts(), [](const friction::Contact& contact) {
     return friction::sticks(friction::kind(contact.law));
   });
 }
@@ -45,7 +45,7 @@ class Gathered {
     kinetic_ += 0.5 * v.cwiseProduct(fem::multiply(structure.M(), v)).sum();
     strain_ += 0.5 * q.cwiseProduct(fem::multiply(structure.K(), q)).sum();
     sum_ += q.rowwise().sum();
-    for (const double time : piece.statistics.stick_time) stuck_ += time;
+    stuck_ += stick_share(model_.model.system, piece.statistics.stick_time, 1.0);
     out_.events += piece.statistics.events;
     add_points(piece, model_.model.readings.of(q));
     count_ += columns;
@@ -56,8 +56,7 @@ class Gathered {
     const Eigen::VectorXd mean = sum_ / count;
     const double about = 0.5 * mean.dot(fem::multiply(model_.model.system.structure().K(), mean).col(0));
     out_.energy = (kinetic_ + strain_) / count - about;
-    const auto contacts = static_cast<double>(model_.model.system.contacts().size());
-    out_.stick = tells_stick(model_.model.system) ? stuck_ / (contacts * schedule_.sample * count) : kNone;
+    out_.stick = tells_stick(model_.model.system) ? stuck_ / (schedule_.sample * count) : kNone;
     out_.end = std::move(end);
     return std::move(out_);
   }

@@ -40,6 +40,30 @@ Eigen::Index vanishing(const LyapunovSpectrum& spectrum, Eigen::Index finite) {
   return least <= error + kLogOfFactor / spectrum.duration ? nearest : -1;
 }
 
+/// How far growth strays from its trend, per length of the record: the error that its ends leave to a regular motion,
+/// whose equal stretches may all err by the same. Of a random walk it is 0.6 standard errors.
+Eigen::VectorXd error_of_ends(const Eigen::MatrixXd& rates) {
+  const auto m = static_cast<double>(rates.cols());
+  const Eigen::VectorXd mean = rates.rowwise().mean();
+  Eigen::VectorXd stray = Eigen::VectorXd::Zero(rates.rows()), low = stray, high = stray;
+  for (const auto& rate : rates.colwise()) {
+    stray += rate - mean;
+    low = low.cwiseMin(stray);
+    high = high.cwiseMax(stray);
+  }
+  return 0.5 * (high - low) / m;
+}
+
+/// Directions that have not parted over the record by a factor of e³ share their growth: only its sum is told.
+void widen_unparted(const LyapunovSpectrum& spectrum, Eigen::Index finite, Eigen::VectorXd& out_error) {
+  constexpr double kParted = 3.0;
+  for (Eigen::Index i = 1; i < finite; ++i) {
+    const double apart = spectrum.nats[i - 1] - spectrum.nats[i];
+    if (apart * spectrum.duration >= kParted) continue;
+    for (const Eigen::Index j : {i - 1, i}) out_error[j] = std::max(out_error[j], 0.5 * apart);
+  }
+}
+
 /// By leaving out one stretch at a time. @param parts  finite exponents of the stretches; @param lost  −∞ ones behind
 double dimension_error(const Eigen::MatrixXd& parts, Eigen::Index lost, Eigen::Index zero, Eigen::Index size) {
   Eigen::VectorXd without(kStretches);
@@ -64,6 +88,10 @@ Eigen::MatrixXd LyapunovSpectrum::running() const {
 }
 
 bool LyapunovSpectrum::is_chaotic() const { return nats.size() > 0 && nats[0] > 4.0 * error[0]; }
+
+bool LyapunovSpectrum::is_undecided() const {
+  return nats.size() > 0 && !is_chaotic() && nats[0] > error[0] && nats[0] * duration > 1.0;
+}
 
 void summarise(LyapunovSpectrum& spectrum, const Eigen::Ref<const Eigen::MatrixXd>& growth) {
   const Eigen::Index k = growth.rows(), m = growth.cols();
@@ -90,10 +118,17 @@ void summarise(LyapunovSpectrum& spectrum, const Eigen::Ref<const Eigen::MatrixX
     return;
   }
   const Eigen::MatrixXd parts = stretch_means(ordered);
-  spectrum.error.head(finite) = standard_error(parts);
+  Eigen::VectorXd error = standard_error(parts).cwiseMax(error_of_ends(ordered));
+  widen_unparted(spectrum, finite, error);
+  spectrum.error.head(finite) = error;
   const Eigen::Index zero = vanishing(spectrum, finite);
   spectrum.dimension = dimension_of(spectrum.nats, zero, spectrum.size);
-  spectrum.dimension_error = dimension_error(parts, k - finite, zero, spectrum.size);
+  // Where a sum of exponents may be of either sign the dimension jumps, if not from stretch to stretch.
+  Eigen::VectorXd most = spectrum.nats, least = spectrum.nats;
+  most.head(finite) += error;
+  least.head(finite) -= error;
+  const double spread = dimension_of(most, zero, spectrum.size) - dimension_of(least, zero, spectrum.size);
+  spectrum.dimension_error = std::max(dimension_error(parts, k - finite, zero, spectrum.size), 0.5 * spread);
 }
 
 }  // namespace slipmode::diagnostics
