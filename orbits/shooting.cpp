@@ -136,7 +136,10 @@ std::string advice(const ShootingDescent& d, const ShootingOptions& options) {
           "order or period, or see whether a contact only grazes",
           where);
     case ShootingStatus::kIterations:
-      return fmt::format("no orbit found: {}; it was still falling. Raise max_iterations, or start nearer", where);
+      return fmt::format(
+          "no orbit found: {}; it was still falling. Allow more iterations (--iterations, max_iterations), or start "
+          "nearer",
+          where);
     case ShootingStatus::kFlowFailed:
       return "no orbit found: the flow failed from the guess: " + d.failure;
     case ShootingStatus::kPeriodLost:

@@ -59,8 +59,8 @@ void check_contacts(const std::vector<friction::Contact>& contacts, const Eigen:
   if (!(independence >= kVisible)) {
     throw InvalidInput(fmt::format(
         "reduce: a basis of {} vectors cannot tell its {} contacts apart (smallest to largest "
-        "singular value of their projections {:.3g}, at least {:.0e} needed). Keep more vectors: {} or more by --modes "
-        "or reduction.modes",
+        "singular value of their projections {:.3g}, at least {:.0e} needed). Keep more vectors: {} or more by "
+        "reduction.modes",
         Phi.cols(), seen.cols(), independence, kVisible, std::max<Eigen::Index>(Phi.cols() + 1, seen.cols())));
   }
 }

@@ -3,6 +3,7 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/results/table.hpp>
 #include <slipmode/results/trade_store.hpp>
+#include <slipmode/results/units.hpp>
 #include <slipmode/studies/exponents.hpp>
 #include <slipmode/studies/trade_words.hpp>
 #include <slipmode/trade/advice.hpp>
@@ -11,6 +12,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <numbers>
 #include <utility>
 
 namespace slipmode::studies {
@@ -30,8 +32,9 @@ Asked by_the_motion(const scene::Scene& scene, double bound, const RunOptions& r
         system, start, tangent_options(scene, system, {.exponents = 1, .transient = {}, .duration = {}}, run));
     out.exponent = found.nats(0);
     out.exponent_error = found.error(0);
-    const std::string figure = fmt::format("largest exponent {:.3g} ± {:.1g} {}", *out.exponent, out.exponent_error,
-                                           scene.units == "SI" ? "1/s" : "per unit of time");
+    const std::string figure =
+        fmt::format("largest exponent {:.3g} ± {:.1g} bit per {}", *out.exponent / std::numbers::ln2,
+                    out.exponent_error / std::numbers::ln2, results::Units::of(scene.units).one_time());
     if (found.is_chaotic()) {
       out.sentence =
           fmt::format("The motion is chaotic ({}): paths part whatever is left out, its statistics need not.", figure);

@@ -145,7 +145,8 @@ std::optional<std::string> unsettled(const Series& series, const VerdictOptions&
 }
 
 /// Decides between everything that does not repeat itself.
-void decide_aperiodic(SeriesVerdict& out, const Examination& examination, double interval) {
+void decide_aperiodic(SeriesVerdict& out, const Examination& examination, const Series& series) {
+  const double interval = series.interval;
   constexpr double kGoodForecast = 0.1, kErrors = 3.0, kClear = 3.0, kPerLoop = 0.01;
   out.embedding = examination.embedding();
   out.surrogates = examination.surrogates(out.embedding);
@@ -155,9 +156,9 @@ void decide_aperiodic(SeriesVerdict& out, const Examination& examination, double
   const bool zero = largest < kErrors * error || largest * examination.loop() * interval < kPerLoop;
   if (zero && forecast < kGoodForecast) {
     out.motion = SeriesMotion::kQuasiPeriodic;
-    out.reason =
-        fmt::format("no repeat, largest exponent {:.3g} ± {:.2g} not above zero, forecasts miss by {:.2g} deviations",
-                    largest, error, forecast);
+    out.reason = fmt::format(
+        "no repeat, largest exponent {:.3g} ± {:.2g} nat per {} not above zero, forecasts miss by {:.2g} deviations",
+        largest, error, series.time_unit, forecast);
     return;
   }
   const bool by_chance = forecast > kBadForecast && out.surrogates.distance < kClear;
@@ -168,16 +169,17 @@ void decide_aperiodic(SeriesVerdict& out, const Examination& examination, double
     return;
   }
   if (zero) {
-    out.reason = fmt::format("largest exponent {:.3g} ± {:.2g} not above zero, yet forecasts miss by {:.2g} deviations",
-                             largest, error, forecast);
+    out.reason = fmt::format(
+        "largest exponent {:.3g} ± {:.2g} nat per {} not above zero, yet forecasts miss by {:.2g} deviations", largest,
+        error, series.time_unit, forecast);
     return;
   }
   out.divergence = examination.divergence_at(out.embedding, largest);
   const bool diverges = std::min(out.divergence.of_halves[0], out.divergence.of_halves[1]) > 0.0;
   if (diverges) out.motion = SeriesMotion::kChaotic;
-  out.reason =
-      fmt::format("largest exponent {:.3g} ± {:.2g} by fitted Jacobians, neighbours diverge at {:.3g} ± {:.2g}",
-                  largest, error, out.divergence.exponent, out.divergence.error);
+  out.reason = fmt::format(
+      "largest exponent {:.3g} ± {:.2g} by fitted Jacobians, neighbours diverge at {:.3g} ± {:.2g} nat per {}", largest,
+      error, out.divergence.exponent, out.divergence.error, series.time_unit);
 }
 
 }  // namespace
@@ -241,7 +243,7 @@ SeriesVerdict series_verdict(const Series& series, const VerdictOptions& options
     out.reason = fmt::format("repeats itself after {:.6g} to {:.2g} of its variance", out.T, out.repeat.mismatch);
     return out;
   }
-  decide_aperiodic(out, examination, series.interval);
+  decide_aperiodic(out, examination, series);
   return out;
 }
 

@@ -132,7 +132,7 @@ TEST(Run, TakesNoFewerModesByEnergyThanThereAreContacts) {
   EXPECT_EQ(by_energy.json()["pod"]["chosen_modes"], 2);
   const Outcome one = slipmode_in(folder, asked + Words{"--set", "reduction={modes=1}"});
   EXPECT_EQ(one.exit_code, 2);
-  EXPECT_THAT(one.err, HasSubstr("2 or more by --modes or reduction.modes"));
+  EXPECT_THAT(one.err, HasSubstr("2 or more by reduction.modes"));
 }
 
 TEST(Run, OpensItsReportOnlyWhereThereIsADisplay) {
