@@ -1,8 +1,8 @@
 #include <slipmode/dynamics/kernels/kernels.hpp>
+
 #include "cli/json_values.hpp"
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
-
 #include "selftest/cases.hpp"
 #include "selftest/scene_properties.hpp"
 

@@ -10,6 +10,9 @@ namespace {
 using dynamics::ContactMode;
 
 constexpr double kClock = 4.0 * std::numeric_limits<double>::epsilon();
+/// Of the time looked at: what rounding leaves between contacts that by their motion change together, as the elements
+/// of a joint that turns and slides on again.
+constexpr double kTogether = 1e-10;
 
 /// True where a clearance exerts no force.
 bool is_free(ContactMode mode) {
@@ -60,8 +63,9 @@ std::vector<RegimeSpan> regime_sequence(double start_time, std::vector<ContactMo
     RegimeSpan next{event.time, result.back().modes};
     next.modes[static_cast<std::size_t>(event.contact)] = event.after;
     const double apart = event.time - result.back().time;
-    if (apart <= kClock * std::abs(event.time) && result.size() > 1) {
-      next.time = result.back().time;  // contacts that change together, to the clock's rounding
+    const double together = std::max(kClock * std::abs(event.time), kTogether * (events.back().time - start_time));
+    if (apart <= together && result.size() > 1) {
+      next.time = result.back().time;
       result.back() = std::move(next);
     } else {
       result.push_back(std::move(next));

@@ -1,5 +1,6 @@
 #include "orbits/internal/branch_tests.hpp"
 
+#include <slipmode/core/errors.hpp>
 #include <slipmode/orbits/floquet.hpp>
 #include "orbits/balance/internal/balance_branch_solver.hpp"
 #include "orbits/internal/branch_solver.hpp"
@@ -77,11 +78,15 @@ std::optional<WatchedPoint<Solver>> between(const Solver& solver, const WatchedP
                                             const Located<Solver>& sides, double share) {
   const Eigen::VectorXd chord = solver.difference(sides.high.at.at, sides.low.at.at);
   const typename Solver::Unknowns guess = solver.moved(sides.low.at, share * chord, 0.0);
-  auto corrected = solver.correct(guess, a.tangent);
-  if (!corrected) return std::nullopt;
-  WatchedPoint<Solver> found = watch(solver, solver.polished(std::move(corrected->at), guess, a.tangent), a.tangent);
-  keep_orientation(a, found);
-  return found;
+  try {
+    auto corrected = solver.correct(guess, a.tangent);
+    if (!corrected) return std::nullopt;
+    WatchedPoint<Solver> found = watch(solver, solver.polished(std::move(corrected->at), guess, a.tangent), a.tangent);
+    keep_orientation(a, found);
+    return found;
+  } catch (const NumericalFailure&) {
+    return std::nullopt;  // the flow fails there: beside it it may not
+  }
 }
 
 /// Narrows [low at s = 0, high at s] until the sides are the same to rounding or the parameter is known.
@@ -378,8 +383,8 @@ SpecialPoints<Solver> special_points_between(const Solver& solver, const Watched
     add_smooth(solver, a, b, s, tolerance, SpecialKind::kPeriodDoubling, &Point::doubling, found);
     add_smooth(solver, a, b, s, tolerance, SpecialKind::kNeimarkSacker, &Point::torus, found);
   }
-  const bool turns_back = std::ranges::any_of(
-      found, [](const Found& one) { return one.point.kind == SpecialKind::kNonSmoothFold; });
+  const bool turns_back =
+      std::ranges::any_of(found, [](const Found& one) { return one.point.kind == SpecialKind::kNonSmoothFold; });
   if (a.orbit.word != b.orbit.word && !turns_back) {
     const Located<Solver> at = narrow<Solver>(
         solver, a, b, s, tolerance, [&](const Point& p) { return p.orbit.word == a.orbit.word ? -1.0 : 1.0; }, false);
@@ -397,12 +402,13 @@ SpecialPoints<Solver> special_points_between(const Solver& solver, const Watched
 template WatchedPoint<BranchSolver> watch(const BranchSolver&, BranchEvaluation, const Eigen::VectorXd&);
 template void keep_orientation(const WatchedPoint<BranchSolver>&, WatchedPoint<BranchSolver>&);
 template SpecialPoints<BranchSolver> special_points_between(const BranchSolver&, const WatchedPoint<BranchSolver>&,
-                                                          const WatchedPoint<BranchSolver>&, double, double);
+                                                            const WatchedPoint<BranchSolver>&, double, double);
 template WatchedPoint<BalanceBranchSolver> watch(const BalanceBranchSolver&, BalanceBranchEvaluation,
                                                  const Eigen::VectorXd&);
 template void keep_orientation(const WatchedPoint<BalanceBranchSolver>&, WatchedPoint<BalanceBranchSolver>&);
 template SpecialPoints<BalanceBranchSolver> special_points_between(const BalanceBranchSolver&,
-                                                          const WatchedPoint<BalanceBranchSolver>&,
-                                                          const WatchedPoint<BalanceBranchSolver>&, double, double);
+                                                                   const WatchedPoint<BalanceBranchSolver>&,
+                                                                   const WatchedPoint<BalanceBranchSolver>&, double,
+                                                                   double);
 
 }  // namespace slipmode::orbits

@@ -18,6 +18,10 @@ namespace {
 /// Steps are rejected where the tangent turns by more than this (cosine), unless the word changes.
 constexpr double kLeastCosine = 0.9;
 constexpr double kLandingStep = 1e-4;
+/// A mismatch a step of 1e-5 or less away that is no smooth motion's.
+constexpr double kJump = 1e-3;
+/// Growth of deviations in a period of which double precision leaves too little to close an orbit.
+constexpr double kStretches = 1e6;
 /// Points looked back upon, and how near counts as the same place (in steps), when a corner is rounded.
 constexpr std::size_t kRemembered = 40;
 constexpr double kSamePlace = 5.0;
@@ -97,8 +101,19 @@ class Walk {
     }
   }
 
-  /// The next point at a length s, if it is one of this branch.
+  /// next_at(), where the flow may fail: at one value it may not be told from which side an event is met.
   [[nodiscard]] std::optional<Point> attempt(double s, int& out_iterations) {
+    try {
+      failed_.clear();
+      return next_at(s, out_iterations);
+    } catch (const NumericalFailure& failure) {
+      failed_ = failure.what();
+      return std::nullopt;
+    }
+  }
+
+  /// The next point at a length s, if it is one of this branch.
+  [[nodiscard]] std::optional<Point> next_at(double s, int& out_iterations) {
     const double length = length_of(s);
     const Eigen::VectorXd row = options_.arclength ? current_.tangent : solver_.parameter_row();
     const auto corrected = solver_.correct(solver_.moved(current_.at, length * current_.tangent, 0.0), row);
@@ -245,16 +260,43 @@ class Walk {
     const PeriodicOrbit& last = branch_.points.back().orbit;
     std::string seen = fmt::format("no orbit is found beyond parameter {:.9g}, with steps down to {:.1e}",
                                    current_.at.at.parameter, options_.min_step);
-    if (!options_.arclength && std::abs(current_.fold) < 0.1)
+    if (!failed_.empty())
+      seen += "; " + failed_;
+    else if (!options_.arclength && std::abs(current_.fold) < 0.1)
       seen += "; the branch turns back there (fold): follow it with arclength";
     else if (last.has_grazing || last.grazing < 0.05)
       seen += fmt::format("; a stop is met at {:.1e} of the top speed there: a grazing at which the orbit ends",
                           last.grazing);
     else if (solver_.on_curve())
       seen += "; the curve may end on another one, as folds and losses of symmetry do on grazings";
+    else if (const std::string jump = jump_ahead(); !jump.empty())
+      seen += "; " + jump;
+    else if (last.leading_modulus > kStretches)
+      seen += fmt::format("; deviations grow {:.1e} times in a period there, more than shooting holds",
+                          last.leading_modulus);
     else
       seen += "; see whether an event meets the orbit's origin, or the family is not continuous there";
     end(BranchEnd::kLost, std::move(seen));
+  }
+
+  /// A motion that jumps a little further on, as where friction falls from μ_s to μ_k: mismatches do not shrink with
+  /// the way there. Empty where none is seen.
+  [[nodiscard]] std::string jump_ahead() const {
+    try {
+      for (const double s : {1e-7, 1e-6, 1e-5}) {
+        const typename Solver::Evaluation there =
+            solver_.evaluate(solver_.moved(current_.at, s * current_.tangent, 0.0));
+        const PeriodicOrbit orbit = solver_.describe(there);
+        if (orbit.word == current_.orbit.word || there.r.norm() < kJump) continue;
+        return fmt::format(
+            "the motion jumps there, by {:.1e} of its size ({}): where friction falls from its static "
+            "to its sliding limit an orbit ends so",
+            there.r.norm(), word_change(current_.orbit, orbit));
+      }
+    } catch (const NumericalFailure&) {
+      return {};  // what lies ahead stays unknown
+    }
+    return {};
   }
 
   /// A curve that is found no more may have come to where the word changes.
@@ -349,6 +391,7 @@ class Walk {
   Point current_;
   double step_ = 0.0, first_size_ = 0.0;
   bool ended_ = false;
+  std::string failed_;   ///< how the flow failed in the last attempt
   std::string why_not_;  ///< what kept the last attempt on a curve from going on
 };
 

@@ -5,6 +5,7 @@
 #include <slipmode/orbits/continuation.hpp>
 
 #include <gtest/gtest.h>
+#include <numbers>
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -66,6 +67,47 @@ dynamics::SystemFamily joint(double hold, double load) {
                         std::move(contacts), friction::Force{omega, {{.amplitude = 0.04}}}, Eigen::Vector2d(0.0, load),
                         Eigen::MatrixXd(Eigen::Vector2d(0.0, 1.0)));
   };
+}
+
+/// Three blocks; a joint of `elements` and one more between the first two, the force at the third.
+dynamics::SystemFamily three_blocks(int elements, double finest) {
+  return [=](double hertz) {
+    Eigen::Matrix3d K, C;
+    K << 5e5, 0.0, 0.0, 0.0, 2e5, -2e5, 0.0, -2e5, 2e5;
+    C << 40.0, 0.0, 0.0, 0.0, 8.0, -8.0, 0.0, -8.0, 8.0;
+    const friction::Iwan whole{
+        .slip_force = 300.0, .stiffness = 2e6, .chi = -0.5, .beta = 0.6, .elements = elements, .finest = finest};
+    std::vector<friction::Contact> contacts;
+    for (const friction::JenkinsElement& own : friction::elements_of(whole))
+      contacts.push_back(
+          {Eigen::Vector3d(-1.0, 1.0, 0.0), friction::CompliantCoulomb{1.0, 1.0, own.stiffness}, own.slip_force});
+    return HybridSystem(fem::Structure(Eigen::Vector3d(4.0, 2.0, 1.0).asDiagonal().toDenseMatrix(), C, K),
+                        std::move(contacts), friction::Force{2.0 * std::numbers::pi * hertz, {{.amplitude = 60.0}}},
+                        Eigen::VectorXd{}, Eigen::MatrixXd(Eigen::Vector3d::Unit(2)));
+  };
+}
+
+// All elements slide, then the joint turns a second time within each half period: its elements turn, and slide on
+// again, at one instant, of which rounding makes several. On the way a whole joint of 13 is met just as it turns.
+TEST(CompliantOrbits, AreFollowedPastASecondTurnOfTheWholeJoint) {
+  struct Case {
+    int elements;
+    double finest, from, to;
+    std::vector<int> crossings;  // of each contact twice a period for every turn, and again for what slides on
+  };
+  for (const Case& own : {Case{4, 0.05, 38.0, 42.0, {20, 32, 20, 16}}, Case{12, 0.01, 39.2, 39.5, {52, 96}}}) {
+    const dynamics::SystemFamily family = three_blocks(own.elements, own.finest);
+    const HybridSystem system = family(own.from);
+    const PeriodicOrbit first = find_orbit(system, settle_guess(system, system.rest(), 200.0), {.half_period = true});
+    const Branch branch =
+        continue_orbit(family, first, own.from, {.from = own.from, .to = own.to, .shooting = {.half_period = true}});
+    EXPECT_EQ(branch.end, BranchEnd::kRange) << branch.reason;
+    std::vector<int> crossings;
+    for (const BranchPoint& point : branch.points)
+      if (crossings.empty() || crossings.back() != point.orbit.crossings) crossings.push_back(point.orbit.crossings);
+    EXPECT_EQ(crossings, own.crossings);
+    EXPECT_EQ(branch.special.size() + 1, own.crossings.size());
+  }
 }
 
 struct Range {
