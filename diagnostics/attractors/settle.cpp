@@ -200,8 +200,8 @@ class Settling {
   }
 
   void forget_old_slips() {
-    const auto needed = static_cast<std::size_t>((options_.period.repeats + 1) * options_.period.max_period +
-                                                 options_.period.min_matches + options_.max_slips);
+    const int seen = (options_.period.repeats + 1) * options_.period.max_period;
+    const auto needed = static_cast<std::size_t>(seen + options_.period.min_matches + options_.max_slips);
     const std::size_t keep = needed * std::max<std::size_t>(system_.contacts().size(), 1);
     if (slips_.size() > keep) slips_.erase(slips_.begin(), slips_.end() - static_cast<std::ptrdiff_t>(keep));
   }

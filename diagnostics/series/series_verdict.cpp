@@ -98,7 +98,8 @@ class Examination {
   /// Followed until a rise of six at the exponent already found, at least three loops.
   Divergence divergence_at(const Embedding& embedding, double exponent) const {
     const double samples = std::max(6.0 / (exponent * series_.interval), 3.0 * loop_);
-    const auto longest = static_cast<double>(series_.values.size() / 8);
+    const Eigen::Index eighth = series_.values.size() / 8;
+    const auto longest = static_cast<double>(eighth);
     const auto stride = std::max<Eigen::Index>(1, sampled_map() ? 1 : std::lround(loop_ / 8.0));
     const int steps = std::max(10, static_cast<int>(std::min(samples, longest)) / static_cast<int>(stride));
     return divergence(series_,

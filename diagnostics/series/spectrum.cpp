@@ -45,8 +45,9 @@ AmplitudeSpectrum amplitude_spectrum(const Eigen::VectorXd& series, double inter
     ++out.segments;
   }
   const auto count = static_cast<double>(out.segments);
+  const Eigen::Index half = n / 2;
   out.frequency_hz =
-      Eigen::VectorXd::LinSpaced(n / 2 + 1, 0.0, static_cast<double>(n / 2)) / (static_cast<double>(n) * interval);
+      Eigen::VectorXd::LinSpaced(half + 1, 0.0, static_cast<double>(half)) / (static_cast<double>(n) * interval);
   out.amplitude = (sum / count).cwiseSqrt() * (2.0 / window.sum());
   out.amplitude(0) = std::sqrt(mean_square / count);
   if (n % 2 == 0) out.amplitude(n / 2) *= 0.5;

@@ -161,6 +161,7 @@ class DrivenValidationRun {
     const auto once = [&] { return detail::timed([&] { (void)dynamics::simulate(system, begin, run); }); };
     const detail::Times first = once();
     std::vector<detail::Times> repeats;
+    repeats.reserve(static_cast<std::size_t>(options_.cost_repeats));
     for (int k = 0; k < options_.cost_repeats; ++k) repeats.push_back(once());
     const detail::Times median = detail::median(repeats);
     return {.wall = median.wall, .cpu = median.cpu, .setup = projection + std::max(0.0, first.wall - median.wall)};

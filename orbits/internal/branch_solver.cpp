@@ -251,12 +251,15 @@ Eigen::VectorXd BranchSolver::newton_step(const BranchEvaluation& at, const Bran
 BranchEvaluation BranchSolver::polished(BranchEvaluation at, const BranchUnknowns& guess,
                                         const Eigen::VectorXd& row) const {
   BranchEvaluation next = evaluate(moved(at, newton_step(at, guess, row), 1.0));
-  return next.norm() < at.norm() ? next : at;
+  if (next.norm() < at.norm()) at = std::move(next);
+  return at;
 }
 
 std::optional<BranchEvaluation> BranchSolver::shortened(const BranchEvaluation& from,
                                                         const Eigen::VectorXd& step) const {
-  for (double share = 1.0; share > 0.05; share *= 0.5) {
+  constexpr int kHalvings = 5;
+  for (int k = 0; k < kHalvings; ++k) {
+    const double share = std::ldexp(1.0, -k);
     BranchEvaluation next = evaluate(moved(from, share * step, share));
     if (next.norm() <= (1.0 - 0.1 * share) * from.norm()) return next;
     const bool at_rounding = next.largest() <= kRoundingOfPass * std::max(1.0, next.J.norm());
