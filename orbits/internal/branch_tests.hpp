@@ -59,7 +59,6 @@ struct SpecialPoints {
 /// @param tolerance  of the parameter, absolute
 template <class Solver>
 [[nodiscard]] SpecialPoints<Solver> special_points_between(const Solver& solver, const WatchedPoint<Solver>& a,
-                                                               const WatchedPoint<Solver>& b, double s,
-                                                               double tolerance);
+                                                           const WatchedPoint<Solver>& b, double s, double tolerance);
 
 }  // namespace slipmode::orbits

@@ -5,9 +5,9 @@
 #include <slipmode/orbits/continuation.hpp>
 
 #include <gtest/gtest.h>
-#include <numbers>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 namespace slipmode::orbits {
