@@ -56,18 +56,21 @@ Report summary(const studies::Family& family, const studies::OrbitMapStudy& stud
                               over[0].key, over[1].key);
     report.data["points"] = {over[0].values.size(), over[1].values.size()};
   }
+  bool any_without_orbit = false;
   for (const auto& [start, map] : study.maps) {
     OrderCount count;
     for (const auto& row : map.rows)
       for (const orbits::MapPoint& point : row) count.add(point.order, point.failure);
     say(start, count, report);
+    any_without_orbit |= count.orders.contains(0);
   }
   for (const auto& [start, points] : study.strobes) {
     OrderCount count;
     for (const orbits::StrobePoint& point : points) count.add(point.settled.order, point.failure);
     say(start, count, report);
+    any_without_orbit |= count.orders.contains(0);
   }
-  if (report.text.find(kNoneFound) != std::string::npos)
+  if (any_without_orbit)
     report.text += fmt::format(
         "  {}: no orbit up to period {} within {} periods: chaos, a torus, or still settling; "
         "--max-order, --periods\n",

@@ -36,28 +36,33 @@ std::string contact_symbol(const scene::Scene& scene, const std::string& letter,
   return fmt::format("{}_{{{}}}", letter, scene::to_string(scene.contacts[contact].at));
 }
 
-/// The contact that slips most often in a sweep, the first of several.
-std::size_t slipping_contact(const StoreReader& store, std::size_t contacts) {
-  std::vector<std::size_t> slips(contacts, 0);
-  for (const std::string group : {"sweep/full", "sweep/reduced"}) {
-    if (!store.has(group)) continue;
-    const results::Table table = results::load_table(store, group + "/slips");
-    for (const double contact : table.numbers("contact")) ++slips.at(static_cast<std::size_t>(contact));
-  }
-  return static_cast<std::size_t>(std::ranges::max_element(slips) - slips.begin());
+/// The slip states of a sweep, of the full model and of the reduced one where there is one.
+std::vector<std::pair<std::string, results::Table>> slips_of(const StoreReader& store) {
+  std::vector<std::pair<std::string, results::Table>> slips;
+  for (const std::string group : {"sweep/full", "sweep/reduced"})
+    if (store.has(group)) slips.emplace_back(group, results::load_table(store, group + "/slips"));
+  return slips;
+}
+
+/// The contact that slips most often, the first of several.
+std::size_t most_slipping(const std::vector<std::pair<std::string, results::Table>>& slips, std::size_t contacts) {
+  std::vector<std::ptrdiff_t> counts(contacts, 0);
+  for (const auto& [group, table] : slips)
+    for (std::size_t c = 0; c < contacts; ++c)
+      counts[c] += std::ranges::count(table.numbers("contact"), static_cast<double>(c));
+  return static_cast<std::size_t>(std::ranges::max_element(counts) - counts.begin());
 }
 
 Figure bifurcation(const StoreReader& store) {
   const scene::Scene scene = results::load_scene_of(store);
   std::vector<BifurcationPanel> panels;
   std::string label, unit;
-  const std::size_t shown = slipping_contact(store, scene.contacts.size());
-  for (const std::string group : {"sweep/full", "sweep/reduced"}) {
-    if (!store.has(group)) continue;
-    const results::Table slips = results::load_table(store, group + "/slips");
-    const auto& contact = slips.numbers("contact");
-    const auto& parameter = slips.numbers("parameter");
-    const auto& displacement = slips.numbers("displacement");
+  const auto slips = slips_of(store);
+  const std::size_t shown = most_slipping(slips, scene.contacts.size());
+  for (const auto& [group, table] : slips) {
+    const auto& contact = table.numbers("contact");
+    const auto& parameter = table.numbers("parameter");
+    const auto& displacement = table.numbers("displacement");
     std::vector<double> x, y;
     for (std::size_t i = 0; i < contact.size(); ++i) {
       if (contact[i] != static_cast<double>(shown)) continue;

@@ -277,8 +277,8 @@ DrivenMotion settle_driven(const dynamics::HybridSystem& system, const Readings&
                                      .interval = T,
                                      .flow = options.flow,
                                      .stop = options.stop});
-    const bool diverges = out.exponent->nats > 4.0 * out.exponent->error;
-    if (diverges && out.period.repeat == DrivenRepeat::kSettling) out.period = {.repeat = DrivenRepeat::kAperiodic};
+    if (out.exponent->is_positive() && out.period.repeat == DrivenRepeat::kSettling)
+      out.period = {.repeat = DrivenRepeat::kAperiodic};
   }
   return out;
 }

@@ -76,8 +76,7 @@ struct DrivenMotion {
   Eigen::VectorXd mean = {}, rms = {};  ///< of each reading; rms about the mean, over all samples [m]
   DrivenLabel label = DrivenLabel::kStickSlip;
   DrivenPeriod period = {};
-  double stick_fraction =
-      0.0;  ///< share of the time in stick, mean over contacts whose law sticks, micro-stick included
+  double stick_fraction = 0.0;   ///< share of the time in stick, see stick_share(); micro-stick included
   double longest_stick = 0.0;    ///< of any contact, in drive periods
   std::int64_t separations = 0;  ///< losses of contact
   std::int64_t jumps = 0;        ///< of contact points behind their springs

@@ -8,12 +8,17 @@
 
 namespace slipmode::diagnostics {
 
+/// An exponent counts as positive above so many standard errors.
+inline constexpr double kErrorsOfPositive = 4.0;
+
 /// The largest Lyapunov exponent, per unit of time.
 struct LyapunovExponent {
   double nats = 0.0;   ///< growth rate of a small distance [1/s]
   double bits = 0.0;   ///< nats / ln 2, the unit of S4 (3.25)
   double error = 0.0;  ///< standard error of `nats` from the scatter of eight equal stretches [1/s]
   int renormalisations = 0;
+
+  [[nodiscard]] bool is_positive() const { return nats > kErrorsOfPositive * error; }
 };
 
 struct LyapunovOptions {

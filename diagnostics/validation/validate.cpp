@@ -32,10 +32,6 @@ struct FullOrbit {
   std::string failure = {};
 };
 
-constexpr double kStandardErrors = 4.0;
-
-bool is_positive(const LyapunovExponent& exponent) { return exponent.nats > kStandardErrors * exponent.error; }
-
 /// The work of one validation, part after part; each part runs its items in parallel.
 class Validation {
  public:
@@ -346,14 +342,14 @@ std::vector<Eigen::Index> mode_ladder(Eigen::Index most, Eigen::Index chosen) {
   return ladder;
 }
 
-bool ShareRow::is_chaotic() const { return lyapunov && is_positive(*lyapunov); }
+bool ShareRow::is_chaotic() const { return lyapunov && lyapunov->is_positive(); }
 
 std::string attractor_word(const Settled& settled, const std::optional<LyapunovExponent>& exponent) {
   constexpr double kMostGrowth = 0.01;  // per slip
   if (settled.period.motion != Motion::kAperiodic) return to_string(settled.period.motion);
   if (!exponent) return to_string(Motion::kUndecided);
-  if (is_positive(*exponent)) return to_string(Motion::kAperiodic);
-  const double bound = kStandardErrors * exponent->error;
+  if (exponent->is_positive()) return to_string(Motion::kAperiodic);
+  const double bound = kErrorsOfPositive * exponent->error;
   const bool zero = std::abs(exponent->nats) <= bound && exponent->nats + bound < kMostGrowth * settled.slip_rate;
   return zero ? "quasi-periodic" : to_string(Motion::kUndecided);
 }

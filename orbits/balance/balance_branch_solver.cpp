@@ -183,7 +183,8 @@ Eigen::VectorXd BalanceBranchSolver::skew(const BalanceBranchEvaluation& at) con
 
 BalanceBranchSolver::Simpler BalanceBranchSolver::simpler_beside(SpecialKind /*kind*/,
                                                                  const BalanceBranchEvaluation& near,
-                                                                 const PeriodicOrbit& /*orbit*/) const {
+                                                                 const PeriodicOrbit& /*orbit*/,
+                                                                 const Eigen::VectorXd& /*apart*/) const {
   BalanceBranchSolver solver(family_, *balance_of(near), near.at.parameter, options_, true);
   BalanceUnknowns guess = near.at;
   solver.clear_even(guess.x);

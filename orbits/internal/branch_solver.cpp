@@ -257,8 +257,8 @@ BranchEvaluation BranchSolver::polished(BranchEvaluation at, const BranchUnknown
 
 std::optional<BranchEvaluation> BranchSolver::shortened(const BranchEvaluation& from,
                                                         const Eigen::VectorXd& step) const {
-  constexpr int kHalvings = 5;
-  for (int k = 0; k < kHalvings; ++k) {
+  constexpr int kShares = 5;
+  for (int k = 0; k < kShares; ++k) {
     const double share = std::ldexp(1.0, -k);
     BranchEvaluation next = evaluate(moved(from, share * step, share));
     if (next.norm() <= (1.0 - 0.1 * share) * from.norm()) return next;
@@ -326,7 +326,7 @@ Eigen::VectorXd BranchSolver::difference(const BranchUnknowns& b, const BranchUn
 }
 
 BranchSolver::Simpler BranchSolver::simpler_beside(SpecialKind kind, const BranchEvaluation& near,
-                                                   const PeriodicOrbit& orbit) const {
+                                                   const PeriodicOrbit& orbit, const Eigen::VectorXd& apart) const {
   const bool doubled = kind == SpecialKind::kPeriodDoubling;
   ContinuationOptions own = options_;
   own.shooting.half_period = !doubled;
@@ -335,9 +335,9 @@ BranchSolver::Simpler BranchSolver::simpler_beside(SpecialKind kind, const Branc
     simpler.period *= 0.5;
     if (kind_ == OrbitKind::kDriven) simpler.order /= 2;
   }
-  const Eigen::VectorXd middle = doubled ? Eigen::VectorXd(0.5 * halves_apart(near)) : -0.5 * skew(near);
+  const double half = doubled ? 0.5 : -0.5;
   simpler.start.modes.clear();
-  simpler.start = with_coordinates(simpler.start, stacked(simpler.start) + scale_.cwiseProduct(middle));
+  simpler.start = with_coordinates(simpler.start, stacked(simpler.start) + half * scale_.cwiseProduct(apart));
   BranchSolver solver(family_, simpler, near.at.parameter, near.at.other, own, std::nullopt);
   BranchUnknowns guess = solver.unknowns_of(simpler, near.at.parameter);
   return {std::move(solver), std::move(guess)};

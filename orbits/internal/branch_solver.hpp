@@ -110,8 +110,9 @@ class BranchSolver {
   /// The same family solved for the simpler orbits that a branch is about to join, and the nearest of them as a guess:
   /// for the symmetric ones by half periods at a symmetry breaking, for those of half the period at a period doubling.
   struct Simpler;
-  [[nodiscard]] Simpler simpler_beside(SpecialKind kind, const BranchEvaluation& near,
-                                       const PeriodicOrbit& orbit) const;
+  /// @param apart  skew() or halves_apart() of the point
+  [[nodiscard]] Simpler simpler_beside(SpecialKind kind, const BranchEvaluation& near, const PeriodicOrbit& orbit,
+                                       const Eigen::VectorXd& apart) const;
 
   /// ẋ at the origin of an orbit whose period is unknown, scaled [N]; else empty.
   [[nodiscard]] Eigen::VectorXd rate(const BranchEvaluation& at) const {

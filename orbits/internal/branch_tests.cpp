@@ -4,6 +4,7 @@
 #include <slipmode/orbits/floquet.hpp>
 #include "orbits/balance/internal/balance_branch_solver.hpp"
 #include "orbits/internal/branch_solver.hpp"
+#include "orbits/internal/secant.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/LU>
@@ -233,29 +234,19 @@ std::optional<WatchedPoint<Solver>> loss_beside(const Solver& solver, SpecialKin
                                                 const WatchedPoint<Solver>& near) {
   const Test<Solver> test =
       kind == SpecialKind::kPeriodDoubling ? &WatchedPoint<Solver>::doubling : &WatchedPoint<Solver>::breaking;
-  const double start = near.at.at.parameter, reach = 1e-2 * solver.range();
-  const auto simpler = solver.simpler_beside(kind, near.at, near.orbit);
-  const auto orbit_at = [&](double parameter) -> std::optional<WatchedPoint<Solver>> {
+  const Eigen::VectorXd& apart = kind == SpecialKind::kPeriodDoubling ? near.halves : near.skew;
+  const auto simpler = solver.simpler_beside(kind, near.at, near.orbit, apart);
+  std::optional<WatchedPoint<Solver>> found;
+  const auto loss_at = [&](double parameter) -> std::optional<double> {
     typename Solver::Unknowns guess = simpler.guess;
     guess.parameter = parameter;
     const auto corrected = simpler.solver.correct(guess, simpler.solver.parameter_row());
     if (!corrected) return std::nullopt;
-    return watch(simpler.solver, corrected->at, simpler.solver.parameter_row());
+    found = watch(simpler.solver, corrected->at, simpler.solver.parameter_row());
+    return (*found).*test;
   };
-  double last = start, here = start + 1e-3 * reach;
-  std::optional<WatchedPoint<Solver>> found = orbit_at(last);
-  if (!found) return std::nullopt;
-  double at_last = (*found).*test;
-  for (int k = 0; k < 20; ++k) {
-    found = orbit_at(here);
-    if (!found || (*found).*test == at_last) return std::nullopt;
-    const double value = (*found).*test, next = here - value * (here - last) / (value - at_last);
-    if (std::abs(next - here) <= 1e-12 * solver.range()) return found;
-    if (std::abs(next - start) > reach) return std::nullopt;
-    at_last = value;
-    last = std::exchange(here, next);
-  }
-  return std::nullopt;
+  const double start = near.at.at.parameter, reach = 1e-2 * solver.range();
+  return secant_root(loss_at, start, start + 1e-3 * reach, 1e-12 * solver.range(), reach) ? found : std::nullopt;
 }
 
 /// The point itself by the simpler branch, as ever nearer orbits of the joining one are found ever worse.

@@ -180,11 +180,15 @@ class Walk {
   }
 
   void end_joined(SpecialKind kind, double parameter) {
-    const char* what = "the orbits became symmetric near parameter {:.8g}: the branch joins that of symmetric orbits";
-    if (kind == SpecialKind::kHopf) what = "the orbits shrink to a state of rest at parameter {:.9g}: a Hopf point";
-    if (kind == SpecialKind::kPeriodDoubling)
-      what = "the orbits became those of half the period at parameter {:.9g}: the branch joins theirs";
-    end(BranchEnd::kMerged, fmt::format(fmt::runtime(what), parameter));
+    end(BranchEnd::kMerged,
+        kind == SpecialKind::kHopf
+            ? fmt::format("the orbits shrink to a state of rest at parameter {:.9g}: a Hopf point", parameter)
+        : kind == SpecialKind::kPeriodDoubling
+            ? fmt::format("the orbits became those of half the period at parameter {:.9g}: the branch joins theirs",
+                          parameter)
+            : fmt::format(
+                  "the orbits became symmetric near parameter {:.8g}: the branch joins that of symmetric orbits",
+                  parameter));
   }
 
   /// False where a curve does not go on to the next point: it passes a change of word that is not found between them.

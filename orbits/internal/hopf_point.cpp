@@ -1,5 +1,6 @@
 // Where self-excited orbits begin: a state of rest of which a complex pair of rates crosses the imaginary axis.
 #include "orbits/internal/branch_solver.hpp"
+#include "orbits/internal/secant.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -7,7 +8,6 @@
 #include <complex>
 #include <limits>
 #include <numbers>
-#include <utility>
 
 namespace slipmode::orbits {
 namespace {
@@ -56,18 +56,10 @@ std::optional<BranchSolver::HopfPoint> BranchSolver::hopf_beside(const BranchEva
       if (std::abs(mu - turned) < std::abs(critical - turned)) critical = mu;
     return std::log(std::abs(critical));
   };
+  const double start = near.at.parameter, inward = start < 0.5 * (options_.from + options_.to) ? 1e-4 : -1e-4;
   try {
-    double last = near.at.parameter, here = last + (last < 0.5 * (options_.from + options_.to) ? 1e-4 : -1e-4) * range_;
-    std::optional<double> at_last = growth_at(last);
-    for (int k = 0; at_last && k < kMaxSteps; ++k) {
-      const std::optional<double> growth = growth_at(here);
-      if (!growth || *growth == *at_last) return std::nullopt;
-      const double next = here - *growth * (here - last) / (*growth - *at_last);
-      if (std::abs(next - here) <= 1e-12 * range_)
-        return HopfPoint{next, 2.0 * std::numbers::pi * time / std::arg(critical)};
-      at_last = growth;
-      last = std::exchange(here, next);
-    }
+    const auto root = secant_root(growth_at, start, start + inward * range_, 1e-12 * range_, range_);
+    if (root) return HopfPoint{*root, 2.0 * std::numbers::pi * time / std::arg(critical)};
   } catch (const NumericalFailure&) {
     return std::nullopt;  // the flow leaves the rest
   }

@@ -3,12 +3,12 @@
 #include <slipmode/orbits/special_curve.hpp>
 #include "clearance_systems.hpp"
 #include "fixtures/scenes.hpp"
+#include "special_points.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <optional>
 
 namespace slipmode::orbits {
@@ -76,12 +76,7 @@ Start two_masses_start() {
                          {.from = 0.5, .to = 0.8, .both_ways = true})};
 }
 
-std::vector<SpecialPoint> points_of(const Start& start, SpecialKind kind) {
-  std::vector<SpecialPoint> found;
-  std::ranges::copy_if(start.branch.special, std::back_inserter(found),
-                       [&](const SpecialPoint& point) { return point.kind == kind; });
-  return found;
-}
+std::vector<SpecialPoint> points_of(const Start& start, SpecialKind kind) { return of_kind(start.branch, kind); }
 
 Branch curve_from(const Start& start, const SpecialPoint& special, double low, double high) {
   return continue_special(start.family, special, start.amplitude, {0.05, 3.0}, {.from = low, .to = high});

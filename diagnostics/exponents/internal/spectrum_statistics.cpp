@@ -36,7 +36,7 @@ Eigen::Index vanishing(const LyapunovSpectrum& spectrum, Eigen::Index finite) {
   if (!spectrum.self_excited || finite == 0) return -1;
   Eigen::Index nearest = 0;
   const double least = spectrum.nats.head(finite).cwiseAbs().minCoeff(&nearest);
-  const double error = std::isfinite(spectrum.error[nearest]) ? 4.0 * spectrum.error[nearest] : 0.0;
+  const double error = std::isfinite(spectrum.error[nearest]) ? kErrorsOfPositive * spectrum.error[nearest] : 0.0;
   return least <= error + kLogOfFactor / spectrum.duration ? nearest : -1;
 }
 
@@ -87,7 +87,7 @@ Eigen::MatrixXd LyapunovSpectrum::running() const {
   return means;
 }
 
-bool LyapunovSpectrum::is_chaotic() const { return nats.size() > 0 && nats[0] > 4.0 * error[0]; }
+bool LyapunovSpectrum::is_chaotic() const { return nats.size() > 0 && nats[0] > kErrorsOfPositive * error[0]; }
 
 bool LyapunovSpectrum::is_undecided() const {
   return nats.size() > 0 && !is_chaotic() && nats[0] > error[0] && nats[0] * duration > 1.0;

@@ -84,7 +84,7 @@ class BalanceBranchSolver {
   /// The family's odd orders alone, and what they are at a point.
   struct Simpler;
   [[nodiscard]] Simpler simpler_beside(SpecialKind kind, const BalanceBranchEvaluation& near,
-                                       const PeriodicOrbit& orbit) const;
+                                       const PeriodicOrbit& orbit, const Eigen::VectorXd& apart) const;
 
   [[nodiscard]] Eigen::VectorXd parameter_row() const;
   [[nodiscard]] double range() const { return range_; }
