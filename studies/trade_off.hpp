@@ -2,6 +2,7 @@
 
 #include <slipmode/core/fields.hpp>
 #include <slipmode/results/journal.hpp>
+#include <slipmode/results/store.hpp>
 #include <slipmode/scene/scene.hpp>
 #include <slipmode/studies/run_options.hpp>
 #include <slipmode/trade/advice.hpp>

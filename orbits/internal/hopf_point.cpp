@@ -1,4 +1,5 @@
 // Where self-excited orbits begin: a state of rest of which a complex pair of rates crosses the imaginary axis.
+#include <slipmode/core/errors.hpp>
 #include "orbits/internal/branch_solver.hpp"
 #include "orbits/internal/secant.hpp"
 

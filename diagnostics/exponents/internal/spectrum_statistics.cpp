@@ -1,6 +1,7 @@
 #include "diagnostics/exponents/internal/spectrum_statistics.hpp"
 
 #include <slipmode/core/none.hpp>
+#include <slipmode/diagnostics/exponents/lyapunov.hpp>
 #include <slipmode/diagnostics/series/kaplan_yorke.hpp>
 #include "diagnostics/series/internal/stretches.hpp"
 
