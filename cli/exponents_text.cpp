@@ -39,9 +39,10 @@ std::string spectrum_cell(const LyapunovSpectrum& spectrum, Eigen::Index i, doub
 std::string exponents_line(const results::ModelExponents& model, double unit, const std::string& unit_name) {
   const LyapunovSpectrum& spectrum = model.spectrum;
   if (!model.failure.empty()) return fmt::format("{}: failed: {}\n", model.name, model.failure);
-  const char* verdict = spectrum.is_chaotic()     ? "chaotic"
-                        : spectrum.is_undecided() ? "undecided (the largest exponent is within four errors; --duration)"
-                                                  : "not chaotic";
+  const char* verdict = spectrum.is_chaotic() ? "chaotic"
+                        : spectrum.is_undecided()
+                            ? "undecided (the largest exponent is not four errors above zero; --duration)"
+                            : "not chaotic";
   std::string text = fmt::format("{}: {}", model.name, verdict);
   text += fmt::format("; Kaplan-Yorke dimension {}", exponent_text(spectrum.dimension, spectrum.dimension_error));
   if (spectrum.lost > 0) text += fmt::format("; {} of {} directions lost in stick", spectrum.lost, spectrum.size);

@@ -49,7 +49,8 @@ struct LyapunovSpectrum {
   [[nodiscard]] Eigen::MatrixXd running() const;
   /// Largest exponent above zero by more than four standard errors.
   [[nodiscard]] bool is_chaotic() const;
-  /// Not so, but above zero by more than one, and neighbours part by more than a factor e over the record.
+  /// Not so, but above zero by more than one, or by an error that is not known (fewer than eight intervals), and
+  /// neighbours part by more than a factor e over the record.
   [[nodiscard]] bool is_undecided() const;
 };
 

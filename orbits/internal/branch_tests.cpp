@@ -305,6 +305,22 @@ void add_cusp(const Solver& solver, const WatchedPoint<Solver>& a, const Watched
   out_found.push_back({at.s, special_of(solver, at, SpecialKind::kCusp, tolerance)});
 }
 
+/// What each contact goes through in a word: its letters, without those during which only others change.
+std::vector<std::string> each_contacts_own(const std::string& word) {
+  std::vector<std::string> result(std::min(word.find(' '), word.size()));
+  for (std::size_t at = 0; at < word.size(); at += result.size() + 1)
+    for (std::size_t c = 0; c < result.size(); ++c)
+      if (!result[c].ends_with(word[at + c])) result[c] += word[at + c];
+  for (std::string& letters : result)
+    if (letters.size() > 1 && letters.front() == letters.back()) letters.pop_back();
+  return result;
+}
+
+/// How often a contact comes to a letter over a period; −1 where it never leaves it.
+std::ptrdiff_t visits(const std::string& own, char letter) {
+  return own.size() == 1 && own[0] == letter ? -1 : std::count(own.begin(), own.end(), letter);
+}
+
 }  // namespace
 
 std::string word_change(const PeriodicOrbit& before, const PeriodicOrbit& after) {
@@ -313,10 +329,15 @@ std::string word_change(const PeriodicOrbit& before, const PeriodicOrbit& after)
 }
 
 SpecialKind kind_of_word_change(const std::string& before, const std::string& after) {
-  const auto count = [](const std::string& word, char letter) { return std::count(word.begin(), word.end(), letter); };
-  if (count(before, '0') != count(after, '0')) return SpecialKind::kStickChange;
+  const std::vector<std::string> a = each_contacts_own(before), b = each_contacts_own(after);
+  const auto differ_in = [&](char letter) {
+    return !std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](const std::string& x, const std::string& y) {
+      return visits(x, letter) == visits(y, letter);
+    });
+  };
+  if (differ_in('0')) return SpecialKind::kStickChange;
   for (const char letter : {'l', 'r', 'g', 'x'})
-    if (count(before, letter) != count(after, letter)) return SpecialKind::kGrazing;
+    if (differ_in(letter)) return SpecialKind::kGrazing;
   return SpecialKind::kWordChange;
 }
 

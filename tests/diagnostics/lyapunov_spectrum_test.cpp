@@ -168,6 +168,18 @@ TEST(SpectrumOfASystem, LinearStructureHasTheRealPartsOfItsEigenvalues) {
   EXPECT_EQ(found.lost, 0);
 }
 
+TEST(SpectrumOfASystem, IsUndecidedWhereItsErrorIsNotKnown) {
+  const auto with = [](double largest, double error) {
+    return LyapunovSpectrum{
+        .nats = Eigen::VectorXd::Constant(1, largest), .error = Eigen::VectorXd::Constant(1, error), .duration = 100.0};
+  };
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(with(0.3, unknown).is_undecided() && !with(0.3, unknown).is_chaotic());
+  EXPECT_TRUE(with(0.3, 0.1).is_undecided());
+  EXPECT_FALSE(with(0.3, 0.01).is_undecided() || with(0.3, 0.4).is_undecided());
+  EXPECT_FALSE(with(-0.3, unknown).is_undecided() || with(0.003, unknown).is_undecided());  // e^0.3 over the record
+}
+
 TEST(SpectrumOfASystem, ErrorsOfARegularMotionReachTheTruth) {
   // Pairs turn in ellipses, slowly seen every 6.3: equal stretches of the record then all err by nearly the same.
   const fem::Structure structure = fem::chain({.masses = 2, .damping = 0.3, .mass_damping = 0.05});

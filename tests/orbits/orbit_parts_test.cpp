@@ -3,6 +3,7 @@
 #include <slipmode/orbits/floquet.hpp>
 #include "clearance_systems.hpp"
 #include "fixtures/scenes.hpp"
+#include "orbits/internal/branch_tests.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -43,6 +44,19 @@ TEST(Words, ContactsThatChangeTogetherMakeOneRegime) {
   const auto spans = regime_sequence(0.0, {ContactMode::kSlipPositive, ContactMode::kSlipNegative}, events);
   ASSERT_EQ(spans.size(), 4u);
   EXPECT_EQ(word_of(spans), "+- 00 0-");
+}
+
+TEST(Words, WhatAChangeIsGoesByEachContactAlone) {
+  // A pad beside a stop that is never touched, beside one that always is, and the stop's own changes beside the pad's.
+  EXPECT_EQ(kind_of_word_change("g+ g0", "g+ g- g0"), SpecialKind::kWordChange);
+  EXPECT_EQ(kind_of_word_change("+r 0r", "+r -r 0r"), SpecialKind::kWordChange);
+  EXPECT_EQ(kind_of_word_change("g+ g0", "g+"), SpecialKind::kStickChange);
+  EXPECT_EQ(kind_of_word_change("g+ g0", "g+ r+ r0 g0"), SpecialKind::kGrazing);
+  EXPECT_EQ(kind_of_word_change("g+ g0 r0", "g+ g0 r0 r+"), SpecialKind::kWordChange);  // another order, no other parts
+  EXPECT_EQ(kind_of_word_change("+0 -0 --", "+0 -0 -- -0 --"), SpecialKind::kStickChange);
+  EXPECT_EQ(kind_of_word_change("x", "+ x"), SpecialKind::kGrazing);
+  EXPECT_EQ(kind_of_word_change("0", "+ 0"), SpecialKind::kStickChange);
+  EXPECT_EQ(kind_of_word_change("+0", "++"), SpecialKind::kStickChange);
 }
 
 TEST(Words, CrossingsAreChangesOfForce) {
