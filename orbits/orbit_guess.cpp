@@ -56,8 +56,12 @@ std::vector<State> upward_passes(const dynamics::Trajectory& run) {
   return passes;
 }
 
-/// States at the events of the section that recurrence_guess() names.
-std::vector<State> passes_of(const dynamics::HybridSystem& system, const State& start, double duration) {
+struct Watched {
+  std::vector<State> passes;  ///< at the events of the section that recurrence_guess() names
+  State end;
+};
+
+Watched watched(const dynamics::HybridSystem& system, const State& start, double duration) {
   using dynamics::EventKind;
   const auto rank = [](EventKind kind) {
     return kind == EventKind::kRelease ? 0 : kind == EventKind::kReversal ? 1 : 2;
@@ -74,8 +78,26 @@ std::vector<State> passes_of(const dynamics::HybridSystem& system, const State& 
                                              .flow = {.tolerance = 1e-12, .audit = false},
                                              .on_event = note});
   for (auto& [which, passes] : sections)
-    if (passes.size() >= 2) return std::move(passes);
-  return upward_passes(run);
+    if (passes.size() >= 2) return {std::move(passes), run.final_state};
+  return {upward_passes(run), run.final_state};
+}
+
+/// The best return of at most `max_returns`, or a shorter one as recurrence_guess() says.
+RecurrenceGuess best_return(const std::vector<State>& passes, int max_returns) {
+  const Size size = size_of(passes);
+  std::vector<RecurrenceGuess> best;  // for each number of returns
+  double smallest = std::numeric_limits<double>::infinity();
+  for (std::size_t p = 1; p <= static_cast<std::size_t>(max_returns) && p < passes.size(); ++p) {
+    RecurrenceGuess guess{{}, 0.0, std::numeric_limits<double>::infinity()};
+    for (std::size_t k = p; k < passes.size(); ++k) {
+      const double mismatch = difference(passes[k], passes[k - p], size);
+      if (mismatch < guess.mismatch) guess = {passes[k - p], passes[k].time - passes[k - p].time, mismatch};
+    }
+    smallest = std::min(smallest, guess.mismatch);
+    best.push_back(std::move(guess));
+  }
+  return *std::find_if(best.begin(), best.end(),
+                       [&](const RecurrenceGuess& guess) { return guess.mismatch <= std::max(3.0 * smallest, 1e-4); });
 }
 
 }  // namespace
@@ -97,27 +119,23 @@ RecurrenceGuess recurrence_guess(const dynamics::HybridSystem& system, const Sta
         fmt::format("a recurrence needs a transient ≥ 0, a duration > 0 and max_returns ≥ 1; found {}, "
                     "{} and {}",
                     transient, duration, max_returns));
-  const std::vector<State> passes = passes_of(system, advanced(system, start, transient), duration);
-  if (passes.size() < 2)
+  constexpr int kStretches = 8;
+  constexpr double kNear = 1e-3;
+  Watched seen = watched(system, advanced(system, start, transient), duration);
+  if (seen.passes.size() < 2)
     throw NumericalFailure(
         fmt::format("no event and no swing came twice in {} s: the motion may rest, or slide steadily; else simulate "
                     "longer (time.duration)",
                     duration),
         start.time + transient, stacked(start), std::numeric_limits<double>::quiet_NaN());
-  const Size size = size_of(passes);
-  std::vector<RecurrenceGuess> best;  // for each number of returns
-  double smallest = std::numeric_limits<double>::infinity();
-  for (std::size_t p = 1; p <= static_cast<std::size_t>(max_returns) && p < passes.size(); ++p) {
-    RecurrenceGuess guess{{}, 0.0, std::numeric_limits<double>::infinity()};
-    for (std::size_t k = p; k < passes.size(); ++k) {
-      const double mismatch = difference(passes[k], passes[k - p], size);
-      if (mismatch < guess.mismatch) guess = {passes[k - p], passes[k].time - passes[k - p].time, mismatch};
-    }
-    smallest = std::min(smallest, guess.mismatch);
-    best.push_back(std::move(guess));
+  const RecurrenceGuess first = best_return(seen.passes, max_returns);
+  RecurrenceGuess last = first;
+  for (int stretch = 1; stretch < kStretches && last.mismatch > kNear; ++stretch) {
+    seen = watched(system, seen.end, duration);
+    if (seen.passes.size() < 2) return first;
+    last = best_return(seen.passes, max_returns);
   }
-  return *std::find_if(best.begin(), best.end(),
-                       [&](const RecurrenceGuess& guess) { return guess.mismatch <= std::max(3.0 * smallest, 1e-4); });
+  return last.mismatch <= kNear ? last : first;
 }
 
 }  // namespace slipmode::orbits

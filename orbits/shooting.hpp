@@ -86,7 +86,8 @@ struct RecurrenceGuess {
 
 /// Settles for `transient`, then watches a section for `duration` and hands out the return to it, of at most
 /// `max_returns`, whose states match best; a shorter one is preferred where it matches within three times the best or
-/// 1e-4 of the size of the states.
+/// 1e-4 of the size of the states. While none matches to a thousandth it goes on watching, eight times as long at most,
+/// since a motion may be chaotic for a while; where it stays so, what the first `duration` gave is handed out.
 ///
 /// The section are events of one kind at one contact that come twice at least: releases of the first contact that has
 /// them, else reversals, else others; where no events come, the first contact's displacement on its way up through its

@@ -2,6 +2,7 @@
 
 #include <slipmode/core/errors.hpp>
 #include <slipmode/diagnostics/attractors/model.hpp>
+#include <slipmode/diagnostics/attractors/periodicity.hpp>
 
 #include <fmt/format.h>
 
@@ -151,22 +152,10 @@ double mismatch(const Eigen::MatrixXd& points, const Eigen::VectorXd& scale, Eig
   return largest;
 }
 
-/// Whether the difference of columns p apart falls from eighth to eighth, by a tenth at least in all: differences of a
-/// chaotic motion fall in order once in 8! = 40,000 tries.
-bool shrinks(const Eigen::MatrixXd& points, const Eigen::VectorXd& scale, Eigen::Index p) {
-  constexpr Eigen::Index kParts = 8;
-  constexpr double kLeast = 0.9;
-  const Eigen::Index length = (points.cols() - p) / kParts;
-  if (length < p) return false;
-  double first = 0.0, previous = std::numeric_limits<double>::infinity();
-  for (Eigen::Index part = 0; part < kParts; ++part) {
-    const Eigen::Index begin = points.cols() - (kParts - part) * length;
-    const double here = mismatch(points, scale, p, begin, begin + length - 1);
-    if (here >= previous) return false;
-    if (part == 0) first = here;
-    previous = here;
-  }
-  return previous < kLeast * first;
+bool settles_by(const Eigen::MatrixXd& points, const Eigen::VectorXd& scale, Eigen::Index p) {
+  std::vector<double> differences;
+  for (Eigen::Index k = p; k < points.cols(); ++k) differences.push_back(mismatch(points, scale, p, k, k));
+  return is_settling(differences, static_cast<std::size_t>(p));
 }
 
 }  // namespace
@@ -207,7 +196,6 @@ Eigen::MatrixXd Readings::of(const Eigen::MatrixXd& q) const {
 DrivenPeriod driven_period(const Eigen::MatrixXd& points, const Eigen::VectorXd& scale, double tolerance,
                            int max_period) {
   constexpr Eigen::Index kRepeats = 3, kFewest = 20;
-  constexpr double kNear = 0.1;  // of the reach: what is further from repeating approaches no period
   if (!(tolerance > 0.0) || max_period < 1 || scale.size() != points.rows()) {
     throw InvalidInput(
         fmt::format("period of sections: expected tolerance > 0, max_period >= 1 and {} scales, found "
@@ -223,7 +211,7 @@ DrivenPeriod driven_period(const Eigen::MatrixXd& points, const Eigen::VectorXd&
     decided = true;
     const double late = mismatch(points, scale, p, last + 1 - compared, last);
     if (late <= tolerance) return {DrivenRepeat::kPeriodic, static_cast<int>(p), late};
-    if (settling.period == 0 && late <= kNear && shrinks(points, scale, p)) {
+    if (settling.period == 0 && settles_by(points, scale, p)) {
       settling = {DrivenRepeat::kSettling, static_cast<int>(p), late};
     }
   }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 
@@ -99,6 +100,18 @@ class SlipHistory {
       worst = std::max(worst, best);
     }
     return worst;
+  }
+
+  /// Whether a contact's slips approach a period.
+  [[nodiscard]] bool is_settling(int contact) const {
+    const std::vector<std::size_t>& mine = of(contact);
+    std::vector<double> differences;
+    for (std::size_t p = 1; p <= static_cast<std::size_t>(options_.max_period) && p < mine.size(); ++p) {
+      differences.clear();
+      for (std::size_t k = p; k < mine.size(); ++k) differences.push_back(difference(mine[k], mine[k - p]));
+      if (diagnostics::is_settling(differences, p)) return true;
+    }
+    return false;
   }
 
  private:
@@ -235,6 +248,18 @@ const char* to_string(Motion motion) {
   return "undecided";
 }
 
+bool is_settling(std::span<const double> differences, std::size_t p) {
+  constexpr std::size_t kParts = 8;
+  constexpr double kLeast = 0.9, kNear = 0.1;
+  const std::size_t length = differences.size() / kParts;
+  if (length < std::max<std::size_t>(p, 1)) return false;
+  std::vector<double> largest;
+  for (auto part = differences.last(kParts * length); !part.empty(); part = part.subspan(length))
+    largest.push_back(std::ranges::max(part.first(length)));
+  const bool falls = std::ranges::adjacent_find(largest, std::ranges::less_equal()) == largest.end();
+  return falls && largest.back() <= kNear && largest.back() < kLeast * largest.front();
+}
+
 PeriodResult detect_period(std::span<const SlipState> slips, const PeriodOptions& options,
                            const Eigen::MatrixXd* states) {
   check(slips, options, states);
@@ -250,7 +275,7 @@ PeriodResult detect_period(std::span<const SlipState> slips, const PeriodOptions
     const std::optional<PeriodResult> found = try_period(history, section, p, matches, options.tolerance);
     if (found) return prefer_divisor(history, *found, matches, options);
   }
-  result.motion = Motion::kAperiodic;
+  result.motion = history.is_settling(section) ? Motion::kUndecided : Motion::kAperiodic;
   return result;
 }
 

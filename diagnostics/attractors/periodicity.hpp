@@ -21,7 +21,7 @@ struct SlipState {
 enum class Motion {
   kPeriodic,
   kAperiodic,  ///< enough slips seen, no period up to max_period
-  kUndecided,  ///< too few slips to say
+  kUndecided,  ///< too few slips to say, or still settling to a period
   kSticking,   ///< no slip: every contact stuck all the time
   kSliding,    ///< no stick: steady sliding, or oscillation without stick, which slip states cannot tell apart
 };
@@ -51,6 +51,11 @@ struct PeriodResult {
   /// divisor comes near. Near 1: the motion still decays towards a shorter period, and waiting will tell.
   double doubt = 0.0;
 };
+
+/// Whether the differences between a motion and itself p passes before fall from eighth to eighth of the record, by a
+/// tenth at least in all, to a tenth of its reach. Those of a chaotic motion fall in order once in 8! = 40,000 tries.
+/// @param differences  relative to the reach, in time order; fewer than p in an eighth: false
+[[nodiscard]] bool is_settling(std::span<const double> differences, std::size_t p);
 
 /// Period of the last slips. First the smallest p for which slip states p apart agree within tolerance over the last
 /// max(repeats·p, min_matches) slips (see long_stretch), at a constant time apart; with several contacts, every slip of

@@ -79,6 +79,33 @@ TEST(Period, WaitsForASlowDecay) {
   EXPECT_EQ(detect_period(repeating(kX5, kT5, 900, decay)).period, 5);
 }
 
+TEST(Period, IsUndecidedWhileTheMotionSettlesAndAperiodicWhereItNeverDoes) {
+  for (const double factor : {0.98, 0.99, -0.99, 0.995}) {
+    const auto decay = [factor](int k) { return std::pow(factor, k); };
+    EXPECT_EQ(detect_period(repeating(kX5, kT5, 300, decay)).motion, Motion::kUndecided) << factor;
+  }
+  // Chaos at 300 parameters, and rotations by 300 angles, whose differences p apart stay as large as they are.
+  int chaos = 0;
+  for (int i = 0; i < 300; ++i) {
+    std::vector<SlipState> chaotic, turning;
+    double x = 0.4, exponent = 0.0;
+    const double r = 3.7 + 0.3 * i / 300.0, turn = 0.1 + 0.7 * i / 300.0;
+    for (int k = 0; k < 5000; ++k) x = r * x * (1.0 - x);
+    for (int k = 0; k < 600; ++k) {
+      chaotic.push_back({.time = 10.0 * k, .contact = 0, .displacement = x});
+      turning.push_back({.time = 10.0 * k, .contact = 0, .displacement = std::sin(turn * k)});
+      exponent += std::log(std::abs(r * (1.0 - 2.0 * x))) / 600.0;
+      x = r * x * (1.0 - x);
+    }
+    if (exponent > 0.1) {
+      ++chaos;
+      EXPECT_EQ(detect_period(chaotic).motion, Motion::kAperiodic) << "r " << r;
+    }
+    EXPECT_NE(detect_period(turning).motion, Motion::kUndecided) << "angle " << turn;
+  }
+  EXPECT_GT(chaos, 200);
+}
+
 TEST(Period, NeedsTimesToRepeatToo) {
   // The same displacement each time, at times that never repeat.
   std::vector<SlipState> slips;

@@ -195,6 +195,14 @@ Eigen::Matrix2d den_hartog_half_map(const DenHartog& d) {
   return -rotation * Eigen::Vector2d(1.0, (pull + d.friction) / (pull - d.friction)).asDiagonal();
 }
 
+TEST(FrictionOrbits, AMotionThatSettlesIsWatchedUntilItComesBack) {
+  const HybridSystem system = chain10(0.45);
+  const RecurrenceGuess guess = recurrence_guess(system, swinging(10, 3, 0.1), 0.0, 1000.0, 1);
+  EXPECT_LT(guess.mismatch, 1e-3);
+  EXPECT_GT(guess.state.time, 1000.0) << "not yet in the first stretch";
+  EXPECT_NEAR(guess.period, 45.10211, 0.1);  // the period that expect_chain_orbit has of the independent program
+}
+
 TEST(FrictionOrbits, TheSectionIsOfWhateverContactComesBack) {
   // The motion of a chain on a belt, whichever of its contacts is named first; a stop that is never met, a tanh law.
   const auto chain = [](bool swapped) {
