@@ -153,9 +153,10 @@ double mismatch(const Eigen::MatrixXd& points, const Eigen::VectorXd& scale, Eig
 }
 
 bool settles_by(const Eigen::MatrixXd& points, const Eigen::VectorXd& scale, Eigen::Index p) {
-  std::vector<double> differences;
-  for (Eigen::Index k = p; k < points.cols(); ++k) differences.push_back(mismatch(points, scale, p, k, k));
-  return is_settling(differences, static_cast<std::size_t>(p));
+  return is_settling(static_cast<std::size_t>(points.cols() - p), static_cast<std::size_t>(p), [&](std::size_t k) {
+    const Eigen::Index later = static_cast<Eigen::Index>(k) + p;
+    return mismatch(points, scale, p, later, later);
+  });
 }
 
 }  // namespace

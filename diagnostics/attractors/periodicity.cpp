@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <optional>
 
@@ -105,11 +104,9 @@ class SlipHistory {
   /// Whether a contact's slips approach a period.
   [[nodiscard]] bool is_settling(int contact) const {
     const std::vector<std::size_t>& mine = of(contact);
-    std::vector<double> differences;
     for (std::size_t p = 1; p <= static_cast<std::size_t>(options_.max_period) && p < mine.size(); ++p) {
-      differences.clear();
-      for (std::size_t k = p; k < mine.size(); ++k) differences.push_back(difference(mine[k], mine[k - p]));
-      if (diagnostics::is_settling(differences, p)) return true;
+      const auto apart = [&](std::size_t k) { return difference(mine[k + p], mine[k]); };
+      if (diagnostics::is_settling(mine.size() - p, p, apart)) return true;
     }
     return false;
   }
@@ -248,16 +245,20 @@ const char* to_string(Motion motion) {
   return "undecided";
 }
 
-bool is_settling(std::span<const double> differences, std::size_t p) {
+bool is_settling(std::size_t count, std::size_t p, const std::function<double(std::size_t)>& difference) {
   constexpr std::size_t kParts = 8;
   constexpr double kLeast = 0.9, kNear = 0.1;
-  const std::size_t length = differences.size() / kParts;
+  const std::size_t length = count / kParts;
   if (length < std::max<std::size_t>(p, 1)) return false;
-  std::vector<double> largest;
-  for (auto part = differences.last(kParts * length); !part.empty(); part = part.subspan(length))
-    largest.push_back(std::ranges::max(part.first(length)));
-  const bool falls = std::ranges::adjacent_find(largest, std::ranges::less_equal()) == largest.end();
-  return falls && largest.back() <= kNear && largest.back() < kLeast * largest.front();
+  double last = 0.0, later = 0.0;
+  for (std::size_t part = 0; part < kParts; ++part) {  // backwards: most motions fail at once
+    double here = 0.0;
+    for (std::size_t k = 1; k <= length; ++k) here = std::max(here, difference(count - part * length - k));
+    if (part == 0 ? here > kNear : here <= later) return false;
+    if (part == 0) last = here;
+    later = here;
+  }
+  return last < kLeast * later;
 }
 
 PeriodResult detect_period(std::span<const SlipState> slips, const PeriodOptions& options,

@@ -3,6 +3,7 @@
 #include <slipmode/dynamics/simulate.hpp>
 
 #include <Eigen/Core>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -54,8 +55,9 @@ struct PeriodResult {
 
 /// Whether the differences between a motion and itself p passes before fall from eighth to eighth of the record, by a
 /// tenth at least in all, to a tenth of its reach. Those of a chaotic motion fall in order once in 8! = 40,000 tries.
-/// @param differences  relative to the reach, in time order; fewer than p in an eighth: false
-[[nodiscard]] bool is_settling(std::span<const double> differences, std::size_t p);
+/// @param count       of differences; fewer than p in an eighth: false
+/// @param difference  relative to the reach, of a place in time order
+[[nodiscard]] bool is_settling(std::size_t count, std::size_t p, const std::function<double(std::size_t)>& difference);
 
 /// Period of the last slips. First the smallest p for which slip states p apart agree within tolerance over the last
 /// max(repeats·p, min_matches) slips (see long_stretch), at a constant time apart; with several contacts, every slip of

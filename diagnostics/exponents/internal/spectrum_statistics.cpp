@@ -91,8 +91,8 @@ Eigen::MatrixXd LyapunovSpectrum::running() const {
 bool LyapunovSpectrum::is_chaotic() const { return nats.size() > 0 && nats[0] > kErrorsOfPositive * error[0]; }
 
 bool LyapunovSpectrum::is_undecided() const {
-  const bool is_within_one_error = nats.size() > 0 && nats[0] <= error[0];  // unknown in too short a record: not so
-  return nats.size() > 0 && !is_chaotic() && !is_within_one_error && nats[0] * duration > 1.0;
+  if (nats.size() == 0 || is_chaotic() || nats[0] <= error[0]) return false;  // an error not known: not within it
+  return nats[0] * duration > 1.0;
 }
 
 void summarise(LyapunovSpectrum& spectrum, const Eigen::Ref<const Eigen::MatrixXd>& growth) {
