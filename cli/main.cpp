@@ -151,10 +151,10 @@ std::string unknown_verb(const CLI::App& app, int argc, char** argv) {
   return "";
 }
 
-End run_main(int argc, char** argv, const Ranks* ranks) {
+End run_main(int argc, char** argv, const Ranks* ranks, const StopFlag& stop) {
   Session session;
   session.ranks = ranks;
-  session.stop = &watch_for_interrupt();
+  session.stop = &stop;
   CLI::App app{
       "structures with friction contacts, their proper orthogonal modes, and reduced models that are checked against "
       "the "
@@ -189,6 +189,7 @@ End run_main(int argc, char** argv, const Ranks* ranks) {
 
 /// As one process, or as one of the ranks that a launcher started.
 int run_launched(int argc, char** argv) {
+  const StopFlag& stop = watch_for_interrupt();  // before the ranks meet, which takes a while
   const Launch launch = launch_in_environment();
   std::optional<Ranks> ranks;
   try {
@@ -197,7 +198,7 @@ int run_launched(int argc, char** argv) {
     if (launch.own == 0) throw;
     return kDone;  // rank 0 says it
   }
-  const End end = run_main(argc, argv, ranks ? &*ranks : nullptr);
+  const End end = run_main(argc, argv, ranks ? &*ranks : nullptr, stop);
   std::fflush(nullptr);  // ranks may end abruptly
   return ranks ? end_ranks(*ranks, end.code, end.message) : end.code;
 }

@@ -2,6 +2,7 @@
 
 #include "cli/slipmode_process.hpp"
 
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -35,6 +36,16 @@ inline std::vector<pid_t> ranks_of(pid_t launcher) {
   const std::string id = std::to_string(launcher);
   std::ifstream children("/proc/" + id + "/task/" + id + "/children");
   return {std::istream_iterator<pid_t>(children), {}};
+}
+
+/// True once a process catches a signal, which would end it before.
+inline bool catches(pid_t process, int signal) {
+  std::ifstream status("/proc/" + std::to_string(process) + "/status");
+  for (std::string word; status >> word;) {
+    std::string mask;
+    if (word == "SigCgt:" && status >> mask) return (std::stoull(mask, nullptr, 16) >> (signal - 1) & 1U) != 0;
+  }
+  return false;
 }
 
 }  // namespace slipmode::tests

@@ -7,6 +7,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <algorithm>
 #include <chrono>
 
 namespace {
@@ -23,7 +24,9 @@ class RanksPod : public testing::Test {
   /// When so many ranks run, and have done so for a second: in the middle of the ensemble.
   [[nodiscard]] static auto under_way(const SlipmodeProcess& launched, std::size_t ranks) {
     return [&launched, ranks, since = std::chrono::steady_clock::now()]() mutable {
-      if (ranks_of(launched.id()).size() < ranks) since = std::chrono::steady_clock::now();
+      const auto ready =
+          std::ranges::count_if(ranks_of(launched.id()), [](pid_t own) { return catches(own, SIGUSR1); });
+      if (ready < static_cast<std::ptrdiff_t>(ranks)) since = std::chrono::steady_clock::now();
       return std::chrono::steady_clock::now() - since > std::chrono::seconds(1);
     };
   }

@@ -147,8 +147,9 @@ Judged judge_steps(std::uint64_t index, int contacts, ProofLaws laws, double tol
           same && (end - event.time < 10.0 * tolerance ||
                    (event.before != ContactMode::kStick && std::abs(speed_at(event.time)) < 10.0 * tolerance));
       const auto c = static_cast<std::size_t>(event.contact);
+      // A root is known to rounding of the step it is sought in, not of the step's start.
       const bool begun = event.contact >= 0 && event.after == begin.modes[c] &&
-                         (event.time - begin.time <= 4.0 * std::numeric_limits<double>::epsilon() * begin.time ||
+                         (event.time - begin.time <= 4.0 * std::numeric_limits<double>::epsilon() * end ||
                           (begin.multiplicity[c] > 0 && event.time - begin.time < tolerance));
       if (!own && !begun && end - event.time > 1e-13 * end) ++out.wrong;
     } catch (const NumericalFailure&) {  // stuck contacts whose speed the step's start holds to its tolerance only
