@@ -95,6 +95,20 @@ void hold_stuck(const dynamics::HybridSystem& system, const dynamics::State& ref
   separation.v -= W * gram.ldlt().solve(W.transpose() * separation.v);
 }
 
+/// Norm of a structure at rest but for a contact that moves with its counterpart at its fastest: sliding speeds round
+/// by that, however little of it friction passes on.
+double size_of_drive(const dynamics::HybridSystem& system, double begin, double duration) {
+  constexpr int kLooks = 16;
+  double speed = 0.0, largest = 0.0;
+  for (int k = 0; k <= kLooks; ++k)
+    speed = std::max(speed, std::abs(system.drive().velocity(begin + duration * k / kLooks)));
+  for (const friction::Contact& contact : system.contacts()) {
+    const Eigen::VectorXd v = speed / contact.direction.squaredNorm() * contact.direction;
+    largest = std::max(largest, system.structure().energy(Eigen::VectorXd::Zero(v.size()), v));
+  }
+  return std::sqrt(largest);
+}
+
 void check(const LyapunovOptions& options) {
   if (!(options.transient >= 0.0) || !(options.interval > 0.0) || !(options.duration >= options.interval) ||
       !(options.separation > 0.0)) {
@@ -156,18 +170,21 @@ LyapunovExponent largest_exponent(const dynamics::HybridSystem& system, const dy
   const auto intervals = static_cast<std::size_t>(std::floor(options.duration / options.interval + 1e-9));
   std::vector<double> logs;
   logs.reserve(intervals);
+  const auto size_of = [&] { return std::sqrt(system.structure().energy(reference.q, reference.v)); };
+  double largest = std::max(size_of(), size_of_drive(system, reference.time, options.interval));
   for (std::size_t k = 0; k < intervals; ++k) {
     if (options.stop != nullptr && options.stop->load(std::memory_order_relaxed)) throw Interrupted();
     hold_stuck(system, reference, separation);
-    separation.scale(options.separation / separation.norm(system));
+    const double apart = options.separation * (largest > 0.0 ? largest : 1.0);
+    separation.scale(apart / separation.norm(system));
     const dynamics::State end = advance(system, neighbour_of(system, reference, separation), options.interval, flow);
     reference = advance(system, reference, options.interval, flow);
     separation = {.q = end.q - reference.q, .v = end.v - reference.v, .internal = Eigen::VectorXd()};
     if (reference.internal.size() > 0) separation.internal = end.internal - reference.internal;
-    const double size = std::sqrt(system.structure().energy(reference.q, reference.v));
-    const double distance = floored(separation.norm(system), size);
-    logs.push_back(std::log(distance / options.separation));
-    if (separation.q.isZero(0.0) && separation.v.isZero(0.0)) separation.q.setConstant(options.separation);
+    const double size = size_of();
+    largest = std::max(largest, size);
+    logs.push_back(std::log(floored(separation.norm(system), size) / apart));
+    if (separation.q.isZero(0.0) && separation.v.isZero(0.0)) separation.q.setOnes();
   }
   return summarise(logs, options.interval);
 }

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <numbers>
 
 namespace slipmode::diagnostics {
 
@@ -18,6 +19,7 @@ struct LyapunovExponent {
   double error = 0.0;  ///< standard error of `nats` from the scatter of eight equal stretches [1/s]
   int renormalisations = 0;
 
+  [[nodiscard]] double error_bits() const { return error / std::numbers::ln2; }
   [[nodiscard]] bool is_positive() const { return nats > kErrorsOfPositive * error; }
 };
 
@@ -25,7 +27,7 @@ struct LyapunovOptions {
   double transient = 1000.0;  ///< run before measuring [s]
   double duration = 20000.0;  ///< measured over [s]
   double interval = 20.0;     ///< between renormalisations [s]
-  double separation = 1e-7;   ///< distance after each renormalisation
+  double separation = 1e-7;   ///< distance after each renormalisation over the motion's size, largest so far
   std::uint64_t seed = 1;     ///< direction of the first separation
   dynamics::FlowOptions flow = {};
   const StopFlag* stop = nullptr;  ///< polled at renormalisations
@@ -39,8 +41,9 @@ struct LyapunovOptions {
                                         Eigen::VectorXd state, Eigen::VectorXd direction, int steps, double time_step,
                                         double separation);
 
-/// Largest exponent of a hybrid system by two trajectories, distance ½ δvᵀMδv + ½ δqᵀKδq (energy norm). While a contact
-/// of the reference sticks, the neighbour is put on the same belt speed: that direction is lost anyway. Contacts' own
+/// Largest exponent of a hybrid system by two trajectories, distance √(½ δvᵀMδv + ½ δqᵀKδq) (energy norm), a motion's
+/// size the norm of its state, or of a contact that moves with its counterpart where that is larger. While a contact of
+/// the reference sticks, the neighbour is put on the same belt speed: that direction is lost anyway. Contacts' own
 /// states belong to the state; a stretch δz counts ½ K_c δz². Under a shaker start.time sets the phase.
 /// @throws InvalidInput  for non-positive times or separation
 [[nodiscard]] LyapunovExponent largest_exponent(const dynamics::HybridSystem& system, const dynamics::State& start,

@@ -107,6 +107,23 @@ TEST(LargestExponent, OfTheChaoticChainIsThatOfItsTangentFlow) {
   EXPECT_GT(found.nats, 0.0);
 }
 
+TEST(LargestExponent, DoesNotDependOnTheUnitOfForce) {
+  // Mass, damping, stiffness and load times a power of two: the same motion, every rounding of it the same.
+  const auto exponent_in = [](double unit) {
+    const fem::ChainOptions chain = {.masses = 10, .mass = {unit}, .stiffness = {unit}, .damping = 0.006};
+    const dynamics::HybridSystem system(fem::chain(chain),
+                                        {{fixtures::unit(10, 9), friction::Stribeck{0.4, 0.2, 8.0}, 3.0 * unit}},
+                                        friction::Belt::constant(0.2));
+    return largest_exponent(system, system.rest(), {.transient = 500.0, .duration = 1000.0});
+  };
+  const LyapunovExponent one = exponent_in(1.0);
+  EXPECT_GT(one.nats, 0.0);
+  for (const double unit : {0x1p-40, 0x1p+60}) {
+    EXPECT_EQ(exponent_in(unit).nats, one.nats) << unit;
+    EXPECT_EQ(exponent_in(unit).error, one.error) << unit;
+  }
+}
+
 TEST(LargestExponent, RefusesTimesThatMakeNoSense) {
   const dynamics::HybridSystem system = tests::chain10(0.2);
   const dynamics::State rest = system.rest();
