@@ -5,6 +5,7 @@
 #include <slipmode/figures/belt_figures.hpp>
 #include <slipmode/figures/exponents_figures.hpp>
 #include <slipmode/figures/map_figures.hpp>
+#include <slipmode/figures/natural_mode_figures.hpp>
 #include <slipmode/figures/orbit_figures.hpp>
 #include <slipmode/figures/series_figures.hpp>
 #include <slipmode/figures/shaken_figures.hpp>
@@ -34,6 +35,7 @@ struct KindFigures {
 constexpr KindFigures kFigures[] = {
     {FileKind::kTrajectory, trajectory_figures_of, shaken_trajectory_figures_of},
     {FileKind::kPod, belt_pod_figures_of, shaken_pod_figures_of},
+    {FileKind::kModes, natural_mode_figures_of},
     {FileKind::kReduced, belt_reduced_figures_of, shaken_reduced_figures_of},
     {FileKind::kValidation, belt_validation_figures_of, shaken_validation_figures_of},
     {FileKind::kSweep, belt_sweep_figures_of, shaken_sweep_figures_of},

@@ -84,7 +84,12 @@ Figure panel_grid(const std::vector<Panel>& panels, const PanelLayout& layout) {
   const int count = static_cast<int>(panels.size());
   const int columns = std::min(layout.columns, std::max(count, 1));
   const int rows = (count + columns - 1) / columns;
-  Figure figure(1200, rows * layout.panel_height + 170);
+  // Above narrow panels entries of the legend stand one below the other; a third needs more room than titles leave.
+  const auto entries = panels.empty() ? 0 : std::ranges::count_if(panels.front().series, [](const Series& own) {
+    return !own.title.empty();
+  });
+  const int above = 95 + (columns > 2 ? 25 * std::max<int>(0, static_cast<int>(entries) - 2) : 0);
+  Figure figure(1200, rows * layout.panel_height + 75 + above);
   common_style(figure);
   figure.show(drawing_of(panels, layout));
   Ranges all;
@@ -92,7 +97,7 @@ Figure panel_grid(const std::vector<Panel>& panels, const PanelLayout& layout) {
   const double height = figure.height();
   const double gap_x = columns == 1 ? 0.0 : (layout.shared_y ? 0.03 : 0.085);
   figure.command(fmt::format("set multiplot layout {},{} margins 0.14,0.98,{:.4f},{:.4f} spacing {:.3f},{:.4f}", rows,
-                             columns, 75.0 / height, 1.0 - 95.0 / height, gap_x,
+                             columns, 75.0 / height, 1.0 - above / height, gap_x,
                              (layout.shared_x ? 45.0 : 90.0) / height));
   if (layout.log_y) figure.command("set logscale y; set format y '%.0e'");
   for (int i = 0; i < count; ++i) {

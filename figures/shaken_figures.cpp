@@ -12,6 +12,7 @@
 #include <slipmode/results/shaken_modes.hpp>
 #include <slipmode/results/table.hpp>
 #include <slipmode/scene/shaken.hpp>
+#include "figures/internal/beam_shape.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -146,14 +147,6 @@ Figure agreement(const StoreReader& store) {
                                  .log_y = true});
 }
 
-/// Displacement along the beam of degrees of freedom, scaled to a largest value of one.
-Eigen::VectorXd along(const fem::Beam& beam, const Eigen::VectorXd& x, const Eigen::VectorXd& q) {
-  Eigen::VectorXd y(x.size());
-  for (Eigen::Index i = 0; i < x.size(); ++i) y[i] = x[i] > 0.0 ? beam.displacement_row(x[i]).dot(q) : 0.0;
-  const double largest = y.cwiseAbs().maxCoeff();
-  return largest > 0.0 ? Eigen::VectorXd(y / largest) : y;
-}
-
 /// Vectors of a basis beside the natural modes of the same number.
 Figure functions_along(const StoreReader& store, const std::string& group, const std::string& name) {
   constexpr Eigen::Index kShown = 6, kPoints = 200;
@@ -165,7 +158,7 @@ Figure functions_along(const StoreReader& store, const std::string& group, const
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(kPoints, 0.0, beam.reach());
   std::vector<Panel> panels;
   for (Eigen::Index k = 0; k < count; ++k) {
-    const Eigen::VectorXd own = along(beam, x, basis.vectors.col(k)), lnm = along(beam, x, lnms.col(k));
+    const Eigen::VectorXd own = beam_shape(beam, x, basis.vectors.col(k)), lnm = beam_shape(beam, x, lnms.col(k));
     const std::string share =
         k < basis.energy.size() ? fmt::format(": {:.3g} %", 100.0 * basis.energy[k]) : std::string();
     panels.push_back({fmt::format("{} {}{}", name, k + 1, share),

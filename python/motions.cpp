@@ -1,3 +1,4 @@
+#include <slipmode/diagnostics/attractors/model.hpp>
 #include <slipmode/scene/scene.hpp>
 #include <slipmode/studies/bases.hpp>
 #include <slipmode/studies/ensemble.hpp>
@@ -10,6 +11,8 @@
 #include "python/model.hpp"
 #include "python/module.hpp"
 #include "python/result.hpp"
+
+#include <pybind11/eigen.h>
 
 #include <optional>
 #include <utility>
@@ -56,14 +59,29 @@ Result pod(const Result& motion, Eigen::Index modes) {
       studies::content_of(std::make_shared<const studies::MotionModes>(studies::motion_modes(reader, modes))));
 }
 
-Result reduce(const Scene& scene, const std::variant<std::string, const Result*>& basis, Eigen::Index modes) {
+/// Vectors are taken about where a belt holds the structure, as natural modes are.
+Result reduce(const Scene& scene, const std::variant<std::string, const Result*, Eigen::MatrixXd>& basis,
+              Eigen::Index modes) {
   std::optional<results::StoreReader> reader;
   if (const auto* result = std::get_if<const Result*>(&basis)) reader.emplace((*result)->store());
   const py::gil_scoped_release unlocked;
   const dynamics::HybridSystem full = scene::build_system(scene);
-  const std::string name = reader ? reader->path().string() : std::get<std::string>(basis);
-  const pod::NamedBasis source =
-      reader ? studies::load_basis(scene, full, *reader) : studies::load_basis(scene, full, name);
+  pod::NamedBasis source;
+  std::string name = "array";
+  if (reader) {
+    name = reader->path().string();
+    source = studies::load_basis(scene, full, *reader);
+  } else if (const auto* vectors = std::get_if<Eigen::MatrixXd>(&basis)) {
+    source = {.name = "user",
+              .basis = {.vectors = *vectors,
+                        .mean = diagnostics::resting_place(full),
+                        .energy = {},
+                        .provenance = "an array, about the sliding equilibrium"}};
+    if (modes == 0) modes = vectors->cols();
+  } else {
+    name = std::get<std::string>(basis);
+    source = studies::load_basis(scene, full, name);
+  }
   return Result(studies::content_of(
       scene, std::make_shared<const studies::Reduction>(studies::reduce(scene, full, source, name, modes))));
 }
@@ -91,10 +109,12 @@ void add_motions(py::module_& module) {
              "    count: modes of each set at most; 0: the lowest 20\n");
   module.def("pod", &pod, py::arg("motion"), py::arg("modes") = 0,
              "Proper orthogonal modes of a run or an ensemble.\n\n    modes: kept; 0: all there are\n");
-  module.def("reduce", &reduce, py::arg("scene"), py::arg("basis"), py::arg("modes") = 0,
-             "A scene's model projected on a basis.\n\n"
-             "    basis: of `pod` or of a reduced model, or the word \"lnm\", on a beam also \"lnm+static\"\n"
-             "    modes: how many; 0: as [reduction] says\n");
+  module.def(
+      "reduce", &reduce, py::arg("scene"), py::arg("basis"), py::arg("modes") = 0,
+      "A scene's model projected on a basis.\n\n"
+      "    basis: of `pod` or of a reduced model; the word \"lnm\", on a beam also \"lnm+static\"; or an array,\n"
+      "           dof x mode, taken about where a belt holds the structure\n"
+      "    modes: how many; 0: as [reduction] says, of an array all\n");
   module.def("validate", &validate, py::arg("scene"), py::arg("basis"),
              ("Reduced models on a basis compared with the full one, as [validation] says.\n\n"
               "    basis: of `pod`, of a reduced model, or a motion\n"

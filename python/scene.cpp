@@ -63,7 +63,11 @@ void add_scene(py::module_& module) {
           "path", [](const Scene& own) { return own.source.path; }, "file it was read from")
       .def_property_readonly(
           "overrides", [](const Scene& own) { return own.source.overrides; }, "what was set beside the file")
-      .def("toml", &scene::scene_to_toml, "A complete scene file that reads as the same scene, defaults written out.")
+      .def_property_readonly(
+          "text", [](const Scene& own) { return own.source.text; }, "what was read")
+      .def("toml", &scene::scene_file,
+           "A scene file of the same scene, overrides and defaults of its tables written out; times left to its\n"
+           "periods stay so.")
       .def("get", &scene::get_key, py::arg("key"), "Value of a numeric key, for example \"drive.speed\".")
       .def(
           "has", [](const Scene& own, const std::string& table) { return scene::has_section(own, table); },

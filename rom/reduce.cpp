@@ -34,17 +34,15 @@ std::string label(const friction::Contact& contact, std::size_t index) {
                               : fmt::format("contact '{}'", contact.name);
 }
 
-/// Every contact must have a component in the span of the basis, and those of different places must be independent:
-/// otherwise sticking would ask the basis for a motion it does not hold.
+/// Every contact must have a component in the span of the basis, and those that stick rigidly at different places must
+/// be independent: otherwise sticking would ask the basis for a motion it does not hold.
 void check_contacts(const std::vector<friction::Contact>& contacts, const Eigen::MatrixXd& Phi) {
   if (contacts.empty()) return;
   const Eigen::MatrixXd Q = orthonormal_columns(Phi);
-  const std::vector<std::vector<std::size_t>> places = friction::by_place(contacts);
-  Eigen::MatrixXd seen(Phi.cols(), std::ssize(places));
-  for (Eigen::Index p = 0; p < seen.cols(); ++p) {
-    const std::size_t c = places[static_cast<std::size_t>(p)].front();
-    auto column = seen.col(p);
-    column = Q.transpose() * contacts[c].direction.normalized();
+  Eigen::MatrixXd seen(Phi.cols(), 0);
+  for (const std::vector<std::size_t>& place : friction::by_place(contacts)) {
+    const std::size_t c = place.front();
+    Eigen::VectorXd column = Q.transpose() * contacts[c].direction.normalized();
     const double cosine = column.norm();
     if (!(cosine >= kVisible)) {
       throw InvalidInput(
@@ -52,13 +50,17 @@ void check_contacts(const std::vector<friction::Contact>& contacts, const Eigen:
                       "in their span, at least {:.0e} needed. Add vectors that move at the contact",
                       label(contacts[c], c), Phi.cols(), cosine, kVisible));
     }
-    column /= cosine;
+    const auto is_rigid = [&](std::size_t i) { return friction::sticks_rigidly(friction::kind(contacts[i].law)); };
+    if (std::ranges::none_of(place, is_rigid)) continue;
+    seen.conservativeResize(Eigen::NoChange, seen.cols() + 1);
+    seen.rightCols(1) = column / cosine;
   }
+  if (seen.cols() == 0) return;
   const Eigen::VectorXd sigma = Eigen::JacobiSVD<Eigen::MatrixXd>(seen).singularValues();
   const double independence = seen.cols() > seen.rows() ? 0.0 : sigma[sigma.size() - 1] / sigma[0];
   if (!(independence >= kVisible)) {
     throw InvalidInput(fmt::format(
-        "reduce: a basis of {} vectors cannot tell its {} contacts apart (smallest to largest "
+        "reduce: a basis of {} vectors cannot tell {} contacts that stick apart (smallest to largest "
         "singular value of their projections {:.3g}, at least {:.0e} needed). Keep more vectors: {} or more by "
         "reduction.modes",
         Phi.cols(), seen.cols(), independence, kVisible, std::max<Eigen::Index>(Phi.cols() + 1, seen.cols())));

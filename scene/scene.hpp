@@ -56,6 +56,8 @@ struct Scene {
   [[nodiscard]] const fem::BeamOptions* beam() const { return std::get_if<fem::BeamOptions>(&structure); }
   /// Degrees of freedom of the full model.
   [[nodiscard]] Eigen::Index size() const;
+  /// The title, or the name of the file where there is none.
+  [[nodiscard]] std::string name() const;
 };
 
 /// Reads and checks a scene.
@@ -71,6 +73,10 @@ struct Scene {
 
 /// A complete scene file that parses to the same scene, every default written out.
 [[nodiscard]] std::string scene_to_toml(const Scene& scene);
+
+/// A scene file for verbs to run as they run this scene: the tables that its source and overrides give, and [flow]
+/// where it is not the usual one; of [time] and [validation] the keys given, since the others follow from periods.
+[[nodiscard]] std::string scene_file(const Scene& scene);
 
 /// The same scene with one value changed, checked anew. The override is added to `source.overrides`.
 /// @param path   dotted: "drive.speed", "structure.masses", "contact.0.mu_s"

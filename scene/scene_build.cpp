@@ -81,6 +81,10 @@ dynamics::HybridSystem assemble(const Scene& scene, fem::Structure structure, co
 
 }  // namespace
 
+std::string Scene::name() const {
+  return title.empty() ? std::filesystem::path(source.path).filename().string() : title;
+}
+
 Eigen::Index Scene::size() const {
   return std::visit(Overloaded{[](const fem::ChainOptions& own) -> Eigen::Index { return own.masses; },
                                [](const fem::BeamOptions& own) -> Eigen::Index {

@@ -3,6 +3,7 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/core/none.hpp>
 #include <slipmode/core/numbers.hpp>
+#include <slipmode/diagnostics/attractors/model.hpp>
 #include <slipmode/fem/modes.hpp>
 #include <slipmode/pod/mode_shares.hpp>
 #include <slipmode/results/ensemble_store.hpp>
@@ -65,7 +66,7 @@ pod::NamedBasis kept_basis(const results::StoreReader& store, const std::string&
   const bool known = basis.energy.size() == basis.modes();
   return {.name = basis.kind == pod::BasisKind::kPom   ? "POM"
                   : basis.kind == pod::BasisKind::kLnm ? "LNM"
-                                                       : "user",
+                                                       : std::string(pod::to_string(basis.kind)),
           .basis = basis,
           .captured = known ? pod::cumulative(basis.energy) : Eigen::VectorXd::Constant(basis.modes(), kNone)};
 }
@@ -145,6 +146,13 @@ std::vector<trade::OfferedBasis> offered_shaken(const scene::Scene& scene, const
   return bases;
 }
 
+/// All natural modes of a model without an ensemble, whose mean they would be about.
+pod::Basis lnms_at_rest(const dynamics::HybridSystem& system) {
+  pod::Basis modes = rom::lnm_basis(system.structure(), system.size());
+  modes.mean = diagnostics::resting_place(system);
+  return modes;
+}
+
 std::vector<trade::OfferedBasis> offered_on_belt(const scene::Scene& scene, const dynamics::HybridSystem& system,
                                                  const RunOptions& run) {
   std::optional<pod::PodResult> result;
@@ -153,7 +161,7 @@ std::vector<trade::OfferedBasis> offered_on_belt(const scene::Scene& scene, cons
     making = processor_time([&] { result = pod::pod(ensemble(scene, run).ensemble); });
   } catch (const InvalidInput&) {
     trade::OfferedBasis lnm{.choice = scene::BasisChoice::kLnm, .basis = {}};
-    lnm.seconds = processor_time([&] { lnm.basis = rom::lnm_basis(system.structure(), system.size()); });
+    lnm.seconds = processor_time([&] { lnm.basis = lnms_at_rest(system); });
     return {lnm};
   }
   std::vector<trade::OfferedBasis> bases;
@@ -278,7 +286,6 @@ std::vector<pod::NamedBasis> load_chosen_bases(const scene::Scene& scene, const 
 }
 
 pod::NamedBasis load_basis(const scene::Scene& scene, const dynamics::HybridSystem& full, const std::string& source) {
-  const Eigen::Index n = full.size();
   if (is_shaken(scene)) {
     const auto no_ensemble = []() -> const results::ShakenModes& {
       throw InvalidInput("natural modes need no ensemble");
@@ -288,7 +295,7 @@ pod::NamedBasis load_basis(const scene::Scene& scene, const dynamics::HybridSyst
         return {.name = source, .basis = shaken_basis(word, scene, full, no_ensemble)};
     }
   }
-  if (source == "lnm") return {.name = "LNM", .basis = rom::lnm_basis(full.structure(), n)};
+  if (source == "lnm") return {.name = "LNM", .basis = lnms_at_rest(full)};
   return load_basis(scene, full, results::StoreReader(source));
 }
 
@@ -305,6 +312,7 @@ pod::NamedBasis load_basis(const scene::Scene& scene, const dynamics::HybridSyst
       return found;
     }
     const pod::PodResult result = results::load_pod(store, results::kPodGroup, n);
+    if (scene.reduction.basis == scene::BasisChoice::kLnm) return belt_bases(scene, full.structure(), result).front();
     return {.name = "POM", .basis = result.basis, .captured = pod::cumulative(result.shares)};
   }
   const pod::Basis basis = results::load_basis(store, basis_group(kind), n);

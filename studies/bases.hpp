@@ -54,7 +54,9 @@ namespace slipmode::studies {
                                                              const results::StoreReader& store, Eigen::Index modes);
 
 /// The one basis that a scene's model is to be projected on. `captured` is empty where no energies are known.
-/// @param source  "lnm", under a shaker also "lnm+static", or a result file with a POD, a basis or a reduced model
+/// Natural modes are about the mean of the motion that a POD is of, else about diagnostics::resting_place.
+/// @param source  "lnm", under a shaker also "lnm+static", or a result file with a POD (of its bases the one that
+///                [reduction] names), a basis or a reduced model
 /// @throws InvalidInput  when the file holds no basis, or one for another number of degrees of freedom
 [[nodiscard]] pod::NamedBasis load_basis(const scene::Scene& scene, const dynamics::HybridSystem& full,
                                          const std::string& source);

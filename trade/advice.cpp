@@ -47,11 +47,12 @@ std::string use_text(const Study& study, const Row& row, Measure measure) {
 /// All modes: the full model in other coordinates.
 bool keeps_all(const Variant& variant) { return variant.reduction && variant.reduction->modes == variant.scene.size(); }
 
-/// Offers of a measure without those that agree by chance, or reduce nothing.
-std::vector<Offer> sound_offers(const Study& study, Measure measure, double limit) {
+/// Offers of a measure without those that reduce nothing or, under a limit, agree by chance.
+std::vector<Offer> sound_offers(const Study& study, Measure measure, std::optional<double> limit) {
   std::vector<Offer> offers = study.offers(measure);
   for (std::size_t i = 0; i < offers.size(); ++i) {
-    if (!is_alike(study.rows[i], limit) || keeps_all(study.rows[i].variant)) offers[i].error = kNone;
+    const Row& row = study.rows[i];
+    if (keeps_all(row.variant) || (limit && !is_alike(row, *limit))) offers[i].error = kNone;
   }
   return offers;
 }
@@ -70,7 +71,7 @@ std::optional<std::size_t> cheapest_worth_it(const Study& study, const std::vect
 
 /// With a budget costs are those of one whole run; with a budget alone any error may have to do.
 std::vector<Offer> offers_of_run(const Study& study, const Wish& wish) {
-  std::vector<Offer> offers = wish.limit ? sound_offers(study, wish.measure, *wish.limit) : study.offers(wish.measure);
+  std::vector<Offer> offers = sound_offers(study, wish.measure, wish.limit);
   if (!wish.budget) return offers;
   for (std::size_t i = 0; i < offers.size(); ++i) offers[i].cost = study.rows[i].cost.of_run(wish.duration);
   return offers;

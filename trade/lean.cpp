@@ -2,6 +2,7 @@
 
 #include <slipmode/core/errors.hpp>
 #include <slipmode/core/none.hpp>
+#include <slipmode/scene/own_times.hpp>
 #include <slipmode/trade/advice.hpp>
 
 #include <fmt/format.h>
@@ -124,7 +125,7 @@ class Search {
     const auto row = row_named(written.name);
     if (row) return row;
     written.axis = Axis::kLean;
-    written.scene = scene::parse_scene(scene_text(written), {}, scene_.source.path);
+    written.scene = scene::with_own_times(scene::parse_scene(scene_text(written), {}, scene_.source.path));
     out_.wanted.push_back(std::move(written));
     return std::nullopt;
   }

@@ -71,4 +71,13 @@ dynamics::State sliding_equilibrium(const dynamics::HybridSystem& system) {
   return state;
 }
 
+Eigen::VectorXd resting_place(const dynamics::HybridSystem& system) {
+  if (system.drive().belt() == nullptr) return Eigen::VectorXd::Zero(system.size());
+  try {
+    return sliding_equilibrium(system).q;
+  } catch (const InvalidInput&) {
+    return Eigen::VectorXd::Zero(system.size());
+  }
+}
+
 }  // namespace slipmode::diagnostics

@@ -45,4 +45,8 @@ struct Model {
 /// @throws InvalidInput  if K is singular to rounding (a structure free to move as a rigid body)
 [[nodiscard]] dynamics::State sliding_equilibrium(const dynamics::HybridSystem& system);
 
+/// Where a belt holds the structure on average: the displacement of sliding_equilibrium; zero under another drive and
+/// where there is none. Natural modes know of no mean and are taken about this one.
+[[nodiscard]] Eigen::VectorXd resting_place(const dynamics::HybridSystem& system);
+
 }  // namespace slipmode::diagnostics

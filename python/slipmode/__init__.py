@@ -65,7 +65,7 @@ def _load(source, set=None):
     if isinstance(source, Scene):
         if not changes:
             return source
-        return _slipmode.parse_scene(source.toml(), changes, source.path)
+        return _slipmode.parse_scene(source.text, source.overrides + changes, source.path)
     if isinstance(source, dict):
         return _slipmode.parse_scene(_document(source), changes, "<dict>")
     if isinstance(source, (str, os.PathLike)):
@@ -469,6 +469,14 @@ def _native(value):
     return value
 
 
+def _store(name, value, expected):
+    """The store of an argument that has to be a result or its file."""
+    native = _native(value)
+    if not isinstance(native, _slipmode.Store):
+        raise InvalidInput(f"{name}: {value!r}: expected {expected}")
+    return native
+
+
 def _native_record(value):
     """A result's store, a path as text, samples as they are."""
     if isinstance(value, Result):
@@ -529,11 +537,17 @@ def modes(scene, count=0):
 
 
 def pod(motion, modes=0):
-    return Result(_slipmode.pod(_native(motion), modes))
+    return Result(_slipmode.pod(_store("motion", motion, "a result of simulate or ensemble, or its file"), modes))
 
 
 def reduce(scene, basis, modes=0):
-    return Result(_slipmode.reduce(_load(scene), _native(basis), modes))
+    if hasattr(basis, "__array__") or isinstance(basis, (list, tuple)):
+        basis = np.asarray(basis, dtype=float)
+        if basis.ndim != 2:
+            raise InvalidInput(f"basis: array of {basis.ndim} dimensions: expected two, dof x mode")
+    elif not isinstance(basis, str) or basis.endswith(".h5"):
+        basis = _store("basis", basis, 'a result of pod or reduce, the word "lnm", or an array, dof x mode')
+    return Result(_slipmode.reduce(_load(scene), basis, modes))
 
 
 def spectrum(orbit, dofs=(), **options):

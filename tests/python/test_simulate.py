@@ -100,6 +100,25 @@ class Scenes(unittest.TestCase):
         self.assertEqual(scene.overrides, ["drive.speed=0.25"])
         self.assertEqual(scene.size, 10)
 
+    def test_times_left_to_the_periods_are_those_of_the_keys_set(self):
+        # A hundred times as stiff: periods, and all that is left to them, a tenth as long.
+        tables = {"units": "SI", "structure": {"kind": "chain", "masses": 3, "stiffness": 400.0},
+                  "contact": [{"at": 3, "law": "coulomb", "mu_s": 0.4, "mu_k": 0.3, "normal_load": 1.0}],
+                  "drive": {"kind": "belt", "speed": 0.1}, "validation": {"horizon": 5.0}}
+        scene = sm.Scene.load(tables)
+        stiffer = scene.set(structure__stiffness=4e4)
+        self.assertEqual(stiffer.overrides, ["structure.stiffness=40000.0"])
+        for own in (stiffer, stiffer.set(drive__speed=0.1)):
+            self.assertAlmostEqual(sm.simulate(own).t[-1] / sm.simulate(scene).t[-1], 0.1, delta=1e-3)
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "again.toml"
+            path.write_text(scene.toml())
+            self.assertEqual(path.read_text().count("[validation]\nhorizon = 5.0\n"), 1)
+            for table in ("[time]", "[ensemble]", "[reduction]", "[flow]"):
+                self.assertNotIn(table, path.read_text())
+            again = sm.Scene.load(path, set={"structure.stiffness": 4e4})
+            np.testing.assert_array_equal(sm.simulate(again).q, sm.simulate(stiffer).q)
+
 
 class Files(unittest.TestCase):
     def setUp(self):

@@ -109,6 +109,16 @@ class BesideTheExecutable(unittest.TestCase):
         self.assert_same(sm.reduce(scene, self.folder / "pod.h5", modes=2), self.folder / "rom.h5")
         self.assertAlmostEqual(basis.shares.sum(), 1.0, delta=1e-14)
 
+    def test_a_basis_of_ones_own(self):
+        # Natural modes, handed over as an array and turned among each other: the same model in other coordinates.
+        scene = sm.Scene.load(CHAIN, set=SHORT)
+        shapes = sm.modes(scene).slipping.shapes
+        turn = np.array([[2.0, 1.0], [-1.0, 3.0]])
+        expected = sm.simulate(scene, model=sm.reduce(scene, "lnm", modes=2))
+        for vectors, modes in ((shapes[:, :2], 0), (shapes, 2), (shapes[:, :2] @ turn, 0)):
+            run = sm.simulate(scene, model=sm.reduce(scene, vectors, modes=modes))
+            np.testing.assert_allclose(run.q, expected.q, atol=1e-9 * np.abs(expected.q).max())
+
     def test_validation(self):
         scene = sm.Scene.load(CHAIN, set=QUICK)
         basis = sm.pod(sm.ensemble(scene))
@@ -475,6 +485,11 @@ class Refused(unittest.TestCase):
                 (lambda: sm.reduce(scene, "lnm"), "energy shares"),
                 (lambda: sm.reduce(scene, sm.modes(scene), modes=2), "natural modes"),
                 (lambda: sm.pod(sm.modes(scene)), "ensemble"),
+                (lambda: sm.pod(3), "^motion: 3: expected a result of simulate"),
+                (lambda: sm.reduce(scene, 3), "^basis: 3: expected a result of pod"),
+                (lambda: sm.reduce(scene, np.eye(4)[0]), "two, dof x mode"),
+                (lambda: sm.reduce(scene, np.eye(3)), "3 x 3"),
+                (lambda: sm.reduce(scene, np.ones((4, 2))), "reduce"),
                 (lambda: sm.validate(scene, sm.simulate(BACKLASH)), "degrees of freedom"),
                 (lambda: sm.find_orbit(scene, start="there"), "settle"),
                 (lambda: sm.find_orbit(scene, start=[0.0]), "4 displacements"),

@@ -169,8 +169,29 @@ TEST(Reduce, NamesContactsTheBasisCannotTellApart) {
                            {Eigen::VectorXd::Unit(4, 1), friction::Coulomb{0.4, 0.2}}},
                           friction::Belt::constant(0.2));
   const std::string message = message_of([&] { (void)reduce(full, lnm_basis(chain, 1)); });
-  EXPECT_NE(message.find("cannot tell its 2 contacts apart"), std::string::npos) << message;
+  EXPECT_NE(message.find("cannot tell 2 contacts that stick apart"), std::string::npos) << message;
   EXPECT_EQ(reduce(full, lnm_basis(chain, 2)).size(), 2);
+}
+
+// One mode moves both contacts alike. That is no contradiction but where both stick rigidly.
+TEST(Reduce, TellsApartOnlyContactsThatStickRigidly) {
+  const friction::Stop stop{.stiffness = 2.0, .gap = 0.1};
+  for (const friction::Law& law :
+       {friction::Law(friction::TanhRegularised{0.4, 0.2, 8.0, 0.05}),
+        friction::Law(friction::CompliantCoulomb{0.4, 0.2, 3.0}), friction::Law(friction::Dahl{0.3, 5.0}),
+        friction::Law(friction::Clearance{.left = stop, .right = stop})}) {
+    SCOPED_TRACE(friction::law_words()[law.index()]);
+    const HybridSystem full(fem::chain({.masses = 4}),
+                            {{Eigen::VectorXd::Unit(4, 3), law}, {Eigen::VectorXd::Unit(4, 1), law}},
+                            friction::Belt::constant(0.2));
+    const HybridSystem reduced = reduce(full, lnm_basis(full.structure(), 1));
+    dynamics::State start = reduced.rest();
+    start.q[0] = 10.0;
+    const dynamics::Trajectory run = dynamics::simulate(reduced, start, {.duration = 60.0});
+    EXPECT_LT(run.audit.residual(), 1e-11);
+    const std::size_t fewest = friction::kind(law) == friction::LawKind::kSmooth ? 0 : 5;
+    EXPECT_GE(run.events.size(), fewest);
+  }
 }
 
 TEST(Reduce, TakesSeveralContactsAtOnePlaceForOne) {
