@@ -5,6 +5,7 @@
 #include <slipmode/figures/style.hpp>
 #include <slipmode/results/exponents_store.hpp>
 #include <slipmode/results/table.hpp>
+#include <slipmode/results/units.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -17,7 +18,6 @@ namespace {
 
 using results::StoreReader;
 
-constexpr const char* kExponentUnit = "bit per unit of time";
 constexpr std::array<std::string_view, 4> kExponentModelColours = {kFullColour, kPomColour, kLnmColour, kSecondColour};
 
 std::string_view model_colour(std::size_t model) { return kExponentModelColours[model % kExponentModelColours.size()]; }
@@ -30,6 +30,16 @@ std::vector<std::string> exponent_groups(const StoreReader& store) {
     if (store.has(group + "/values")) groups.push_back(group);
   }
   return groups;
+}
+
+/// Unit of exponents drawn in bits that are stored in nats.
+std::string bit_rate(const StoreReader& store, const std::string& nats) {
+  const std::string rate = store.entry(nats).meaning.units;
+  return results::Units::of(rate == "1/s" ? "SI" : "dimensionless").bit_rate();
+}
+
+std::string bit_rate(const StoreReader& store) {
+  return bit_rate(store, exponent_groups(store).front() + "/values/nats");
 }
 
 Eigen::VectorXd bits_of(const std::vector<double>& nats) { return to_vector(nats) / std::numbers::ln2; }
@@ -63,7 +73,7 @@ Figure exponents_drawn(const StoreReader& store) {
                       .error = bits_of(values.numbers("error")).head(finite),
                       .colour = model_colour(models.size())});
   }
-  return exponent_spectrum(models, leading_exponents(store), kExponentUnit);
+  return exponent_spectrum(models, leading_exponents(store), bit_rate(store));
 }
 
 Figure convergence_drawn(const StoreReader& store) {
@@ -78,7 +88,7 @@ Figure convergence_drawn(const StoreReader& store) {
                       .running = running.topRows(std::min(most, finite))});
     time_unit = store.entry(group + "/time").meaning.units;
   }
-  return exponent_convergence(models, kExponentUnit, time_unit);
+  return exponent_convergence(models, bit_rate(store), time_unit);
 }
 
 /// Cumulative distribution of the rates of expansion of the leading directions, interval by interval.
@@ -102,13 +112,13 @@ Figure expansion_drawn(const StoreReader& store) {
   }
   return panel_grid(panels, {.columns = static_cast<int>(panels.size()),
                              .panel_height = 420,
-                             .x_label = "expansion rate [bit/time]",
+                             .x_label = fmt::format("expansion rate [{}]", bit_rate(store)),
                              .y_label = "share of the intervals below"});
 }
 
 Figure exponents_over_key(const StoreReader& store) {
   std::vector<ExponentSweep> models;
-  std::string label, unit, value_unit;
+  std::string label, unit, value_unit, rate;
   for (const std::string group : {"exponents/full", "exponents/reduced"}) {
     if (!store.has(group)) continue;
     const results::Table values = results::load_table(store, group + "/values");
@@ -125,12 +135,12 @@ Figure exponents_over_key(const StoreReader& store) {
       model.slip_value = to_vector(table.numbers("displacement"));
       value_unit = store.entry(slips + "/displacement").meaning.units;
     }
+    rate = bit_rate(store, group + "/nats");
     label = store.text(group + "/label");
     unit = store.entry(group + "/values/parameter").meaning.units;
     models.push_back(std::move(model));
   }
-  return exponent_sweep(models, axis_label(label, unit), axis_label("displacement as slip begins", value_unit),
-                        kExponentUnit);
+  return exponent_sweep(models, axis_label(label, unit), axis_label("displacement as slip begins", value_unit), rate);
 }
 
 }  // namespace

@@ -17,6 +17,8 @@ std::string_view to_string(BasisKind kind) {
       return "pomf";
     case BasisKind::kLnmStatic:
       return "lnm+static";
+    case BasisKind::kMassPom:
+      return "mass-pom";
     case BasisKind::kUser:
       break;
   }

@@ -11,14 +11,15 @@
 namespace slipmode::pod {
 
 enum class BasisKind {
-  kPom,        ///< proper orthogonal modes of snapshots (pod.hpp, mass_pod.hpp)
+  kPom,        ///< proper orthogonal modes of snapshots (pod())
   kLnm,        ///< linear natural modes of the slipping structure
   kUser,       ///< supplied
   kPomf,       ///< proper orthogonal modal functions: sensor POMs made continuous (pomf.hpp)
   kLnmStatic,  ///< one static mode per contact, then linear natural modes (rom/reduce.hpp)
+  kMassPom,    ///< proper orthogonal modes of snapshots in the mass metric (mass_pod())
 };
 
-/// "pom", "lnm", "user", "pomf" or "lnm+static": the word for files and tables.
+/// "pom", "lnm", "user", "pomf", "lnm+static" or "mass-pom": the word for files and tables.
 [[nodiscard]] std::string_view to_string(BasisKind kind);
 
 /// An affine basis q ≈ mean + Φ a.

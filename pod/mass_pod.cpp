@@ -14,6 +14,7 @@ PodResult mass_pod(const Ensemble& ensemble, const fem::Matrix& M, const PodOpti
   check_mass_orthonormal(result.basis.vectors, M, "POD in the mass metric");
   fix_signs(result.basis.vectors);
   result.basis.mean = Centred(ensemble.snapshots, options.remove_mean).mean();
+  result.basis.kind = BasisKind::kMassPom;
   result.basis.provenance += ", in the mass metric";
   return result;
 }

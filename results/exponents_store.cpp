@@ -29,7 +29,7 @@ void store_model_exponents(StoreWriter& writer, const std::string& group, const 
   save(writer, group + "/values",
        Table{"one row per exponent, descending",
              {{"nats", {units.rate, "exponent; -inf: a direction that is lost"}, values_of(spectrum.nats)},
-              {"bits", {"bit per unit of time", "the same over ln 2"}, values_of(bits)},
+              {"bits", {units.bit_rate(), "the same over ln 2"}, values_of(bits)},
               {"error", {units.rate, "standard error, eight stretches"}, values_of(spectrum.error)},
               {"first_half", {units.rate, "from the first half"}, values_of(first)},
               {"second_half", {units.rate, "from the second half"}, values_of(second)}}});

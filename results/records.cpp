@@ -12,9 +12,9 @@ namespace slipmode::results {
 
 namespace {
 
-constexpr std::array kBasisKinds = {pod::BasisKind::kPom, pod::BasisKind::kLnm, pod::BasisKind::kUser,
-                                    pod::BasisKind::kPomf, pod::BasisKind::kLnmStatic};
-constexpr const char* kBasisWords = "pom, lnm, user, pomf or lnm+static";
+constexpr std::array kBasisKinds = {pod::BasisKind::kPom,  pod::BasisKind::kLnm,       pod::BasisKind::kUser,
+                                    pod::BasisKind::kPomf, pod::BasisKind::kLnmStatic, pod::BasisKind::kMassPom};
+constexpr const char* kBasisWords = "pom, lnm, user, pomf, lnm+static or mass-pom";
 
 pod::BasisKind load_kind(const StoreReader& store, const std::string& name) {
   constexpr const char* kFormerWord = "lnm_static";  // in files of version 0.1 before 2026-11-22
@@ -24,6 +24,9 @@ pod::BasisKind load_kind(const StoreReader& store, const std::string& name) {
   if (found == kBasisKinds.end()) store.fail(name, fmt::format("'{}'; expected {}", kind, kBasisWords));
   return *found;
 }
+
+/// Vectors of length 1; those of other kinds have a modal mass of 1.
+bool has_unit_length(pod::BasisKind kind) { return kind == pod::BasisKind::kPom || kind == pod::BasisKind::kUser; }
 
 }  // namespace
 
@@ -122,7 +125,8 @@ pod::Ensemble load_ensemble(const StoreReader& store, const std::string& group) 
 
 void save(StoreWriter& store, const std::string& group, const pod::Basis& basis) {
   store.describe_group(group, "affine basis q = mean + vectors a");
-  store.write(group + "/vectors", basis.vectors, {"1", "basis vectors, dof x mode"});
+  store.write(group + "/vectors", basis.vectors,
+              {has_unit_length(basis.kind) ? "1" : "kg^-1/2", "basis vectors, dof x mode"});
   store.write(group + "/mean", basis.mean, {"m", "mean displacement of each dof"});
   store.write(group + "/energy", basis.energy, {"1", "share of the ensemble's energy in each mode; empty: unknown"});
   store.write(group + "/kind", std::string(pod::to_string(basis.kind)), {"", kBasisWords});
@@ -154,7 +158,8 @@ pod::Basis load_basis(const StoreReader& store, const std::string& group, Eigen:
 void save(StoreWriter& store, const std::string& group, const pod::PodResult& result) {
   store.describe_group(group, "proper orthogonal decomposition of an ensemble");
   save(store, group + "/basis", result.basis);
-  store.write(group + "/singular_values", result.singular_values, {"m", "of the mean-removed snapshots over sqrt(T)"});
+  store.write(group + "/singular_values", result.singular_values,
+              {has_unit_length(result.basis.kind) ? "m" : "kg^1/2 m", "of the mean-removed snapshots over sqrt(T)"});
   store.write(group + "/shares", result.shares, {"1", "share of the ensemble's energy in each mode"});
   store.write(group + "/rank", std::int64_t{result.rank}, {"", "singular values above rounding"});
 }

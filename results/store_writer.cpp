@@ -67,7 +67,7 @@ Hdf5Handle text_type(std::size_t length) {
 /// "N s/m" and its like: made of metres, kilograms, seconds.
 bool has_dimension(const std::string& units) {
   constexpr std::array<std::string_view, 6> kUnits = {"m", "kg", "s", "N", "J", "Hz"};
-  constexpr const char* kBetween = " /,";
+  constexpr const char* kBetween = " /,^-";
   for (std::size_t begin = 0; begin < units.size();) {
     const std::size_t end = std::min(units.find_first_of(kBetween, begin), units.size());
     if (std::ranges::find(kUnits, std::string_view(units).substr(begin, end - begin)) != kUnits.end()) return true;

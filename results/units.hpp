@@ -13,6 +13,9 @@ struct Units {
   [[nodiscard]] std::string times() const { return time == "1" ? "units of time" : time; }
   [[nodiscard]] std::string one_time() const { return time == "1" ? "unit of time" : time; }
 
+  /// Of information lost or gained.
+  [[nodiscard]] std::string bit_rate() const { return time == "1" ? "bit per unit of time" : "bit/" + time; }
+
   /// @param system  a scene's `units`: "SI" or "dimensionless"
   [[nodiscard]] static Units of(const std::string& system) {
     if (system != "SI") return {};

@@ -80,8 +80,11 @@ Table share_table(const ValidationReport& report, const Units& units) {
              })}},
            columns_of(own.rows, distance),
            {{"lyapunov",
-             {"bit per unit of time", "largest exponent of an aperiodic motion"},
+             {units.bit_rate(), "largest exponent of an aperiodic motion"},
              own.numbers([](const ShareRow& row) { return row.lyapunov ? row.lyapunov->bits : kNone; })},
+            {"lyapunov_error", {units.bit_rate(), "its standard error"}, own.numbers([](const ShareRow& row) {
+               return row.lyapunov ? row.lyapunov->error_bits() : kNone;
+             })},
             {"failure", {"", "why there is no result"}, own.texts([](const ShareRow& row) { return row.failure; })}}})};
 }
 
@@ -112,15 +115,15 @@ Table orbit_table(const ValidationReport& report, const Units& units) {
 void store_full(StoreWriter& writer, const ValidationReport& report, const Units& units) {
   const std::string group = "validation/full/";
   writer.write(group + "speed", report.speed, {units.velocity, "belt speed of the table"});
-  writer.write(group + "motion", std::string(diagnostics::to_string(report.full.period.motion)),
+  writer.write(group + "motion", diagnostics::attractor_word(report.full, report.lyapunov),
                {"", "what the full model settles to"});
   writer.write(group + "stick_fraction", report.full.stick_fraction,
                {"1", "share of time in stick, mean over contacts whose law sticks"});
   writer.write(group + "slip_rate", report.full.slip_rate, {units.rate, "slips per unit of time"});
   writer.write(group + "mean_energy", report.full.mean_energy, {units.energy, "mean energy"});
   if (report.lyapunov) {
-    writer.write(group + "lyapunov_bits", report.lyapunov->bits, {"bit per unit of time", "largest exponent"});
-    writer.write(group + "lyapunov_error", report.lyapunov->error, {units.rate, "standard error, natural logarithm"});
+    writer.write(group + "lyapunov_bits", report.lyapunov->bits, {units.bit_rate(), "largest exponent"});
+    writer.write(group + "lyapunov_error", report.lyapunov->error_bits(), {units.bit_rate(), "its standard error"});
   }
   writer.write(group + "noise_wasserstein", report.noise.wasserstein,
                {units.length, "slip states of two independent full runs: as close as full is to itself"});

@@ -33,8 +33,11 @@ double contact_stiffness(const friction::Law& law) {
 fem::Modes sticking_modes(const dynamics::HybridSystem& system, Eigen::Index count) {
   std::vector<friction::Contact> held;
   for (const std::vector<std::size_t>& place : friction::by_place(system.contacts())) {
-    const auto is_frictional = [&](std::size_t c) { return friction::clearance(system.contacts()[c].law) == nullptr; };
-    if (std::ranges::any_of(place, is_frictional)) held.push_back(system.contacts()[place.front()]);
+    const auto holds = [&](std::size_t c) {
+      const friction::LawKind kind = friction::kind(system.contacts()[c].law);
+      return friction::sticks(kind) || kind == friction::LawKind::kBristle;
+    };
+    if (std::ranges::any_of(place, holds)) held.push_back(system.contacts()[place.front()]);
   }
   const Eigen::Index free = system.size() - std::ssize(held);
   if (held.empty() || free <= 0) return {};
@@ -69,11 +72,11 @@ results::Content content_of(const scene::Scene& scene, std::shared_ptr<const Mod
     const auto add = [&](const std::string& group, const fem::Modes& modes, const std::string& what) {
       writer.describe_group(group, what);
       writer.write(group + "/omega", modes.omega, {units.angular, "circular frequencies, ascending"});
-      writer.write(group + "/shapes", modes.shapes, {"1", "mass-normalised shapes, dof x mode"});
+      writer.write(group + "/shapes", modes.shapes, {"kg^-1/2", "mass-normalised shapes, dof x mode"});
     };
     add("modes/slipping", sets->slipping, "natural modes with every contact slipping");
     if (sets->sticking.omega.size() > 0)
-      add("modes/sticking", sets->sticking, "natural modes with every frictional contact stuck");
+      add("modes/sticking", sets->sticking, "natural modes with every contact stuck that can be");
     if (sets->compliant.omega.size() > 0)
       add("modes/compliant", sets->compliant, "natural modes with every contact held by its spring or stop");
   };

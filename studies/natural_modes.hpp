@@ -14,7 +14,7 @@ namespace slipmode::studies {
 /// Natural modes of a scene's full model, mass-normalised, by what its contacts do.
 struct ModeSets {
   fem::Modes slipping;
-  fem::Modes sticking;                    ///< every frictional contact held; empty when nothing is left to move
+  fem::Modes sticking;                    ///< every contact held whose law can; empty when nothing is left to move
   fem::Modes compliant;                   ///< every contact held by its spring or stop; empty unless each has one
   std::vector<fem::TheoryEffect> theory;  ///< of a beam
 };
@@ -24,7 +24,8 @@ struct ModeSets {
 [[nodiscard]] ModeSets natural_modes(const scene::Scene& scene, const dynamics::HybridSystem& system,
                                      Eigen::Index count = 0);
 
-/// The modes with every frictional contact held, stops open; empty without such contacts, or with nothing left to move.
+/// The modes with every contact held that sticks or has bristles, stops open; empty without such, or with nothing left
+/// to move.
 [[nodiscard]] fem::Modes sticking_modes(const dynamics::HybridSystem& system, Eigen::Index count);
 
 /// What is kept of it: circular frequencies and shapes.

@@ -45,7 +45,7 @@ TEST(MassPod, ModesAreMassOrthonormalForEitherStorage) {
   const Eigen::MatrixXd& Phi = sparse.basis.vectors;
   EXPECT_LT((Phi.transpose() * fem::to_dense(M) * Phi - Eigen::MatrixXd::Identity(5, 5)).norm(), 1e-11);
   EXPECT_LT((Phi - dense.basis.vectors).norm(), 1e-8 * Phi.norm());
-  EXPECT_EQ(sparse.basis.kind, BasisKind::kPom);
+  EXPECT_EQ(sparse.basis.kind, BasisKind::kMassPom);
 }
 
 TEST(MassPod, CapturesMoreThanAnyOtherBasisOfItsSize) {

@@ -195,6 +195,7 @@ TEST(Basis, KindsHaveTheirWords) {
   EXPECT_EQ(to_string(BasisKind::kUser), "user");
   EXPECT_EQ(to_string(BasisKind::kPomf), "pomf");
   EXPECT_EQ(to_string(BasisKind::kLnmStatic), "lnm+static");
+  EXPECT_EQ(to_string(BasisKind::kMassPom), "mass-pom");
 }
 
 }  // namespace
