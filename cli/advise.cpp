@@ -115,7 +115,7 @@ Report report_of(const studies::Advice& advice, const scene::Scene& scene) {
   const studies::Asked& asked = advice.asked;
   const std::string sentences = studies::advice_text(scene, advice);
   Report report;
-  report.text = fmt::format("{}\n{}\n{}\n{}", scene.title, sentences, steps_text(advice), effects_text(advice));
+  report.text = fmt::format("{}\n{}\n{}\n{}", scene.name(), sentences, steps_text(advice), effects_text(advice));
   Json effects = Json::array(), steps = Json::array();
   for (std::size_t e = 0; e < advice.effects.size(); ++e) effects.push_back(effect_json(advice, e));
   for (const trade::Step& step : advice.lean->steps) steps.push_back(step_json(advice, step));

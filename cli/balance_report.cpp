@@ -88,7 +88,7 @@ Report mixed_report(const studies::Family& model, const studies::MixedFound& fou
   report.text = fmt::format(
       "{}, {}: {} of {} degrees of freedom in the time domain, the rest in {} harmonics of {:.10g} rad/s\n"
       "  residual {:.1e} after {} Newton steps\n",
-      model.scene().title, model.title(), mixed.near.size(), system.size(), mixed.harmonics, mixed.omega,
+      model.scene().name(), model.title(), mixed.near.size(), system.size(), mixed.harmonics, mixed.omega,
       mixed.residual, mixed.iterations);
   if (!mixed.converged) {
     report.data["message"] = mixed.message;
@@ -134,7 +134,7 @@ Report balance_report(const std::string& verb, const studies::Family& model, con
   report.text = fmt::format(
       "{}, {}: balance of {} harmonics by {}, order 1 at {:.10g} rad/s{}\n  {} switches of contact, "
       "residual {:.1e} after {} Newton steps\n",
-      model.scene().title, model.title(), balance.harmonics, forces, balance.omega,
+      model.scene().name(), model.title(), balance.harmonics, forces, balance.omega,
       balance.family ? ", one of a family that nothing holds" : "", balance.switches, balance.residual,
       balance.iterations);
   if (!balance.converged) report.text += balance.message + "\n";

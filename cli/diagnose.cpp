@@ -163,6 +163,7 @@ Verb add_diagnose(CLI::App& app) {
       return diagnose_model(session, arguments->request);
     }
     refuse_model_options(*command, of_models);
+    session.refuse_overrides(arguments->request.input, "it is a record; give a scene (.toml) with it");
     if (session.is_divided())
       throw InvalidInput(session.divided_by() + ": for a scene with --over; a record is one piece");
     return diagnose_series(session, *arguments);

@@ -13,9 +13,9 @@ struct MergeArguments {
 
 Report run(const Session& session, const MergeArguments& arguments) {
   require_writable(arguments.output);
-  if (!session.overrides.empty() || session.seed) {
-    throw InvalidInput("merge: --set and --seed have no use here, the parts hold their scene; give them with --shard");
-  }
+  session.refuse_overrides("merge", "the parts hold their scene; give it with --shard");
+  if (session.seed)
+    throw InvalidInput("merge: --seed has no use here, the parts hold their scene; give it with --shard");
   std::vector<results::Part> parts;
   for (const std::string& path : arguments.parts) parts.push_back(results::read_part(path));
   if (is_among(arguments.output, arguments.parts))

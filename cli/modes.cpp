@@ -113,7 +113,7 @@ Report run(const Session& session, const ModesArguments& arguments) {
 
   Report report;
   report.text =
-      fmt::format("{}: {} degrees of freedom\n{}", scene.title, system.size(), mode_table(scene, sets, ratios));
+      fmt::format("{}: {} degrees of freedom\n{}", scene.name(), system.size(), mode_table(scene, sets, ratios));
   report.data = {{"verb", "modes"}, {"degrees_of_freedom", system.size()}, {"units", scene.units}};
   report.data["slipping"] = set_json(sets.slipping);
   report.data["slipping"]["damping_ratio"] = std::vector<double>(ratios.begin(), ratios.end());

@@ -62,7 +62,7 @@ Report summary(const studies::Family& family, const studies::BasinsRequest& requ
                const studies::BasinsStudy& study) {
   Report report;
   const auto& [across, up] = request.over;
-  report.text = fmt::format("{}: {} x {} starts over {} and {}\n", family.scene().title, across.values.size(),
+  report.text = fmt::format("{}: {} x {} starts over {} and {}\n", family.scene().name(), across.values.size(),
                             up.values.size(), across.key, up.key);
   report.data = {{"verb", "orbit basins"},
                  {"keys", {across.key, up.key}},

@@ -73,7 +73,7 @@ Report run(const Session& session, const OrbitFindArguments& arguments) {
   Report report;
   report.data = {{"verb", "orbit find"}, {"title", scene.title}, {"model", model.title()}};
   report.data.update(orbit_json(system, result.orbit, amplitudes));
-  report.text = fmt::format("{}, {}: {}", scene.title, model.title(), orbit_text(system, result.orbit, amplitudes));
+  report.text = fmt::format("{}, {}: {}", scene.name(), model.title(), orbit_text(system, result.orbit, amplitudes));
   if (arguments.output.empty()) return with_nothing_kept(report);
   studies::content_of(model, std::make_shared<const orbits::PeriodicOrbit>(result.orbit)).save(arguments.output);
   report.data["file"] = arguments.output;

@@ -46,7 +46,7 @@ void say(const std::string& start, const OrderCount& count, Report& out_report) 
 Report summary(const studies::Family& family, const studies::OrbitMapStudy& study,
                const std::vector<studies::Over>& over, const studies::OrbitMapOptions& options) {
   Report report;
-  const std::string& title = family.scene().title;
+  const std::string title = family.scene().name();
   report.data = {{"verb", "orbit map"}, {"keys", family.keys()}};
   if (over.size() == 1) {
     report.text = fmt::format("{}: {} values of {}\n", title, over[0].values.size(), over[0].key);

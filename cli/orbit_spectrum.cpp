@@ -50,7 +50,7 @@ Report run(const Session& session, const OrbitSpectrumArguments& arguments) {
   report.text = fmt::format(
       "{}, {}: amplitudes of the orbit's harmonics, order 1 at {:.10g} rad/s; error below {:.0e} "
       "of each quantity\n{}",
-      scene.title, model.title(), spectrum.omega, std::max(spectrum.defect, 1e-15), table.str());
+      scene.name(), model.title(), spectrum.omega, std::max(spectrum.defect, 1e-15), table.str());
   if (const std::size_t all = found->quantities.size(); all > kShown)
     report.text += fmt::format("{} of {} quantities; the others are in --json and in the file of -o\n", kShown, all);
   if (!arguments.output.empty()) {

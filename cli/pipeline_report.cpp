@@ -72,7 +72,7 @@ Json pod_json(const PipelineResult& result) {
   return {{"rank", result.pod->rank},
           {"shares", results::values_of(result.pod->shares)},
           {"chosen_modes", result.chosen},
-          {"chosen_energy", result.pod->shares.head(result.chosen).sum()}};
+          {"chosen_energy", result.captured}};
 }
 
 Json validation_json(const PipelineResult& result) {
@@ -124,15 +124,15 @@ Json to_json(const PipelineResult& result, const scene::Scene& scene) {
 }
 
 std::string summary_text(const PipelineResult& result, const scene::Scene& scene) {
-  std::string out = scene.title + "\n" + modes_text(result, is_shaken(scene));
+  std::string out = scene.name() + "\n" + modes_text(result, is_shaken(scene));
   if (result.ensemble) {
     out += fmt::format("  ensemble: {} runs, {} snapshots, {}, largest energy residual {:.1e}\n",
                        result.ensemble->members.size(), result.snapshots, certificate(result.ensemble->total()),
                        result.ensemble->worst_audit());
   }
   if (result.pod) {
-    out += fmt::format("  reduction: {} of {} modes hold {:.2f} % of the energy\n", result.chosen,
-                       result.pod->basis.modes(), 100.0 * result.pod->shares.head(result.chosen).sum());
+    out += fmt::format("  reduction: {} {}s hold {:.2f} % of the energy\n", result.chosen, result.reduced,
+                       100.0 * result.captured);
   }
   if (result.shaken_modes) out += '\n' + text_of(*result.shaken_modes);
   if (result.validation || result.driven_validation) out += validation_text(result, scene);

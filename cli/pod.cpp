@@ -35,6 +35,7 @@ studies::EnsembleModes modes_of(const Session& session, const PodArguments& argu
                     "(.toml), whose ensemble the ranks simulate",
                     arguments.input));
   }
+  session.refuse_overrides(arguments.input, "it holds its motion; give the scene (.toml) with it");
   return {.found = studies::motion_modes(results::StoreReader(arguments.input), arguments.modes)};
 }
 

@@ -44,8 +44,8 @@ Report run(const Session& session, const ReduceArguments& arguments) {
     report.data["energy"] = reduction->captured;
     energy = fmt::format(", {:.3f} % of the energy", 100.0 * reduction->captured);
   }
-  report.text = fmt::format("{} degrees of freedom reduced to {} modes{}\n{}Reduced model: {}\n", full.size(), modes,
-                            energy, table.str(), arguments.output);
+  report.text = fmt::format("{} degrees of freedom reduced to {} modes ({}){}\n{}Reduced model: {}\n", full.size(),
+                            modes, source.name, energy, table.str(), arguments.output);
   return report;
 }
 

@@ -12,6 +12,7 @@
 #include <spawn.h>
 #include <unistd.h>
 #include <array>
+#include <chrono>
 #include <cstdlib>
 #include <fstream>
 
@@ -75,10 +76,12 @@ void add_page(const WorkFolder& folder, const std::vector<std::string>& names, c
     files.reserve(names.size());
     for (const std::string& name : names) files.push_back(folder.target() / name);
     const std::string page = arguments.output + "/report.html";
+    const auto begin = std::chrono::steady_clock::now();
     write_text(folder.target() / "report.html", report::page(files, options));
     const std::string failure = arguments.open ? open_on_desktop(page) : "";
     if (!failure.empty()) out_report.text += fmt::format("Not opened: {}\n", failure);
-    out_report.text += fmt::format("To look at it all, in a browser: {}\n", page);
+    const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    out_report.text += fmt::format("To look at it all, in a browser: {} (made in {:.2g} s)\n", page, wall);
     out_report.data["report"] = page;
   } catch (const Interrupted&) {
     out_report.text +=

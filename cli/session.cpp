@@ -59,6 +59,10 @@ scene::Scene Session::load(const fs::path& path) const {
   return scene::load_scene(path, all);
 }
 
+void Session::refuse_overrides(const std::string& verb, const std::string& why) const {
+  if (!overrides.empty()) throw InvalidInput(fmt::format("{}: --set has no use here, {}", verb, why));
+}
+
 void Session::check_interrupt() const {
   if (stop != nullptr && stop->load()) throw Interrupted();
 }

@@ -64,6 +64,8 @@ struct Session {
   /// Reads a scene, or the one of joined parts, with --set and --seed applied (--seed is an override of ensemble.seed,
   /// so provenance holds it).
   [[nodiscard]] scene::Scene load(const std::filesystem::path& path) const;
+  /// @throws InvalidInput  when there is a --set, for a verb that reads no scene
+  void refuse_overrides(const std::string& verb, const std::string& why) const;
   /// Throws Interrupted when Ctrl-C was pressed.
   void check_interrupt() const;
 };

@@ -42,7 +42,7 @@ Report run_trajectory(const Session& session, const SimulateArguments& arguments
     report.data["incomplete"] = true;
     return report;
   }
-  report.text = fmt::format("{}: {} samples, {} events, {}, energy residual {:.2g}\nTrajectory: {}\n", scene.title,
+  report.text = fmt::format("{}: {} samples, {} events, {}, energy residual {:.2g}\nTrajectory: {}\n", scene.name(),
                             trajectory.times.size(), trajectory.events.size(), certificate(statistics),
                             trajectory.audit.residual(), arguments.output);
   tell_chosen_times(scene, {"time"}, report);
@@ -70,7 +70,7 @@ Report run_ensemble(const Session& session, const SimulateArguments& arguments, 
                  {"audit_residual", run.worst_audit()},
                  {"failures", failures}};
   report.text = fmt::format("{}: {} runs, {} snapshots, {}, largest energy residual {:.2g}\nEnsemble: {}\n",
-                            scene.title, run.members.size(), run.ensemble.snapshots.cols(), certificate(total),
+                            scene.name(), run.members.size(), run.ensemble.snapshots.cols(), certificate(total),
                             run.worst_audit(), arguments.output);
   tell_chosen_times(scene, {"time"}, report);
   if (!failures.empty()) {

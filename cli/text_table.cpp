@@ -6,6 +6,10 @@
 
 namespace slipmode::cli {
 
+std::string significant(double value, int digits) {
+  return std::isnan(value) ? "–" : fmt::format("{:.{}g}", value, digits);
+}
+
 std::string fixed(double value, int digits) { return std::isnan(value) ? "–" : fmt::format("{:.{}f}", value, digits); }
 
 std::vector<std::size_t> TextTable::widths() const {

@@ -33,5 +33,7 @@ class TextTable {
 
 /// A value with `digits` after the point, "–" for NaN.
 [[nodiscard]] std::string fixed(double value, int digits);
+/// A number with so many significant digits, or a dash for NaN.
+[[nodiscard]] std::string significant(double value, int digits);
 
 }  // namespace slipmode::cli

@@ -86,7 +86,7 @@ std::string study_text(const Study& study, const scene::Scene& scene) {
   return fmt::format(
       "{}\nErrors against the {}; one axis varied at a time, reduced models in every basis and size.\n"
       "dX, dE up to {:g} from {} shared starts; the others over {:g}; times are processor time of {:g}.\n{}{}",
-      scene.title, study.reference.variant.name, study.schedule.horizon, study.schedule.starts * study.schedule.runs,
+      scene.name(), study.reference.variant.name, study.schedule.horizon, study.schedule.starts * study.schedule.runs,
       study.schedule.duration, study.schedule.timed, table.str(), failures_text(study));
 }
 

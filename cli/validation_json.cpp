@@ -38,7 +38,10 @@ Json share_json(const ShareRow& row) {
     out["attractor"] = settled_json(*row.attractor, row.lyapunov);
     out["distance"] = distance_json(row.distance);
   }
-  if (row.lyapunov) out["lyapunov_bits"] = row.lyapunov->bits;
+  if (row.lyapunov) {
+    out["lyapunov_bits"] = row.lyapunov->bits;
+    out["lyapunov_error_nats"] = row.lyapunov->error;
+  }
   return out;
 }
 

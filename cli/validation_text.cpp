@@ -5,8 +5,9 @@
 #include "cli/validation_report.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
 #include <map>
-#include <numbers>
 
 namespace slipmode::cli {
 namespace {
@@ -28,16 +29,16 @@ std::vector<std::string> share_cells(const ShareRow& row) {
   return {fixed(row.energy, 2),
           fixed(ok ? row.horizon.dX : kNone, 2),
           fixed(ok ? row.horizon.dE : kNone, 2),
-          fixed(row.attractor ? row.distance.wasserstein : kNone, 3),
+          significant(row.attractor ? row.distance.wasserstein : kNone, 3),
           row.attractor ? attractor_text(*row.attractor, row.lyapunov) : "failed",
-          fixed(row.lyapunov ? row.lyapunov->bits : kNone, 4)};
+          significant(row.lyapunov ? row.lyapunov->bits : kNone, 3)};
 }
 
 /// One row per number of modes, all bases side by side.
 std::string shares_text(const ValidationReport& report) {
   std::vector<std::string> header = {"modes"};
   for (std::size_t c = 0; c < report.candidates.size(); ++c) {
-    header.insert(header.end(), {"energy %", "ΔX %", "ΔE %", "W", "motion", "λ bit"});
+    header.insert(header.end(), {"energy %", "ΔX %", "ΔE %", "W", "motion", "λ"});
   }
   TextTable table(header);
   table.group("", 1);
@@ -156,21 +157,39 @@ std::string sweep_text(const ValidationReport& report, const results::Units& uni
   return table.str() + (note.empty() ? results::undecided_note(report.sweep->reduced, units) : note);
 }
 
+/// What the table's columns are, and how far two runs of the full model are apart in them.
+std::string noise_text(const ValidationReport& report, const results::Units& units) {
+  constexpr double kSameMotion = 10.0;  // % of the mean energy
+  const double apart = std::abs(report.noise.mean_energy_percent);
+  std::string out = fmt::format(
+      "Reduced models at that speed: ΔX, ΔE over the horizon from shared starts; W: distance of the slip "
+      "states of\nthe settled motions{} (two full runs: {}, mean energies {} % apart); λ: largest "
+      "exponent",
+      units.length == "1" ? "" : fmt::format(" [{}]", units.length), significant(report.noise.wasserstein, 3),
+      significant(apart, 2));
+  double largest = 0.0;
+  for (const CandidateReport& candidate : report.candidates) {
+    for (const ShareRow& row : candidate.shares) {
+      if (row.lyapunov) largest = std::max(largest, row.lyapunov->error_bits());
+    }
+  }
+  out += largest > 0.0 ? fmt::format(" [{}], ± {:.1g} at most\n", units.bit_rate(), largest) : "\n";
+  if (apart > kSameMotion) {
+    out += "  The two full runs differ by more than that of one motion: there are several, or they are not settled\n";
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string summary_text(const ValidationReport& report, const results::Units& units) {
   std::string out =
       fmt::format("Full model at V = {:g}: {}", report.speed, attractor_text(report.full, report.lyapunov));
   if (report.lyapunov) {
-    const double error_bits = report.lyapunov->error / std::numbers::ln2;
-    out += fmt::format(", largest exponent {:.4f} ± {:.4f} bit per {}", report.lyapunov->bits, error_bits,
-                       units.one_time());
+    out += fmt::format(", largest exponent {:.3g} ± {:.1g} {}", report.lyapunov->bits, report.lyapunov->error_bits(),
+                       units.bit_rate());
   }
-  out += fmt::format(
-      ", sticks {:.1f} % of the time\n"
-      "Reduced models at that speed: ΔX, ΔE over the horizon from shared starts; W: distance of the slip states of\n"
-      "the settled motions (two full runs: {}); λ: largest exponent\n",
-      100.0 * report.full.stick_fraction, fixed(report.noise.wasserstein, 3));
+  out += fmt::format(", sticks {:.1f} % of the time\n", 100.0 * report.full.stick_fraction) + noise_text(report, units);
   out += shares_text(report);
   if (report.left_out_above > 0) {
     out += fmt::format(
@@ -190,7 +209,7 @@ std::string summary_text(const ValidationReport& report, const results::Units& u
         "  decided in both models: {} of {} values{}; median distance of slip states {}\n", both.decided,
         report.sweep->full.size(),
         both.decided > 0 ? fmt::format(", same period at {:.1f} % of these", 100.0 * both.same_period) : std::string(),
-        fixed(both.median_wasserstein, 3));
+        significant(both.median_wasserstein, 3));
   }
   if (report.verdict) out += fmt::format("\n{}", verdict_text(*report.verdict, true));
   if (report.cost) {

@@ -154,6 +154,8 @@ class Pipeline {
     }
     bases_ = belt_bases(scene_, full_.structure(), *result_.pod);
     result_.chosen = validation_options(scene_, bases_).chosen;
+    result_.reduced = bases_.front().name;
+    result_.captured = bases_.front().captured[result_.chosen - 1];
     for (const pod::NamedBasis& basis : bases_) {
       write_reduced(fmt::format("reduced_{}.h5", basis.name == "POM" ? "pom" : "lnm"),
                     basis.basis.truncated(result_.chosen));

@@ -35,6 +35,8 @@ struct PipelineResult {
   std::optional<pod::PodResult> pod;                                ///< under a belt
   std::optional<results::ShakenModes> shaken_modes;                 ///< under a shaker
   Eigen::Index chosen = 0;                                          ///< modes of the reduced models written
+  std::string reduced = {};                                         ///< "POM", "LNM": what [reduction] names
+  double captured = 0.0;                                            ///< share of the energy in so many of these
   std::shared_ptr<const diagnostics::ValidationReport> validation;  ///< under a belt
   std::shared_ptr<const diagnostics::DrivenValidationReport> driven_validation;  ///< under a shaker
   std::vector<LeftOut> left_out;

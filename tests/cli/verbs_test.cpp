@@ -36,9 +36,11 @@ TEST_F(Verbs, EachHasHelpWithAnExample) {
     const Outcome outcome = call({verb, "--help"});
     EXPECT_EQ(outcome.exit_code, 0) << verb;
     EXPECT_THAT(outcome.out, HasSubstr("Example:\n  slipmode " + verb)) << verb;
-    for (const char* option : {"--json", "--set", "--threads", "--seed", "--quiet"}) {
+    for (const char* option : {"--json", "--threads", "--seed", "--quiet"}) {
       EXPECT_THAT(outcome.out, HasSubstr(option)) << verb;
     }
+    const bool has_scene = verb != "plot" && verb != "info";
+    EXPECT_EQ(outcome.out.find("--set") != std::string::npos, has_scene) << verb;
   }
 }
 
@@ -122,6 +124,8 @@ TEST_F(Verbs, TheChainOfVerbsEndsInAValidation) {
 
 TEST_F(Verbs, InfoListsWhatAFileHolds) {
   json_of({"modes", "two.toml", "-o", "modes.h5"});
+  ASSERT_EQ(call({"plot", "modes.h5", "-o", "modes.svg"}).exit_code, 0);
+  EXPECT_THAT(bytes_of(folder.path() / "modes.svg"), HasSubstr("sticking"));
   const Outcome text = call({"info", "modes.h5"});
   EXPECT_THAT(text.out, HasSubstr("[rad/s]"));
   const auto found = json_of({"info", "modes.h5"});
