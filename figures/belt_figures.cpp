@@ -69,8 +69,11 @@ Figure bifurcation(const StoreReader& store) {
       x.push_back(parameter[i]);
       y.push_back(displacement[i]);
     }
-    panels.push_back(
-        {store.text(group + "/title"), to_vector(x), to_vector(y), group == "sweep/full" ? kFullColour : kPomColour});
+    panels.push_back({.title = store.text(group + "/title"),
+                      .parameter = to_vector(x),
+                      .value = to_vector(y),
+                      .colour = group == "sweep/full" ? kFullColour : kPomColour,
+                      .swept = to_vector(results::load_table(store, group + "/values").numbers("parameter"))});
     label = store.text(group + "/label");
     unit = store.entry(group + "/values/parameter").meaning.units;
   }
@@ -118,6 +121,10 @@ DeviationCase deviation_case(const results::Table& table, const std::string& tit
   return motion;
 }
 
+std::string with_unit(double value, const std::string& unit) {
+  return unit == "1" ? fmt::format("{:g}", value) : fmt::format("{:g} {}", value, unit);
+}
+
 /// False when there was no orbit to compare at any number of modes.
 bool has_values(const DeviationCase& motion) {
   return std::any_of(motion.curves.begin(), motion.curves.end(),
@@ -126,18 +133,22 @@ bool has_values(const DeviationCase& motion) {
 
 Figure deviations(const StoreReader& store) {
   const scene::Scene scene = scene::with_own_times(results::load_scene_of(store));
+  const results::Units units = results::Units::of(scene.units);
   const results::Table shares = results::load_table(store, "validation/shares");
   const results::Table orbits = results::load_table(store, "validation/orbits");
   std::vector<DeviationCase> cases;
   std::vector<std::size_t> all(shares.rows());
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
   cases.push_back(deviation_case(
-      shares, fmt::format("V = {:g}, up to t = {:g}", store.number("validation/full/speed"), scene.validation.horizon),
+      shares,
+      fmt::format("V = {}, up to t = {}", with_unit(store.number("validation/full/speed"), units.velocity),
+                  with_unit(scene.validation.horizon, units.time)),
       all));
   std::map<double, std::vector<std::size_t>, std::greater<>> by_speed;
   for (std::size_t i = 0; i < orbits.rows(); ++i) by_speed[orbits.numbers("speed")[i]].push_back(i);
   for (const auto& [speed, rows] : by_speed) {
-    DeviationCase orbit = deviation_case(orbits, fmt::format("V = {:g}, one period", speed), rows);
+    DeviationCase orbit =
+        deviation_case(orbits, fmt::format("V = {}, one period", with_unit(speed, units.velocity)), rows);
     if (has_values(orbit)) cases.push_back(std::move(orbit));
   }
   constexpr std::size_t kMostColumns = 4;
@@ -220,7 +231,7 @@ Figure trajectory_portrait(const StoreReader& store) {
   const dynamics::Trajectory trajectory = results::load_trajectory(store);
   const Eigen::Index shown = std::min(kShown, trajectory.times.size());
   return phase_portraits(
-      {{scene.title, trajectory.contact_q.row(0).tail(shown), trajectory.contact_v.row(0).tail(shown), kFullColour}},
+      {{scene.name(), trajectory.contact_q.row(0).tail(shown), trajectory.contact_v.row(0).tail(shown), kFullColour}},
       portrait_layout(scene, 1, PortraitLayout::Axes::kShared));
 }
 

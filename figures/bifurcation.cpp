@@ -23,7 +23,7 @@ BifurcationPanel thinned(const BifurcationPanel& panel, const Range& x, const Ra
 double dot_size(const Eigen::VectorXd& parameter) {
   const std::set<double> values(parameter.begin(), parameter.end());
   const double spacing = 1050.0 / static_cast<double>(std::max<std::size_t>(values.size(), 1));
-  return std::clamp(1.5 * spacing / 12.0, 0.16, 0.6);
+  return std::clamp(1.5 * spacing / 12.0, 0.16, 0.8);
 }
 
 /// Finer than gnuplot's, as a reader may zoom in.
@@ -52,6 +52,7 @@ Figure bifurcation_diagram(const std::vector<BifurcationPanel>& panels, const Bi
   Range x, y;
   for (const auto& panel : panels) {
     x.include(panel.parameter);
+    x.include(panel.swept);
     y.include(panel.value);
   }
   figure.show(diagram_drawing(panels, labels, x, y));
@@ -70,6 +71,9 @@ Figure bifurcation_diagram(const std::vector<BifurcationPanel>& panels, const Bi
     figure.command(last ? fmt::format("set xlabel \"{}\"", axis_label(labels.parameter, labels.parameter_unit))
                         : std::string("unset xlabel"));
     figure.command(last ? "set format x '%g'" : "set format x ''");
+    figure.command(points.parameter.size() > 0
+                       ? std::string("unset label 1")
+                       : "set label 1 'no contact slips from rest on its counterpart here' at graph 0.5,0.5 center");
     figure.command(fmt::format("plot {} using 1:2 with points pointtype 7 pointsize {:.3f} linecolor rgb '{}'", block,
                                dot_size(panels[i].parameter), points.colour));
   }

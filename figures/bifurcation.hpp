@@ -12,6 +12,7 @@ struct BifurcationPanel {
   std::string title;
   Eigen::VectorXd parameter, value;  ///< one entry per point, same length
   std::string_view colour;
+  Eigen::VectorXd swept = {};  ///< all values gone through, which the axis spans; empty: those with points
 };
 
 struct BifurcationLabels {
@@ -20,7 +21,8 @@ struct BifurcationLabels {
 };
 
 /// Panels one above the other on shared axes (S4 Figure 3.9: full above reduced). Points that would fall on the same
-/// spot are drawn once, so that the SVG of a chaotic sweep stays small; nothing visible is lost.
+/// spot are drawn once, so that the SVG of a chaotic sweep stays small; nothing visible is lost. A panel
+/// without points says that nothing slips there.
 [[nodiscard]] Figure bifurcation_diagram(const std::vector<BifurcationPanel>& panels, const BifurcationLabels& labels);
 
 }  // namespace slipmode::figures

@@ -87,6 +87,7 @@ Figure pareto_diagram(const std::vector<ParetoPoint>& points, const ParetoLabels
   constexpr std::array<std::string_view, 8> kColours = {kFullColour, kPomColour, kLnmColour, kSecondColour,
                                                         "#CC79A7",   "#E69F00",  "#56B4E9",  "#888888"};
   constexpr std::array kSymbols = {3, 7, 5, 9, 13, 11, 6, 4};
+  constexpr double kShown = 1e-7;  // of the largest error: below it is none to choose by
   Figure figure(1200, 800);
   common_style(figure);
   Limits x, y;
@@ -96,6 +97,7 @@ Figure pareto_diagram(const std::vector<ParetoPoint>& points, const ParetoLabels
     y.include(point.error);
   }
   x = x.wider(0.05, 0.12);
+  y.low = std::max(y.low, kShown * y.high);
   y = y.wider(0.08, 0.08);
   std::vector<ParetoPoint> front;
   for (const ParetoPoint& point : points) {

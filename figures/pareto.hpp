@@ -23,8 +23,8 @@ struct ParetoLabels {
   double noise = 0.0;              ///< drawn as a band: errors within are scatter; 0: none [%]
 };
 
-/// Error over time, both logarithmic, with the front as steps. Points without error stand on the lower edge; those that
-/// are not finite are left out.
+/// Error over time, both logarithmic, with the front as steps. Points without error, or with less than 1e-7 of the
+/// largest, stand on the lower edge; those that are not finite are left out.
 [[nodiscard]] Figure pareto_diagram(const std::vector<ParetoPoint>& points, const ParetoLabels& labels);
 
 }  // namespace slipmode::figures

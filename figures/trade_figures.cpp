@@ -58,7 +58,7 @@ bool has_values(const Fronts& fronts, Measure measure) {
 }
 
 Fronts fronts_of(const trade::Study& study, const scene::Scene& scene) {
-  Fronts fronts{.names = {}, .axes = {}, .time = {}, .error = {}, .noise = {}, .title = scene.title};
+  Fronts fronts{.names = {}, .axes = {}, .time = {}, .error = {}, .noise = {}, .title = scene.name()};
   for (const trade::Row& row : study.rows) {
     fronts.names.push_back(row.variant.name);
     fronts.axes.emplace_back(trade::to_string(row.variant.axis));
@@ -77,7 +77,7 @@ Fronts fronts_of(const results::StoreReader& store) {
                 .time = table.numbers("time"),
                 .error = std::vector<trade::Values>(table.rows()),
                 .noise = std::vector<trade::Values>(table.rows()),
-                .title = results::load_scene_of(store).title};
+                .title = results::load_scene_of(store).name()};
   for (std::size_t m = 0; m < trade::kMeasures; ++m) {
     const std::string name(trade::to_string(static_cast<Measure>(m)));
     for (std::size_t i = 0; i < table.rows(); ++i) {
