@@ -25,7 +25,7 @@ using studies::Motion;
 using studies::MotionsOf;
 using studies::MotionsRequest;
 
-constexpr std::size_t kMostSpeeds = 40, kMostRecorded = 20, kMostModels = 5;
+constexpr std::size_t kMostSpeeds = 43, kMostRecorded = 22, kMostModels = 5;
 
 /// Some of the values, ends included, that have their places in the order of all.
 std::set<std::size_t> spread(std::size_t count, std::size_t most) {

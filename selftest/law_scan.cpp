@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <optional>
 #include <span>
@@ -225,9 +226,13 @@ class Scan {
     // From one step to the next a run may err by its tolerance, of the whole motion: that is a row's own that hardly
     // moves.
     const double error = kRounding + options_.flow.tolerance;
+    // A state under a force is the sum of the free structure's answer and what contacts take from it, which may be all.
+    const Eigen::MatrixXd answer = free_answer();
     const Eigen::VectorXd momentum_rounding = error * swing * M.diagonal().cwiseSqrt() +
-                                              4.0 * h * kRounding * force_sizes() + 4.0 * (M.cwiseAbs() * own_v),
-                          way_rounding = error * largest(whole.q) * inverse_.diagonal().cwiseSqrt() + 4.0 * own_q;
+                                              4.0 * h * kRounding * force_sizes() +
+                                              M.cwiseAbs() * (4.0 * own_v + kRounding * answer.col(1)),
+                          way_rounding = error * largest(whole.q) * inverse_.diagonal().cwiseSqrt() + 4.0 * own_q +
+                                         kRounding * answer.col(0);
     const auto excess = [&](const Eigen::MatrixXd& rate, const Eigen::MatrixXd& sum, Index k, Index apart,
                             const Eigen::VectorXd& rounding) -> Eigen::VectorXd {
       const double step = static_cast<double>(apart) * h;
@@ -257,6 +262,25 @@ class Scan {
         violate("motion", fmt::format("residual {:.2g} of the equations of motion at t = {:.9g}, modes {}", residual,
                                       run_.times(k + 2), modes_at(run_.times(k + 2))));
     }
+  }
+
+  /// Bounds on displacements and speeds of the steady answer to a force with all contacts free.
+  [[nodiscard]] Eigen::MatrixXd free_answer() const {
+    Eigen::MatrixXd bound = Eigen::MatrixXd::Zero(system_.size(), 2);
+    const friction::Force* drive = system_.drive().force();
+    if (drive == nullptr) return bound;
+    const fem::Structure& structure = system_.structure();
+    const Eigen::MatrixXcd M = fem::to_dense(structure.M()), C = fem::to_dense(structure.C()),
+                           K = fem::to_dense(structure.K());
+    for (const auto& harmonic : drive->harmonics) {
+      const std::complex<double> rate(0.0, harmonic.order * drive->omega);
+      const Eigen::VectorXcd direction = harmonic.amplitude * system_.force_directions().col(harmonic.direction);
+      const Eigen::VectorXd q = (K + rate * C + rate * rate * M).lu().solve(direction).cwiseAbs();
+      if (!q.allFinite()) continue;  // at a resonance without damping there is none
+      bound.col(0) += q;
+      bound.col(1) += std::abs(rate) * q;
+    }
+    return bound;
   }
 
   /// What forces are differences of, row by row: |K| |q| + |C| |v| + Σ |w| k |y|, k of contact springs.

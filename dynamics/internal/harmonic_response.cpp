@@ -31,6 +31,28 @@ Complex oscillator_gain(const friction::LoadForm& load, double omega) {
   return Complex(load.lift, omega * load.lift_rate) / Complex(load.stiffness - omega * omega, omega * load.damping);
 }
 
+/// A contact whose displacement is that of a held one.
+struct Carried {
+  Eigen::Index by = -1;  ///< the held one; -1: none
+  double share = 0.0;    ///< its displacement over that of the held one
+};
+
+std::vector<Carried> carried_contacts(const Regime& r, const ModalModel& slipping) {
+  constexpr double kSame = 1e-13;
+  const Eigen::MatrixXd& rows = slipping.displacement_row;
+  std::vector<Carried> out(static_cast<std::size_t>(r.speed_input()));
+  for (Eigen::Index c = 0; c < r.speed_input(); ++c) {
+    for (Eigen::Index d = 0; d < r.speed_input() && !r.held(static_cast<int>(c)); ++d) {
+      if (!r.held(static_cast<int>(d))) continue;
+      const double share = rows.col(d).dot(rows.col(c)) / rows.col(d).squaredNorm();
+      if (!((rows.col(c) - share * rows.col(d)).norm() <= kSame * rows.col(c).norm())) continue;
+      out[static_cast<std::size_t>(c)] = {d, share};
+      break;
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 bool resonates(const ModalModel& pairs, Eigen::Index i, double omega, double share) {
@@ -50,7 +72,13 @@ HarmonicResponse harmonic_response(const Regime& r, const ModalModel& slipping, 
                                    const Eigen::VectorXcd& forces) {
   const Eigen::Index nc = r.speed_input(), np = slipping.np;
   const Eigen::VectorXcd forced = slipping.force_input * forces;
-  Eigen::MatrixXcd by_contacts = pair_receptances(slipping, omega, slipping.input.cast<Complex>());
+  // What presses on a held contact moves nothing, and its force may be far larger than what does: the unknown there is
+  // the sum of both.
+  const std::vector<Carried> carried = carried_contacts(r, slipping);
+  Eigen::MatrixXd input = slipping.input;
+  for (Eigen::Index c = 0; c < nc; ++c)
+    if (carried[static_cast<std::size_t>(c)].by >= 0) input.col(c).setZero();
+  Eigen::MatrixXcd by_contacts = pair_receptances(slipping, omega, input.cast<Complex>());
   Eigen::MatrixXcd by_forces = pair_receptances(slipping, omega, forced);
   std::vector<Eigen::Index> own;  // states that are unknowns of their own
   for (Eigen::Index i = 0; i < slipping.n; ++i)
@@ -76,7 +104,7 @@ HarmonicResponse harmonic_response(const Regime& r, const ModalModel& slipping, 
   for (Eigen::Index c = 0; c < nc; ++c) {
     const auto i = static_cast<std::size_t>(c);
     const double reach = std::abs(H(c, c));
-    const Complex target = (r.sticks(static_cast<int>(c)) ? way : 0.0) - moved(c);
+    const Complex own_way = r.sticks(static_cast<int>(c)) ? way : 0.0, target = own_way - moved(c);
     if (r.held(static_cast<int>(c))) {
       set_row(c, own.empty() ? 1.0 / reach : 1.0, target);  // what is left of H may be rounding
       continue;
@@ -85,6 +113,11 @@ HarmonicResponse harmonic_response(const Regime& r, const ModalModel& slipping, 
     const friction::LoadForm& load = r.answers[i].load;
     if (load.oscillates())
       impedance -= r.answers[i].friction * Complex(load.z, omega * load.z_rate) * oscillator_gain(load, omega);
+    if (carried[i].by >= 0) {
+      A(c, c) = 1.0;
+      b(c) = impedance * (own_way - carried[i].share * way);
+      continue;
+    }
     const double size = std::max(1.0, std::abs(impedance) * reach);
     set_row(c, impedance / size, target);
     A(c, c) += 1.0 / size;
@@ -93,8 +126,8 @@ HarmonicResponse harmonic_response(const Regime& r, const ModalModel& slipping, 
     const Eigen::Index i = own[static_cast<std::size_t>(k - nc)];
     A.block<2, 2>(k, k) << Complex(-slipping.g11(i), omega), Complex(-slipping.g12(i)), Complex(-slipping.g21(i)),
         Complex(-slipping.g22(i), omega);
-    A.row(k).head(nc) = -slipping.input.row(i).cast<Complex>();
-    A.row(k + 1).head(nc) = -slipping.input.row(np + i).cast<Complex>();
+    A.row(k).head(nc) = -input.row(i).cast<Complex>();
+    A.row(k + 1).head(nc) = -input.row(np + i).cast<Complex>();
     b(k) = forced(i);
     b(k + 1) = forced(np + i);
   }
@@ -103,6 +136,9 @@ HarmonicResponse harmonic_response(const Regime& r, const ModalModel& slipping, 
   out.force = solved.head(nc);
   out.slipping = by_contacts * out.force + by_forces;
   out.slipping(own) = solved.tail(unknowns - nc);
+  for (Eigen::Index c = 0; c < nc; ++c)
+    if (const Carried& at = carried[static_cast<std::size_t>(c)]; at.by >= 0)
+      out.force(at.by) -= at.share * out.force(c);
   out.oscillators.resize(r.from_oscillators.cols());
   Eigen::Index j = 0;
   for (Eigen::Index c = 0; c < nc; ++c) {

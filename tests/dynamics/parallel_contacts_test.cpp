@@ -1,6 +1,7 @@
 // Several contacts on one degree of freedom: those behind springs and stops add their forces.
 #include <slipmode/core/errors.hpp>
 #include <slipmode/dynamics/simulate.hpp>
+#include <slipmode/fem/chain.hpp>
 #include <slipmode/fem/masses.hpp>
 
 #include <gtest/gtest.h>
@@ -73,6 +74,34 @@ TEST(ParallelContacts, AddUpAsAProgramOfFixedStepsAddsThem) {
   EXPECT_NEAR(run.final_state.q[0], q, 1e-7);
   EXPECT_NEAR(run.final_state.v[0], v, 1e-7);
   EXPECT_LT(std::abs(run.audit.residual()), 1e-12);
+}
+
+TEST(ParallelContacts, OfAStiffStopOnAHeldMassLeaveTheMotionItsDigits) {
+  // Two masses, the second held by friction on a shaker A sin ωt and pressed against a stop of stiffness k: it moves as
+  // the shaker does, however large the force k A sin ωt that friction bears.
+  const friction::Shaker shaker{.amplitude = 0.6, .frequency_hz = 0.05, .phase = 0.4};
+  const double omega = shaker.omega();
+  for (const double k : {1e2, 1e6}) {
+    SCOPED_TRACE(k);
+    const Eigen::VectorXd held = Eigen::VectorXd::Unit(2, 1);
+    const HybridSystem system(fem::chain({.masses = 2, .damping = 0.04}),
+                              {{held, friction::Coulomb{1.0, 1.0}, 10.0 * k},
+                               {held, friction::Clearance{{}, friction::Stop{.stiffness = k, .gap = -2.0}}}},
+                              shaker);
+    State start = system.rest();
+    start.q << 0.1, shaker.amplitude * std::sin(shaker.phase);
+    start.v << 0.05, shaker.amplitude * omega * std::cos(shaker.phase);
+    const Trajectory run = simulate(system, start, {.duration = 5.0, .sample = 0.1});
+    EXPECT_EQ(run.events.size(), 0U);
+    EXPECT_LT((run.q.col(0) - start.q).cwiseAbs().maxCoeff(), 1e-15);
+    EXPECT_LT((run.v.col(0) - start.v).cwiseAbs().maxCoeff(), 1e-15);
+    for (Eigen::Index i = 0; i < run.times.size(); ++i) {
+      EXPECT_NEAR(run.q(1, i), shaker.amplitude * std::sin(omega * run.times[i] + shaker.phase), 2e-15);
+      EXPECT_NEAR(run.lambda(1, i), -k * (run.q(1, i) + 2.0), 1e-14 * k);
+    }
+    // The works of stop and friction are some k each, and take one another away.
+    EXPECT_LT(std::abs(run.audit.residual()), 1e-13 + 1e-15 * k);
+  }
 }
 
 TEST(ParallelContacts, ThatStickRigidlyAreRefused) {

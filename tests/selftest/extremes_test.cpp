@@ -107,7 +107,9 @@ TEST(RandomScenes, OfTenSeedsThatOnceFailedHold) {
   // left 9e-6 late (74_4392); one mass that meets a stop at its origin (76_388: Zeno); a stop on what nothing moves
   // (75_3504: a run without end), and of which modes found with the others' left a rounding of their speeds (83_77,
   // 92_262: Zeno); what the judge alone took for violations: a law of the speed that a stop takes past its peak between
-  // two samples (85_791), a held mass at a stop, by a scale of its own rounding (87_1341).
+  // two samples (85_791), a held mass at a stop, by a scale of its own rounding (87_1341), a force's answer that
+  // contacts take back to 1e-10 of it (101_4618); a stiff stop on what a contact holds, whose force was an unknown
+  // beside it (111_165).
   std::vector<std::pair<std::uint64_t, std::uint64_t>> scenes;
   for (const auto& file : std::filesystem::directory_iterator(SLIPMODE_SOURCE_DIR "/tests/selftest/scenes")) {
     const std::string name = file.path().stem();
