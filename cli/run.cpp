@@ -102,6 +102,7 @@ Report run(const Session& session, const RunArguments& arguments) {
     Report out{.data = to_json(result, scene), .text = summary_text(result, scene)};
     const std::vector<std::string> both = {"time", "validation"};
     const bool compares = has_section(scene, "validation");
+    tell_alike_runs(scene, out);
     if (compares) tell_without_slips(scene, out);
     tell_chosen_times(scene, compares ? both : std::vector{both.front()}, out);
     out.data["folder"] = arguments.output;

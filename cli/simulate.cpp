@@ -72,6 +72,7 @@ Report run_ensemble(const Session& session, const SimulateArguments& arguments, 
   report.text = fmt::format("{}: {} runs, {} snapshots, {}, largest energy residual {:.2g}\nEnsemble: {}\n",
                             scene.name(), run.members.size(), run.ensemble.snapshots.cols(), certificate(total),
                             run.worst_audit(), arguments.output);
+  tell_alike_runs(scene, report);
   tell_chosen_times(scene, {"time"}, report);
   if (!failures.empty()) {
     report.exit_code = kNumericalFailure;

@@ -28,4 +28,10 @@ void tell_without_slips(const scene::Scene& scene, Report& out_report) {
       "find' tells a period, 'diagnose' whether a motion is chaotic\n";
 }
 
+void tell_alike_runs(const scene::Scene& scene, Report& out_report) {
+  if (!has_section(scene, "ensemble") || scene.ensemble.members < 2 || scene.ensemble.spread > 0.0) return;
+  out_report.text += fmt::format("All {} runs of the ensemble start alike, as ensemble.spread = 0: one would do\n",
+                                 scene.ensemble.members);
+}
+
 }  // namespace slipmode::cli

@@ -14,4 +14,7 @@ void tell_chosen_times(const scene::Scene& scene, const std::vector<std::string>
 /// Says what is not to be had where no contact's law sticks; nothing elsewhere, or where slips are not asked for.
 void tell_without_slips(const scene::Scene& scene, Report& out_report);
 
+/// Says that an ensemble's runs all start alike, where they do.
+void tell_alike_runs(const scene::Scene& scene, Report& out_report);
+
 }  // namespace slipmode::cli

@@ -122,6 +122,13 @@ TEST_F(Verbs, TheChainOfVerbsEndsInAValidation) {
   EXPECT_EQ(validation["bifurcation"]["values"], 5);
 }
 
+TEST_F(Verbs, SayWhereAllRunsOfAnEnsembleAreOne) {
+  const std::string said = "All 3 runs of the ensemble start alike, as ensemble.spread = 0";
+  const Words three = {"simulate", "two.toml", "-o", "e.h5", "--set", "ensemble.members=3"};
+  EXPECT_THAT(call(three + Words{"--set", "ensemble.spread=0.0"}).out, HasSubstr(said));
+  EXPECT_THAT(call(three + Words{"--set", "ensemble.spread=0.1"}).out, testing::Not(HasSubstr(said)));
+}
+
 TEST_F(Verbs, InfoListsWhatAFileHolds) {
   json_of({"modes", "two.toml", "-o", "modes.h5"});
   ASSERT_EQ(call({"plot", "modes.h5", "-o", "modes.svg"}).exit_code, 0);
