@@ -58,9 +58,8 @@ std::string exponent_summary(const std::string& title, const std::vector<results
   }
   out_json = {{"model", title},        {"values", points.size()}, {"chaotic", chaotic},
               {"two_positive", hyper}, {"failed", failed},        {"largest_nats", json_number(largest)}};
-  return fmt::format(
-      "{}: {} values, {} with a positive exponent, {} with two or more, {} failed; largest {:.4g} bit per {}\n", title,
-      points.size(), chaotic, hyper, failed, largest / std::numbers::ln2, units.one_time());
+  return fmt::format("{}: {} values, {} with a positive exponent, {} with two or more, {} failed; largest {:.4g} {}\n",
+                     title, points.size(), chaotic, hyper, failed, largest / std::numbers::ln2, units.bit_rate());
 }
 
 }  // namespace

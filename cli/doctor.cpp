@@ -120,7 +120,7 @@ Verb add_doctor(CLI::App& app) {
   command->footer(
       "Exit code 0 when nothing that is needed is missing, else 2. 'slipmode --version' says what was built in.\n"
       "Example:\n  slipmode doctor");
-  return {command, [folder](const Session&) { return run(*folder); }};
+  return {.command = command, .run = [folder](const Session&) { return run(*folder); }, .reads_scene = false};
 }
 
 }  // namespace slipmode::cli

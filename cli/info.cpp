@@ -16,18 +16,21 @@ Verb add_info(CLI::App& app) {
   command->footer(
       "Example:\n  slipmode info out/chain10/pod.h5\n"
       "  slipmode info out/chain10/pod.h5 --values > pod.json");
-  return {command, [arguments](const Session& session) {
-            Report report;
-            if (arguments->values) {
-              report.text = results::info(arguments->file, results::InfoFormat::kValues) + '\n';
-              if (session.json) report.data = Json::parse(report.text);
-            } else if (session.json) {
-              report.data = Json::parse(results::info(arguments->file, results::InfoFormat::kJson));
-            } else {
-              report.text = results::info(arguments->file);
-            }
-            return report;
-          }};
+  return {.command = command,
+          .run =
+              [arguments](const Session& session) {
+                Report report;
+                if (arguments->values) {
+                  report.text = results::info(arguments->file, results::InfoFormat::kValues) + '\n';
+                  if (session.json) report.data = Json::parse(report.text);
+                } else if (session.json) {
+                  report.data = Json::parse(results::info(arguments->file, results::InfoFormat::kJson));
+                } else {
+                  report.text = results::info(arguments->file);
+                }
+                return report;
+              },
+          .reads_scene = false};
 }
 
 }  // namespace slipmode::cli

@@ -102,7 +102,8 @@ Verb add_manual(CLI::App& app) {
   command->footer(
       "The build calls it, and 'cmake --install' puts what it writes under share/.\n"
       "Example:\n  slipmode manual ~/.local/share");
-  return {command, [&app, folder](const Session&) { return run(app, *folder); }};
+  return {
+      .command = command, .run = [&app, folder](const Session&) { return run(app, *folder); }, .reads_scene = false};
 }
 
 }  // namespace slipmode::cli

@@ -50,7 +50,7 @@ Verb add_new(CLI::App& app) {
   command->footer(
       "Example:\n  slipmode new chain -o scene.toml\n"
       "  slipmode run scene.toml -o out");
-  return {command, [arguments](const Session&) { return run(*arguments); }};
+  return {.command = command, .run = [arguments](const Session&) { return run(*arguments); }, .reads_scene = false};
 }
 
 }  // namespace slipmode::cli

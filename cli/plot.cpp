@@ -58,7 +58,7 @@ Verb add_plot(CLI::App& app) {
   command->footer(
       "Example:\n  slipmode plot sweep.h5 -o bifurcation.svg\n"
       "  slipmode plot out/chain10/pod.h5 --figure energy -o energy.png");
-  return {command, [arguments](const Session&) { return run(*arguments); }};
+  return {.command = command, .run = [arguments](const Session&) { return run(*arguments); }, .reads_scene = false};
 }
 
 }  // namespace slipmode::cli

@@ -41,7 +41,9 @@ Verb add_report(CLI::App& app) {
   command->add_option("INPUT", arguments->inputs, "folders of results and result files (HDF5)")->required();
   command->add_option("-o,--output", arguments->output, "page (HTML)")->capture_default_str();
   command->footer("Example:\n  slipmode report out/chain10 -o report.html");
-  return {command, [arguments](const Session& session) { return run(session, *arguments); }};
+  return {.command = command,
+          .run = [arguments](const Session& session) { return run(session, *arguments); },
+          .reads_scene = false};
 }
 
 }  // namespace slipmode::cli

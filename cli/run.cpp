@@ -78,9 +78,9 @@ void add_page(const WorkFolder& folder, const std::vector<std::string>& names, c
     const std::string page = arguments.output + "/report.html";
     const auto begin = std::chrono::steady_clock::now();
     write_text(folder.target() / "report.html", report::page(files, options));
+    const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     const std::string failure = arguments.open ? open_on_desktop(page) : "";
     if (!failure.empty()) out_report.text += fmt::format("Not opened: {}\n", failure);
-    const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     out_report.text += fmt::format("To look at it all, in a browser: {} (made in {:.2g} s)\n", page, wall);
     out_report.data["report"] = page;
   } catch (const Interrupted&) {

@@ -33,7 +33,7 @@ Verb add_schema(CLI::App& app) {
       "An editor that knows Taplo ('Even Better TOML') explains and completes keys, and marks what is wrong, in a "
       "scene whose first line is '#:schema scene.schema.json'.\n"
       "Example:\n  slipmode schema -o scene.schema.json");
-  return {command, [arguments](const Session&) { return run(*arguments); }};
+  return {.command = command, .run = [arguments](const Session&) { return run(*arguments); }, .reads_scene = false};
 }
 
 }  // namespace slipmode::cli

@@ -129,7 +129,9 @@ Verb add_selftest(CLI::App& app) {
   command->footer(
       "Exit code 3 if a case does not hold or a scene has a violation.\n"
       "Example:\n  slipmode selftest --extremes\n  slipmode selftest --scenes 100000 --seed 1");
-  return {command, [request](const Session& session) { return selftest(session, *request); }};
+  return {.command = command,
+          .run = [request](const Session& session) { return selftest(session, *request); },
+          .reads_scene = false};
 }
 
 }  // namespace slipmode::cli

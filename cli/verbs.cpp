@@ -11,15 +11,11 @@
 namespace slipmode::cli {
 namespace {
 
-/// Verbs that have no scene to override keys of.
-constexpr std::array<std::string_view, 7> kWithoutScene = {"new",    "plot",   "info",  "report",
-                                                           "schema", "doctor", "manual"};
-
 void add_common_options(const Verb& verb, Session& session) {
   CLI::App& command = *verb.command;
   command.add_flag("--json", session.json,
                    "print one JSON object on standard output, everything else on standard error");
-  if (std::ranges::find(kWithoutScene, command.get_name()) == kWithoutScene.end()) {
+  if (verb.reads_scene) {
     command
         .add_option("--set", session.overrides, "override a scene's key: KEY=VALUE, e.g. drive.speed=0.25 (repeatable)")
         ->type_name("KEY=VALUE")

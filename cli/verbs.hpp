@@ -14,6 +14,7 @@ struct Verb {
   std::function<Report(const Session&)> run;
   bool divides = false;      ///< takes --shard: its values can be computed by several processes, ranks among them
   bool takes_ranks = false;  ///< takes no shards, and yet can be computed by ranks
+  bool reads_scene = true;   ///< takes --set
 };
 
 // Each adds one sub-command with its arguments, help and example; one file per verb.

@@ -80,7 +80,8 @@ Figure bifurcation(const StoreReader& store) {
   return bifurcation_diagram(panels, {.parameter = label,
                                       .parameter_unit = unit,
                                       .value = "slip-state displacement " + contact_symbol(scene, "x", shown),
-                                      .value_unit = results::Units::of(scene.units).length});
+                                      .value_unit = results::Units::of(scene.units).length,
+                                      .none = "no contact slips from rest on its counterpart here"});
 }
 
 PortraitLayout portrait_layout(const scene::Scene& scene, int columns, PortraitLayout::Axes axes) {

@@ -71,9 +71,8 @@ Figure bifurcation_diagram(const std::vector<BifurcationPanel>& panels, const Bi
     figure.command(last ? fmt::format("set xlabel \"{}\"", axis_label(labels.parameter, labels.parameter_unit))
                         : std::string("unset xlabel"));
     figure.command(last ? "set format x '%g'" : "set format x ''");
-    figure.command(points.parameter.size() > 0
-                       ? std::string("unset label 1")
-                       : "set label 1 'no contact slips from rest on its counterpart here' at graph 0.5,0.5 center");
+    figure.command(fmt::format("set label 1 \"{}\" at graph 0.5,0.5 center",
+                               points.parameter.size() == 0 ? literal(labels.none) : ""));
     figure.command(fmt::format("plot {} using 1:2 with points pointtype 7 pointsize {:.3f} linecolor rgb '{}'", block,
                                dot_size(panels[i].parameter), points.colour));
   }

@@ -18,11 +18,11 @@ struct BifurcationPanel {
 struct BifurcationLabels {
   std::string parameter, parameter_unit;
   std::string value, value_unit;
+  std::string none = {};  ///< what a panel without points says
 };
 
 /// Panels one above the other on shared axes (S4 Figure 3.9: full above reduced). Points that would fall on the same
-/// spot are drawn once, so that the SVG of a chaotic sweep stays small; nothing visible is lost. A panel
-/// without points says that nothing slips there.
+/// spot are drawn once, so that the SVG of a chaotic sweep stays small; nothing visible is lost.
 [[nodiscard]] Figure bifurcation_diagram(const std::vector<BifurcationPanel>& panels, const BifurcationLabels& labels);
 
 }  // namespace slipmode::figures

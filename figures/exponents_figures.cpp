@@ -32,14 +32,9 @@ std::vector<std::string> exponent_groups(const StoreReader& store) {
   return groups;
 }
 
-/// Unit of exponents drawn in bits that are stored in nats.
-std::string bit_rate(const StoreReader& store, const std::string& nats) {
-  const std::string rate = store.entry(nats).meaning.units;
-  return results::Units::of(rate == "1/s" ? "SI" : "dimensionless").bit_rate();
-}
-
+/// Unit of a file's exponents in bits.
 std::string bit_rate(const StoreReader& store) {
-  return bit_rate(store, exponent_groups(store).front() + "/values/nats");
+  return store.entry(exponent_groups(store).front() + "/values/bits").meaning.units;
 }
 
 Eigen::VectorXd bits_of(const std::vector<double>& nats) { return to_vector(nats) / std::numbers::ln2; }
@@ -135,7 +130,7 @@ Figure exponents_over_key(const StoreReader& store) {
       model.slip_value = to_vector(table.numbers("displacement"));
       value_unit = store.entry(slips + "/displacement").meaning.units;
     }
-    rate = bit_rate(store, group + "/nats");
+    rate = results::Units::of(store.entry(group + "/nats").meaning.units == "1/s" ? "SI" : "dimensionless").bit_rate();
     label = store.text(group + "/label");
     unit = store.entry(group + "/values/parameter").meaning.units;
     models.push_back(std::move(model));

@@ -1,6 +1,7 @@
 #include <slipmode/figures/mode_shapes.hpp>
 
 #include <slipmode/figures/style.hpp>
+#include "figures/internal/shapes.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -8,16 +9,6 @@
 
 namespace slipmode::figures {
 namespace {
-
-/// Scaled to a largest component of one in magnitude.
-Eigen::VectorXd normalised(const Eigen::VectorXd& shape) {
-  const double largest = shape.cwiseAbs().maxCoeff();
-  return largest > 0.0 ? Eigen::VectorXd(shape / largest) : shape;
-}
-
-Eigen::VectorXd turned_to(const Eigen::VectorXd& shape, const Eigen::VectorXd& reference) {
-  return shape.dot(reference) < 0.0 ? Eigen::VectorXd(-shape) : shape;
-}
 
 /// Few empty places, panels still wide enough for their titles.
 int columns_for(int count) {

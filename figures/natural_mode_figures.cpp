@@ -3,7 +3,7 @@
 #include <slipmode/figures/panels.hpp>
 #include <slipmode/figures/style.hpp>
 #include <slipmode/results/provenance.hpp>
-#include "figures/internal/beam_shape.hpp"
+#include "figures/internal/shapes.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -34,7 +34,7 @@ class ShapeAxis {
   }
   [[nodiscard]] Series of(const ModeSet& set, const Eigen::VectorXd& shape) const {
     const bool few = !beam_ && shape.size() <= kMarked;
-    return {set.name, x_, beam_ ? beam_shape(*beam_, x_, shape) : Eigen::VectorXd(shape / shape.cwiseAbs().maxCoeff()),
+    return {set.name, x_, beam_ ? beam_shape(*beam_, x_, shape) : normalised(shape),
             set.dashed ? Series::Look::kDashed
             : few      ? Series::Look::kMarkedLine
                        : Series::Look::kLine,
@@ -61,8 +61,7 @@ Figure shapes_drawn(const StoreReader& store) {
       if (k == std::ssize(panels)) panels.push_back({fmt::format("mode {}, ω =", k + 1), {}});
       Panel& panel = panels[static_cast<std::size_t>(k)];
       Series own = axis.of(set, shapes.col(k));
-      // A vector's sign means nothing: turned to the first one's.
-      if (!panel.series.empty() && own.y.dot(panel.series.front().y) < 0.0) own.y = -own.y;
+      if (!panel.series.empty()) own.y = turned_to(own.y, panel.series.front().y);
       panel.title += fmt::format("{} {:.4g}", panel.series.empty() ? "" : ",", omega[k]);
       panel.series.push_back(std::move(own));
     }

@@ -12,7 +12,7 @@
 #include <slipmode/results/shaken_modes.hpp>
 #include <slipmode/results/table.hpp>
 #include <slipmode/scene/shaken.hpp>
-#include "figures/internal/beam_shape.hpp"
+#include "figures/internal/shapes.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -162,8 +162,7 @@ Figure functions_along(const StoreReader& store, const std::string& group, const
     const std::string share =
         k < basis.energy.size() ? fmt::format(": {:.3g} %", 100.0 * basis.energy[k]) : std::string();
     panels.push_back({fmt::format("{} {}{}", name, k + 1, share),
-                      {{"linear natural mode", x, own.dot(lnm) < 0.0 ? Eigen::VectorXd(-lnm) : lnm,
-                        Series::Look::kDashed, kLnmColour},
+                      {{"linear natural mode", x, turned_to(lnm, own), Series::Look::kDashed, kLnmColour},
                        {name, x, own, Series::Look::kLine, kPomColour}}});
   }
   return panel_grid(

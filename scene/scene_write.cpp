@@ -16,16 +16,6 @@ std::string table_toml(const char* name, const S& own, const Without& without = 
   return fmt::format("\n[{}]\n{}", name, lines_toml(own, without));
 }
 
-/// A table without the keys that the scene leaves to its periods; nothing where it has none of its own.
-template <class S>
-std::string given_toml(const Scene& scene, const char* name, const S& own) {
-  Without left_out;
-  for_each_field<S>([&](const auto& field) {
-    if (!scene.source.given.contains(fmt::format("{}.{}", name, field.name))) left_out.push_back(field.name);
-  });
-  return has_section(scene, name) ? table_toml(name, own, left_out) : "";
-}
-
 std::string initial_toml(const InitialSpec& initial) {
   const bool given = initial.at == InitialSpec::At::kGiven;
   return table_toml("initial", initial, given ? Without{"at"} : Without{"displacement", "velocity"});
@@ -38,10 +28,45 @@ std::string reduction_toml(const ReductionSpec& reduction, bool sensors) {
   return out + lines_toml(reduction, reduction.functions > 0 ? Without{"basis"} : Without{"basis", "functions"});
 }
 
-std::string model_toml(const Scene& scene) {
-  return fmt::format("title = {}\nunits = \"{}\"\n", quoted_text(scene.title), scene.units) + structure_toml(scene) +
-         contacts_toml(scene) + drive_toml(scene);
-}
+/// A scene as a file: all of it, or what its source and overrides give.
+class SceneText {
+ public:
+  SceneText(const Scene& scene, bool all) : scene_(scene), all_(all) {}
+
+  [[nodiscard]] std::string str() const {
+    std::string out = fmt::format("title = {}\nunits = \"{}\"\n", quoted_text(scene_.title), scene_.units);
+    out += structure_toml(scene_) + contacts_toml(scene_) + drive_toml(scene_);
+    out += scene_.time.cycles ? given("time", *scene_.time.cycles) : given("time", scene_.time);
+    out += said("initial", initial_toml(scene_.initial));
+    out += said("ensemble", table_toml("ensemble", scene_.ensemble, without_other_drives(scene_.drive)));
+    if (scene_.sensors) out += table_toml("sensors", *scene_.sensors);
+    out += said("reduction", reduction_toml(scene_.reduction, scene_.sensors.has_value()));
+    if (scene_.drive.belt() != nullptr) out += given("validation", scene_.validation);
+    if (scene_.drive.shaker() != nullptr) out += given("validation", scene_.shaken);
+    const std::string flow = table_toml("flow", scene_.flow);
+    return out + (all_ || flow != table_toml("flow", Scene().flow) ? flow : "");
+  }
+
+ private:
+  /// A table that has a say as a whole; a seed alone is one.
+  [[nodiscard]] std::string said(const char* table, const std::string& text) const {
+    const bool seeded = scene_.source.given.contains(fmt::format("{}.seed", table));
+    return all_ || seeded || has_section(scene_, table) ? text : "";
+  }
+  /// A table without the keys that the scene leaves to its periods.
+  template <class S>
+  [[nodiscard]] std::string given(const char* name, const S& own) const {
+    if (all_) return table_toml(name, own);
+    Without left_out;
+    for_each_field<S>([&](const auto& field) {
+      if (!scene_.source.given.contains(fmt::format("{}.{}", name, field.name))) left_out.push_back(field.name);
+    });
+    return said(name, table_toml(name, own, left_out));
+  }
+
+  const Scene& scene_;
+  bool all_;
+};
 
 }  // namespace
 
@@ -69,32 +94,8 @@ std::string quoted_text(const std::string& text) {
   return out.str();
 }
 
-std::string scene_to_toml(const Scene& scene) {
-  std::string out = model_toml(scene);
-  out += scene.time.cycles ? table_toml("time", *scene.time.cycles) : table_toml("time", scene.time);
-  out += initial_toml(scene.initial) + table_toml("ensemble", scene.ensemble, without_other_drives(scene.drive));
-  if (scene.sensors) out += table_toml("sensors", *scene.sensors);
-  out += reduction_toml(scene.reduction, scene.sensors.has_value());
-  if (scene.drive.belt() != nullptr) out += table_toml("validation", scene.validation);
-  if (scene.drive.shaker() != nullptr) out += table_toml("validation", scene.shaken);
-  return out + table_toml("flow", scene.flow);
-}
+std::string scene_to_toml(const Scene& scene) { return SceneText(scene, true).str(); }
 
-std::string scene_file(const Scene& scene) {
-  const auto is_said = [&](const char* table, const std::string& text) {
-    const bool seeded = scene.source.given.contains(fmt::format("{}.seed", table));
-    return has_section(scene, table) || seeded ? text : "";
-  };
-  std::string out = model_toml(scene);
-  out += scene.time.cycles ? given_toml(scene, "time", *scene.time.cycles) : given_toml(scene, "time", scene.time);
-  out += is_said("initial", initial_toml(scene.initial));
-  out += is_said("ensemble", table_toml("ensemble", scene.ensemble, without_other_drives(scene.drive)));
-  if (scene.sensors) out += table_toml("sensors", *scene.sensors);
-  out += is_said("reduction", reduction_toml(scene.reduction, scene.sensors.has_value()));
-  if (scene.drive.belt() != nullptr) out += given_toml(scene, "validation", scene.validation);
-  if (scene.drive.shaker() != nullptr) out += given_toml(scene, "validation", scene.shaken);
-  const std::string flow = table_toml("flow", scene.flow);
-  return out + (flow == table_toml("flow", Scene().flow) ? "" : flow);
-}
+std::string scene_file(const Scene& scene) { return SceneText(scene, false).str(); }
 
 }  // namespace slipmode::scene

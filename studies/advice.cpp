@@ -33,8 +33,8 @@ Asked by_the_motion(const scene::Scene& scene, double bound, const RunOptions& r
     out.exponent = found.nats(0);
     out.exponent_error = found.error(0);
     const std::string figure =
-        fmt::format("largest exponent {:.3g} ± {:.1g} bit per {}", *out.exponent / std::numbers::ln2,
-                    out.exponent_error / std::numbers::ln2, results::Units::of(scene.units).one_time());
+        fmt::format("largest exponent {:.3g} ± {:.1g} {}", *out.exponent / std::numbers::ln2,
+                    out.exponent_error / std::numbers::ln2, results::Units::of(scene.units).bit_rate());
     if (found.is_chaotic()) {
       out.sentence =
           fmt::format("The motion is chaotic ({}): paths part whatever is left out, its statistics need not.", figure);

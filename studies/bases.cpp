@@ -146,13 +146,6 @@ std::vector<trade::OfferedBasis> offered_shaken(const scene::Scene& scene, const
   return bases;
 }
 
-/// All natural modes of a model without an ensemble, whose mean they would be about.
-pod::Basis lnms_at_rest(const dynamics::HybridSystem& system) {
-  pod::Basis modes = rom::lnm_basis(system.structure(), system.size());
-  modes.mean = diagnostics::resting_place(system);
-  return modes;
-}
-
 std::vector<trade::OfferedBasis> offered_on_belt(const scene::Scene& scene, const dynamics::HybridSystem& system,
                                                  const RunOptions& run) {
   std::optional<pod::PodResult> result;
@@ -161,7 +154,7 @@ std::vector<trade::OfferedBasis> offered_on_belt(const scene::Scene& scene, cons
     making = processor_time([&] { result = pod::pod(ensemble(scene, run).ensemble); });
   } catch (const InvalidInput&) {
     trade::OfferedBasis lnm{.choice = scene::BasisChoice::kLnm, .basis = {}};
-    lnm.seconds = processor_time([&] { lnm.basis = lnms_at_rest(system); });
+    lnm.seconds = processor_time([&] { lnm.basis = diagnostics::lnms_at_rest(system, system.size()); });
     return {lnm};
   }
   std::vector<trade::OfferedBasis> bases;
@@ -295,7 +288,7 @@ pod::NamedBasis load_basis(const scene::Scene& scene, const dynamics::HybridSyst
         return {.name = source, .basis = shaken_basis(word, scene, full, no_ensemble)};
     }
   }
-  if (source == "lnm") return {.name = "LNM", .basis = lnms_at_rest(full)};
+  if (source == "lnm") return {.name = "LNM", .basis = diagnostics::lnms_at_rest(full, full.size())};
   return load_basis(scene, full, results::StoreReader(source));
 }
 

@@ -2,7 +2,6 @@
 
 #include <slipmode/core/errors.hpp>
 #include <slipmode/diagnostics/attractors/model.hpp>
-#include <slipmode/rom/reduce.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -33,9 +32,7 @@ std::optional<pod::Basis> basis_of(const Variant& variant, const std::vector<Off
   if (!variant.reduction) return std::nullopt;
   const auto found = std::ranges::find(bases, variant.reduction->basis, &OfferedBasis::choice);
   if (found == bases.end() && variant.reduction->basis == scene::BasisChoice::kLnm) {
-    pod::Basis modes = rom::lnm_basis(full.structure(), variant.reduction->modes);
-    modes.mean = diagnostics::resting_place(full);
-    return modes;
+    return diagnostics::lnms_at_rest(full, variant.reduction->modes);
   }
   if (found == bases.end()) {
     throw InvalidInput(fmt::format("{}: basis \"{}\" is not on offer for this scene", variant.name,

@@ -80,4 +80,10 @@ Eigen::VectorXd resting_place(const dynamics::HybridSystem& system) {
   }
 }
 
+pod::Basis lnms_at_rest(const dynamics::HybridSystem& system, Eigen::Index L) {
+  pod::Basis modes = rom::lnm_basis(system.structure(), L);
+  modes.mean = resting_place(system);
+  return modes;
+}
+
 }  // namespace slipmode::diagnostics

@@ -46,7 +46,9 @@ struct Model {
 [[nodiscard]] dynamics::State sliding_equilibrium(const dynamics::HybridSystem& system);
 
 /// Where a belt holds the structure on average: the displacement of sliding_equilibrium; zero under another drive and
-/// where there is none. Natural modes know of no mean and are taken about this one.
+/// where there is none.
 [[nodiscard]] Eigen::VectorXd resting_place(const dynamics::HybridSystem& system);
+/// The first L natural modes, which know of no mean, about that place. @throws InvalidInput  as rom::lnm_basis
+[[nodiscard]] pod::Basis lnms_at_rest(const dynamics::HybridSystem& system, Eigen::Index L);
 
 }  // namespace slipmode::diagnostics
