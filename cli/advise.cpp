@@ -145,7 +145,7 @@ Report run(const Session& session, const AdviseArguments& arguments) {
   const studies::Advice advice =
       studies::advise(scene, std::move(effects), request, session.run_options(), file.journal());
   file.finish([&](results::StoreWriter& writer) { studies::store(writer, scene, advice); });
-  if (session.has_a_share()) return part_made(session, file, arguments.output, "configurations");
+  if (session.has_a_share()) return part_made(session, file.progress(), arguments.output, "configurations");
 
   Report report = report_of(advice, scene);
   tell_resumed(session, file.resumed(), "configurations", report);

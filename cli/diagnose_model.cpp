@@ -85,7 +85,7 @@ ModelDiagnosis add_model_diagnosis(CLI::App& command) {
                 "one table: exponents, dimensions, delay, embedding, spectrum, stick, full and reduced side by side")
       ->group(kGroup);
   command.add_option("--modes", models->modes, "of MODELS; else as [reduction] chooses")
-      ->check(CLI::PositiveNumber)
+      ->check(within(kCount, true))
       ->group(kGroup);
   add_fields(command, models->exponents, kGroup);
   command.add_option("--over", models->over, "exponents against a key: KEY=FROM:TO:STEP")->group(kGroup);

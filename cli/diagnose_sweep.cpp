@@ -102,7 +102,7 @@ Report diagnose_over(const Session& session, const scene::Scene& scene, const Di
       results::store_exponent_sweep(writer, "exponents/" + role, title, family.axis(), units, sweeps[m].points);
     }
   });
-  if (session.has_a_share()) return part_made(session, file, request.output, "values");
+  if (session.has_a_share()) return part_made(session, file.progress(), request.output, "values");
   for (std::size_t m = 0; m < swept.size(); ++m) {
     Json summary;
     report.text += exponent_summary(swept[m].title, sweeps[m].points, units, summary);

@@ -93,8 +93,8 @@ void check_ranks(const Session& session, const Verb& verb) {
   const std::string name = verb.command->get_name();
   if (!verb.divides && !verb.takes_ranks) {
     throw InvalidInput(
-        fmt::format("{}: is computed by one process; start it without mpirun, which is for sweep, orbit map, orbit "
-                    "basins, diagnose --over, trade, advise and pod of a scene",
+        fmt::format("{}: is computed by one process; start it without mpirun, which is for simulate of an ensemble, "
+                    "pod of a scene, validate, sweep, orbit map, orbit basins, diagnose --over, trade and advise",
                     name));
   }
   if (session.shard || !session.slurm.empty()) {

@@ -139,7 +139,7 @@ Report run(const Session& session, const OrbitBasinsArguments& arguments) {
     return report;
   }
   file.finish([&](results::StoreWriter& writer) { studies::store(writer, family, request, study); });
-  if (session.has_a_share()) return part_made(session, file, arguments.output, "rows");
+  if (session.has_a_share()) return part_made(session, file.progress(), arguments.output, "rows");
   Report report = summary(family, request, study);
   report.data["file"] = arguments.output;
   tell_resumed(session, file.resumed(), "rows", report);

@@ -205,7 +205,7 @@ Verb add_orbit_continue(CLI::App& orbit) {
   add_search_options(*command, arguments->search);
   add_balance_options(*command, arguments->balance, {"shooting", "balance"});
   command->add_option("--every", arguments->every, "with --certify: every so many points, and the last")
-      ->check(CLI::PositiveNumber);
+      ->check(within(kCount, true));
   command->add_option("--over", arguments->over, "key and range: KEY=FROM:TO")->required();
   command->add_option(
       "--point", arguments->point,

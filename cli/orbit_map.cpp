@@ -106,7 +106,7 @@ Report run(const Session& session, const OrbitMapArguments& arguments) {
     return report;
   }
   file.finish([&](results::StoreWriter& writer) { studies::store(writer, family, study); });
-  if (session.has_a_share()) return part_made(session, file, arguments.output, "rows");
+  if (session.has_a_share()) return part_made(session, file.progress(), arguments.output, "rows");
   Report report = summary(family, study, over, arguments.options);
   report.data["file"] = arguments.output;
   tell_resumed(session, file.resumed(), "rows", report);

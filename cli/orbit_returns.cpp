@@ -2,6 +2,7 @@
 #include <slipmode/orbits/close_returns.hpp>
 #include <slipmode/results/store.hpp>
 #include <slipmode/results/table.hpp>
+#include "cli/field_options.hpp"
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
 
@@ -150,18 +151,18 @@ Verb add_orbit_returns(CLI::App& orbit) {
   command->add_option("SERIES", arguments->series, "FILE:DATASET of a result file, e.g. run.h5:trajectory/v")
       ->required();
   command->add_option("--column", arguments->column, "column of the dataset, from 1, when it has several");
-  command->add_option("--delay", arguments->delay, "delay of the coordinates, in samples")->check(CLI::PositiveNumber);
-  command->add_option("--dimension", arguments->dimension, "number of delay coordinates")->check(CLI::PositiveNumber);
+  command->add_option("--delay", arguments->delay, "delay of the coordinates, in samples")->check(within(kCount, true));
+  command->add_option("--dimension", arguments->dimension, "number of delay coordinates")->check(within(kCount, true));
   command
       ->add_option("--threshold", arguments->search.threshold,
                    "largest distance of a close return; 0: half the mean step, as S4")
-      ->check(CLI::NonNegativeNumber);
+      ->check(within(kNonNegative, false));
   command->add_option("--min-length", arguments->search.min_length, "shortest orbits, in samples")
-      ->check(CLI::PositiveNumber);
+      ->check(within(kCount, true));
   command
       ->add_option("--max-length", arguments->search.max_length,
                    "longest orbits, in samples; 0: a quarter of the series")
-      ->check(CLI::NonNegativeNumber);
+      ->check(within(kFromZero, true));
   command->add_option("-o,--output", arguments->output, "also store the orbits (HDF5)");
   command->footer(
       "Measured data have no equations to refine an orbit with; of a model 'orbit skeleton' finds true ones.\n"

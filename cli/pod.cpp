@@ -1,6 +1,7 @@
 #include <slipmode/pod/pod.hpp>
 
 #include <slipmode/studies/ensemble_modes.hpp>
+#include "cli/field_options.hpp"
 #include "cli/modes_report.hpp"
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
@@ -94,7 +95,7 @@ Verb add_pod(CLI::App& app) {
       ->required();
   command->add_option("-o,--output", arguments->output, "result file (HDF5)")->required();
   command->add_option("--modes", arguments->modes, "number of modes to keep; 0: all that the data hold")
-      ->check(CLI::NonNegativeNumber);
+      ->check(within(kFromZero, true));
   command->footer(
       "Example:\n  slipmode pod ensemble.h5 -o pod.h5\n"
       "  mpirun -n 4 slipmode pod datasets/chain10/scene.toml -o pod.h5");

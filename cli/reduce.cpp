@@ -1,6 +1,7 @@
 #include <slipmode/fem/modes.hpp>
 #include <slipmode/studies/bases.hpp>
 #include <slipmode/studies/reduction.hpp>
+#include "cli/field_options.hpp"
 #include "cli/text_table.hpp"
 #include "cli/verbs.hpp"
 
@@ -59,7 +60,7 @@ Verb add_reduce(CLI::App& app) {
       ->required();
   command->add_option("-o,--output", arguments->output, "result file (HDF5)")->required();
   command->add_option("--modes", arguments->modes, "number of modes; 0: as [reduction] says")
-      ->check(CLI::NonNegativeNumber);
+      ->check(within(kFromZero, true));
   command->footer("Example:\n  slipmode reduce datasets/chain10/scene.toml pod.h5 --modes 6 -o rom6.h5");
   return {command, [arguments](const Session& session) { return run(session, *arguments); }};
 }

@@ -82,13 +82,13 @@ void tell_resumed(const Session& session, std::size_t resumed, const std::string
                   session.joined.empty() ? "an interrupted run" : fmt::format("{} parts", session.joined.size()));
 }
 
-Report part_made(const Session& session, const studies::ResultFile& file, const std::string& output,
+Report part_made(const Session& session, const studies::FileProgress& done, const std::string& output,
                  const std::string& what) {
   Report report;
   if (!session.shard) return report;
-  report.text = fmt::format("Shard {}: {} {}\n", results::to_string(session.shard.value()), file.finished(), what);
-  report.data = {{"shard", results::to_string(session.shard.value())}, {"file", output}, {what, file.finished()}};
-  tell_resumed(session, file.resumed(), what, report);
+  report.text = fmt::format("Shard {}: {} {}\n", results::to_string(session.shard.value()), done.finished, what);
+  report.data = {{"shard", results::to_string(session.shard.value())}, {"file", output}, {what, done.finished}};
+  tell_resumed(session, done.resumed, what, report);
   report.text += fmt::format("Part: {}; 'slipmode merge PART... -o FILE' joins all of them\n", output);
   return report;
 }

@@ -86,7 +86,7 @@ using results::require_writable;
 void tell_resumed(const Session& session, std::size_t resumed, const std::string& what, Report& out_report);
 
 /// What to say when a share of the values is done: of a rank nothing. @param what  is counted: "values", "rows"
-[[nodiscard]] Report part_made(const Session& session, const studies::ResultFile& file, const std::string& output,
+[[nodiscard]] Report part_made(const Session& session, const studies::FileProgress& done, const std::string& output,
                                const std::string& what);
 
 /// In how many of a run's steps it is proved that no event was passed.

@@ -1,3 +1,4 @@
+#include <slipmode/results/ensemble_store.hpp>
 #include <slipmode/studies/bases.hpp>
 #include <slipmode/studies/ensemble.hpp>
 #include <slipmode/studies/simulation.hpp>
@@ -49,10 +50,24 @@ Report run_trajectory(const Session& session, const SimulateArguments& arguments
   return report;
 }
 
+/// Members that have all failed are nothing to go on from.
+diagnostics::EnsembleRun ensemble_for(studies::ResultFile& file, const scene::Scene& scene,
+                                      const studies::RunOptions& run) {
+  try {
+    return studies::ensemble(scene, run, file.journal());
+  } catch (const NumericalFailure&) {
+    file.drop();
+    throw;
+  }
+}
+
 Report run_ensemble(const Session& session, const SimulateArguments& arguments, const scene::Scene& scene) {
-  const auto done = std::make_shared<const diagnostics::EnsembleRun>(studies::ensemble(scene, session.run_options()));
-  studies::content_of(scene, done).save(arguments.output);
-  const diagnostics::EnsembleRun& run = *done;
+  studies::ResultFile file(arguments.output, scene, results::FileKind::kEnsemble, studies::kEnsembleCommand, "",
+                           session.division(), studies::ensemble_pieces(scene));
+  const diagnostics::EnsembleRun run = ensemble_for(file, scene, session.run_options());
+  file.finish([&](results::StoreWriter& writer) { results::store_ensemble(writer, scene, run); },
+              studies::audit_of(run));
+  if (session.has_a_share()) return part_made(session, file.progress(), arguments.output, "members");
 
   Report report;
   const dynamics::FlowStatistics total = run.total();
@@ -72,6 +87,7 @@ Report run_ensemble(const Session& session, const SimulateArguments& arguments, 
   report.text = fmt::format("{}: {} runs, {} snapshots, {}, largest energy residual {:.2g}\nEnsemble: {}\n",
                             scene.name(), run.members.size(), run.ensemble.snapshots.cols(), certificate(total),
                             run.worst_audit(), arguments.output);
+  tell_resumed(session, file.resumed(), "members", report);
   tell_alike_runs(scene, report);
   tell_chosen_times(scene, {"time"}, report);
   if (!failures.empty()) {
@@ -98,14 +114,17 @@ Verb add_simulate(CLI::App& app) {
       "  slipmode simulate datasets/chain10/scene.toml --single --set time.duration=500.0 "
       "--set time.transient=0.0 -o run.h5\n"
       "  slipmode simulate datasets/chain10/scene.toml --single --model rom:rom6.h5 -o reduced.h5");
-  return {command, [arguments](const Session& session) {
-            require_writable(arguments->output);
-            const scene::Scene scene = session.load(arguments->scene);
-            const bool ensemble = !arguments->single && has_section(scene, "ensemble");
-            if (ensemble && arguments->model != "full")
-              throw InvalidInput(fmt::format("--model {}: of one trajectory; add --single", arguments->model));
-            return ensemble ? run_ensemble(session, *arguments, scene) : run_trajectory(session, *arguments, scene);
-          }};
+  const auto run = [arguments](const Session& session) {
+    require_writable(arguments->output);
+    const scene::Scene scene = session.load(arguments->scene);
+    const bool ensemble = !arguments->single && has_section(scene, "ensemble");
+    if (ensemble && arguments->model != "full")
+      throw InvalidInput(fmt::format("--model {}: of one trajectory; add --single", arguments->model));
+    if (!ensemble && session.is_divided())
+      throw InvalidInput(session.divided_by() + ": runs of an ensemble are divided; one trajectory is one piece");
+    return ensemble ? run_ensemble(session, *arguments, scene) : run_trajectory(session, *arguments, scene);
+  };
+  return {.command = command, .run = run, .divides = true};
 }
 
 }  // namespace slipmode::cli

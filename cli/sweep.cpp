@@ -104,7 +104,7 @@ Report run(const Session& session, SweepRequest request) {
   const studies::Sweep sweep = studies::sweep(family, over.values, request.options, run_options);
   if (sweep.interrupted) return interrupted(session, request, over.values.size(), file);
   file.finish([&](results::StoreWriter& writer) { studies::store(writer, family, sweep); });
-  if (session.has_a_share()) return part_made(session, file, request.output, "values");
+  if (session.has_a_share()) return part_made(session, file.progress(), request.output, "values");
   Report report = summary(request, family, sweep);
   tell_without_slips(scene, report);
   tell_chosen_times(scene, {"validation.transient", "validation.block", "validation.sweep_limit"}, report);

@@ -32,7 +32,7 @@ Report run(const Session& session, const TradeArguments& arguments) {
                            studies::Unfinished::kKept);
   const studies::TradeFound found = studies::trade_off(scene, request, plan, session.run_options(), file.journal());
   file.finish([&](results::StoreWriter& writer) { studies::store(writer, scene, request, found); });
-  if (session.has_a_share()) return part_made(session, file, arguments.output, "configurations");
+  if (session.has_a_share()) return part_made(session, file.progress(), arguments.output, "configurations");
 
   const trade::Study& done = found.study;
   Report report;

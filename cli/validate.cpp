@@ -17,9 +17,11 @@ struct ValidateArguments {
 
 Report run(const Session& session, const ValidateArguments& arguments) {
   require_writable(arguments.output);
-  const studies::Validation done = studies::validate(
-      session.load(arguments.scene), results::StoreReader(arguments.input),
-      {.sweep = !arguments.no_sweep, .verdict = arguments.verdict}, arguments.output, session.run_options());
+  const studies::Validation done =
+      studies::validate(session.load(arguments.scene), results::StoreReader(arguments.input),
+                        {.sweep = !arguments.no_sweep, .verdict = arguments.verdict}, arguments.output,
+                        session.run_options(), session.division());
+  if (session.has_a_share()) return part_made(session, done.values, arguments.output, "values");
   Report report;
   report.data = {{"verb", "validate"},
                  {"file", arguments.output},
@@ -28,6 +30,7 @@ Report run(const Session& session, const ValidateArguments& arguments) {
                           : summary_text(*done.shaken, done.scene);
   tell_without_slips(done.scene, report);
   tell_chosen_times(done.scene, {"validation"}, report);
+  tell_resumed(session, done.values.resumed, "values", report);
   report.text += fmt::format("Validation: {}\n", arguments.output);
   return report;
 }
@@ -48,7 +51,9 @@ Verb add_validate(CLI::App& app) {
   command->add_flag("--verdict", arguments->verdict,
                     "also exponents, dimensions, delay, embedding, spectrum, stick of full and reduced side by side");
   command->footer("Example:\n  slipmode validate datasets/chain10/scene.toml pod.h5 -o validation.h5");
-  return {command, [arguments](const Session& session) { return run(session, *arguments); }};
+  return {.command = command,
+          .run = [arguments](const Session& session) { return run(session, *arguments); },
+          .divides = true};
 }
 
 }  // namespace slipmode::cli

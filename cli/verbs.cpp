@@ -1,4 +1,5 @@
 #include "cli/verbs.hpp"
+#include "cli/field_options.hpp"
 
 #include <slipmode/core/errors.hpp>
 
@@ -33,7 +34,7 @@ void add_common_options(const Verb& verb, Session& session) {
   command.add_option("--slurm", session.slurm,
                      "compute nothing: measure one piece, and write scripts for shards under Slurm to this folder");
   command.add_option("--shards", session.shards, "with --slurm: how many; default: each takes ten minutes or more")
-      ->check(CLI::PositiveNumber);
+      ->check(within(kCount, true));
 }
 
 }  // namespace

@@ -1,23 +1,46 @@
 #include <slipmode/results/ensemble_store.hpp>
 
-#include <slipmode/results/provenance.hpp>
 #include <slipmode/results/records.hpp>
 #include <slipmode/results/table.hpp>
 #include <slipmode/results/units.hpp>
+#include "results/internal/journal_line.hpp"
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
 
 namespace slipmode::results {
+namespace {
+
+void list_member(detail::Line& line, SweptValue<diagnostics::MemberRun>& member) {
+  auto& [snapshots, audit, statistics] = member.settled;
+  line(audit.energy_start, audit.energy_end, audit.contact_work, audit.drive_work, audit.friction_loss,
+       audit.force_work, audit.viscous_loss, audit.exchanged);
+  line(statistics.steps, statistics.rejected, statistics.certified, statistics.events, statistics.regimes_built,
+       statistics.stick_time);
+  line(snapshots);
+}
+
+}  // namespace
+
+diagnostics::EnsembleSink ensemble_sink(Journal& journal) {
+  using std::chrono::steady_clock;
+  auto sink = detail::table_sink<diagnostics::MemberRun>(journal, "ensemble", list_member);
+  if (journal.is_of_several()) return sink;
+  sink.store = [store = sink.store, last = steady_clock::now()](const auto& member) mutable {
+    if (steady_clock::now() - last < std::chrono::seconds(1)) return;
+    store(member);
+    last = steady_clock::now();
+  };
+  return sink;
+}
 
 void store_ensemble(StoreWriter& writer, const scene::Scene& scene, const diagnostics::EnsembleRun& run) {
   const Units units = Units::of(scene.units);
-  Provenance provenance = provenance_of(scene, "slipmode simulate");
-  if (const auto* worst = run.worst()) provenance.audit = worst->audit;
   Table members{.description = "runs of the ensemble", .columns = {}};
   std::vector<double> parameter, start, columns, events, residual;
   std::vector<std::string> failure;
@@ -39,7 +62,6 @@ void store_ensemble(StoreWriter& writer, const scene::Scene& scene, const diagno
                      {"events", {"", "events located"}, events},
                      {"audit_residual", {"1", "energy balance relative to the energy exchanged"}, residual},
                      {"failure", {"", "why it failed; empty: it did not"}, failure}};
-  save(writer, provenance);
   save(writer, kEnsembleGroup, run.ensemble);
   save(writer, "members", members);
   if (scene.sensors) store_sensors(writer, scene, run.ensemble.snapshots);

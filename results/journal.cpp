@@ -15,6 +15,7 @@
 #include <charconv>
 #include <chrono>
 #include <cstring>
+#include <iterator>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -75,15 +76,19 @@ bool parse(std::string_view word, Number& out_value) {
 
 // "crc table index count v1 .. vcount note\n"; numbers are the shortest text that reads back to the same bits.
 std::string to_line(const JournalRecord& record) {
-  std::string body = fmt::format("{} {} {}", record.table, record.index, record.values.size());
-  std::array<char, 32> digits{};
+  constexpr std::size_t kChecksum = 9, kNumber = 25;  // characters, with the blank
+  std::string line(kChecksum, ' ');
+  line.reserve(kChecksum + record.table.size() + 2 * kNumber + kNumber * record.values.size() + 2 * record.note.size());
+  fmt::format_to(std::back_inserter(line), "{} {} {}", record.table, record.index, record.values.size());
+  std::array<char, kNumber> digits{};
   for (const double value : record.values) {
     const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
-    body += ' ';
-    body.append(digits.data(), end);
+    line += ' ';
+    line.append(digits.data(), end);
   }
-  body += ' ' + escape(record.note);
-  return fmt::format("{:08x} {}\n", crc_of(body), body);
+  line += ' ' + escape(record.note);
+  fmt::format_to(line.begin(), "{:08x}", crc_of(std::string_view(line).substr(kChecksum)));
+  return line += '\n';
 }
 
 std::optional<JournalRecord> from_line(std::string_view line) {

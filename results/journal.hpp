@@ -97,6 +97,8 @@ class Journal {
     appended_ = std::move(appended);
   }
   [[nodiscard]] const Sharing& sharing() const { return sharing_; }
+  /// True when other processes compute values of the same study: each is needed, none may be computed twice.
+  [[nodiscard]] bool is_of_several() const { return leave_ || sharing_.begin; }
 
   /// Records of any journal, for reading; one that is being written may end in a torn line.
   /// @throws InvalidInput  when it cannot be opened or is not a journal

@@ -2,6 +2,7 @@
 
 #include <slipmode/core/errors.hpp>
 #include <slipmode/results/ensemble_store.hpp>
+#include <slipmode/results/provenance.hpp>
 #include <slipmode/studies/family.hpp>
 
 #include <fmt/format.h>
@@ -27,6 +28,11 @@ void append(diagnostics::EnsembleRun& all, diagnostics::EnsembleRun part) {
   for (auto& member : part.members) all.members.push_back(std::move(member));
 }
 
+std::vector<double> parameters_of(const scene::Scene& scene) {
+  const auto& named = scene.drive.shaker() != nullptr ? scene.ensemble.frequencies : scene.ensemble.speeds;
+  return named.empty() ? std::vector{scene::drive_parameter(scene)} : named;
+}
+
 /// What all members of an ensemble share.
 struct Members {
   std::vector<double> parameters;
@@ -36,15 +42,13 @@ struct Members {
   dynamics::FlowOptions flow;
 
   explicit Members(const scene::Scene& scene)
-      : parameters(scene.drive.shaker() != nullptr ? scene.ensemble.frequencies : scene.ensemble.speeds),
+      : parameters(parameters_of(scene)),
         model(ensemble_model(scene)),
         starts(scene::ensemble_states(scene, scene::build_system(scene))),
         dofs(scene.size()),
-        flow(scene.flow) {
-    if (parameters.empty()) parameters.push_back(scene::drive_parameter(scene));
-  }
+        flow(scene.flow) {}
 
-  /// @param options  which part
+  /// @param options  which part, and how members are kept
   [[nodiscard]] diagnostics::EnsembleRun run(const std::vector<double>& values, const scene::TimeSpec& time,
                                              const ParallelOptions& parallel,
                                              diagnostics::EnsembleOptions options = {}) const {
@@ -59,14 +63,28 @@ struct Members {
 
 }  // namespace
 
-diagnostics::EnsembleRun ensemble(const scene::Scene& scene, const RunOptions& run) {
+diagnostics::EnsembleRun ensemble(const scene::Scene& scene, const RunOptions& run, results::Journal* journal) {
   const Members members(scene);
-  if (scene.drive.shaker() == nullptr) return members.run(members.parameters, scene.time, run.parallel("ensemble"));
-  diagnostics::EnsembleRun all;  // a time in cycles is another one at each frequency
   const ParallelOptions parallel = run.parallel("ensemble");
-  for (const double frequency : members.parameters)
-    append(all, members.run({frequency}, scene::time_at(scene, frequency), parallel));
+  diagnostics::EnsembleOptions options;
+  if (journal != nullptr) options.sink = results::ensemble_sink(*journal);
+  if (scene.drive.shaker() == nullptr) return members.run(members.parameters, scene.time, parallel, options);
+  diagnostics::EnsembleRun all;  // a time in cycles is another one at each frequency
+  for (const double frequency : members.parameters) {
+    append(all, members.run({frequency}, scene::time_at(scene, frequency), parallel, options));
+    ++options.model;
+    options.sink.first_piece += members.starts.size();
+  }
   return all;
+}
+
+Pieces ensemble_pieces(const scene::Scene& scene) {
+  return {.count = parameters_of(scene).size() * static_cast<std::size_t>(scene.ensemble.members), .what = "members"};
+}
+
+std::optional<dynamics::EnergyAudit> audit_of(const diagnostics::EnsembleRun& ensemble) {
+  const diagnostics::EnsembleMember* worst = ensemble.worst();
+  return worst == nullptr ? std::nullopt : std::optional(worst->audit);
 }
 
 diagnostics::EnsembleRun ensemble_part(const scene::Scene& scene, std::size_t part, std::size_t parts,
@@ -85,11 +103,16 @@ diagnostics::EnsembleRun ensemble_part(const scene::Scene& scene, std::size_t pa
 results::Content content_of(const scene::Scene& scene,
                             const std::shared_ptr<const diagnostics::EnsembleRun>& ensemble) {
   const Eigen::MatrixXd& snapshots = ensemble->ensemble.snapshots;
-  return {
-      .kind = results::FileKind::kEnsemble,
-      .unit_system = scene.units,
-      .write = [scene, ensemble](results::StoreWriter& writer) { results::store_ensemble(writer, scene, *ensemble); },
-      .shared = {{ensemble, {snapshots.data(), static_cast<std::size_t>(snapshots.size())}}}};
+  return {.kind = results::FileKind::kEnsemble,
+          .unit_system = scene.units,
+          .write =
+              [scene, ensemble](results::StoreWriter& writer) {
+                results::Provenance provenance = results::provenance_of(scene, kEnsembleCommand);
+                provenance.audit = audit_of(*ensemble);
+                results::save(writer, provenance);
+                results::store_ensemble(writer, scene, *ensemble);
+              },
+          .shared = {{ensemble, {snapshots.data(), static_cast<std::size_t>(snapshots.size())}}}};
 }
 
 }  // namespace slipmode::studies

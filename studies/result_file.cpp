@@ -91,7 +91,11 @@ ResultFile::ResultFile(std::filesystem::path path, scene::Scene scene, results::
 }
 
 ResultFile::~ResultFile() {
-  if (path_.empty() && journal_ && journal_->records().empty()) journal_->remove();
+  if (journal_ && journal_->records().empty()) journal_->remove();
+}
+
+void ResultFile::drop() {
+  if (journal_) journal_->remove();
 }
 
 void ResultFile::keep_in_cache() {
@@ -159,14 +163,17 @@ void ResultFile::require_all() const {
   if (!text.empty()) throw InvalidInput(text.substr(0, text.size() - 1));
 }
 
-results::Content ResultFile::finish(std::function<void(results::StoreWriter&)> write) {
-  results::Content content{.kind = kind_,
-                           .unit_system = scene_.units,
-                           .write = [provenance = results::provenance_of(scene_, command_),
-                                     write = std::move(write)](results::StoreWriter& writer) {
-                             results::save(writer, provenance);
-                             write(writer);
-                           }};
+results::Content ResultFile::finish(std::function<void(results::StoreWriter&)> write,
+                                    const std::optional<dynamics::EnergyAudit>& audit) {
+  results::Provenance provenance = results::provenance_of(scene_, command_);
+  provenance.audit = audit;
+  results::Content content{
+      .kind = kind_,
+      .unit_system = scene_.units,
+      .write = [provenance = std::move(provenance), write = std::move(write)](results::StoreWriter& writer) {
+        results::save(writer, provenance);
+        write(writer);
+      }};
   if (!journal_ || !journal_->sharing().leads) return content;
   if (shard_) {
     journal_->publish(path_);

@@ -45,6 +45,12 @@ enum class Unfinished : std::uint8_t {
   kKept,
 };
 
+/// Values of a study, or whatever it counts.
+struct FileProgress {
+  std::size_t finished = 0;  ///< by now
+  std::size_t resumed = 0;   ///< of them found finished: by an interrupted run, or in parts
+};
+
 /// A result in the making, for a file or for memory. Values that a long study finishes are kept in a journal beside its
 /// file until that is whole; the same study, asked again after an interruption, goes on from there. A shard's file is a
 /// part: its journal, complete. Joined parts stand in for the journal of a study whose values are all there. Of ranks
@@ -60,7 +66,7 @@ class ResultFile {
   ResultFile(std::filesystem::path path, scene::Scene scene, results::FileKind kind, std::string command,
              const std::string& identity = "", const Division& division = {}, const Pieces& pieces = {},
              Unfinished unfinished = Unfinished::kDropped);
-  /// A journal in the cache of which nothing was kept is dropped.
+  /// A journal in which nothing was kept is dropped.
   ~ResultFile();
   ResultFile(const ResultFile&) = delete;
   ResultFile& operator=(const ResultFile&) = delete;
@@ -71,12 +77,18 @@ class ResultFile {
   [[nodiscard]] std::size_t resumed() const { return resumed_; }
   /// Values that are finished by now.
   [[nodiscard]] std::size_t finished() const { return journal_ ? journal_->records().size() - (shard_ ? 1 : 0) : 0; }
+  [[nodiscard]] FileProgress progress() const { return {finished(), resumed_}; }
+
+  /// There will be no result: the journal goes too.
+  void drop();
 
   /// Provenance and what `write` adds: written under a temporary name, which is renamed, when there is a file, whose
   /// journal is then dropped. A shard's journal becomes the part instead.
+  /// @param audit  for provenance
   /// @throws InvalidInput  when values are missing in the parts: says which, and what finishes them
   /// Does nothing on a rank other than 0.
-  results::Content finish(std::function<void(results::StoreWriter&)> write);
+  results::Content finish(std::function<void(results::StoreWriter&)> write,
+                          const std::optional<dynamics::EnergyAudit>& audit = {});
 
  private:
   void keep_in_cache();

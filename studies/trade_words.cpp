@@ -28,6 +28,10 @@ std::optional<Quantity> read_quantity(const std::string& text) {
 
 double parse_percent(const std::string& option, const std::string& text) {
   const auto found = read_quantity(text);
+  if (found && found->unit.empty() && found->number < 1.0) {  // as other options have shares
+    throw InvalidInput(fmt::format("{0} {1}: write {1}% or {2}%, whichever is meant", option, text,
+                                   fmt::format("{:.6g}", 100.0 * found->number)));
+  }
   if (found && (found->unit.empty() || found->unit == "%")) return found->number;
   throw InvalidInput(fmt::format("{} {}: expected a share in percent, e.g. 1%", option, text));
 }

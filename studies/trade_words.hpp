@@ -8,7 +8,8 @@
 
 namespace slipmode::studies {
 
-/// "1%", "0.5 %", "2": percent. @throws InvalidInput  for anything else, or a number that is not positive
+/// "1%", "0.5 %", "2": percent. @throws InvalidInput  for anything else, a number that is not positive, or one below 1
+///                                                    without the sign, which could be a share
 [[nodiscard]] double parse_percent(const std::string& option, const std::string& text);
 /// "10s", "500ms", "2min": seconds. @throws InvalidInput  likewise
 [[nodiscard]] double parse_duration(const std::string& option, const std::string& text);

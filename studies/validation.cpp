@@ -19,12 +19,20 @@
 namespace slipmode::studies {
 namespace {
 
+/// Where a comparison goes, and which share of it is computed.
+struct Target {
+  const std::filesystem::path& path;
+  const Division& division;
+};
+
 /// Names the models compared to the last bit.
-ResultFile file_of(const std::filesystem::path& path, const scene::Scene& scene,
-                   const std::vector<pod::NamedBasis>& bases) {
+ResultFile file_of(const Target& target, const scene::Scene& scene, const std::vector<pod::NamedBasis>& bases,
+                   const ValidationRequest& request, const Pieces& pieces) {
   std::string identity;
   for (const pod::NamedBasis& basis : bases) identity += fmt::format("{} {}\n", basis.name, identity_of(basis.basis));
-  return {path, scene, results::FileKind::kValidation, "slipmode validate", identity};
+  const std::string command =
+      fmt::format("slipmode validate{}{}", request.sweep ? "" : " --no-sweep", request.verdict ? " --verdict" : "");
+  return {target.path, scene, results::FileKind::kValidation, command, identity, target.division, pieces};
 }
 
 diagnostics::DrivenValidationOptions options_of(const scene::Scene& scene) {
@@ -83,17 +91,27 @@ diagnostics::ValidationOptions validation_options(const scene::Scene& scene,
 
 namespace {
 
+/// What a share of it keeps: its values alone.
+Validation share_of(const scene::Scene& scene, ResultFile& file) {
+  results::Content content = file.finish([](results::StoreWriter&) {});
+  return {.scene = scene, .values = file.progress(), .belt = {}, .shaken = {}, .content = std::move(content)};
+}
+
 Validation validate_belt(const scene::Scene& scene, const std::vector<pod::NamedBasis>& bases,
-                         const ValidationRequest& request, ResultFile file, const RunOptions& run) {
+                         const ValidationRequest& request, const Target& target, const RunOptions& run) {
   const dynamics::HybridSystem full = scene::build_system(scene);
   diagnostics::ValidationOptions options = validation_options(scene, bases);
   if (!request.sweep) options.sweep_values.clear();
   if (request.verdict) options.verdict = scene::verdict_options(scene);
+  const bool sweeps = !options.sweep_values.empty();
+  ResultFile file =
+      file_of(target, scene, bases, request, chains(sweeps ? options.sweep_segments : 0, "with validation.segments"));
   options.parallel = run.parallel("validate");
   if (file.journal() != nullptr) options.sink = results::journal_sink(*file.journal());
   const auto report = std::make_shared<const diagnostics::ValidationReport>(
       diagnostics::validate(full, bases, scene::initial_state(scene, full), options));
   if (report->interrupted) throw Interrupted();
+  if (!report->whole) return share_of(scene, file);
   const auto levels = level_portraits(full, bases.front(), *report, scene.validation.horizon);
   const auto orbits = orbit_portraits(full, bases.front(), *report);
   const auto write = [report, scene, levels, orbits](results::StoreWriter& writer) {
@@ -102,40 +120,50 @@ Validation validate_belt(const scene::Scene& scene, const std::vector<pod::Named
     results::store_portraits(writer, "portraits/levels", levels, units);
     results::store_portraits(writer, "portraits/orbits", orbits, units);
   };
-  return {.scene = scene, .belt = report, .shaken = {}, .content = file.finish(write)};
+  results::Content content = file.finish(write);
+  return {.scene = scene, .values = file.progress(), .belt = report, .shaken = {}, .content = std::move(content)};
 }
 
-Validation validate_shaken(const scene::Scene& scene, const std::vector<pod::NamedBasis>& bases, ResultFile file,
-                           const RunOptions& run) {
+Validation validate_shaken(const scene::Scene& scene, const std::vector<pod::NamedBasis>& bases,
+                           const ValidationRequest& request, const Target& target, const RunOptions& run) {
   const diagnostics::DrivenCase full = scene::shaken_case(scene);
   auto options = options_of(scene);
+  const std::size_t sweeps = driven_validation_sweeps(bases, options);
+  const bool follows = options.mode == SweepMode::kFollow;
+  ResultFile file = file_of(target, scene, bases, request,
+                            follows ? chains(sweeps * options.segments, "with more numbers of modes")
+                                    : Pieces{sweeps * options.values.size(), "values of all sweeps"});
   options.parallel = run.parallel("validate");
   if (file.journal() != nullptr) options.sink = results::driven_journal_sink(*file.journal());
   const auto report = std::make_shared<const diagnostics::DrivenValidationReport>(diagnostics::validate_driven(
       full, scene::drive_over_frequency(scene), bases, scene::initial_state(scene, full.system),
       scene::second_start(scene, full.system), options));
   if (report->interrupted) throw Interrupted();
+  if (!report->whole) return share_of(scene, file);
   const auto write = [report, scene](results::StoreWriter& writer) {
     results::store_driven_validation(writer, *report, scene);
   };
-  return {.scene = scene, .belt = {}, .shaken = report, .content = file.finish(write)};
+  results::Content content = file.finish(write);
+  return {.scene = scene, .values = file.progress(), .belt = {}, .shaken = report, .content = std::move(content)};
 }
 
 }  // namespace
 
 Validation validate(const scene::Scene& scene, const results::StoreReader& bases, const ValidationRequest& request,
-                    const std::filesystem::path& file, const RunOptions& run) {
+                    const std::filesystem::path& file, const RunOptions& run, const Division& division) {
   scene::Scene own = scene::with_own_times(scene);
   scene::refuse_force(own, "validate");
   const std::vector<pod::NamedBasis> found = load_bases(own, scene::build_system(own), bases);
   const bool is_reduced = results::kind_of(bases) == results::FileKind::kReduced;  // its own size is the one to judge
   if (is_shaken(own) && is_reduced) own.shaken.modes = {static_cast<int>(found.front().basis.modes())};
-  return validate(own, found, request, file, run);
+  return validate(own, found, request, file, run, division);
 }
 
 Validation validate(const scene::Scene& scene, const std::vector<pod::NamedBasis>& bases,
-                    const ValidationRequest& request, const std::filesystem::path& file, const RunOptions& run) {
-  if (!is_shaken(scene)) return validate_belt(scene, bases, request, file_of(file, scene, bases), run);
+                    const ValidationRequest& request, const std::filesystem::path& file, const RunOptions& run,
+                    const Division& division) {
+  const Target target{file, division};
+  if (!is_shaken(scene)) return validate_belt(scene, bases, request, target, run);
   if (request.verdict)
     throw InvalidInput(
         "verdict: expected a belt, found a shaker; there 'slipmode diagnose SCENE FILE --verdict', in Python "
@@ -143,7 +171,7 @@ Validation validate(const scene::Scene& scene, const std::vector<pod::NamedBasis
         "does it");
   scene::Scene own = scene;
   if (!request.sweep) own.shaken.frequencies.reset();
-  return validate_shaken(own, bases, file_of(file, own, bases), run);
+  return validate_shaken(own, bases, request, target, run);
 }
 
 }  // namespace slipmode::studies

@@ -7,6 +7,7 @@
 #include <slipmode/results/memory_store.hpp>
 #include <slipmode/results/store.hpp>
 #include <slipmode/scene/scene.hpp>
+#include <slipmode/studies/result_file.hpp>
 #include <slipmode/studies/run_options.hpp>
 
 #include <filesystem>
@@ -33,9 +34,11 @@ struct ValidationRequest {
   }
 };
 
-/// A comparison, of a belt's scene or a shaken one, and what is kept of it: tables, sweeps and portraits.
+/// A comparison, of a belt's scene or a shaken one, and what is kept of it: tables, sweeps and portraits. A share of
+/// it, as one of several processes computes, is values of its sweeps alone.
 struct Validation {
-  scene::Scene scene;  ///< with its times, as compared
+  scene::Scene scene;   ///< with its times, as compared
+  FileProgress values;  ///< of the sweeps
   std::shared_ptr<const diagnostics::ValidationReport> belt;
   std::shared_ptr<const diagnostics::DrivenValidationReport> shaken;
   results::Content content;
@@ -45,12 +48,14 @@ struct Validation {
 /// there are none, a shaker.
 /// @param bases  a result that load_bases takes
 /// @param file   written, and resumable; empty: none
+/// @param division  of the sweeps' values: a sweep that follows at its chains
 /// @throws InvalidInput  for a force, a basis of another size, a verdict under a shaker
 /// @throws Interrupted   when the stop flag was set; what was finished is kept beside the file
 Validation validate(const scene::Scene& scene, const results::StoreReader& bases, const ValidationRequest& request,
-                    const std::filesystem::path& file, const RunOptions& run);
+                    const std::filesystem::path& file, const RunOptions& run, const Division& division = {});
 /// The same of bases at hand, the one that the number of modes is chosen by first; the scene has its own times.
 Validation validate(const scene::Scene& scene, const std::vector<pod::NamedBasis>& bases,
-                    const ValidationRequest& request, const std::filesystem::path& file, const RunOptions& run);
+                    const ValidationRequest& request, const std::filesystem::path& file, const RunOptions& run,
+                    const Division& division = {});
 
 }  // namespace slipmode::studies

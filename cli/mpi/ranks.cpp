@@ -1,9 +1,11 @@
 // The ranks of MPI. cli/launched.cpp loads this file's library.
 
+#include <slipmode/core/errors.hpp>
 #include <slipmode/core/ranks.hpp>
 
 #include <mpi.h>
 
+#include <limits>
 #include <list>
 #include <memory>
 #include <mutex>
@@ -16,6 +18,9 @@ namespace {
 class Mailbox {
  public:
   void send(int to, std::string bytes) {
+    if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+      throw slipmode::InvalidInput(
+          "mpirun: a value of more than 2 GB cannot be sent; sample less often, or use --shard");
     const std::scoped_lock lock(mutex_);
     drop_sent();
     Sent& sent = sent_.emplace_back(Sent{.bytes = std::move(bytes)});

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <variant>
 
 namespace slipmode::diagnostics {
 
@@ -28,26 +30,42 @@ void check(const std::vector<double>& parameters, const std::vector<dynamics::St
     throw InvalidInput(fmt::format("ensemble: expected part 1 to {}, found {}", options.parts, options.part));
 }
 
-/// One member: fills `member` and returns its snapshots.
-Eigen::MatrixXd run_member(const Model& model, const dynamics::State& start, const EnsembleOptions& options,
-                           EnsembleMember& member) {
-  try {
-    const dynamics::HybridSystem system = model.system(member.parameter);
-    dynamics::Trajectory run = dynamics::simulate(system, dynamics::handed_on(system, start),
-                                                  {.duration = options.duration,
-                                                   .transient = options.transient,
-                                                   .sample = options.sample,
-                                                   .keep_events = false,
-                                                   .flow = options.flow});
-    member.columns = run.q.cols();
-    member.audit = run.audit;
-    member.statistics = std::move(run.statistics);
-    member.final_state = std::move(run.final_state);
-    return std::move(run.q);
-  } catch (const NumericalFailure& failure) {
-    member.failure = failure.what();
-    return {};
+MemberRun run_member(const Model& model, double parameter, const dynamics::State& start,
+                     const EnsembleOptions& options) {
+  const dynamics::HybridSystem system = model.system(parameter);
+  dynamics::Trajectory run = dynamics::simulate(system, dynamics::handed_on(system, start),
+                                                {.duration = options.duration,
+                                                 .transient = options.transient,
+                                                 .sample = options.sample,
+                                                 .keep_events = false,
+                                                 .flow = options.flow});
+  return {.snapshots = std::move(run.q), .audit = run.audit, .statistics = std::move(run.statistics)};
+}
+
+/// The members of a result, and their snapshots side by side.
+EnsembleRun joined(std::vector<SweptValue<MemberRun>> runs, std::size_t starts) {
+  EnsembleRun result;
+  Eigen::Index columns = 0, rows = 0;
+  for (const auto& run : runs) {
+    columns += run.settled.snapshots.cols();
+    rows = std::max(rows, run.settled.snapshots.rows());
   }
+  result.ensemble.snapshots.resize(columns > 0 ? rows : 0, columns);
+  Eigen::Index begin = 0;
+  for (auto& run : runs) {
+    Eigen::MatrixXd snapshots = std::move(run.settled.snapshots);
+    result.members.push_back({.parameter = run.parameter,
+                              .start = static_cast<Eigen::Index>(run.index % starts),
+                              .columns = snapshots.cols(),
+                              .audit = run.settled.audit,
+                              .statistics = std::move(run.settled.statistics),
+                              .failure = std::move(run.failure)});
+    if (snapshots.cols() == 0) continue;
+    result.ensemble.snapshots.middleCols(begin, snapshots.cols()) = snapshots;
+    result.ensemble.run_begin.push_back(begin);
+    begin += snapshots.cols();
+  }
+  return result;
 }
 
 }  // namespace
@@ -75,35 +93,22 @@ std::vector<dynamics::State> random_states(const dynamics::HybridSystem& system,
 EnsembleRun run_ensemble(const Model& model, const std::vector<double>& parameters,
                          const std::vector<dynamics::State>& starts, const EnsembleOptions& options) {
   check(parameters, starts, options);
-  EnsembleRun result;
-  for (const double parameter : parameters) {
-    for (std::size_t s = 0; s < starts.size(); ++s) {
-      result.members.push_back({.parameter = parameter, .start = static_cast<Eigen::Index>(s)});
-    }
-  }
-  const auto begin_of = [&](std::size_t part) {
-    return result.members.begin() + static_cast<std::ptrdiff_t>(result.members.size() * part / options.parts);
+  const std::size_t all = parameters.size() * starts.size();
+  const std::size_t first = all * (options.part - 1) / options.parts, end = all * options.part / options.parts;
+  std::vector<double> values;  // by member
+  for (std::size_t i = first; i < end; ++i) values.push_back(parameters[i / starts.size()]);
+  if (values.empty()) return {};
+  const auto run = [&](std::size_t i, int, std::monostate) {
+    return run_member(model, values[i], starts[(first + i) % starts.size()], options);
   };
-  result.members = std::vector<EnsembleMember>(begin_of(options.part - 1), begin_of(options.part));
-  std::vector<Eigen::MatrixXd> snapshots(result.members.size());
-  rethrow_first(parallel_for(snapshots.size(), options.parallel, [&](std::size_t i) {
-    EnsembleMember& member = result.members[i];
-    snapshots[i] = run_member(model, starts[static_cast<std::size_t>(member.start)], options, member);
-  }));
-
-  Eigen::Index columns = 0;
-  for (const EnsembleMember& member : result.members) columns += member.columns;
-  if (columns == 0 && options.parts == 1) fail_all(result.members.front().failure);
-  Eigen::MatrixXd& all = result.ensemble.snapshots;
-  Eigen::Index begin = 0;
-  for (Eigen::MatrixXd& part : snapshots) {
-    if (part.cols() == 0) continue;
-    if (all.size() == 0) all.resize(part.rows(), columns);
-    all.middleCols(begin, part.cols()) = part;
-    result.ensemble.run_begin.push_back(begin);
-    begin += part.cols();
-    part.resize(0, 0);
-  }
+  auto found = SweepRunner<MemberRun, std::monostate>({.settle = run, .carry = {}, .leader = options.model}, values, {},
+                                                      SweepMode::kIndependent, 1, options.parallel, options.sink)
+                   .run_alone();
+  if (found.interrupted) throw Interrupted();
+  for (auto& point : found.points) point.index += first;
+  EnsembleRun result = joined(std::move(found.points), starts.size());
+  const bool all_failed = result.members.size() == all && result.ensemble.snapshots.cols() == 0;
+  if (all_failed && options.sink.sharing.leads) fail_all(result.members.front().failure);
   return result;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <slipmode/core/parallel.hpp>
+#include <slipmode/core/sweep_runner.hpp>
 #include <slipmode/diagnostics/attractors/model.hpp>
 #include <slipmode/pod/ensemble.hpp>
 
@@ -22,6 +23,24 @@ struct RandomStateOptions {
 [[nodiscard]] std::vector<dynamics::State> random_states(const dynamics::HybridSystem& system,
                                                          const RandomStateOptions& options);
 
+/// What one run of an ensemble did.
+struct EnsembleMember {
+  double parameter = 0.0;
+  Eigen::Index start = 0;    ///< which of the initial states
+  Eigen::Index columns = 0;  ///< snapshots it gave; 0 if it failed
+  dynamics::EnergyAudit audit = {};
+  dynamics::FlowStatistics statistics = {};
+  std::string failure = {};  ///< empty, or why it failed
+};
+
+/// One run, as a sink keeps it: SweptValue::index is its place among the members, and says which start.
+struct MemberRun {
+  Eigen::MatrixXd snapshots;  ///< n x T
+  dynamics::EnergyAudit audit = {};
+  dynamics::FlowStatistics statistics = {};
+};
+using EnsembleSink = SinkOf<MemberRun>;
+
 struct EnsembleOptions {
   double duration = 20000.0;  ///< length of each run, transient included [s]
   double transient = 1000.0;  ///< dropped at the start of each run [s]
@@ -31,17 +50,8 @@ struct EnsembleOptions {
   /// Only this part of I/N of the members is run, those numbered M (I − 1)/N … M I/N − 1 of M, and may fail as a whole;
   /// I from 1 to N.
   std::size_t part = 1, parts = 1;
-};
-
-/// What one run of an ensemble did.
-struct EnsembleMember {
-  double parameter = 0.0;
-  Eigen::Index start = 0;    ///< which of the initial states
-  Eigen::Index columns = 0;  ///< snapshots it gave; 0 if it failed
-  dynamics::EnergyAudit audit = {};
-  dynamics::FlowStatistics statistics = {};
-  dynamics::State final_state = {};
-  std::string failure = {};  ///< empty, or why it failed
+  int model = 0;           ///< SweptValue::model of the members: tells apart ensembles that share a sink
+  EnsembleSink sink = {};  ///< of a study that is resumed, or shared with other processes; not of a part
 };
 
 struct EnsembleRun {
@@ -63,9 +73,10 @@ struct EnsembleRun {
 /// Runs every initial state at every parameter value and concatenates the snapshots.
 ///
 /// A member that fails (NumericalFailure) is recorded and gives no snapshots. Same bytes for any number of threads.
+/// Members that the sink leaves to other processes, and does not know afterwards, are not among the result's.
 /// @throws InvalidInput      for no starts or parameters, sample ≤ 0, transient outside [0, duration), part outside 1 …
 /// parts
-/// @throws NumericalFailure  if every member failed (the first one's), unless only a part was run
+/// @throws NumericalFailure  if every member failed (the first one's), unless some were left to others
 /// @throws Interrupted       if the stop flag was set
 [[nodiscard]] EnsembleRun run_ensemble(const Model& model, const std::vector<double>& parameters,
                                        const std::vector<dynamics::State>& starts, const EnsembleOptions& options);

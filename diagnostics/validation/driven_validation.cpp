@@ -81,9 +81,12 @@ class DrivenValidationRun {
  public:
   DrivenValidationRun(const DrivenCase& full, const DriveAt& drive, const std::vector<pod::NamedBasis>& candidates,
                       const dynamics::State& start, const DrivenValidationOptions& options)
-      : full_(full), drive_(drive), candidates_(candidates), start_(start), options_(options) {
-    for (const pod::NamedBasis& candidate : candidates) total_ += sizes(candidate, options.modes).size();
-  }
+      : full_(full),
+        drive_(drive),
+        candidates_(candidates),
+        start_(start),
+        options_(options),
+        total_(driven_validation_sweeps(candidates, options)) {}
 
   DrivenValidationReport run(const dynamics::State& other) {
     const detail::Times times = detail::timed([&] {
@@ -92,7 +95,7 @@ class DrivenValidationRun {
       for (const pod::NamedBasis& candidate : candidates_) try_candidate(candidate);
     });
     out_.sweeps_wall = times.wall;
-    if (out_.interrupted) return std::move(out_);
+    if (out_.interrupted || !out_.whole) return std::move(out_);
     compare();
     if (options_.cost_cycles > 0.0) measure();
     return std::move(out_);
@@ -108,15 +111,19 @@ class DrivenValidationRun {
         options_.parallel.progress(static_cast<std::size_t>(model_) * all + done, total_ * all);
       };
     }
+    DrivenSink sink = options_.sink;
+    sink.first_piece =
+        static_cast<std::size_t>(model_) * sweep_pieces(options_.values.size(), options_.mode, options_.segments);
     DrivenSweep found = driven_sweep(driven_model(model, drive_), options_.values, start,
                                      {.mode = options_.mode,
                                       .segments = options_.segments,
                                       .model = model_,
                                       .driven = options_.driven,
                                       .parallel = std::move(parallel),
-                                      .sink = options_.sink});
+                                      .sink = std::move(sink)});
     ++model_;
     out_.interrupted = found.interrupted;
+    out_.whole &= options_.sink.sharing.leads && found.points.size() == options_.values.size();
     return std::move(found.points);
   }
 
@@ -188,12 +195,19 @@ class DrivenValidationRun {
   const std::vector<pod::NamedBasis>& candidates_;
   const dynamics::State& start_;
   const DrivenValidationOptions& options_;
-  std::size_t total_ = 2;  ///< sweeps in all
+  std::size_t total_;  ///< sweeps in all
   int model_ = 0;
   DrivenValidationReport out_;
 };
 
 }  // namespace
+
+std::size_t driven_validation_sweeps(const std::vector<pod::NamedBasis>& candidates,
+                                     const DrivenValidationOptions& options) {
+  std::size_t count = 2;
+  for (const pod::NamedBasis& candidate : candidates) count += sizes(candidate, options.modes).size();
+  return count;
+}
 
 bool trusted_at(double distance, double noise) {
   const double allowed = std::isfinite(noise) ? std::max(kTrustedDistance, kTrustedNoise * noise) : kTrustedDistance;

@@ -57,7 +57,12 @@ struct DrivenValidationReport {
   std::vector<DrivenCandidateReport> candidates = {};
   double sweeps_wall = 0.0;  ///< of all sweeps; values recalled from an earlier run take no time [s of clock]
   bool interrupted = false;  ///< then later parts are missing
+  bool whole = true;         ///< false: values are left to other processes, and all that is made of them
 };
+
+/// How many sweeps a validation makes of these: full, full again, and each reduced model.
+[[nodiscard]] std::size_t driven_validation_sweeps(const std::vector<pod::NamedBasis>& candidates,
+                                                   const DrivenValidationOptions& options);
 
 /// Whether a reduced model is trusted at a value: its distance to the full model is at most a tenth of the reading's
 /// root mean square, or twice that between two full runs, whichever is larger.

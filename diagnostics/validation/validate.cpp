@@ -57,9 +57,11 @@ class Validation {
 
   ValidationReport run() {
     try {
+      // First what other processes may share, so that none waits for what one does alone.
+      run_sweep();
+      if (!report_.whole) return std::move(report_);
       run_full();
       run_reduced();
-      run_sweep();
       run_verdict();
       run_cost();
     } catch (const Interrupted&) {
@@ -104,6 +106,31 @@ class Validation {
 
   [[nodiscard]] dynamics::State projected(const pod::Basis& basis, const dynamics::State& state) const {
     return rom::restrict_state(full_.structure(), basis, state);
+  }
+
+  // The chosen model along the belt speeds.
+
+  [[nodiscard]] pod::Basis chosen_basis() const { return candidates_.front().basis.truncated(report_.chosen); }
+
+  void run_sweep() {
+    report_.whole = options_.sink.sharing.leads;
+    if (options_.sweep_values.empty()) return;
+    const pod::Basis basis = chosen_basis();
+    const auto begin = std::chrono::steady_clock::now();
+    report_.sweep =
+        paired_sweep(full_model_, reduced_belt_model(full_, basis), options_.sweep_values, projected(basis, start_),
+                     {.mode = options_.sweep_mode,
+                      .segments = options_.sweep_segments,
+                      .settle = options_.sweep_settle,
+                      .parallel = batch(),
+                      .sink = options_.sink});
+    report_.sweep_wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    done_ += 2 * options_.sweep_values.size();
+    if (report_.sweep->interrupted) throw Interrupted();
+    report_.whole = report_.whole && report_.sweep->full.size() == options_.sweep_values.size() &&
+                    report_.sweep->reduced.size() == options_.sweep_values.size();
+    if (!report_.whole) return;
+    report_.bifurcation = compare_sweeps(report_.sweep->full, report_.sweep->reduced);
   }
 
   // The full model alone: its attractor, itself again from elsewhere, its orbits.
@@ -270,26 +297,7 @@ class Validation {
     return row;
   }
 
-  // The chosen model along the belt speeds, and its cost.
-
-  [[nodiscard]] pod::Basis chosen_basis() const { return candidates_.front().basis.truncated(report_.chosen); }
-
-  void run_sweep() {
-    if (options_.sweep_values.empty()) return;
-    const pod::Basis basis = chosen_basis();
-    const auto begin = std::chrono::steady_clock::now();
-    report_.sweep =
-        paired_sweep(full_model_, reduced_belt_model(full_, basis), options_.sweep_values, projected(basis, start_),
-                     {.mode = options_.sweep_mode,
-                      .segments = options_.sweep_segments,
-                      .settle = options_.sweep_settle,
-                      .parallel = batch(),
-                      .sink = options_.sink});
-    report_.sweep_wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    done_ += 2 * options_.sweep_values.size();
-    if (report_.sweep->interrupted) throw Interrupted();
-    report_.bifurcation = compare_sweeps(report_.sweep->full, report_.sweep->reduced);
-  }
+  // The chosen model's dimensions beside the full one's, and its cost.
 
   void run_verdict() {
     if (!options_.verdict) return;

@@ -95,6 +95,7 @@ struct ValidationReport {
   std::optional<VerdictTable> verdict = {};
   std::optional<Cost> cost = {};  ///< first candidate at `chosen` modes
   bool interrupted = false;       ///< then later parts are missing
+  bool whole = true;              ///< false: values of the sweep are left to other processes, and all else with them
 };
 
 /// Full against reduced for every candidate basis, in parallel where parts are independent; timing runs alone, last.

@@ -60,10 +60,11 @@ class Line {
     for (double& value : values) one(value);
   }
   void one(Eigen::MatrixXd& values) {
-    Eigen::Index rows = values.rows();
-    Eigen::VectorXd all = values.reshaped();
-    (*this)(rows, all);
-    values = all.reshaped(rows, rows > 0 ? all.size() / rows : 0);
+    Eigen::Index rows = values.rows(), columns = values.cols();
+    (*this)(rows, columns);
+    values.resize(rows, columns);
+    if (!reads()) written_.reserve(written_.size() + static_cast<std::size_t>(values.size()));
+    for (double& value : values.reshaped()) one(value);
   }
   template <class T>
   void one(std::vector<T>& values) {

@@ -119,7 +119,8 @@ TEST_F(Ranks, RefuseOnceWhatTheyCannotDo) {
     EXPECT_EQ(outcome.err.find("slipmode: ", first + 1), std::string::npos) << outcome.err;
     EXPECT_EQ(folder.names(), std::vector<std::string>({"two.toml"}));
   };
-  refused({"simulate", "two.toml", "-o", "r.h5"}, HasSubstr("simulate: is computed by one process; start it without"));
+  refused({"run", "two.toml", "-o", "r.h5"}, HasSubstr("run: is computed by one process; start it without"));
+  refused({"simulate", "two.toml", "-o", "r.h5"}, HasSubstr("mpirun: runs of an ensemble are divided"));
   refused({"trade", "two.toml"}, HasSubstr("mpirun: expected a name for the result; give one with -o"));
   refused({"diagnose", "two.toml", "-o", "r.h5"},
           HasSubstr("mpirun: values of a key are divided; give one with --over"));

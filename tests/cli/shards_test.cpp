@@ -94,6 +94,15 @@ TEST_P(Shards, OfRanksGiveTheBytesOfOneProcess) {
 INSTANTIATE_TEST_SUITE_P(
     Studies, Shards,
     testing::Values(
+        Divided{"Ensemble",
+                {"simulate", "free.toml", "--set", "ensemble.speeds=[0.3, 0.2, 0.1]", "--set", "time.duration=150"},
+                {3, 7}},
+        Divided{
+            "EnsembleAtFrequencies",
+            Words{"simulate", kSharedBeam, "--set", "ensemble.frequencies=[10.0, 14.0]", "--set", "ensemble.members=4",
+                  "--set", "ensemble.spread=1e-4", "--set", "time.cycles=30", "--set", "time.transient_cycles=20"} +
+                kFewCycles,
+            {3, 7}},
         Divided{"Sweep",
                 {"sweep", "two.toml", "--over", "drive.speed=0.3:0.1:0.02", "--set", "contact.0.mu_s=0.45"},
                 {3, 7}},
@@ -175,6 +184,67 @@ TEST_F(DividedTrade, AmongRanksGivesTheErrorsOfOneProcess) {
   }
 }
 
+// What a comparison sweeps is divided; its other numbers are found where the result is made.
+class DividedValidation : public Shards {
+ protected:
+  struct Study {
+    Words words;
+    std::vector<Words> first;
+    const char* tables[3];
+  };
+  const std::vector<Study> studies = {
+      {{"validate", "free.toml", "pod.h5", "--set", "validation.segments=3"},
+       {{"simulate", "free.toml", "-o", "ensemble.h5"}, {"pod", "ensemble.h5", "-o", "pod.h5"}},
+       {"sweep/full/values", "sweep/reduced/values", "validation/orbits"}},
+      {Words{"validate", kSharedBeam, "beam.h5", "--set", "validation.frequencies={from=10.0, to=14.0, step=2.0}",
+             "--set", "validation.modes=[1, 2]", "--set", "validation.bases=[\"lnm\"]"} +
+           kFewCycles,
+       {Words{"simulate", kSharedBeam, "-o", "motion.h5", "--single", "--set", "time.cycles=30", "--set",
+              "time.transient_cycles=20"} +
+            kFewCycles,
+        Words{"pod", "motion.h5", "-o", "beam.h5"}},
+       {"shaken_validation/agreement", "shaken_validation/full/values", "shaken_validation/again/values"}}};
+
+  void same(const char* file, const Study& study) const {
+    const slipmode::results::StoreReader expected(folder.path() / "one.h5"), found(folder.path() / file);
+    for (const char* name : study.tables) {
+      SCOPED_TRACE(name);
+      const auto whole = load_table(expected, name), joined = load_table(found, name);
+      ASSERT_EQ(joined.columns.size(), whole.columns.size());
+      for (const auto& column : whole.columns) {
+        if (column.name == "wall" || column.name == "cpu" || column.name == "setup") continue;
+        const auto* numbers = std::get_if<std::vector<double>>(&column.values);
+        if (numbers == nullptr) continue;
+        EXPECT_THAT(joined.numbers(column.name), testing::Pointwise(testing::NanSensitiveDoubleEq(), *numbers))
+            << column.name;
+      }
+    }
+  }
+};
+
+TEST_F(DividedValidation, AmongShardsGivesTheNumbersOfOneProcess) {
+  for (const Study& study : studies) {
+    SCOPED_TRACE(study.words[1]);
+    for (const Words& before : study.first) run(before);
+    run(study.words + Words{"-o", "one.h5", "--quiet"});
+    run(Words{"merge"} + parts(study.words, 3) + Words{"-o", "merged.h5", "--quiet"});
+    same("merged.h5", study);
+    for (const char* part : {"1of3.part", "2of3.part", "3of3.part"}) fs::remove(folder.path() / part);
+  }
+}
+
+TEST_F(DividedValidation, AmongRanksGivesTheNumbersOfOneProcess) {
+  SLIPMODE_NEEDS_MPIRUN();
+  for (const Study& study : studies) {
+    SCOPED_TRACE(study.words[1]);
+    for (const Words& before : study.first) run(before);
+    run(study.words + Words{"-o", "one.h5", "--quiet"});
+    const Outcome outcome = mpirun(2, study.words + Words{"-o", "ranks.h5"}, folder.path()).wait();
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    same("ranks.h5", study);
+  }
+}
+
 /// Parts 1 to 3 of a sweep of 11 values, and what is to be refused beside them.
 class BadParts : public Shards {
  protected:
@@ -208,7 +278,8 @@ TEST_F(BadParts, ShardsThatCannotBeAreRefusedBeforeAnythingIsWritten) {
   refused(sweep + Words{"--shard", "1/3"}, HasSubstr("--output is required"));
   refused({"trade", "two.toml", "--shard", "1/3"}, HasSubstr("give one with -o"));
   refused({"diagnose", "two.toml", "--shard", "1/3", "-o", "b.part"}, HasSubstr("give one with --over"));
-  refused({"validate", "two.toml", "pod.h5", "--shard", "1/3", "-o", "b.part"}, HasSubstr("--shard"));
+  refused({"simulate", "two.toml", "--shard", "1/3", "-o", "b.part"}, HasSubstr("one trajectory is one piece"));
+  refused({"run", "two.toml", "--shard", "1/3", "-o", "b.part"}, HasSubstr("--shard"));
   refused(sweep + Words{"--shard", "1/3", "-o", "two.toml"}, HasSubstr("two.toml: is neither a journal nor a part"));
   const std::string first = bytes("1of3.part");
   refused(sweep + Words{"--shard", "2/3", "-o", "1of3.part"},

@@ -41,6 +41,11 @@ struct Outcome {
   [[nodiscard]] nlohmann::json json() const { return nlohmann::json::parse(out); }
 };
 
+/// The executable of the build that this test program is of.
+inline std::string executable() {
+  return std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path() / "cli" / "slipmode";
+}
+
 /// The executable itself, started without a shell in a given folder; its output goes to files outside that folder.
 class SlipmodeProcess {
  public:
@@ -48,7 +53,7 @@ class SlipmodeProcess {
   SlipmodeProcess(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
                   std::vector<std::string> launcher = {}) {
     std::vector<std::string> words = std::move(launcher);
-    words.emplace_back(SLIPMODE_EXECUTABLE);
+    words.push_back(executable());
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());

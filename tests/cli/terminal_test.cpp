@@ -19,7 +19,7 @@ using namespace slipmode::tests;
 /// All that the executable shows on a terminal of so many columns.
 std::string shown_on_terminal(const TemporaryFolder& folder, std::vector<std::string> arguments,
                               unsigned short columns) {
-  arguments.insert(arguments.begin(), SLIPMODE_EXECUTABLE);
+  arguments.insert(arguments.begin(), executable());
   std::vector<char*> argv;
   for (std::string& word : arguments) argv.push_back(word.data());
   argv.push_back(nullptr);

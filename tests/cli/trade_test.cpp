@@ -142,6 +142,7 @@ TEST_F(TradeVerbs, AdviceRefusesWhatItCannotAnswer) {
   refused({"advise", "free.toml", "--question", "motion", "--measure", "energy"},
           "--measure energy: answers the question statistics, not motion");
   refused({"advise", "free.toml", "--error", "0"}, "--error 0: expected a share in percent");
+  refused({"advise", "free.toml", "--error", "0.02"}, "--error 0.02: write 0.02% or 2%, whichever is meant");
 }
 
 TEST_F(TradeVerbs, WithoutAFileGoOnWhereTheyWereStopped) {
