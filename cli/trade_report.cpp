@@ -45,6 +45,14 @@ std::string runs_text(double runs) {
   return runs == 0.0 ? "" : fmt::format("{:.0f}", std::ceil(runs));
 }
 
+std::string elsewhere_text(const Study& study) {
+  if (study.elsewhere == 0) return "";
+  return fmt::format(
+      "{} of {} runs from other starts end on another motion than the scene's own start does; the scatter is "
+      "that of the latter.\n",
+      study.elsewhere, study.schedule.runs - 1);
+}
+
 }  // namespace
 
 Json to_json(const Study& study, const scene::Scene& scene) {
@@ -58,7 +66,7 @@ Json to_json(const Study& study, const scene::Scene& scene) {
     fronts[std::string(trade::to_string(measure))] = names;
   }
   return merged({{"reference", row_json(study, study.reference, scene.time.duration)}}, fields_json(study.schedule),
-                Json{{"candidates", rows}, {"fronts", fronts}});
+                Json{{"elsewhere", study.elsewhere}, {"candidates", rows}, {"fronts", fronts}});
 }
 
 std::string study_text(const Study& study, const scene::Scene& scene) {
@@ -84,10 +92,12 @@ std::string study_text(const Study& study, const scene::Scene& scene) {
     table.add(std::move(cells));
   }
   return fmt::format(
-      "{}\nErrors against the {}; one axis varied at a time, reduced models in every basis and size.\n"
-      "dX, dE up to {:g} from {} shared starts; the others over {:g}; times are processor time of {:g}.\n{}{}",
-      scene.name(), study.reference.variant.name, study.schedule.horizon, study.schedule.starts * study.schedule.runs,
-      study.schedule.duration, study.schedule.timed, table.str(), failures_text(study));
+             "{}\nErrors against the {}; one axis varied at a time, reduced models in every basis and size.\n"
+             "dX, dE up to {:g} from {} shared starts; the others over {:g}; times are processor time of {:g}.\n{}{}",
+             scene.name(), study.reference.variant.name, study.schedule.horizon,
+             study.schedule.starts * study.schedule.runs, study.schedule.duration, study.schedule.timed, table.str(),
+             failures_text(study)) +
+         elsewhere_text(study);
 }
 
 Json to_json(const trade::OrbitStudy& study) {

@@ -115,6 +115,8 @@ void store_study(StoreWriter& writer, const trade::Study& study, const scene::Sc
   save(writer, group + "/candidates", candidate_table(study, scene));
   writer.write(group + "/reference", study.reference.variant.name, {"", "what errors are measured against"});
   save_fields(writer, group, study.schedule);
+  writer.write(group + "/elsewhere", static_cast<double>(study.elsewhere),
+               {"", "runs of the reference that end on another motion than the scene's own start does"});
 }
 
 void store_orbits(StoreWriter& writer, const trade::OrbitStudy& study) {

@@ -92,8 +92,8 @@ class Work {
       return;
     }
     run_motions(first);
+    tell_kinds();
     share_starts(ground_);
-    out_.reference.noise = motion_scatter(ground_.motions);
     if (options_.resolve) run_motions(runs_to_resolve(out_.reference.noise, *options_.resolve));
     for (const Motion& motion : ground_.motions) ground_.begins.push_back(motion.end);
   }
@@ -107,6 +107,31 @@ class Work {
       const std::size_t i = known + k;
       motions[i] = run_motion(*model_, starts_[i], schedule_.first_transient, schedule_, stop());
     }));
+  }
+
+  /// The scatter is that of the motion which the scene's own start ends on. Of runs that end elsewhere, told by ten
+  /// times the distance of two stretches of that motion, a configuration that is measured run by run keeps its own.
+  void tell_kinds() {
+    constexpr double kElsewhere = 10.0, kSame = 1.0;  // stretches; percent
+    std::vector<Motion>& motions = ground_.motions;
+    const auto apart = [own = motions.front()](const Motion& other) {
+      return at(motion_distance(own, other), Measure::kSpread);
+    };
+    std::vector<double> distances;
+    for (const Motion& motion : motions) distances.push_back(apart(motion));
+    if (std::ranges::none_of(distances, [](double distance) { return distance > kSame; })) {
+      out_.reference.noise = motion_scatter(motions);
+      return;
+    }
+    const Motion next = run_motion(*model_, motions.front().end, 0.0, schedule_, stop());
+    const double limit = std::max(kSame, kElsewhere * apart(next));
+    std::vector<Motion> alike;
+    for (std::size_t k = 0; k < motions.size(); ++k)
+      if (!(distances[k] > limit)) alike.push_back(motions[k]);
+    out_.elsewhere = motions.size() - alike.size();
+    if (alike.size() < 2) alike.push_back(next);
+    out_.reference.noise = motion_scatter(alike);
+    if (!options_.resolve) motions = std::move(alike);
   }
 
   /// Shared starts along the first motions.

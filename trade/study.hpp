@@ -67,6 +67,9 @@ struct Study {
   Row reference;          ///< its errors are zero, its noise is that between its own runs
   std::vector<Row> rows;  ///< in the order given, then those of `more`
   Schedule schedule;
+  /// Of the reference's schedule.runs, from starts about the scene's: those that end on another motion than the scene's
+  /// own start does. Scatter is of the latter.
+  std::size_t elsewhere = 0;
 
   [[nodiscard]] std::vector<Offer> offers(Measure measure) const;
 };

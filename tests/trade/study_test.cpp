@@ -5,6 +5,7 @@
 #include <slipmode/dynamics/simulate.hpp>
 #include <slipmode/fem/modes.hpp>
 #include <slipmode/rom/reduce.hpp>
+#include <slipmode/scene/own_times.hpp>
 #include <slipmode/trade/case.hpp>
 #include <slipmode/trade/effects.hpp>
 #include <slipmode/trade/study.hpp>
@@ -187,6 +188,46 @@ TEST(Study, AllModesAreTheFullModelAndFewerAreFurtherAway) {
   EXPECT_LT(ratio, 30.0);
   EXPECT_TRUE(std::isnan(at(row_of(done, "tanh, eps 0.02").error, Measure::kStick))) << "it has no stick to compare";
   for (const Row& row : done.rows) EXPECT_GT(row.cost.cpu, 0.0) << row.variant.name;
+}
+
+// One mass on a belt beyond its Hopf point, V = ln(98)/12 = 0.382, and before the fold of its stick-slip motion, V
+// = 1.502: sliding and stick-slip are both stable, and a start between them goes to one or the other.
+TEST(Study, ScatterIsThatOfTheScenesOwnMotionWhereOthersAreStableBesideIt) {
+  scene::Scene scene = scene::parse_scene(R"(
+units = "SI"
+[structure]
+kind = "chain"
+masses = 1
+mass = 2.5
+stiffness = 1600.0
+damping = 3.75e-4
+ends = "fixed-free"
+[[contact]]
+at = 1
+law = "stribeck"
+mu_s = 0.5
+mu_k = 0.3
+alpha = 12.0
+normal_load = 24.5
+[drive]
+kind = "belt"
+speed = 1.3
+[initial]
+displacement = [0.06]
+velocity = [0.0]
+[ensemble]
+spread = 0.01
+)");
+  const StudyOptions options{.schedule = schedule_of(scene::with_own_times(scene))};
+  const auto of = [&](double displacement) {
+    scene.initial.displacement = {displacement};
+    return study(scene, reference_of(scene), {as_it_stands(scene)}, {}, options);
+  };
+  const Study mixed = of(0.06);
+  EXPECT_EQ(mixed.elsewhere, 1U);
+  EXPECT_LT(at(mixed.reference.noise, Measure::kEnergy), 1e-3) << "of stick-slip alone, which is periodic";
+  const Study alone = of(0.2);
+  EXPECT_EQ(alone.elsewhere, 0U);
 }
 
 TEST(Study, IsTheSameForAnyNumberOfThreadsAndGoesOnWhereItStopped) {
