@@ -111,10 +111,11 @@ void CollocationFlow::search_own_guards(int c, Guarded& first) const {
     const GuardValue now = evaluate(guard, c, 0.0, x_begin_);
     const bool by_start = untold && guard.force != 0.0;
     if ((by_start ? now.value : start) > kStarting * now.size && (by_start || form.minCoeff() > 0.0)) continue;
-    if (std::max(std::abs(start), form.cwiseAbs().maxCoeff()) <= kTouching * now.size)
-      continue;  // at rest on its limit
+    // At rest on its limit; also where rounding of forces in balance alone moves it, as beside a contact that sticks.
+    const double h = tables_.step(step_level_), most = std::max(std::abs(start), form.cwiseAbs().maxCoeff());
+    const double pushed = (std::abs(guard.y) * h + std::abs(guard.v)) * h * balanced(c);
+    if (most <= kTouching * std::max(now.size, pushed)) continue;
     const int order = start_order(guard, c, now);
-    const double h = tables_.step(step_level_);
     const bool known = order == 2 && now.second != 0.0 && touched_ != c;
     const bool rises = order == 1 ? now.rate > 0.0 : known && now.second > 0.0;
     if (rises && (std::abs(now.rate) + std::abs(now.second) * h) * h <= kStarting * now.size)

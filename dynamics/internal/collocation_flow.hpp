@@ -153,6 +153,8 @@ class CollocationFlow {
   /// Largest |V⁽⁹⁾| h⁹ of the drive.
   [[nodiscard]] double drive_ninth(double h) const;
   [[nodiscard]] bool unmoved(int c) const;
+  /// Size of the accelerations that add up to the contact's own where the step begins.
+  [[nodiscard]] double balanced(int c) const;
   /// Largest |V − v| at the nodes.
   [[nodiscard]] double fastest_at_nodes(int c) const;
   [[nodiscard]] double velocity_scale(int c, const Eigen::VectorXd& x) const;

@@ -86,10 +86,13 @@ CollocationFlow::Guarded CollocationFlow::first_guard() {
 bool CollocationFlow::unmoved(int c) const {
   // So soon after its start that sliding has no speed beyond rounding, and its sign means nothing. Where all is at
   // rest, that is of what forces in balance would make of it in the step.
-  const double forces = model_.acceleration_row.col(c).cwiseAbs().dot(x_begin_.cwiseAbs()) +
-                        model_.mobility.row(c).cwiseAbs().dot(point_.force.cwiseAbs());
   const double share = bristled(c) ? kUnmoved : kFormRounds;
-  return fastest_at_nodes(c) <= share * (velocity_scale(c, x_begin_) + forces * tables_.step(step_level_));
+  return fastest_at_nodes(c) <= share * (velocity_scale(c, x_begin_) + balanced(c) * tables_.step(step_level_));
+}
+
+double CollocationFlow::balanced(int c) const {
+  return model_.acceleration_row.col(c).cwiseAbs().dot(x_begin_.cwiseAbs()) +
+         model_.mobility.row(c).cwiseAbs().dot(point_.force.cwiseAbs());
 }
 
 double CollocationFlow::fastest_at_nodes(int c) const {

@@ -245,6 +245,25 @@ TEST(ElaborateContacts, AStopThatIsNotReachedCostsNoSteps) {
   EXPECT_EQ(steps[0], steps[1]);
 }
 
+TEST(ElaborateContacts, AStopWithoutAGapMeetsNothingWhileFrictionHoldsTheMassThere) {
+  // The mass is moved by rounding alone, to and fro through the gap's end, until the force a sin(t + phase) has grown
+  // to the static limit.
+  const double a = 1.6, limit = 0.9, phase = 0.3, let_go = std::asin(limit / a) - phase;
+  const fem::Structure structure(Eigen::MatrixXd::Identity(1, 1), Eigen::MatrixXd::Constant(1, 1, 0.04),
+                                 Eigen::MatrixXd::Zero(1, 1));
+  const friction::Stop stop{.stiffness = 3.3, .damping = 0.09};
+  for (const ContactLoss loss : {ContactLoss::kGap, ContactLoss::kZeroForce}) {
+    const Clearance left{.left = stop, .right = std::nullopt, .loss = loss};
+    const HybridSystem system(structure, {{unit(1, 0), friction::Stribeck{0.3, 0.1, 13.0}, 3.0}, {unit(1, 0), left}},
+                              friction::Force{1.0, {{.amplitude = a, .phase = phase}}}, {}, unit(1, 0));
+    for (const double tolerance : {1e-7, 1e-9, 1e-10, 1e-11, 1e-12}) {
+      const Trajectory run =
+          simulate(system, system.rest(), {.duration = let_go - 1e-9, .flow = {.tolerance = tolerance}});
+      EXPECT_EQ(run.events.size(), 0U) << tolerance;
+    }
+  }
+}
+
 TEST(ElaborateContacts, EnergyBalancesAtTheDefaultTolerance) {
   for (std::uint64_t seed = 200; seed < 300; ++seed) {
     const RandomScene scene = mixed(seed, seed % 2 == 0);
