@@ -92,12 +92,10 @@ std::string study_text(const Study& study, const scene::Scene& scene) {
     table.add(std::move(cells));
   }
   return fmt::format(
-             "{}\nErrors against the {}; one axis varied at a time, reduced models in every basis and size.\n"
-             "dX, dE up to {:g} from {} shared starts; the others over {:g}; times are processor time of {:g}.\n{}{}",
-             scene.name(), study.reference.variant.name, study.schedule.horizon,
-             study.schedule.starts * study.schedule.runs, study.schedule.duration, study.schedule.timed, table.str(),
-             failures_text(study)) +
-         elsewhere_text(study);
+      "{}\nErrors against the {}; one axis varied at a time, reduced models in every basis and size.\n"
+      "dX, dE up to {:g} from {} shared starts; the others over {:g}; times are processor time of {:g}.\n{}{}{}",
+      scene.name(), study.reference.variant.name, study.schedule.horizon, study.shared_starts, study.schedule.duration,
+      study.schedule.timed, table.str(), failures_text(study), elsewhere_text(study));
 }
 
 Json to_json(const trade::OrbitStudy& study) {

@@ -60,6 +60,7 @@ class Work {
 
   Study run(const std::vector<Variant>& variants) {
     run_reference();
+    out_.shared_starts = ground_.shared.size();
     if (!measure(variants, options_.leave)) return std::move(out_);
     while (options_.more && measure_new(options_.more(out_.rows))) continue;
     if (options_.sharing.leads) take_times();
@@ -114,8 +115,8 @@ class Work {
   void tell_kinds() {
     constexpr double kElsewhere = 10.0, kSame = 1.0;  // stretches; percent
     std::vector<Motion>& motions = ground_.motions;
-    const auto apart = [own = motions.front()](const Motion& other) {
-      return at(motion_distance(own, other), Measure::kSpread);
+    const auto apart = [&motions](const Motion& other) {
+      return at(motion_distance(motions.front(), other), Measure::kSpread);
     };
     std::vector<double> distances;
     for (const Motion& motion : motions) distances.push_back(apart(motion));

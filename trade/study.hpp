@@ -70,6 +70,7 @@ struct Study {
   /// Of the reference's schedule.runs, from starts about the scene's: those that end on another motion than the scene's
   /// own start does. Scatter is of the latter.
   std::size_t elsewhere = 0;
+  std::size_t shared_starts = 0;  ///< that dX and dE are of
 
   [[nodiscard]] std::vector<Offer> offers(Measure measure) const;
 };

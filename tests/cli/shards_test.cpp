@@ -278,6 +278,10 @@ TEST_F(BadParts, ShardsThatCannotBeAreRefusedBeforeAnythingIsWritten) {
   refused(sweep + Words{"--shard", "1/3"}, HasSubstr("--output is required"));
   refused({"trade", "two.toml", "--shard", "1/3"}, HasSubstr("give one with -o"));
   refused({"diagnose", "two.toml", "--shard", "1/3", "-o", "b.part"}, HasSubstr("give one with --over"));
+  run({"simulate", "free.toml", "-o", "ensemble.h5", "--quiet"});
+  run({"pod", "ensemble.h5", "-o", "pod.h5", "--quiet"});
+  refused({"validate", "free.toml", "pod.h5", "--shard", "1/3", "-o", "b.part"},
+          AllOf(HasSubstr("--shard 1/3: expected at most 1 shards"), HasSubstr("more with validation.segments")));
   refused({"simulate", "two.toml", "--shard", "1/3", "-o", "b.part"}, HasSubstr("one trajectory is one piece"));
   refused({"run", "two.toml", "--shard", "1/3", "-o", "b.part"}, HasSubstr("--shard"));
   refused(sweep + Words{"--shard", "1/3", "-o", "two.toml"}, HasSubstr("two.toml: is neither a journal nor a part"));

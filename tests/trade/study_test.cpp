@@ -225,6 +225,7 @@ spread = 0.01
   };
   const Study mixed = of(0.06);
   EXPECT_EQ(mixed.elsewhere, 1U);
+  EXPECT_EQ(mixed.shared_starts, 3U * static_cast<std::size_t>(options.schedule.starts)) << "along the other three";
   EXPECT_LT(at(mixed.reference.noise, Measure::kEnergy), 1e-3) << "of stick-slip alone, which is periodic";
   const Study alone = of(0.2);
   EXPECT_EQ(alone.elsewhere, 0U);
