@@ -118,8 +118,8 @@ class Work {
     const auto apart = [&motions](const Motion& other) {
       return at(motion_distance(motions.front(), other), Measure::kSpread);
     };
-    std::vector<double> distances;
-    for (const Motion& motion : motions) distances.push_back(apart(motion));
+    std::vector<double> distances(motions.size());
+    std::ranges::transform(motions, distances.begin(), apart);
     if (std::ranges::none_of(distances, [](double distance) { return distance > kSame; })) {
       out_.reference.noise = motion_scatter(motions);
       return;
@@ -148,7 +148,8 @@ class Work {
   /// What has decided nothing: the reference's motions go on, and a lean scene finds its own from the scene's starts.
   void run_on() {
     if (options_.dies_out) {
-      fresh_.shared.assign(starts_.begin() + schedule_.runs, starts_.begin() + 2 * schedule_.runs);
+      const auto after = starts_.begin() + schedule_.runs;
+      fresh_.shared.assign(after, after + schedule_.runs);
       return;
     }
     fresh_.motions.resize(ground_.motions.size());

@@ -16,6 +16,8 @@ constexpr double kTouching = 1e-12;
 constexpr double kStarting = 1e-9;
 /// … its slope is known to rise above this share of its scale times the fastest rate, and may be zero below that one.
 constexpr double kRising = 1e-13, kSimpleStart = 1e-9;
+/// A root is located to this phase of the fastest pair.
+constexpr double kClock = 1e-15;
 constexpr int kNewtonSteps = 20;
 /// Newton steps of less than this phase of the fastest pair go on from where the last one led.
 constexpr double kClose = 0.25;
@@ -171,7 +173,7 @@ void ClosedFormFlow::look_again() {
 void ClosedFormFlow::foresee_starts() {
   // A guard that starts at zero. Taylor's theorem says for how long it is sure to stay positive: g ≥ g′t − M₂t²/2 (or
   // g″t²/2 − M₃t³/6 when g′ vanishes); half of that time is used. It is not looked at either as long as it cannot be
-  // told from zero: rounding alone would decide.
+  // told from zero: rounding alone would decide, of its terms or, where these are nothing either, of when it vanished.
   const Regime& r = tables_->regime();
   const double tiny = 1e-9 / r.rate;
   double shortest = std::numeric_limits<double>::infinity();
@@ -180,8 +182,12 @@ void ClosedFormFlow::foresee_starts() {
     const ContactForces& law = resolver_.laws()[i];
     const bool rigid_speed =
         r.outputs[k].kind == RegimeOutput::Kind::kSpeed && law.kind == LawKind::kConstant && !law.varies;
-    if (rigid_speed ? point_.multiplicity[i] == 0 : evaluate(guard, point_.time).value > kStarting * scale(guard))
+    if (rigid_speed) {
+      if (point_.multiplicity[i] == 0) continue;
+    } else if (const GuardValue now = evaluate(guard, point_.time);
+               now.value > std::max(kStarting * scale(guard), kClock / r.rate * std::abs(now.rate))) {
       continue;
+    }
     const GuardStart start = start_of(guard);
     const double g1 = start.rate, g2 = start.second, size = start.size, near = near_zero(start);
     if (guard.kind == GuardKind::kStop && near >= 1.0 / r.rate) {  // at rest on the limit
@@ -309,7 +315,7 @@ bool ClosedFormFlow::approach(const Guard& guard, double from, double& tau) {
     }
     // Newton squares its error, with a factor of about the guard's curvature by its slope. It is done where that is
     // beyond the clock, or leaves of the guard no more than its rounding.
-    if (std::abs(shift) * rate < 1e-15 || shift * shift * bend < std::max(1e-15 / rate * std::abs(slope), rounding))
+    if (std::abs(shift) * rate < kClock || shift * shift * bend < std::max(kClock / rate * std::abs(slope), rounding))
       break;
   }
   // The guard falls all the way from `from`: it vanishes here for the first time.

@@ -87,6 +87,28 @@ TEST(Clearance, WithoutAGapItIsTheStiffLinearOscillator) {
   }
 }
 
+TEST(Clearance, AStopIsMetOnceHoweverNearItsEndThePlaceIs) {
+  // A free mass between stops at zero swings at sqrt(k): an event, or two at one instant, each half period. Of a place
+  // of 1e-124 no guard can be judged by the terms it is summed of.
+  const Stop stop{.stiffness = 25.0, .damping = 0.0, .gap = 0.0};
+  const double half = std::numbers::pi / 5.0;
+  for (const ContactLoss loss : {ContactLoss::kZeroForce, ContactLoss::kGap})
+    for (const double place : {0.0, 5e-324, 5e-124, -5e-124, 1e-30, -1e-30, 1e-17}) {
+      const HybridSystem system(plain_oscillator(0.0, 0.0),
+                                {Contact{.direction = Eigen::VectorXd::Ones(1), .law = Clearance{stop, stop, loss}}},
+                                Force{1.0, {{.amplitude = 0.0}}}, {}, Eigen::MatrixXd::Ones(1, 1));
+      const State start{0.0, Eigen::VectorXd::Constant(1, place), Eigen::VectorXd::Ones(1)};
+      const Trajectory run = simulate(system, start, {.duration = 10.5 * half});
+      std::size_t met = 0;
+      for (const Event& e : run.events) {
+        if (e.kind != EventKind::kContact || e.time < 1e-9) continue;
+        EXPECT_NEAR(e.time, half * static_cast<double>(++met), 1e-13);
+      }
+      EXPECT_EQ(met, 10U) << place;
+      EXPECT_LE(run.events.size(), 22U) << place;
+    }
+}
+
 TEST(Clearance, QuickContactsAtStiffStopsAreNotTakenForZeno) {
   // Without a gap and damping the mass swings at √k: an event each half period, far more often than 200 within what is
   // short for a mass that floats in the gap.
