@@ -275,6 +275,8 @@ std::optional<PairForm> sprung_pairs(const Eigen::VectorXd& omega, const Eigen::
     form.T_inverse.row(i) = left.real();
     form.T_inverse.row(n + i) = -left.imag();
   }
+  // Beside a stiff support left and right vectors, each found by itself, leave 1e-10 of one another.
+  form.T_inverse += form.T_inverse * (Eigen::MatrixXd::Identity(2 * n, 2 * n) - form.T * form.T_inverse);
   return form;
 }
 
