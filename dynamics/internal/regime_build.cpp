@@ -58,6 +58,11 @@ RegimeBuilder::RegimeBuilder(const HybridSystem& system, const ModalModel& slipp
   }
   couple_contacts();
   eliminate_held();
+  // A held contact does not move. What the projection leaves of it is rounding, which scaled up would couple, or be the
+  // only stiffness of what floats.
+  moved_ = Z_.transpose() * modal_.directions;
+  for (Eigen::Index c = 0; c < nc_; ++c)
+    if (!(moved_.col(c).norm() > kRounding * modal_.directions.col(c).norm())) moved_.col(c).setZero();
 }
 
 void RegimeBuilder::couple_contacts() {
@@ -103,6 +108,14 @@ void RegimeBuilder::eliminate_held() {
   P_all_ = P_.rowwise().sum();
 }
 
+Eigen::MatrixXd RegimeBuilder::left_damping() const {
+  Eigen::MatrixXd C = Z_.transpose() * modal_.damping * Z_;
+  for (Eigen::Index c = 0; c < nc_; ++c)
+    if (const double own = answers_[static_cast<std::size_t>(c)].damping; own != 0.0)
+      C += own * moved_.col(c) * moved_.col(c).transpose();
+  return C;
+}
+
 void RegimeBuilder::set_blocks(ModalModel& pairs, const PairForm& form) const {
   pairs.proportional = false;
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(pairs.np);
@@ -142,8 +155,7 @@ fem::Modes RegimeBuilder::base_modes() const {
   Eigen::MatrixXd root(n_ + static_cast<Eigen::Index>(sprung.size()), m);
   root.topRows(n_) = modal_.omega.asDiagonal() * Z_;
   for (std::size_t k = 0; k < sprung.size(); ++k)
-    root.row(n_ + static_cast<Eigen::Index>(k)) =
-        std::sqrt(spring_(sprung[k])) * (modal_.directions.col(sprung[k]).transpose() * Z_);
+    root.row(n_ + static_cast<Eigen::Index>(k)) = std::sqrt(spring_(sprung[k])) * moved_.col(sprung[k]).transpose();
   const Eigen::MatrixXd size = root.cwiseAbs();
   auto [omega, shapes] = spectrum_by_parts(coupled_parts(size.transpose() * size), [&](const Part& part) -> Spectrum {
     const Eigen::JacobiSVD<Eigen::MatrixXd> svd(root(Eigen::all, part), Eigen::ComputeThinV);
@@ -190,7 +202,7 @@ void RegimeBuilder::make_symmetric_pairs(Regime& out) {
   if (const std::optional<PairForm> form = supported_pairs()) return set_pairs(out, *form, modal_.omega, nullptr);
   auto [omega, shapes] = base_modes();
   ModalModel& pairs = out.pairs;
-  Eigen::MatrixXd D = shapes.transpose() * (Z_.transpose() * C_ * Z_) * shapes;
+  Eigen::MatrixXd D = shapes.transpose() * left_damping() * shapes;
   if ((D - D.transpose()).norm() <= kRounding * D.norm()) D = (D + D.transpose()).eval() / 2.0;
   separate_rigid_modes(omega, shapes, D, C_.norm());
   const Eigen::VectorXd diagonal = D.diagonal();
@@ -233,14 +245,8 @@ void RegimeBuilder::make_general_pairs(Regime& out) {
   Eigen::VectorXd omega(N);
   omega.head(m) = base.omega;
   for (Eigen::Index j = 0; j < acting; ++j) omega(m + j) = std::sqrt(load(contact(j)).stiffness);
-  Eigen::MatrixXd own_damping = shapes.transpose() * (Z_.transpose() * C_ * Z_) * shapes;
-  const auto direction = [&](Eigen::Index c) -> Eigen::VectorXd {
-    const auto w = modal_.directions.col(c);
-    const Eigen::VectorXd moved = Z_.transpose() * w;
-    // A held contact does not move. What the projection leaves of it is rounding, which scaled up would couple.
-    if (!(moved.norm() > kRounding * w.norm())) return Eigen::VectorXd::Zero(m);
-    return shapes.transpose() * moved;
-  };
+  Eigen::MatrixXd own_damping = shapes.transpose() * left_damping() * shapes;
+  const auto direction = [&](Eigen::Index c) -> Eigen::VectorXd { return shapes.transpose() * moved_.col(c); };
   Eigen::MatrixXd W = Eigen::MatrixXd::Zero(m, nc_);  // of the contacts that add what is not in the base modes
   for (Eigen::Index c = 0; c < nc_; ++c)
     if (spring_(c) < 0.0 || (load(c).oscillates() && friction_(c) != 0.0)) W.col(c) = direction(c);

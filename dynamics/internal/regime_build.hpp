@@ -31,6 +31,8 @@ class RegimeBuilder {
 
   void eliminate_held();
   void couple_contacts();
+  /// Of y.
+  [[nodiscard]] Eigen::MatrixXd left_damping() const;
   /// Undamped modes of what is held and of springs that are positive.
   [[nodiscard]] fem::Modes base_modes() const;
   void make_pairs(Regime& out);
@@ -69,6 +71,7 @@ class RegimeBuilder {
   Eigen::VectorXd friction_;                      ///< ±μ_k of contacts that slide under a varying load, else 0
   Eigen::MatrixXd Z_, P_;                         ///< η = Z y + P ι
   Eigen::VectorXd P_all_;
+  Eigen::MatrixXd moved_;   ///< contacts' directions in y, zero where held ones leave none [m x contacts]
   Eigen::MatrixXd K_, C_;   ///< with what contacts add
   Eigen::VectorXd spring_;  ///< stiffness added along each contact's direction, of either sign
   Eigen::VectorXd damper_;  ///< damping that stops add along it

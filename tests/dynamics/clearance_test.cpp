@@ -6,6 +6,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
 
@@ -107,6 +108,34 @@ TEST(Clearance, AStopIsMetOnceHoweverNearItsEndThePlaceIs) {
       EXPECT_EQ(met, 10U) << place;
       EXPECT_LE(run.events.size(), 22U) << place;
     }
+}
+
+TEST(Clearance, AStopOnWhatFrictionHoldsMovesNothingElse) {
+  // Of two free masses one rubs under a force and presses on a stop, the other drifts. In any other coordinates the
+  // direction of the stop leaves 1e-17 where friction holds it, which is no spring of what drifts.
+  const Eigen::Vector2d rubs(1.0, 0.0), mass(0.8, 2.0);
+  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(2, 2);
+  for (const double damping : {0.0, 0.3}) {
+    const auto system = [&](const Eigen::Matrix2d& T) {
+      const Clearance stop{.left = std::nullopt,
+                           .right = Stop{.stiffness = 9.0, .damping = damping, .gap = -0.05},
+                           .loss = ContactLoss::kGap};
+      const Eigen::VectorXd w = T.transpose() * rubs;
+      return HybridSystem({Eigen::MatrixXd(T.transpose() * mass.asDiagonal() * T), none, none},
+                          {{w, friction::Coulomb{0.5, 0.4}, 2.0}, {w, stop}}, Force{1.8, {{.amplitude = 1.7}}}, {}, w);
+    };
+    const State start{0.0, Eigen::Vector2d(0.0, 1.0), Eigen::Vector2d(0.0, 0.05)};
+    const Trajectory plain = simulate(system(Eigen::Matrix2d::Identity()), start, {.duration = 20.0});
+    EXPECT_GT(plain.events.size(), 10U);
+    for (int k = 1; k < 12; ++k) {
+      SCOPED_TRACE(k);
+      const Eigen::Matrix2d T = Eigen::Rotation2Dd(0.27 * k).toRotationMatrix();
+      const State turned{0.0, T.transpose() * start.q, T.transpose() * start.v};
+      const Trajectory run = simulate(system(T), turned, {.duration = 20.0});
+      ASSERT_EQ(run.events.size(), plain.events.size());
+      for (std::size_t e = 0; e < run.events.size(); ++e) EXPECT_NEAR(run.events[e].time, plain.events[e].time, 1e-11);
+    }
+  }
 }
 
 TEST(Clearance, QuickContactsAtStiffStopsAreNotTakenForZeno) {
