@@ -65,8 +65,9 @@ Json to_json(const Study& study, const scene::Scene& scene) {
     for (const std::size_t i : trade::pareto_front(study.offers(measure))) names.push_back(study.rows[i].variant.name);
     fronts[std::string(trade::to_string(measure))] = names;
   }
-  return merged({{"reference", row_json(study, study.reference, scene.time.duration)}}, fields_json(study.schedule),
-                Json{{"elsewhere", study.elsewhere}, {"candidates", rows}, {"fronts", fronts}});
+  return merged(
+      {{"reference", row_json(study, study.reference, scene.time.duration)}}, fields_json(study.schedule),
+      Json{{"elsewhere", study.elsewhere}, {"dies_out", study.dies_out}, {"candidates", rows}, {"fronts", fronts}});
 }
 
 std::string study_text(const Study& study, const scene::Scene& scene) {
@@ -91,11 +92,15 @@ std::string study_text(const Study& study, const scene::Scene& scene) {
     if (row.variant.reduction) cells.push_back(runs_text(trade::break_even(study, row, scene.time.duration)));
     table.add(std::move(cells));
   }
+  const std::string starts = study.dies_out ? fmt::format("the scene's start and {} about it", study.shared_starts - 1)
+                                            : fmt::format("{} shared starts", study.shared_starts);
+  const std::string others = study.dies_out ? "the motion dies out, statistics have nothing to be of"
+                                            : fmt::format("the others over {:g}", study.schedule.duration);
   return fmt::format(
       "{}\nErrors against the {}; one axis varied at a time, reduced models in every basis and size.\n"
-      "dX, dE up to {:g} from {} shared starts; the others over {:g}; times are processor time of {:g}.\n{}{}{}",
-      scene.name(), study.reference.variant.name, study.schedule.horizon, study.shared_starts, study.schedule.duration,
-      study.schedule.timed, table.str(), failures_text(study), elsewhere_text(study));
+      "dX, dE up to {:g} from {}; {}; times are processor time of {:g}.\n{}{}{}",
+      scene.name(), study.reference.variant.name, study.schedule.horizon, starts, others, study.schedule.timed,
+      table.str(), failures_text(study), elsewhere_text(study));
 }
 
 Json to_json(const trade::OrbitStudy& study) {

@@ -117,6 +117,9 @@ void store_study(StoreWriter& writer, const trade::Study& study, const scene::Sc
   save_fields(writer, group, study.schedule);
   writer.write(group + "/elsewhere", static_cast<double>(study.elsewhere),
                {"", "runs of the reference that end on another motion than the scene's own start does"});
+  writer.write(
+      group + "/dies_out", study.dies_out ? 1.0 : 0.0,
+      {"", "1: the motion dies out, errors are from the scene's start on, and statistics have nothing to be of"});
 }
 
 void store_orbits(StoreWriter& writer, const trade::OrbitStudy& study) {

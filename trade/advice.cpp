@@ -154,7 +154,11 @@ Choice choose(const Study& study, const Wish& wish) {
 
 std::vector<std::string> recommendations(const Study& study, double limit) {
   std::vector<std::string> out;
-  for (std::size_t m = 0; m < kMeasures; ++m) out.push_back(recommendation(study, static_cast<Measure>(m), limit));
+  for (std::size_t m = 0; m < kMeasures; ++m) {
+    const auto measure = static_cast<Measure>(m);
+    if (study.dies_out && question_of(measure) == Question::kStatistics) continue;
+    out.push_back(recommendation(study, measure, limit));
+  }
   return out;
 }
 

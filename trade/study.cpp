@@ -4,6 +4,7 @@
 #include <slipmode/core/none.hpp>
 #include <slipmode/core/sweep_runner.hpp>
 #include <slipmode/diagnostics/attractors/driven.hpp>
+#include <slipmode/trade/parting.hpp>
 #include <slipmode/trade/variants.hpp>
 #include "trade/internal/horizon.hpp"
 #include "trade/internal/motion.hpp"
@@ -88,11 +89,16 @@ class Work {
     ground_.transient = schedule_.transient;
     out_.reference.error.fill(0.0);
     out_.reference.noise.fill(kNone);
-    if (options_.dies_out) {
+    out_.dies_out = options_.dies_out;
+    if (!out_.dies_out) {
+      run_motions(first);
+      out_.dies_out = !options_.resolve && has_died_out();
+    }
+    if (out_.dies_out) {
+      ground_.motions.clear();
       ground_.shared.assign(starts_.begin(), starts_.begin() + schedule_.runs);
       return;
     }
-    run_motions(first);
     tell_kinds();
     share_starts(ground_);
     if (options_.resolve) run_motions(runs_to_resolve(out_.reference.noise, *options_.resolve));
@@ -108,6 +114,14 @@ class Work {
       const std::size_t i = known + k;
       motions[i] = run_motion(*model_, starts_[i], schedule_.first_transient, schedule_, stop());
     }));
+  }
+
+  /// Whether nothing is left of the motion from the scene's start.
+  [[nodiscard]] bool has_died_out() const {
+    constexpr double kGone = 1e-6;
+    if (scene_.drive.belt() == nullptr) return false;
+    const auto reach = [&](const dynamics::State& from) { return parting(*model_, from, 1, schedule_, stop()).reach; };
+    return reach(ground_.motions.front().end) <= kGone * reach(starts_.front());
   }
 
   /// The scatter is that of the motion which the scene's own start ends on. Of runs that end elsewhere, told by ten
@@ -147,7 +161,7 @@ class Work {
 
   /// What has decided nothing: the reference's motions go on, and a lean scene finds its own from the scene's starts.
   void run_on() {
-    if (options_.dies_out) {
+    if (out_.dies_out) {
       const auto after = starts_.begin() + schedule_.runs;
       fresh_.shared.assign(after, after + schedule_.runs);
       return;

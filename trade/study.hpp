@@ -48,8 +48,7 @@ struct StudyOptions {
   /// The change of a statistic that matters [%]: every configuration then runs as often as the scatter of the
   /// reference's runs needs to tell it, twice at least and kMostRuns times at most. Empty: once.
   std::optional<double> resolve = {};
-  /// True for a motion that dies out: nothing is settled that statistics could be of, and the horizon begins at the
-  /// scene's start and at others about it. With `resolve`.
+  /// True for a motion known to die out, see Study::dies_out.
   bool dies_out = false;
   ParallelOptions parallel = {};  ///< parallel.progress counts configurations, then timed runs
   /// What an earlier study found, by name, and where to keep what is found now; empty functions: nothing kept.
@@ -71,6 +70,9 @@ struct Study {
   /// own start does. Scatter is of the latter.
   std::size_t elsewhere = 0;
   std::size_t shared_starts = 0;  ///< that dX and dE are of
+  /// Nothing is settled that statistics could be of: the horizon begins at the scene's start and at others about it. Of
+  /// a motion on a belt found out where StudyOptions::resolve is empty, once 1e-6 of its reach is left.
+  bool dies_out = false;
 
   [[nodiscard]] std::vector<Offer> offers(Measure measure) const;
 };

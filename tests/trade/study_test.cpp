@@ -227,8 +227,23 @@ spread = 0.01
   EXPECT_EQ(mixed.elsewhere, 1U);
   EXPECT_EQ(mixed.shared_starts, 3U * static_cast<std::size_t>(options.schedule.starts)) << "along the other three";
   EXPECT_LT(at(mixed.reference.noise, Measure::kEnergy), 1e-3) << "of stick-slip alone, which is periodic";
+  EXPECT_FALSE(mixed.dies_out);
   const Study alone = of(0.2);
   EXPECT_EQ(alone.elsewhere, 0U);
+}
+
+TEST(Study, OfAMotionThatDiesOutIsFromTheScenesStartOn) {
+  // A block that slides to rest in closed form: where it rests nothing is left to divide by.
+  const scene::Scene scene =
+      scene::with_own_times(scene::load_scene(SLIPMODE_SOURCE_DIR "/datasets/coulomb_decay/scene.toml"));
+  const StudyOptions options{.schedule = schedule_of(scene)};
+  const Study found = study(scene, reference_of(scene), {as_it_stands(scene)}, {}, options);
+  EXPECT_TRUE(found.dies_out);
+  EXPECT_EQ(found.shared_starts, static_cast<std::size_t>(options.schedule.runs));
+  EXPECT_EQ(at(found.rows[0].error, Measure::kDx), 0.0);
+  for (const Measure measure : {Measure::kPoints, Measure::kSpread, Measure::kEnergy, Measure::kStick})
+    EXPECT_TRUE(std::isnan(at(found.rows[0].error, measure)));
+  EXPECT_EQ(recommendations(found, 1.0).size(), 2U) << "dX and dE";
 }
 
 TEST(Study, IsTheSameForAnyNumberOfThreadsAndGoesOnWhereItStopped) {
