@@ -266,16 +266,21 @@ void EventResolver::start(HybridPoint& point) const {
     const double force = law.stiffness * stretch;
     if (point.modes[c] == ContactMode::kStick && std::abs(force) > law.limit(force) * (1.0 + kAtLimit))
       point.modes[c] = force > 0 ? ContactMode::kSlipPositive : ContactMode::kSlipNegative;
-    if (point.modes[c] == ContactMode::kStick) continue;
-    stretch = law.sliding(sign_of(point.modes[c]), 0.0) / law.stiffness;
-    if (sign_of(point.modes[c]) * slide_velocity(point, i, sign_of(point.modes[c])) < 0.0)
-      point.modes[c] = ContactMode::kStick;
+    if (point.modes[c] != ContactMode::kStick) stretch = law.sliding(sign_of(point.modes[c]), 0.0) / law.stiffness;
   }
   std::vector<bool> at_rest;
   for (std::size_t c = 0; c < laws_.size(); ++c)
     at_rest.push_back(point.modes[c] == ContactMode::kStick && laws_[c].kind != LawKind::kCompliant);
-  const std::vector<bool> none(at_rest.size(), false);
   const std::vector<ContactForces> laws = laws_at(point);
+  // A load that follows the speed changes with the acceleration, and so with the forces at all contacts.
+  for (int c = 0; c < model_.contacts; ++c) point.force(c) = applied_force(point, c);
+  stick_forces(instant(point, laws, point.force), at_rest, point.force);
+  for (std::size_t c = 0; c < laws_.size(); ++c) {
+    if (laws_[c].kind != LawKind::kCompliant || point.modes[c] == ContactMode::kSeparated) continue;
+    const double sign = sign_of(point.modes[c]);
+    if (sign * slide_velocity(point, static_cast<int>(c), sign) < 0.0) point.modes[c] = ContactMode::kStick;
+  }
+  const std::vector<bool> none(at_rest.size(), false);
   Eigen::VectorXd applied(model_.contacts);
   for (int c = 0; c < model_.contacts; ++c) applied(c) = applied_force(point, c);
   const Instant here = instant(point, laws, applied);

@@ -316,7 +316,10 @@ class Scan {
     // What is held, or hardly moves, has a place that rounds by the motion around it.
     scales.way = run_.contact_q.row(c).cwiseAbs().maxCoeff() + 1e-3 * run_.q.cwiseAbs().maxCoeff();
     const Eigen::VectorXd speeds = run_.v.cwiseAbs().rowwise().maxCoeff();
-    scales.speed = W_.col(c).cwiseAbs().dot(speeds) + 1e-3 * speeds.maxCoeff() + drive;
+    // Where all is all but at rest, speeds round by what displacements would become.
+    const double rounding =
+        std::numeric_limits<double>::epsilon() / limits_.law / options_.sample * run_.q.cwiseAbs().maxCoeff();
+    scales.speed = W_.col(c).cwiseAbs().dot(speeds) + 1e-3 * speeds.maxCoeff() + drive + rounding;
     const double static_limit = friction::static_coefficient(law.law) * law.normal_load.constant;
     scales.force = std::max(static_limit, run_.lambda.row(c).cwiseAbs().maxCoeff());
     if (!law.normal_load.is_constant()) scales.force = std::max(scales.force, law.normal_load.constant);
