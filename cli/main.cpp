@@ -9,6 +9,7 @@
 #include "cli/slurm.hpp"
 #include "cli/verbs.hpp"
 
+#include <malloc.h>
 #include <unistd.h>
 
 #include <fmt/format.h>
@@ -203,11 +204,19 @@ int run_launched(int argc, char** argv) {
   return ranks ? end_ranks(*ranks, end.code, end.message) : end.code;
 }
 
+/// Records of one value go when it is done, and the next takes as much: given back to the system in between, their
+/// pages cost a sixth of a sweep.
+void keep_freed_memory() {
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_TRIM_THRESHOLD, 256 << 20);
+}
+
 }  // namespace
 
 }  // namespace slipmode::cli
 
 int main(int argc, char** argv) {
+  slipmode::cli::keep_freed_memory();
   try {
     return slipmode::cli::run_launched(argc, argv);
   } catch (const slipmode::InvalidInput& error) {  // in the environment: --version reads it
