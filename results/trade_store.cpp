@@ -29,6 +29,7 @@ std::vector<Row> all_rows(const Study& study) {
 template <class Value>
 std::vector<double> numbers(const std::vector<Row>& rows, const Value& value) {
   std::vector<double> out;
+  out.reserve(rows.size());
   for (const Row& row : rows) out.push_back(static_cast<double>(value(row)));
   return out;
 }
@@ -36,6 +37,7 @@ std::vector<double> numbers(const std::vector<Row>& rows, const Value& value) {
 template <class Own, class Value>
 std::vector<std::string> texts(const std::vector<Own>& rows, const Value& value) {
   std::vector<std::string> out;
+  out.reserve(rows.size());
   for (const Own& row : rows) out.push_back(std::string(value(row)));
   return out;
 }
