@@ -74,6 +74,7 @@ idle() { [[ $(sinfo --noheader --format=%T 2>/dev/null) == idle ]]; }
 until_true 30 idle || skip "no node after 30 s: $(tail -n 2 "$folder/slurmctld.log" "$folder/slurmd.log" 2>&1)"
 
 cd "$folder/jobs"
+timeout 60 sbatch --quiet --wait --output=/dev/null --wrap=true || skip "a job that does nothing does not end well in a minute"
 cp "$scene" scene.toml
 sweep=("$slipmode" sweep scene.toml --over drive.speed=0.5:0.02:0.0004 --threads 1)
 "${sweep[@]}" -o one.h5 --quiet
