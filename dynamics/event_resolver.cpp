@@ -94,6 +94,11 @@ double EventResolver::applied_force(const HybridPoint& point, int c) const {
   return laws_[i].sliding(sign_of(mode), drive_.velocity(point.time) - contact_velocity(c, point.x.data()));
 }
 
+void EventResolver::applied_forces(const HybridPoint& point, Eigen::VectorXd& out_forces) const {
+  out_forces.resize(model_.contacts);
+  for (int c = 0; c < model_.contacts; ++c) out_forces(c) = applied_force(point, c);
+}
+
 double EventResolver::slide_velocity(const HybridPoint& point, int c, double direction) const {
   // y_c = y ± μ_k N / K_c: the contact point follows y and the load.
   const auto i = static_cast<std::size_t>(c);
@@ -250,7 +255,7 @@ bool EventResolver::at_belt_speed(double time, int c, const double* x) const {
 
 void EventResolver::start(HybridPoint& point) const {
   if (clearances_only_) {
-    for (int c = 0; c < model_.contacts; ++c) point.force(c) = applied_force(point, c);
+    applied_forces(point, point.force);
     return;
   }
   for (std::size_t c = 0; c < laws_.size(); ++c) {
@@ -273,7 +278,7 @@ void EventResolver::start(HybridPoint& point) const {
     at_rest.push_back(point.modes[c] == ContactMode::kStick && laws_[c].kind != LawKind::kCompliant);
   const std::vector<ContactForces> laws = laws_at(point);
   // A load that follows the speed changes with the acceleration, and so with the forces at all contacts.
-  for (int c = 0; c < model_.contacts; ++c) point.force(c) = applied_force(point, c);
+  applied_forces(point, point.force);
   stick_forces(instant(point, laws, point.force), at_rest, point.force);
   for (std::size_t c = 0; c < laws_.size(); ++c) {
     if (laws_[c].kind != LawKind::kCompliant || point.modes[c] == ContactMode::kSeparated) continue;
@@ -281,8 +286,8 @@ void EventResolver::start(HybridPoint& point) const {
     if (sign * slide_velocity(point, static_cast<int>(c), sign) < 0.0) point.modes[c] = ContactMode::kStick;
   }
   const std::vector<bool> none(at_rest.size(), false);
-  Eigen::VectorXd applied(model_.contacts);
-  for (int c = 0; c < model_.contacts; ++c) applied(c) = applied_force(point, c);
+  Eigen::VectorXd applied;
+  applied_forces(point, applied);
   const Instant here = instant(point, laws, applied);
   Resolution first = resolve(here, point.modes, at_rest, none);
   // A contact said to slide at zero speed does so if its acceleration takes it there; else it is at rest.

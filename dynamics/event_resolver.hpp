@@ -125,6 +125,8 @@ class EventResolver {
   [[nodiscard]] std::vector<ContactForces> laws_at(const HybridPoint& point) const;
   /// λ of a contact in its mode, unless it is rigid and sticks. A bristle's is the point's own.
   [[nodiscard]] double applied_force(const HybridPoint& point, int c) const;
+  /// Of all contacts; may be the point's own.
+  void applied_forces(const HybridPoint& point, Eigen::VectorXd& out_forces) const;
   /// Velocity at which the contact point of a compliant contact slides in this direction.
   [[nodiscard]] double slide_velocity(const HybridPoint& point, int c, double direction) const;
   [[nodiscard]] const double* own_states(const HybridPoint& point, int c) const;

@@ -74,7 +74,7 @@ void EventResolver::settle_single(HybridPoint& point) {
 void EventResolver::settle_stop(HybridPoint& point, const Reached& reached) {
   ContactMode& mode = point.modes[static_cast<std::size_t>(reached.contact)];
   const ContactMode before = std::exchange(mode, reached.next);
-  for (int c = 0; c < model_.contacts; ++c) point.force(c) = applied_force(point, c);
+  applied_forces(point, point.force);
   record_change(point, reached.contact, before);
 }
 
@@ -171,8 +171,8 @@ void EventResolver::settle_coupled(HybridPoint& point, const Reached& reached) {
   }
   hold(point.time, resting, point.x.data());
   const std::vector<ContactForces> laws = laws_at(point);
-  Eigen::VectorXd applied(model_.contacts);
-  for (int c = 0; c < model_.contacts; ++c) applied(c) = applied_force(point, c);
+  Eigen::VectorXd applied;
+  applied_forces(point, applied);
   point.assign(resolve(instant(point, laws, applied), point.modes, at_rest, released));
 
   if (contact < 0) record(point, -1, EventKind::kDriveCorner, ContactMode::kStick);

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Slurm itself on this machine: real_slurm.sh SLIPMODE SCENE. Starts Munge, a controller and a node of two processors on
-# loopback in a folder of their own, submits what `sweep --slurm` writes, warns a task halfway as Slurm does before a
-# limit, and compares the merged result with that of one process. Stops everything it started.
+# Slurm itself on this machine: real_slurm.sh SLIPMODE SCENE. Starts Munge, a controller and a node on
+# loopback in a folder of their own, submits what `sweep --slurm` writes, warns a task that has begun as Slurm does before
+# a limit, and compares the merged result with that of one process. Stops everything it started.
 # Exit code 0: the same bytes; 77: Slurm cannot run here, and why; else what went wrong.
 set -euo pipefail
 slipmode=$1 scene=$2
@@ -10,11 +10,11 @@ skip() {
   echo "no Slurm here: $1" >&2
   exit 77
 }
-for program in munged slurmctld slurmd sbatch squeue scontrol; do
-  PATH=$PATH:/usr/sbin command -v $program >/dev/null || skip "$program is not installed (Debian: slurm-wlm, munge)"
+PATH=$PATH:/usr/sbin
+for program in munged slurmctld slurmd sinfo sbatch squeue scancel scontrol; do
+  command -v $program >/dev/null || skip "$program is not installed (Debian: slurm-wlm, munge)"
 done
 [[ $(id -u) -eq 0 ]] || skip "its daemons are started as root"
-PATH=$PATH:/usr/sbin
 
 folder=$(mktemp -d /tmp/slurm_XXXXXX)
 export SLURM_CONF=$folder/slurm.conf
@@ -74,14 +74,15 @@ idle() { [[ $(sinfo --noheader --format=%T 2>/dev/null) == idle ]]; }
 until_true 30 idle || skip "no node after 30 s: $(tail -n 2 "$folder/slurmctld.log" "$folder/slurmd.log" 2>&1)"
 
 cd "$folder/jobs"
-timeout 60 sbatch --quiet --wait --output=/dev/null --wrap=true || skip "a job that does nothing does not end well in a minute"
+timeout 60 sbatch --quiet --wait --output=/dev/null --wrap=true ||
+  skip "a job that does nothing does not end well in a minute"
 cp "$scene" scene.toml
 sweep=("$slipmode" sweep scene.toml --over drive.speed=0.5:0.02:0.0004 --threads 1)
 "${sweep[@]}" -o one.h5 --quiet
 "${sweep[@]}" -o all.h5 --slurm scripts --shards 3 --quiet
 bash scripts/submit.sh >submitted
 
-first_shard_has_values() { [[ -s scripts/1.part.journal ]]; }
+first_shard_has_values() { grep -qs sweep-0 scripts/1.part.journal; }
 until_true 60 first_shard_has_values || { squeue; echo "the first shard did not begin" >&2; exit 1; }
 array=$(squeue --noheader --array --format=%F | head -n 1)
 scancel --signal=USR1 --batch "${array}_1"
