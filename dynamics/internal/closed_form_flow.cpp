@@ -113,10 +113,10 @@ void ClosedFormFlow::enter_regime() {
   if (!oscillator_states_.empty())
     x_.noalias() += r.from_oscillators * Eigen::VectorXd(point_.internal(oscillator_states_));
   if (overlay) {
-    for (Eigen::Index c = 0; c < nc_; ++c) inputs_(c) -= overlay->inputs.at(c, phase);
     regime_->entered = point_.time;
     regime_->x_entered = x_;
     regime_->inputs_entered = inputs_;
+    for (Eigen::Index c = 0; c < nc_; ++c) inputs_(c) -= overlay->inputs.at(c, phase);
     overlay->state.add(phase, -1.0, x_);
   }
   amplitude_.resize(r.pairs.np);
@@ -316,9 +316,11 @@ bool ClosedFormFlow::cancels(const Visited& in, double t, const Eigen::VectorXd&
 void ClosedFormFlow::anew(const Visited& in, double t, Eigen::VectorXd& out_x, Eigen::VectorXd& out_inputs) const {
   out_x = in.x_entered;
   out_inputs = in.inputs_entered;
-  advance(*in.tables, t - in.entered, out_x, out_inputs);
-  out_x += in.overlay->from_rest(in.tables->regime(), t - in.entered, in.overlay->phase(in.entered));
-  in.overlay->inputs.add(phase_at(t), 1.0, out_inputs);
+  const double tau = t - in.entered;
+  const DrivePhase entered = in.overlay->phase(in.entered);
+  advance(*in.tables, tau, out_x, out_inputs);
+  out_x += in.overlay->from_entry(in.tables->regime(), tau, entered);
+  in.overlay->follow_inputs(in.tables->regime(), tau, entered, out_inputs);
 }
 
 void ClosedFormFlow::lift(const Visited& in, double t, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs,

@@ -51,23 +51,34 @@ Amplitudes driven_inputs(const Regime& r, const friction::Drive& drive) {
 /// Exponent beyond which a growing window is useless anyway.
 constexpr double kSwellExponent = 200.0;
 
-/// ∫ e^{G(h−s)} b e^{iws} ds over 0 ≤ s ≤ h of one pair: Taylor's series of a short time, doubled.
-Eigen::Vector2cd pair_from_rest(const ModalModel& pairs, Eigen::Index i, const Eigen::Vector2cd& b, double w,
-                                double rate, double h) {
+/// e^{iθ} − 1, to all digits where θ is small.
+Complex turned_by(double theta) { return std::polar(2.0 * std::sin(0.5 * theta), 0.5 * theta) * Complex(0.0, 1.0); }
+
+/// ∫ e^{G(h−s)} (b e^{iws} + held (e^{iws} − 1)) ds over 0 ≤ s ≤ h of one pair: Taylor's series of a short time,
+/// doubled.
+Eigen::Vector2cd pair_from_rest(const ModalModel& pairs, Eigen::Index i, const Eigen::Vector2cd& b,
+                                const Eigen::Vector2cd& held, double w, double rate, double h) {
   constexpr double kShort = 0.25;  // radians: twelve terms leave 1e-17
   const int doublings = std::max(0, 1 + std::ilogb(std::max(rate, w) * h / kShort));
   h = std::ldexp(h, -doublings);
   const Eigen::Matrix2d G{{pairs.g11(i), pairs.g12(i)}, {pairs.g21(i), pairs.g22(i)}};
-  Eigen::Vector2cd term = h * b, sum = term;  // hᵏ⁺¹/(k+1)! Σ Gᵏ⁻ʲ (iw)ʲ b
-  Complex turned = h;                         // hᵏ⁺¹/(k+1)! (iw)ᵏ
+  const Eigen::Vector2cd both = b + held;
+  Eigen::Vector2cd term = h * b, sum = term;  // hᵏ⁺¹/(k+1)! (Gᵏ b + Σ_{j>0} Gᵏ⁻ʲ (iw)ʲ both)
+  Eigen::Vector2cd constant_term = h * held, constant = constant_term;  // of ∫ e^{G(h−s)} held ds
+  Complex turned = h;                                                   // hᵏ⁺¹/(k+1)! (iw)ᵏ
   for (int k = 1; k < 12; ++k) {
     const double factor = h / (k + 1);
     turned *= Complex(0.0, w * factor);
-    term = (factor * (G * term) + turned * b).eval();
+    term = (factor * (G * term) + turned * both).eval();
+    constant_term = (factor * (G * constant_term)).eval();
     sum += term;
+    constant += constant_term;
   }
-  for (int k = 0; k < doublings; ++k, h *= 2.0)
-    sum = (pairs.exponential(i, h) * sum + std::polar(1.0, w * h) * sum).eval();
+  for (int k = 0; k < doublings; ++k, h *= 2.0) {
+    const Eigen::Matrix2d free = pairs.exponential(i, h);
+    sum = (free * sum + std::polar(1.0, w * h) * sum + turned_by(w * h) * constant).eval();
+    constant += (free * constant).eval();
+  }
   return sum;
 }
 
@@ -181,7 +192,8 @@ void DriveOverlay::differentiate(const Regime& r) {
 }
 
 Eigen::Vector2cd DriveOverlay::Resonance::moved(const Regime& r, double omega, double tau) const {
-  return pair_from_rest(r.pairs, pair, push, static_cast<double>(order) * omega, r.pair_rate(pair), tau);
+  return pair_from_rest(r.pairs, pair, push, Eigen::Vector2cd::Zero(), static_cast<double>(order) * omega,
+                        r.pair_rate(pair), tau);
 }
 
 void DriveOverlay::move_resonances(const Regime& r, double tau, DrivePhase first, Eigen::VectorXd& out_x) const {
@@ -194,21 +206,38 @@ void DriveOverlay::move_resonances(const Regime& r, double tau, DrivePhase first
   }
 }
 
-Eigen::VectorXd DriveOverlay::from_rest(const Regime& r, double tau, DrivePhase first) const {
-  const auto np = r.pairs.np;
+Eigen::VectorXd DriveOverlay::from_entry(const Regime& r, double tau, DrivePhase first) const {
+  const auto np = r.pairs.np, contacts = r.speed_input(), others = r.inputs() - contacts;
   Eigen::VectorXd out = Eigen::VectorXd::Zero(2 * np);
   DrivePhase p;
   for (Eigen::Index j = 0; j < orders(); ++j) {
     p = p.times(first);
     const Complex begin(p.cosine, p.sine);
-    const Eigen::VectorXcd b = r.B * (inputs.c.col(j) - Complex(0.0, 1.0) * inputs.s.col(j));
+    const Eigen::VectorXcd J = inputs.c.col(j) - Complex(0.0, 1.0) * inputs.s.col(j);
+    const Eigen::VectorXcd held = r.B.leftCols(contacts) * J.head(contacts);
+    const Eigen::VectorXcd b = r.B.rightCols(others) * J.tail(others);
     for (Eigen::Index i = 0; i < r.pairs.n; ++i) {
-      const Eigen::Vector2cd moved = begin * Resonance{i, j + 1, {b(i), b(np + i)}}.moved(r, omega_, tau);
+      const Eigen::Vector2cd moved = begin * pair_from_rest(r.pairs, i, {b(i), b(np + i)}, {held(i), held(np + i)},
+                                                            static_cast<double>(j + 1) * omega_, r.pair_rate(i), tau);
       out(i) += moved(0).real();
       out(np + i) += moved(1).real();
     }
   }
   return out;
+}
+
+void DriveOverlay::follow_inputs(const Regime& r, double tau, DrivePhase first, Eigen::VectorXd& out_inputs) const {
+  const Eigen::Index contacts = r.speed_input();
+  DrivePhase p;
+  for (Eigen::Index j = 0; j < orders(); ++j) {
+    p = p.times(first);
+    const double turn = static_cast<double>(j + 1) * omega_ * tau;
+    const Complex begin(p.cosine, p.sine), then = begin * std::polar(1.0, turn), change = begin * turned_by(turn);
+    for (Eigen::Index k = 0; k < r.inputs(); ++k) {
+      const Complex& by = k < contacts ? change : then;
+      out_inputs(k) += inputs.c(k, j) * by.real() + inputs.s(k, j) * by.imag();
+    }
+  }
 }
 
 DrivePhase DriveOverlay::phase(double t) const {

@@ -60,9 +60,12 @@ class DriveOverlay {
   };
 
   [[nodiscard]] DrivePhase phase(double t) const;
-  /// What the drive alone moves in a time tau, from phase p on: ∫ e^{G(τ−s)} B J(s) ds [2np]. The steady response less
-  /// that with which it would have begun, to all digits where these two nearly cancel.
-  [[nodiscard]] Eigen::VectorXd from_rest(const Regime& regime, double tau, DrivePhase p) const;
+  /// What the drive moves in a time tau, from phase p on, beside what it did at p to the contacts:
+  /// ∫ e^{G(τ−s)} B J(s) ds [2np], contacts' inputs less their values at p. The steady response less that with which it
+  /// would have begun, to all digits where these two nearly cancel.
+  [[nodiscard]] Eigen::VectorXd from_entry(const Regime& regime, double tau, DrivePhase p) const;
+  /// Adds the drive's inputs a time tau after phase p, those of contacts less their values at p.
+  void follow_inputs(const Regime& regime, double tau, DrivePhase p, Eigen::VectorXd& out_inputs) const;
   /// Adds that of the resonant pairs under their harmonics.
   void move_resonances(const Regime& regime, double tau, DrivePhase p, Eigen::VectorXd& out_x) const;
   [[nodiscard]] double omega() const { return omega_; }

@@ -111,5 +111,26 @@ TEST(StuckEnergy, SeveralContactsBalanceUnderAShakerAndUnderForces) {
   }
 }
 
+TEST(StuckEnergy, AMomentFromRestIsToldFromTheShakersOwnPlace) {
+  // From rest at t = 0 the spring takes d(τ) − d(0) = A (sin(ωτ + φ) − sin φ), since the mass moves by (K/m) ∫∫ (d −
+  // d(0)) only, 1e-14 of it: work K (d − d(0))²/2. In 1e-10 s the shaker goes 1e-9 of its amplitude.
+  const double K = 4e6, m = 1.0, c = 0.3, tau = 1e-10, A = 0.3, phi = 0.7;
+  const auto one = [](double value) -> fem::Matrix { return Eigen::MatrixXd::Constant(1, 1, value); };
+  const friction::Shaker shaker{A, 3.0, phi};
+  const HybridSystem system(fem::Structure(one(m), one(c), one(2.0)),
+                            {{unit(1, 0), friction::CompliantCoulomb{1.0, 1.0, K}, 1e6}}, shaker);
+  const Trajectory run =
+      simulate(system, system.rest(), {.duration = tau, .flow = {.method = FlowMethod::kClosedForm}});
+  const Long w = shaker.omega(), turn = w * tau, sine = std::sin(static_cast<Long>(phi)),
+             cosine = std::cos(static_cast<Long>(phi));
+  const Long moved = A * turn * (cosine - turn * sine / 2.0L);
+  const Long place =
+      K / m * A * turn * tau * tau / 6.0L * (cosine - turn * sine / 4.0L) * (1.0L - c * tau / (4.0L * m));
+  EXPECT_NEAR(run.audit.drive_work / static_cast<double>(K * moved * moved / 2.0L), 1.0, 1e-13);
+  EXPECT_NEAR(run.final_state.q(0) / static_cast<double>(place), 1.0, 1e-13);
+  EXPECT_NEAR(run.final_state.internal(0) / static_cast<double>(moved), 1.0, 1e-13);
+  EXPECT_LT(std::abs(run.audit.residual()), 1e-13);
+}
+
 }  // namespace
 }  // namespace slipmode::dynamics

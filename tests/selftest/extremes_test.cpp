@@ -114,8 +114,9 @@ TEST(RandomScenes, OfTenSeedsThatOnceFailedHold) {
   // beam's tip, beside which modes gave the start's speeds back to 1e-8 (135_8641);
   // rounding of a stop on what friction holds, taken for the only spring of a mass that floats (143_6428, in coupled
   // coordinates: a release 6 s late); a slip that was taken up under a load that follows the speed, judged
-  // by an acceleration without the forces at other contacts (153_3069); and, the judge's, speeds of a beam all but at
-  // rest (152_7026).
+  // by an acceleration without the forces at other contacts (153_3069); a beam let go 2e-8 s after rest, by a spring
+  // whose stretch was the difference of the shaker's place then and at rest (152_5577); and, the judge's, speeds of a
+  // beam all but at rest (152_7026).
   std::vector<std::pair<std::uint64_t, std::uint64_t>> scenes;
   for (const auto& file : std::filesystem::directory_iterator(SLIPMODE_SOURCE_DIR "/tests/selftest/scenes")) {
     const std::string name = file.path().stem();
