@@ -111,12 +111,14 @@ void CollocationFlow::search_own_guards(int c, Guarded& first) const {
     const GuardValue now = evaluate(guard, c, 0.0, x_begin_);
     const bool by_start = untold && guard.force != 0.0;
     if ((by_start ? now.value : start) > kStarting * now.size && (by_start || form.minCoeff() > 0.0)) continue;
-    // At rest on its limit; also where rounding of forces in balance alone moves it, as beside a contact that sticks.
-    const double h = tables_.step(step_level_), most = std::max(std::abs(start), form.cwiseAbs().maxCoeff());
-    const double pushed = (std::abs(guard.y) * h + std::abs(guard.v)) * h * balanced(c);
-    if (most <= kTouching * std::max(now.size, pushed)) continue;
     const int order = start_order(guard, c, now);
     const bool known = order == 2 && now.second != 0.0 && touched_ != c;
+    // At rest on its limit; also where rounding of forces in balance alone moves it, as beside a contact that sticks.
+    // Where neither slope nor curvature can be told, for as long as it would start at zero: rounding would say where
+    // to.
+    const double h = tables_.step(step_level_), most = std::max(std::abs(start), form.cwiseAbs().maxCoeff());
+    const double pushed = (std::abs(guard.y) * h + std::abs(guard.v)) * h * balanced(c);
+    if (most <= (order == 2 && !known ? kStarting : kTouching) * std::max(now.size, pushed)) continue;
     const bool rises = order == 1 ? now.rate > 0.0 : known && now.second > 0.0;
     if (rises && (std::abs(now.rate) + std::abs(now.second) * h) * h <= kStarting * now.size)
       continue;  // by less than its form rounds by
