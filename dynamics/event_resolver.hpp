@@ -101,6 +101,8 @@ class EventResolver {
 
  private:
   void hold(double time, const std::vector<Eigen::Index>& contacts, double* x) const;
+  /// Whether a stick's force reached its limit because the load is lost.
+  [[nodiscard]] bool lets_go(const HybridPoint& point, int contact) const;
   /// See Instant::limit_size.
   [[nodiscard]] Eigen::VectorXd limit_sizes(const HybridPoint& point) const;
   /// Rigid and in contact: between stick and slip accelerations decide.

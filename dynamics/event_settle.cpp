@@ -2,6 +2,7 @@
 #include <slipmode/dynamics/event_resolver.hpp>
 #include <slipmode/dynamics/kernels/kernels.hpp>
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -146,8 +147,15 @@ void EventResolver::turn_load(HybridPoint& point, int c) const {
   point.modes[i] = held ? ContactMode::kStick : sign > 0 ? ContactMode::kSlipPositive : ContactMode::kSlipNegative;
 }
 
+bool EventResolver::lets_go(const HybridPoint& point, int contact) const {
+  const auto i = static_cast<std::size_t>(contact);
+  return contact >= 0 && point.modes[i] == ContactMode::kStick && laws_[i].varies &&
+         decides_by_acceleration(point, i) && laws_at(point)[i].static_limit <= kTogether * limit_sizes(point)(contact);
+}
+
 void EventResolver::settle_coupled(HybridPoint& point, const Reached& reached) {
-  const auto [contact, touching, kind, next] = reached;
+  const auto [contact, touching, found, next] = reached;
+  const GuardKind kind = found == GuardKind::kFriction && lets_go(point, contact) ? GuardKind::kLoad : found;
   const std::vector<ContactMode> before = point.modes;
   const std::vector<bool> released =
       kind == GuardKind::kFriction ? released_together(point, contact) : std::vector<bool>(point.modes.size());
@@ -219,9 +227,10 @@ void EventResolver::guard_against_zeno(const HybridPoint& point) {
   const auto window = static_cast<std::size_t>(max_events_per_window_);
   if (recent_.size() <= window) return;
   const double since = recent_[recent_.size() - 1 - window];
-  if (point.time - since < zeno_window_)
-    throw NumericalFailure("Zeno: more than " + std::to_string(window) + " events within " +
-                               std::to_string(zeno_window_) + " before t = " + std::to_string(point.time),
+  constexpr double kInstant = 1e-12;  // of the time: what has no rate of its own
+  if (point.time - since < std::max(zeno_window_, kInstant * std::abs(point.time)))
+    throw NumericalFailure(fmt::format("Zeno: more than {} events within {:.3g} before t = {:.10g}", window,
+                                       point.time - since, point.time),
                            point.time, point.x, point.time - since);
   if (recent_.size() > 8 * window) recent_.erase(recent_.begin(), recent_.end() - static_cast<std::ptrdiff_t>(window));
 }

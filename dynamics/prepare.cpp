@@ -240,8 +240,8 @@ Prepared prepare(const HybridSystem& system, const State& start, FlowOptions opt
   const ModalModel& m = tables.model;
   Eigen::VectorXd x = Eigen::VectorXd::Zero(2 * m.np);
   if (!at_origin) x = m.from_q * start.q + m.from_v * start.v;
-  if (options.zeno_window == 0.0)
-    options.zeno_window = 0.01 * 2.0 * std::numbers::pi / std::max(fastest_rate(system, m), 1e-300);
+  if (const double fastest = fastest_rate(system, m); options.zeno_window == 0.0 && fastest > 0.0)
+    options.zeno_window = 0.01 * 2.0 * std::numbers::pi / fastest;
   const auto nc = static_cast<Eigen::Index>(system.contacts().size());
   HybridPoint point{start.time,
                     std::move(x),

@@ -154,8 +154,11 @@ CollocationFlow::GuardValue CollocationFlow::evaluate(const OwnGuard& guard, int
   const RadauTables::Vector8 basis = nodes_.lagrange(tau / h);
   const double acceleration = contact_acceleration(c, x, tau, basis);
   const auto row_size = [&](const Eigen::MatrixXd& rows) { return rows.col(c).cwiseAbs().dot(x.cwiseAbs()); };
-  const double speeds = row_size(model_.velocity_row) + drive().velocity_scale(begin_),
-               accelerations = row_size(model_.acceleration_row) + std::abs(a) +
+  // A stop is the ground's: what the drive does is no measure of it.
+  const bool driven = laws()[static_cast<std::size_t>(c)].kind != LawKind::kClearance;
+  const double drive_speed = driven ? drive().velocity_scale(begin_) : 0.0;
+  const double speeds = row_size(model_.velocity_row) + drive_speed,
+               accelerations = row_size(model_.acceleration_row) + (driven ? std::abs(a) : 0.0) +
                                model_.mobility.row(c).cwiseAbs().dot(point_.force.cwiseAbs());
   double force = 0.0, force_rate = 0.0, force_rate_size = 0.0;
   if (guard.force != 0.0) {
@@ -172,7 +175,7 @@ CollocationFlow::GuardValue CollocationFlow::evaluate(const OwnGuard& guard, int
   const double places = row_size(model_.displacement_row) + 0.25 * tables_.step(0) * speeds;
   const double size = std::abs(guard.constant) + std::abs(guard.y) * places +
                       std::abs(guard.v) * row_size(model_.velocity_row) + std::abs(guard.force * force) +
-                      std::abs(guard.drive) * drive().velocity_scale(begin_);
+                      std::abs(guard.drive) * drive_speed;
   double second = 0.0;
   const bool linear = guard.force != 0.0 && !held(step_modes_, c);
   if (guard.v == 0.0 && guard.drive == 0.0 && (guard.force == 0.0 || (linear && own.damping == 0.0))) {
@@ -184,7 +187,7 @@ CollocationFlow::GuardValue CollocationFlow::evaluate(const OwnGuard& guard, int
           .rate = guard.y * v + guard.v * acceleration + guard.force * force_rate + guard.drive * a,
           .second = second,
           .size = size,
-          .rate_size = model_.fastest * size + std::abs(guard.y) * speeds +
+          .rate_size = std::max(model_.fastest, 1.0 / tables_.step(0)) * size + std::abs(guard.y) * speeds +
                        (std::abs(guard.v) + std::abs(guard.drive)) * accelerations +
                        std::abs(guard.force) * force_rate_size};
 }

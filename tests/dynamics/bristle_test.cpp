@@ -133,11 +133,8 @@ TEST(Bristle, FindsReversalsWhereTheFrictionRisesBetweenTheNodes) {
 TEST(Bristle, ErrorsFollowTheTolerance) {
   const RandomScene scene = random_bristles(3, false, 6);
   const auto end = [&](double tolerance) {
-    const State s =
-        simulate(scene.system, scene.start, {.duration = 20.0, .flow = {.tolerance = tolerance}}).final_state;
-    Eigen::VectorXd x(2 * s.q.size() + s.internal.size());
-    x << s.q, s.v, s.internal;
-    return x;
+    return stacked(
+        simulate(scene.system, scene.start, {.duration = 20.0, .flow = {.tolerance = tolerance}}).final_state);
   };
   const Eigen::VectorXd exact = end(1e-14);
   for (const double tolerance : {1e-6, 1e-8, 1e-10})

@@ -1,6 +1,7 @@
 // The tangent flow of the closed form: saltation at stops, contact springs, lost contact, stick and their mixtures.
 #include <slipmode/dynamics/simulate.hpp>
 #include "fixtures/clearance_scenes.hpp"
+#include "fixtures/scenes.hpp"
 #include "fixtures/shaken_scenes.hpp"
 
 #include <gtest/gtest.h>
@@ -12,12 +13,6 @@ namespace slipmode::dynamics {
 namespace {
 
 using namespace slipmode::fixtures;
-
-Eigen::VectorXd stacked(const State& s) {
-  Eigen::VectorXd x(2 * s.q.size() + s.internal.size());
-  x << s.q, s.v, s.internal;
-  return x;
-}
 
 State moved(const State& start, Eigen::Index i, double step) {
   State out = start;

@@ -133,5 +133,42 @@ TEST_P(ClosedForms, UndampedChainWithoutFrictionKeepsItsEnergy) {
   EXPECT_NEAR(system.energy(run.final_state) / system.energy(start), 1.0, 1e-10);
 }
 
+HybridSystem free_block(friction::NormalLoad load, friction::Law law, friction::Drive drive) {
+  const fem::Matrix one = Eigen::MatrixXd::Constant(1, 1, 1.0), none = Eigen::MatrixXd::Zero(1, 1);
+  return {fem::Structure(one, none, none), {{unit(1, 0), std::move(law), load}}, std::move(drive)};
+}
+
+TEST_P(ClosedForms, ABlockOnAShakenTableReversesTwiceACycle) {
+  // m v' = ± mu N: the speed is a triangle, whose turns are half a period apart on the table's own speed, so at ± mu
+  // N/m T/4. It has no natural period by which many events could be too many.
+  const double mu = 0.1, load = 10.0, frequency = 1.0, cycles = 400.0;
+  const HybridSystem system =
+      free_block({load}, friction::Coulomb{mu, mu}, friction::Shaker{.amplitude = 0.1, .frequency_hz = frequency});
+  const Trajectory run = simulate(system, system.rest(), {.duration = cycles / frequency, .flow = flow()});
+  EXPECT_NEAR(static_cast<double>(run.events.size()), 2.0 * cycles, 2.0);
+  const double turn = mu * load / (4.0 * frequency);
+  for (std::size_t k = run.events.size() - 100; k < run.events.size(); ++k) {
+    EXPECT_EQ(run.events[k].kind, EventKind::kReversal);
+    EXPECT_NEAR(std::abs(run.events[k].velocity), turn, 1e-10);
+  }
+  EXPECT_LT(std::abs(run.audit.residual()), 1e-10);
+}
+
+TEST_P(ClosedForms, ABlockThatIsCarriedAwayLosesItsLoadOnce) {
+  // Stuck on a belt of speed V, y = V t and no force: N = N0 + s y is zero at t = -N0/(s V), and the limit of the force
+  // with it. From there on it flies.
+  const double V = -0.75, N0 = 2.5, slope = 0.32;
+  for (const double mu_k : {0.0, 0.2}) {
+    const HybridSystem system = free_block({N0, slope}, friction::Coulomb{0.45, mu_k}, friction::Belt::constant(V));
+    State start = state(Eigen::VectorXd::Zero(1), Eigen::VectorXd::Constant(1, V));
+    start.modes = {ContactMode::kStick};
+    const Trajectory run = simulate(system, start, {.duration = 20.0, .flow = flow()});
+    ASSERT_EQ(run.events.size(), 1U) << mu_k;
+    EXPECT_EQ(run.events[0].kind, EventKind::kSeparation);
+    EXPECT_NEAR(run.events[0].time, -N0 / (slope * V), 1e-12);
+    EXPECT_NEAR(run.final_state.q(0), 20.0 * V, 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace slipmode::dynamics

@@ -2,6 +2,7 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/dynamics/simulate.hpp>
 #include "fixtures/clearance_scenes.hpp"
+#include "fixtures/scenes.hpp"
 #include "fixtures/shaken_scenes.hpp"
 
 #include <gtest/gtest.h>
@@ -19,12 +20,6 @@ using namespace slipmode::fixtures;
 
 constexpr int kOrders = 3;
 constexpr double kForcedFor = 6.0;
-
-Eigen::VectorXd stacked(const State& s) {
-  Eigen::VectorXd x(2 * s.q.size() + s.internal.size());
-  x << s.q, s.v, s.internal;
-  return x;
-}
 
 /// Contacts of every kind that the closed form knows, under a force on the first mass and one on all.
 HybridSystem forced(unsigned seed) {
@@ -56,7 +51,7 @@ HybridSystem with_forces(const HybridSystem& system, const Eigen::VectorXd& chan
 }
 
 /// Where no rigid contact sticks, so that the start does not depend on the forces.
-std::optional<State> free_start(const HybridSystem& system) {
+std::optional<State> start_without_stick(const HybridSystem& system) {
   const bool rigid = std::holds_alternative<friction::Coulomb>(system.contacts().front().law);
   State at = simulate(system, system.rest(), {.duration = 1.3, .flow = {.audit = false}}).final_state;
   for (int k = 0; k < 50 && rigid && at.modes.front() == ContactMode::kStick; ++k)
@@ -103,7 +98,7 @@ TEST(ForcedTangent, EqualsCentralDifferences) {
   for (unsigned seed = 0; seed < 160; ++seed) {
     SCOPED_TRACE(seed);
     const HybridSystem system = forced(seed);
-    const std::optional<State> start = free_start(system);
+    const std::optional<State> start = start_without_stick(system);
     if (!start) continue;
     const Eigen::Index count = 2 * (2 * kOrders + 1);
     const Tangents tangents{.start = Eigen::MatrixXd::Zero(stacked(*start).size(), count),
@@ -125,7 +120,7 @@ TEST(ForcedTangent, GoesOnFromASample) {
   // What the start and the forces change at a later time is what the state and they change from then on.
   for (const unsigned seed : {2U, 4U, 7U, 11U, 15U}) {
     const HybridSystem system = forced(seed);
-    const std::optional<State> start = free_start(system);
+    const std::optional<State> start = start_without_stick(system);
     ASSERT_TRUE(start) << seed;
     const Eigen::Index N = stacked(*start).size(), rows = 2 * (2 * kOrders + 1);
     Draws random(seed);

@@ -18,7 +18,7 @@ using friction::LuGre;
 using friction::Shaker;
 using friction::Stribeck;
 
-constexpr FlowOptions kFine{.tolerance = 1e-12};
+constexpr FlowOptions kTightBristles{.tolerance = 1e-12};
 
 /// Has contacts of both kinds.
 bool mixed(const HybridSystem& system) {
@@ -47,7 +47,7 @@ TEST(MixedLaws, AgreeWithTheTaylorReferenceOnRandomScenes) {
     const RandomScene plain = random_bristles(seed, false, 6, 0.5);
     if (!mixed(plain.system)) continue;
     const RandomScene scene = scenes++ % 2 == 0 ? plain : interwoven(plain, seed);
-    const ReferenceGap gap = gap_to_reference(scene.system, scene.start, 8.0, kFine);
+    const ReferenceGap gap = gap_to_reference(scene.system, scene.start, 8.0, kTightBristles);
     EXPECT_EQ(gap.mismatch, "") << "seed " << seed;
     EXPECT_LT(gap.event_time, 1e-8) << "seed " << seed;
     EXPECT_LT(gap.state, 1e-9) << "seed " << seed;
@@ -92,7 +92,7 @@ TEST(MixedLaws, AStuckNeighbourCarriesTheBristleForce) {
                             {{unit(2, 0), Coulomb{0.4, 0.3}, 1.0}, {unit(2, 1), Dahl{0.5, sigma}, 1e3}},
                             Belt::constant(0.0));
   const Trajectory run = simulate(system, state(way * unit(2, 1), Eigen::VectorXd::Zero(2)),
-                                  {.duration = 30.0, .sample = 0.1, .flow = kFine});
+                                  {.duration = 30.0, .sample = 0.1, .flow = kTightBristles});
   // z = q₂(0) − q₂: λ = σ (way − q₂), equilibrium at way σ/(k + σ).
   const double middle = way * sigma / (k + sigma);
   for (Eigen::Index i = 0; i < run.times.size(); ++i) {
@@ -119,11 +119,11 @@ TEST(MixedLaws, StickForceRatesAreTheDifferencesOfStickForces) {
   State start = state(Eigen::Vector3d(0.1, -0.2, 0.3), v);
   start.internal = Eigen::VectorXd::Constant(1, 0.004);
   const double h = 1e-4;
-  const Trajectory run = simulate(system, start, {.duration = 4.0 * h, .sample = h, .flow = kFine});
+  const Trajectory run = simulate(system, start, {.duration = 4.0 * h, .sample = h, .flow = kTightBristles});
   ASSERT_TRUE(run.events.empty());
   ASSERT_EQ(run.final_state.modes[0], ContactMode::kStick);
 
-  const Trajectory middle = simulate(system, start, {.duration = 2.0 * h, .flow = kFine});
+  const Trajectory middle = simulate(system, start, {.duration = 2.0 * h, .flow = kTightBristles});
   const State& at = middle.final_state;
   const ModalModel model = build_modal_model(system, false);
   std::vector<ContactForces> laws;

@@ -116,8 +116,10 @@ TEST(RandomScenes, OfTenSeedsThatOnceFailedHold) {
   // coordinates: a release 6 s late); a slip that was taken up under a load that follows the speed, judged
   // by an acceleration without the forces at other contacts (153_3069); a beam let go 2e-8 s after rest, by a spring
   // whose stretch was the difference of the shaker's place then and at rest (152_5577); by collocation, a mass at rest
-  // on its stop that the rounding of a basis moves (155_3560: Zeno); and, the judge's, speeds of a beam all but at rest
-  // (152_7026).
+  // on its stop that the rounding of a basis moves (155_3560: Zeno); a bounce at a stop without a gap, dying out beside
+  // the speed of a belt it never meets (162_8782: Zeno); a block without any spring whose load is lost while it sticks
+  // (165_5528: a Zeno of no period), or whose slide ends behind a contact spring, its rate measured by itself
+  // (166_6314); and, the judge's, speeds of a beam all but at rest (152_7026).
   std::vector<std::pair<std::uint64_t, std::uint64_t>> scenes;
   for (const auto& file : std::filesystem::directory_iterator(SLIPMODE_SOURCE_DIR "/tests/selftest/scenes")) {
     const std::string name = file.path().stem();
