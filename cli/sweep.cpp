@@ -115,7 +115,8 @@ Report run(const Session& session, SweepRequest request) {
 }  // namespace
 
 Verb add_sweep(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("sweep", "settled motion against one key of the scene");
+  CLI::App* command =
+      app.add_subcommand("sweep", "settled motion against one key of the scene, on a belt or under a shaker");
   const auto arguments = std::make_shared<SweepRequest>();
   command->add_option("SCENE", arguments->scene, "scene file (TOML)")->required();
   command->add_option("--over", arguments->over, "key and range: KEY=FROM:TO:STEP")->required();
@@ -126,6 +127,7 @@ Verb add_sweep(CLI::App& app) {
                       "lnm:10, lnm+static:4, mass-pom:3");
   command->footer(
       "Time simulated at each value: [validation] transient, block, sweep_limit; under a shaker cycles.\n"
+      "Under a force: 'slipmode orbit continue' and 'orbit map'.\n"
       "Example:\n  slipmode sweep datasets/chain10/scene.toml --over drive.speed=0.5:0.001:0.001 --follow "
       "-o sweep.h5\n"
       "  slipmode sweep datasets/beam_sweep/scene.toml --over drive.frequency=5:60:0.5 --model pomf:3 -o sweep.h5");

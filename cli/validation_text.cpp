@@ -34,6 +34,33 @@ std::vector<std::string> share_cells(const ShareRow& row) {
           significant(row.lyapunov ? row.lyapunov->bits : kNone, 3)};
 }
 
+/// A reason without its numbers, which differ from case to case.
+std::string kind_of(std::string reason) {
+  std::erase_if(reason, [](char c) { return c >= '0' && c <= '9'; });
+  return reason;
+}
+
+/// Why something failed: one example of each kind of reason, with how often it was met.
+class Failures {
+ public:
+  void add(const std::string& reason, const std::string& of) {
+    auto& [example, times] = kinds_[kind_of(reason)];
+    if (times++ == 0) example = fmt::format("{}: {}", of, reason);
+  }
+  /// @param word  that stands for it in a table
+  [[nodiscard]] std::string text(const char* word) const {
+    std::string out;
+    for (const auto& [kind, met] : kinds_) {
+      const auto& [example, times] = met;
+      out += fmt::format("  {}{} {}\n", word, times == 1 ? ":" : fmt::format(", {} times: e.g.", times), example);
+    }
+    return out;
+  }
+
+ private:
+  std::map<std::string, std::pair<std::string, int>> kinds_;
+};
+
 /// One row per number of modes, all bases side by side.
 std::string shares_text(const ValidationReport& report) {
   std::vector<std::string> header = {"modes"};
@@ -51,7 +78,13 @@ std::string shares_text(const ValidationReport& report) {
     }
     table.add(cells);
   }
-  return table.str();
+  Failures failures;
+  for (const CandidateReport& candidate : report.candidates) {
+    for (const ShareRow& row : candidate.shares) {
+      if (!row.failure.empty()) failures.add(row.failure, fmt::format("{} {}s", row.modes, candidate.name));
+    }
+  }
+  return table.str() + failures.text("failed");
 }
 
 /// ΔX and ΔE where both have the same period, else what the reduced model does instead.
@@ -89,28 +122,16 @@ std::vector<SpeedOrbits> orbits_by_speed(const ValidationReport& report) {
   return out;
 }
 
-/// A reason without its numbers, which differ from case to case.
-std::string kind_of(std::string reason) {
-  std::erase_if(reason, [](char c) { return c >= '0' && c <= '9'; });
-  return reason;
-}
-
 /// Why there is no orbit: one example of each kind of reason, with how often it was met.
 std::string orbit_failures(const ValidationReport& report) {
-  std::map<std::string, std::pair<std::string, int>> kinds;
+  Failures failures;
   for (const CandidateReport& candidate : report.candidates) {
     for (const OrbitRow& row : candidate.orbits) {
       if (row.failure.empty()) continue;
-      auto& [example, times] = kinds[kind_of(row.failure)];
-      if (times++ == 0)
-        example = fmt::format("{} {}s at V = {:g}: {}", row.modes, candidate.name, row.speed, row.failure);
+      failures.add(row.failure, fmt::format("{} {}s at V = {:g}", row.modes, candidate.name, row.speed));
     }
   }
-  std::string out;
-  for (const auto& entry : kinds) {
-    out += fmt::format("  none, {} times: e.g. {}\n", entry.second.second, entry.second.first);
-  }
-  return out;
+  return failures.text("none");
 }
 
 std::string orbits_text(const ValidationReport& report) {

@@ -51,10 +51,11 @@ void check(const dynamics::HybridSystem& system, const State& guess, const Shoot
       fmt::format("{} segment guesses were given for {} segments", options.segment_guesses.size(), options.segments));
   if (!options.half_period) return;
   require(is_symmetric(system),
-          "half_period needs a system that is its own mirror image: no constant load or offset, contacts that press "
-          "equally to both sides, odd harmonics only");
-  require(system.drive().period().has_value() && options.order % 2 == 1,
-          fmt::format("half_period needs a periodic drive and an odd order, not {}", options.order));
+          "a symmetric orbit (half_period) needs a system that is its own mirror image: no constant load or offset, "
+          "contacts that press equally to both sides, odd harmonics only");
+  require(
+      system.drive().period().has_value() && options.order % 2 == 1,
+      fmt::format("a symmetric orbit (half_period) needs a periodic drive and an odd order, not {}", options.order));
 }
 
 /// Shooting as `descend` solves it: closing conditions and, where the period is unknown, the phase.

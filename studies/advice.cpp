@@ -44,10 +44,7 @@ Asked by_the_motion(const scene::Scene& scene, double bound, const RunOptions& r
     const trade::Schedule schedule = trade::schedule_of(scene);
     const trade::Parting found_there = trade::parting(model, found.end, kPartingStarts, schedule, run.stop);
     const trade::Parting at_first = trade::parting(model, start, 1, schedule, run.stop);
-    if (found_there.reach == 0.0 && at_first.reach == 0.0)
-      throw InvalidInput(
-          "initial: nothing moves from the scene's start on, so there is nothing to advise about; give "
-          "initial.displacement or initial.velocity, or initial.at = \"rest\"");
+    trade::require_motion(at_first, found_there);
     out.dies_out = scene.drive.belt() != nullptr && *out.exponent + out.exponent_error < 0.0 &&
                    found_there.reach <= kGone * at_first.reach;
     if (out.dies_out) {

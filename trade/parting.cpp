@@ -1,5 +1,5 @@
+#include <slipmode/core/errors.hpp>
 #include <slipmode/trade/parting.hpp>
-
 #include "trade/internal/horizon.hpp"
 
 #include <cmath>
@@ -29,6 +29,14 @@ Parting parting(const Case& model, const dynamics::State& from, int starts, cons
   }
   if (size <= kStill * kStill * whole) return {};
   return {.apart = 100.0 * std::sqrt(apart / size), .reach = std::sqrt(size / static_cast<double>(starts * columns))};
+}
+
+void require_motion(const Parting& from_start, const Parting& later) {
+  if (from_start.reach == 0.0 && later.reach == 0.0)
+    throw InvalidInput(
+        "initial: nothing moves from the scene's start on, so there is nothing to compare; give initial.displacement "
+        "or "
+        "initial.velocity, or initial.at = \"rest\"");
 }
 
 }  // namespace slipmode::trade

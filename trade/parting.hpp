@@ -20,4 +20,7 @@ struct Parting {
 [[nodiscard]] Parting parting(const Case& model, const dynamics::State& from, int starts, const Schedule& schedule,
                               const StopFlag* stop = nullptr);
 
+/// @throws InvalidInput  where nothing moves, neither from the scene's start on nor later: there is nothing to compare
+void require_motion(const Parting& from_start, const Parting& later);
+
 }  // namespace slipmode::trade

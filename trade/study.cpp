@@ -120,8 +120,10 @@ class Work {
   [[nodiscard]] bool has_died_out() const {
     constexpr double kGone = 1e-6;
     if (scene_.drive.belt() == nullptr) return false;
-    const auto reach = [&](const dynamics::State& from) { return parting(*model_, from, 1, schedule_, stop()).reach; };
-    return reach(ground_.motions.front().end) <= kGone * reach(starts_.front());
+    const Parting later = parting(*model_, ground_.motions.front().end, 1, schedule_, stop());
+    const Parting from_start = parting(*model_, starts_.front(), 1, schedule_, stop());
+    require_motion(from_start, later);
+    return later.reach <= kGone * from_start.reach;
   }
 
   /// The scatter is that of the motion which the scene's own start ends on. Of runs that end elsewhere, told by ten

@@ -244,6 +244,10 @@ TEST(Study, OfAMotionThatDiesOutIsFromTheScenesStartOn) {
   for (const Measure measure : {Measure::kPoints, Measure::kSpread, Measure::kEnergy, Measure::kStick})
     EXPECT_TRUE(std::isnan(at(found.rows[0].error, measure)));
   EXPECT_EQ(recommendations(found, 1.0).size(), 2U) << "dX and dE";
+  // Let go within reach of friction, k |x| < mu N, it never moves.
+  scene::Scene still = scene;
+  still.initial.displacement[0] = 0.5e-4;
+  EXPECT_THROW((void)study(still, reference_of(still), {as_it_stands(still)}, {}, options), InvalidInput);
 }
 
 TEST(Study, IsTheSameForAnyNumberOfThreadsAndGoesOnWhereItStopped) {
