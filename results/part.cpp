@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 constexpr const char* kHeadTable = "#part";  // before all others in a part, which is sorted
 
 PartHead head_in(const JournalRecord& record, const fs::path& path) {
-  constexpr std::size_t kMost = 10'000'000;  // as many as a sweep has values
+  constexpr std::size_t kMostParts = 10'000'000;  // as many as a sweep has values
   try {
     const auto json = nlohmann::json::parse(record.note);
     PartHead head{
@@ -29,7 +29,7 @@ PartHead head_in(const JournalRecord& record, const fs::path& path) {
         .words = json.at("words"),
         .scene = {.path = json.at("scene_path"), .text = json.at("scene_text"), .overrides = json.at("overrides")}};
     const auto& [number, count] = head.shard;
-    if (count >= 1 && number <= count && count <= kMost) return head;
+    if (count >= 1 && number <= count && count <= kMostParts) return head;
     throw InvalidInput(fmt::format("{}: its head says shard {}; make it anew", path.string(), to_string(head.shard)));
   } catch (const nlohmann::json::exception& error) {
     throw InvalidInput(fmt::format("{}: its head cannot be read ({}); make it anew", path.string(), error.what()));

@@ -24,7 +24,7 @@ constexpr double kDifferenceStep = 1e-6;
 /// Springs' forces that reach this much further to one side, of their largest, need not be moved.
 constexpr double kMiddle = 1e-6;
 /// Of an orbit, to tell how far forces reach: their largest values to 1e-4.
-constexpr int kSamples = 256;
+constexpr int kProbes = 256;
 
 /// Middles of the ranges of rows.
 Eigen::VectorXd middles(const Eigen::MatrixXd& values) {
@@ -44,7 +44,7 @@ Eigen::VectorXd way_to_middle(const dynamics::HybridSystem& system, const Period
     own_states.push_back(2 * system.size() + system.internal_begin(static_cast<int>(c)));
   }
   if (held.empty()) return {};
-  dynamics::SimulateOptions options{.duration = orbit.period, .sample = orbit.period / kSamples, .keep_events = false};
+  dynamics::SimulateOptions options{.duration = orbit.period, .sample = orbit.period / kProbes, .keep_events = false};
   options.output = dynamics::SimulateOptions::Output::kContacts;
   options.flow.audit = false;
   const dynamics::Trajectory run = dynamics::simulate(system, orbit.start, options);
