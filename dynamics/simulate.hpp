@@ -68,7 +68,8 @@ struct FlowOptions {
   /// Prove step by step that no event is passed, see FlowStatistics::certified. The closed form always does.
   bool certify = false;
   int max_events_per_window = 200;  ///< more events than this within `zeno_window` is reported as Zeno
-  /// [s]; 0: one hundredth of the shortest natural period, of contacts on their own springs and stops too
+  /// [s]; 0: one hundredth of the shortest natural period, of contacts on their own springs and stops too; without any,
+  /// 1e-12 of the time
   double zeno_window = 0.0;
 };
 

@@ -2,7 +2,7 @@
 # What builds and tests do not show: scripts/check_sources.sh [format] [alone] [everything-alone] [tidy]
 #   format  clang-format finds nothing to change in any tracked source
 #   alone   every source of library and executable that changed since the previous commit, or includes a header that did,
-#           compiles by itself, and so does every such header without a source of its name: the builds join a dozen
+#           compiles by itself, and so does every such header without a source of its name: the builds join two dozen
 #           sources, which hides an include that is missing. What is not reached after 90 seconds stays unread, changed
 #           sources come first. everything-alone: all of them, some ten minutes of processor
 #   tidy    clang-tidy on the sources that changed since the previous commit, 90 seconds too
