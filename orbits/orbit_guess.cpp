@@ -119,7 +119,7 @@ RecurrenceGuess recurrence_guess(const dynamics::HybridSystem& system, const Sta
         fmt::format("a recurrence needs a transient ≥ 0, a duration > 0 and max_returns ≥ 1; found {}, "
                     "{} and {}",
                     transient, duration, max_returns));
-  constexpr int kStretches = 8;
+  constexpr int kWatches = 8;
   constexpr double kNear = 1e-3;
   Watched seen = watched(system, advanced(system, start, transient), duration);
   if (seen.passes.size() < 2)
@@ -130,7 +130,7 @@ RecurrenceGuess recurrence_guess(const dynamics::HybridSystem& system, const Sta
         start.time + transient, stacked(start), std::numeric_limits<double>::quiet_NaN());
   const RecurrenceGuess first = best_return(seen.passes, max_returns);
   RecurrenceGuess last = first;
-  for (int stretch = 1; stretch < kStretches && last.mismatch > kNear; ++stretch) {
+  for (int stretch = 1; stretch < kWatches && last.mismatch > kNear; ++stretch) {
     seen = watched(system, seen.end, duration);
     if (seen.passes.size() < 2) return first;
     last = best_return(seen.passes, max_returns);
