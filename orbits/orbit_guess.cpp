@@ -128,7 +128,7 @@ RecurrenceGuess recurrence_guess(const dynamics::HybridSystem& system, const Sta
                     "longer (time.duration)",
                     duration),
         start.time + transient, stacked(start), std::numeric_limits<double>::quiet_NaN());
-  const RecurrenceGuess first = best_return(seen.passes, max_returns);
+  RecurrenceGuess first = best_return(seen.passes, max_returns);
   RecurrenceGuess last = first;
   for (int stretch = 1; stretch < kWatches && last.mismatch > kNear; ++stretch) {
     seen = watched(system, seen.end, duration);
