@@ -97,6 +97,7 @@ results::Table judgements(const std::string& description, const std::vector<std:
 
 std::vector<std::string> names_of(const std::vector<trade::Effect>& effects, const std::vector<std::size_t>& some) {
   std::vector<std::string> names;
+  names.reserve(some.size());
   for (const std::size_t e : some) names.push_back(effects[e].name);
   return names;
 }
