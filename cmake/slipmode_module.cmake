@@ -28,10 +28,11 @@ endif()
 # in small inlined functions, would lose most of their fused operations. README.md says what it means for results.
 target_compile_options(slipmode_flags INTERFACE -ffp-contract=fast)
 if(SLIPMODE_SANITIZE)
-  # Checks of each pointer before each use double the time to compile; null and stray pointers the address sanitizer finds.
-  # Eigen's blocks of empty matrices are offsets from null (pointer-overflow).
-  target_compile_options(slipmode_flags INTERFACE -fsanitize=address,undefined
+  # Checks of each pointer before each use double the time to compile, of kernels tenfold; null and stray pointers the
+  # address sanitizer finds. Eigen's blocks of empty matrices are offsets from null (pointer-overflow).
+  set(SLIPMODE_SANITIZER_FLAGS -fsanitize=address,undefined
     -fno-sanitize=null,alignment,object-size,vptr,pointer-overflow -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_compile_options(slipmode_flags INTERFACE ${SLIPMODE_SANITIZER_FLAGS})
   target_link_options(slipmode_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
@@ -72,7 +73,7 @@ function(slipmode_module name)
     target_link_libraries(slipmode_${name} PRIVATE slipmode_light)
   endif()
   if(name STREQUAL dynamics)
-    # GCC takes half as long again for twice as many of its sources in one piece; everyone else's take less.
+    # GCC took half as long again for all of its sources in one piece; others measured took less.
     set_target_properties(slipmode_${name} PROPERTIES UNITY_BUILD_BATCH_SIZE 12)
   endif()
   target_sources(slipmode PRIVATE $<TARGET_OBJECTS:slipmode_${name}>)

@@ -76,8 +76,13 @@ double EventResolver::normal_load(const HybridPoint& point, int c) const {
 std::vector<ContactForces> EventResolver::laws_at(const HybridPoint& point) const {
   std::vector<ContactForces> laws = laws_;
   for (std::size_t c = 0; c < laws.size(); ++c)
-    if (laws[c].varies) laws[c] = laws[c].under(std::max(normal_load(point, static_cast<int>(c)), 0.0));
+    if (laws[c].varies) laws[c] = law_at(point, static_cast<int>(c));
   return laws;
+}
+
+ContactForces EventResolver::law_at(const HybridPoint& point, int c) const {
+  const ContactForces& law = laws_[static_cast<std::size_t>(c)];
+  return law.varies ? law.under(std::max(normal_load(point, c), 0.0)) : law;
 }
 
 double EventResolver::applied_force(const HybridPoint& point, int c) const {
@@ -90,7 +95,7 @@ double EventResolver::applied_force(const HybridPoint& point, int c) const {
                                     contact_velocity(c, point.x.data()));
   if (mode == ContactMode::kStick)
     return laws_[i].kind == LawKind::kCompliant ? laws_[i].stiffness * point.internal(internal_[i]) : 0.0;
-  if (laws_[i].varies) return laws_[i].under(std::max(normal_load(point, c), 0.0)).sliding(sign_of(mode), 0.0);
+  if (laws_[i].varies) return law_at(point, c).sliding(sign_of(mode), 0.0);
   return laws_[i].sliding(sign_of(mode), drive_.velocity(point.time) - contact_velocity(c, point.x.data()));
 }
 
@@ -110,7 +115,7 @@ double EventResolver::slide_velocity(const HybridPoint& point, int c, double dir
   if (load.v != 0.0) {
     Eigen::VectorXd force(model_.contacts);
     for (int d = 0; d < model_.contacts; ++d) force(d) = d == c ? 0.0 : point.force(d);
-    force(c) = direction * laws_[i].under(std::max(normal_load(point, c), 0.0)).onset(direction);
+    force(c) = direction * law_at(point, c).onset(direction);
     load_rate += load.v * (model_.acceleration_row.col(c).dot(Eigen::Map<const Eigen::VectorXd>(x, 2 * model_.np)) +
                            model_.load_acceleration(c) + model_.mobility.row(c).dot(force));
   }
@@ -267,7 +272,7 @@ void EventResolver::start(HybridPoint& point) const {
       stretch = 0.0;
       continue;
     }
-    const ContactForces law = laws_[c].varies ? laws_[c].under(normal_load(point, i)) : laws_[c];
+    const ContactForces law = law_at(point, i);
     const double force = law.stiffness * stretch;
     if (point.modes[c] == ContactMode::kStick && std::abs(force) > law.limit(force) * (1.0 + kAtLimit))
       point.modes[c] = force > 0 ? ContactMode::kSlipPositive : ContactMode::kSlipNegative;

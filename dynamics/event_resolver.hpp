@@ -125,6 +125,8 @@ class EventResolver {
   void turn_load(HybridPoint& point, int c) const;
   /// The laws at this instant's normal loads.
   [[nodiscard]] std::vector<ContactForces> laws_at(const HybridPoint& point) const;
+  /// Of one contact, under the load it has now.
+  [[nodiscard]] ContactForces law_at(const HybridPoint& point, int c) const;
   /// λ of a contact in its mode, unless it is rigid and sticks. A bristle's is the point's own.
   [[nodiscard]] double applied_force(const HybridPoint& point, int c) const;
   /// Of all contacts; may be the point's own.

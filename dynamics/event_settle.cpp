@@ -92,7 +92,7 @@ void EventResolver::settle_spring(HybridPoint& point, const Reached& reached) {
 
 void EventResolver::turn_compliant(HybridPoint& point, int c) const {
   const auto i = static_cast<std::size_t>(c);
-  const ContactForces law = laws_[i].varies ? laws_[i].under(std::max(normal_load(point, c), 0.0)) : laws_[i];
+  const ContactForces law = law_at(point, c);
   double& stretch = point.internal(internal_[i]);
   if (point.modes[i] != ContactMode::kStick) {
     stretch = law.sliding(sign_of(point.modes[i]), 0.0) / law.stiffness;
@@ -150,7 +150,8 @@ void EventResolver::turn_load(HybridPoint& point, int c) const {
 bool EventResolver::lets_go(const HybridPoint& point, int contact) const {
   const auto i = static_cast<std::size_t>(contact);
   return contact >= 0 && point.modes[i] == ContactMode::kStick && laws_[i].varies &&
-         decides_by_acceleration(point, i) && laws_at(point)[i].static_limit <= kTogether * limit_sizes(point)(contact);
+         decides_by_acceleration(point, i) &&
+         law_at(point, contact).static_limit <= kTogether * limit_sizes(point)(contact);
 }
 
 void EventResolver::settle_coupled(HybridPoint& point, const Reached& reached) {

@@ -34,9 +34,8 @@ Parting parting(const Case& model, const dynamics::State& from, int starts, cons
 void require_motion(const Parting& from_start, const Parting& later) {
   if (from_start.reach == 0.0 && later.reach == 0.0)
     throw InvalidInput(
-        "initial: nothing moves from the scene's start on, so there is nothing to compare; give initial.displacement "
-        "or "
-        "initial.velocity, or initial.at = \"rest\"");
+        "initial: nothing moves from the scene's start on, so there is nothing to compare; give "
+        "initial.displacement or initial.velocity, or initial.at = \"rest\"");
 }
 
 }  // namespace slipmode::trade

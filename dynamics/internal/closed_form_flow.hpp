@@ -84,7 +84,7 @@ class ClosedFormFlow {
     const DriveOverlay* overlay = nullptr;  ///< null for a belt
     double entered = 0.0;                   ///< under an overlay: when last,
     Eigen::VectorXd x_entered{};            ///< and its state then, the steady response included,
-    Eigen::VectorXd inputs_entered{};       ///< and inputs, constant until it is left
+    Eigen::VectorXd inputs_entered{};       ///< and inputs, of contacts with the drive's
     const AuditForms* forms = nullptr;      ///< for a shaker or a force; null where the audit integrates by quadrature
     std::unique_ptr<BeltWork> belt;         ///< for a belt of constant speed; the same
     std::unique_ptr<TangentMaps> maps;      ///< null until tangents are carried

@@ -63,6 +63,7 @@ Eigen::Vector2cd pair_from_rest(const ModalModel& pairs, Eigen::Index i, const E
   h = std::ldexp(h, -doublings);
   const Eigen::Matrix2d G{{pairs.g11(i), pairs.g12(i)}, {pairs.g21(i), pairs.g22(i)}};
   const Eigen::Vector2cd both = b + held;
+  const bool holds = !held.isZero(0.0);       // of pairs in resonance, moved in every step, it is
   Eigen::Vector2cd term = h * b, sum = term;  // hᵏ⁺¹/(k+1)! (Gᵏ b + Σ_{j>0} Gᵏ⁻ʲ (iw)ʲ both)
   Eigen::Vector2cd constant_term = h * held, constant = constant_term;  // of ∫ e^{G(h−s)} held ds
   Complex turned = h;                                                   // hᵏ⁺¹/(k+1)! (iw)ᵏ
@@ -70,13 +71,16 @@ Eigen::Vector2cd pair_from_rest(const ModalModel& pairs, Eigen::Index i, const E
     const double factor = h / (k + 1);
     turned *= Complex(0.0, w * factor);
     term = (factor * (G * term) + turned * both).eval();
-    constant_term = (factor * (G * constant_term)).eval();
     sum += term;
+    if (!holds) continue;
+    constant_term = (factor * (G * constant_term)).eval();
     constant += constant_term;
   }
   for (int k = 0; k < doublings; ++k, h *= 2.0) {
     const Eigen::Matrix2d free = pairs.exponential(i, h);
-    sum = (free * sum + std::polar(1.0, w * h) * sum + turned_by(w * h) * constant).eval();
+    sum = (free * sum + std::polar(1.0, w * h) * sum).eval();
+    if (!holds) continue;
+    sum += turned_by(w * h) * constant;
     constant += (free * constant).eval();
   }
   return sum;
