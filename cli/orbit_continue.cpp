@@ -92,6 +92,29 @@ struct Followed {
   studies::ContinuationRequest request;
 };
 
+studies::BalanceContinuation balances_of(const Session& session, const OrbitContinueArguments& arguments,
+                                         const Followed& followed, const studies::BalanceSearch& search) {
+  const studies::OrbitSearch& own = arguments.search.search;
+  return studies::continue_balance(followed.scene, followed.key, followed.basis, search, followed.request,
+                                   arguments.every, {.segments = own.segments, .tolerance = own.tolerance},
+                                   session.run_options());
+}
+
+studies::BalanceSearch balance_search_of(const OrbitContinueArguments& arguments) {
+  return studies::balance_search(arguments.balance.words, arguments.search.start, arguments.search.search.order);
+}
+
+std::string balance_command(const OrbitContinueArguments& arguments, const Followed& followed) {
+  return studies::command_of(followed.key, arguments.search.model, arguments.search.search, arguments.balance.words,
+                             arguments.search.start, arguments.every, followed.request);
+}
+
+/// Where Newton's method found no balance to begin with.
+Report no_balance(const Followed& followed, const studies::BalanceContinuation& found) {
+  const studies::Family at_start(scene::set_key(followed.scene, followed.key, found.start), {}, followed.basis);
+  return balance_report("orbit continue", at_start, found.found);
+}
+
 /// The branches stored and told; exit 3 where the main one was lost on its way, 130 where one was interrupted.
 Report store_and_tell(const OrbitContinueArguments& arguments, const Followed& followed, const std::string& command,
                       double start, const std::shared_ptr<const std::vector<results::NamedBranch>>& branches) {
@@ -117,21 +140,11 @@ Report store_and_tell(const OrbitContinueArguments& arguments, const Followed& f
 }
 
 Report run_balance(const Session& session, const OrbitContinueArguments& arguments, const Followed& followed) {
-  const studies::OrbitSearch& search = arguments.search.search;
-  const studies::BalanceContinuation found = studies::continue_balance(
-      followed.scene, followed.key, followed.basis,
-      studies::balance_search(arguments.balance.words, arguments.search.start, search.order), followed.request,
-      arguments.every, {.segments = search.segments, .tolerance = search.tolerance}, session.run_options());
-  if (found.branch.points.empty()) {
-    const studies::Family at_start(scene::set_key(followed.scene, followed.key, found.start), {}, followed.basis);
-    return balance_report("orbit continue", at_start, found.found);
-  }
+  const studies::BalanceContinuation found = balances_of(session, arguments, followed, balance_search_of(arguments));
+  if (found.branch.points.empty()) return no_balance(followed, found);
   const int harmonics = found.found.balance.harmonics;
-  Report report =
-      store_and_tell(arguments, followed,
-                     studies::command_of(followed.key, arguments.search.model, search, arguments.balance.words,
-                                         arguments.search.start, arguments.every, followed.request),
-                     found.start, studies::branches_of(found));
+  Report report = store_and_tell(arguments, followed, balance_command(arguments, followed), found.start,
+                                 studies::branches_of(found));
   report.data["by"] = "balance";
   report.data["harmonics"] = harmonics;
   if (!found.certificate) return report;
@@ -162,13 +175,30 @@ Report run_curves(const Session& session, const OrbitContinueArguments& argument
   const OrbitRange along = parse_range("--along", arguments.along, "drive.amplitude=0.5:2");
   studies::CurveRequest curve{.along = along.key, .from = along.from, .to = along.to};
   studies::read_point(arguments.point, curve);
-  const studies::OrbitSearch search = search_of(arguments.search, followed.scene);
-  const auto found = std::make_shared<const studies::SpecialCurves>(studies::special_curves(
-      followed.scene, followed.key, followed.basis, search, followed.request, curve, session.run_options()));
-  if (!found->base.found.converged()) return not_found("orbit continue", found->base.found);
-  return curves_report(
-      studies::plane_of(followed.scene, followed.key, followed.basis, curve, *found), found, followed.request, curve,
-      studies::command_of(followed.key, arguments.search.model, search, followed.request, curve), arguments.output);
+  const studies::CurvePlane plane =
+      studies::curve_plane(followed.scene, followed.key, followed.basis, followed.request, curve);
+  const Followed there{plane.scene, followed.key, followed.basis, followed.request};
+  const auto report = [&](std::vector<results::NamedBranch> branches, double start,
+                          const orbits::ShootingOptions& shooting, const std::string& command) {
+    const auto found = std::make_shared<const studies::SpecialCurves>(studies::special_curves(
+        plane, std::move(branches), start, followed.request, curve, shooting, session.run_options()));
+    return curves_report(studies::plane_of(followed.scene, followed.key, followed.basis, curve, *found), found,
+                         followed.request, curve, studies::command_of(command, curve), arguments.output);
+  };
+  if (arguments.balance.by == "balance") {
+    const studies::BalanceSearch search = balance_search_of(arguments);
+    studies::require_no_certificate(search);
+    const studies::BalanceContinuation found = balances_of(session, arguments, there, search);
+    if (found.branch.points.empty()) return no_balance(there, found);
+    return report(*studies::branches_of(found), found.start, {.tolerance = arguments.search.search.tolerance},
+                  balance_command(arguments, followed));
+  }
+  const studies::OrbitSearch search = search_of(arguments.search, there.scene);
+  studies::Continuation found =
+      studies::continue_orbit(there.scene, there.key, there.basis, search, there.request, session.run_options());
+  if (!found.found.converged()) return not_found("orbit continue", found.found);
+  return report(std::move(found.branches), found.start, studies::shooting_options(plane.family, search),
+                studies::command_of(there.key, arguments.search.model, search, there.request));
 }
 
 Report run(const Session& session, const OrbitContinueArguments& arguments) {
@@ -181,13 +211,13 @@ Report run(const Session& session, const OrbitContinueArguments& arguments) {
   followed.request.from = range.from;
   followed.request.to = range.to;
   const bool curves = !arguments.along.empty() || !arguments.point.empty();
-  if (curves && arguments.balance.by != "shooting")
-    throw InvalidInput("--along, --point: special points are followed by shooting; leave out --by " +
-                       arguments.balance.by);
-  if (arguments.balance.by == "balance") return run_balance(session, arguments, followed);
-  require_no_balance_options(arguments.balance);
-  if (arguments.every) throw InvalidInput("--every: of a balance's certificates; add --by balance --certify");
+  const bool balances = arguments.balance.by == "balance";
+  if (!balances) {
+    require_no_balance_options(arguments.balance);
+    if (arguments.every) throw InvalidInput("--every: of a balance's certificates; add --by balance --certify");
+  }
   if (curves) return run_curves(session, arguments, followed);
+  if (balances) return run_balance(session, arguments, followed);
   const studies::OrbitSearch search = search_of(arguments.search, scene);
   studies::Continuation found =
       studies::continue_orbit(scene, range.key, followed.basis, search, followed.request, run_options);
@@ -224,7 +254,9 @@ Verb add_orbit_continue(CLI::App& orbit) {
       "--harmonics 9 --certify -o balances.h5\n"
       "  slipmode orbit continue datasets/backlash_sdof/scene.toml --over drive.omega=0.9:1.8 --start 2.5,0 --point "
       "fold "
-      "--along drive.amplitude=0.2:2 -o folds.h5");
+      "--along drive.amplitude=0.2:2 -o folds.h5\n"
+      "  slipmode orbit continue datasets/play_oscillator/scene.toml --over drive.omega=0.9:1.3 --by balance --point "
+      "fold --along drive.amplitude=0.5:2 -o folds.h5");
   return {command, [arguments](const Session& session) { return run(session, *arguments); }};
 }
 

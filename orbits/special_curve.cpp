@@ -1,6 +1,7 @@
 #include <slipmode/orbits/special_curve.hpp>
 
 #include <slipmode/core/errors.hpp>
+#include "orbits/balance/internal/balance_branch_solver.hpp"
 #include "orbits/internal/branch_solver.hpp"
 #include "orbits/internal/branch_walk.hpp"
 
@@ -20,12 +21,29 @@ void check_special(const SpecialPoint& special, const KeyRange& over) {
     throw InvalidInput(what +
                        ": followed over two keys are folds, period doublings, symmetry breakings, Neimark-Sacker "
                        "points and grazings");
-  if (special.orbit.monodromy.size() == 0) throw InvalidInput(what + ": no orbit with monodromy comes with it");
+  if (!special.balance && special.orbit.monodromy.size() == 0)
+    throw InvalidInput(what + ": no orbit with monodromy comes with it");
   const auto [low, high] = std::minmax(over.from, over.to);
   if (!(special.parameter >= low && special.parameter <= high))
     throw InvalidInput(fmt::format("{} is outside its range {} … {}", what, over.from, over.to));
   if (special.kind == SpecialKind::kSymmetryBreaking && !special.orbit.symmetric)
     throw InvalidInput(what + ": the symmetric orbit beside it was not found; start from the symmetric branch");
+  const bool shifts =
+      special.kind == SpecialKind::kSymmetryBreaking ? special.orbit.crossings == 0 : !special.orbit.symmetric;
+  const bool family = special.balance ? special.balance->family : special.orbit.family.cols() > 0;
+  if (family && shifts)
+    throw InvalidInput(what + " belongs to a family of orbits, of which none is told from the others");
+}
+
+/// From its special point both ways.
+template <class Solver>
+Branch walk_curve(const Solver& solver, const SpecialPoint& special, double along, const ContinuationOptions& options) {
+  const BranchPoint first{
+      .parameter = along, .orbit = special.orbit, .balance = special.balance, .other = special.parameter};
+  const std::string met = solver.curve_end(solver.evaluate(solver.unknowns_of(first)), special.orbit);
+  if (!met.empty())
+    throw InvalidInput(fmt::format("the {} at {:.9g}: {}", to_string(special.kind), special.parameter, met));
+  return walk_branch(solver, options, first);
 }
 
 }  // namespace
@@ -57,18 +75,8 @@ Branch continue_special(const dynamics::PlaneFamily& family, const SpecialPoint&
   own.arclength = true;
   own.min_step = std::max(own.min_step, kLeastCurveStep);
   own.shooting.half_period = special.orbit.symmetric;
-  const BranchSolver solver(family, special, along, over, own);
-  const BranchPoint first{.parameter = along, .orbit = special.orbit, .other = special.parameter};
-  const std::string met = solver.curve_end(solver.evaluate(solver.unknowns_of(first)), special.orbit);
-  if (!met.empty())
-    throw InvalidInput(fmt::format("the {} at {:.9g}: {}", to_string(special.kind), special.parameter, met));
-  const bool shifts =
-      special.kind == SpecialKind::kSymmetryBreaking ? special.orbit.crossings == 0 : !special.orbit.symmetric;
-  if (special.orbit.family.cols() > 0 && shifts)
-    throw InvalidInput(
-        fmt::format("the {} at {:.9g} belongs to a family of orbits, of which none is told from the others",
-                    to_string(special.kind), special.parameter));
-  return walk_branch(solver, own, first);
+  if (special.balance) return walk_curve(BalanceBranchSolver(family, special, along, over, own), special, along, own);
+  return walk_curve(BranchSolver(family, special, along, over, own), special, along, own);
 }
 
 }  // namespace slipmode::orbits

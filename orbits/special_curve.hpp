@@ -25,10 +25,18 @@ struct KeyRange {
 ///     grazing            clearance left where the contact is nearest to its stop, without the touch
 ///
 /// with its derivatives by differences in the two directions in which orbits go on. Curves of folds pass their cusps.
+/// A special point of a branch of balances is followed by balances of its order: unknowns as continue_balance, and
+///
+///     fold               least singular value of Newton's matrix
+///     symmetry breaking  that of the even orders' block, along odd ones
+///     period doubling    Π (1 + μ), and the pair as above: by Hill's method
+///     grazing            clearance at the series' extreme
+///
+/// so that a curve passes through that order's own special points, not the exact ones.
 /// The points' `parameter` is `along`, their `other` is `over`; special points of the curve are cusps, and changes of
 /// the word. It is followed both ways from the special point; a curve that closes is followed once.
 /// @param family   over (over, along)
-/// @param special  of a branch over `over`, at the value `along` of the second key
+/// @param special  of a branch over `over`, at the value `along` of the second key; of its `balance` where it has one
 /// @param over     must hold special.parameter; the curve ends at its ends too
 /// @param options  range and steps in `along`; `both_ways` is not read
 /// @throws InvalidInput  for a kind that cannot be followed, a grazing of something else than a stop, a Hopf point, a

@@ -213,22 +213,60 @@ std::optional<studies::CurveRequest> curve_request(Keywords& keywords) {
   return request;
 }
 
-Result continue_special(const Scene& scene, const std::string& over, const studies::OrbitSearch& search,
+/// What curves leave, by shooting or by balance; one of the two found none where `branches` is empty.
+struct CurveBase {
+  std::vector<results::NamedBranch> branches = {};
+  double start = 0.0;
+  orbits::ShootingResult orbit = {};
+  studies::BalanceFound balance = {};
+  orbits::ShootingOptions shooting = {};
+  std::string command;
+};
+
+CurveBase curve_base(const studies::CurvePlane& plane, const std::optional<pod::NamedBasis>& basis,
+                     const std::string& over, const Method& method, const studies::ContinuationRequest& request,
+                     const std::string& model, const studies::RunOptions& run) {
+  const studies::OrbitSearch& search = method.search;
+  if (method.balances) {
+    studies::require_no_certificate(method.balance);
+    studies::BalanceContinuation found =
+        studies::continue_balance(plane.scene, over, basis, method.balance, request, {}, certifying(search), run);
+    CurveBase out{.start = found.start,
+                  .shooting = {.tolerance = search.tolerance},
+                  .command = studies::command_of(over, model, search, method.words, method.start, {}, request)};
+    if (!found.branch.points.empty()) out.branches = *studies::branches_of(found);
+    out.balance = std::move(found.found);
+    return out;
+  }
+  studies::Continuation found = studies::continue_orbit(plane.scene, over, basis, search, request, run);
+  return {.branches = std::move(found.branches),
+          .start = found.start,
+          .orbit = std::move(found.found),
+          .shooting = studies::shooting_options(plane.family, search),
+          .command = studies::command_of(over, model, search, request)};
+}
+
+Result continue_special(const Scene& scene, const std::string& over, const Method& method,
                         const studies::ContinuationRequest& request, const studies::CurveRequest& curve,
                         const ModelChoice& choice, Call& call) {
-  const auto [found, result] = call([&] {
+  const auto [base, found, result] = call([&] {
     const auto basis = choice.basis(scene, call.options());
-    const auto own = std::make_shared<const studies::SpecialCurves>(
-        studies::special_curves(scene, over, basis, search, request, curve, call.options()));
-    call.options().check_interrupt();
+    const studies::CurvePlane plane = studies::curve_plane(scene, over, basis, request, curve);
+    CurveBase own = curve_base(plane, basis, over, method, request, choice.word(), call.options());
+    std::shared_ptr<const studies::SpecialCurves> curves;
     std::optional<Result> kept;
-    if (!own->curves.empty())
-      kept.emplace(studies::content_of(studies::plane_of(scene, over, basis, curve, *own), own,
-                                       studies::command_of(over, choice.word(), search, request, curve),
-                                       call.options()));
-    return std::pair(own, std::move(kept));
+    if (!own.branches.empty()) {
+      curves = std::make_shared<const studies::SpecialCurves>(studies::special_curves(
+          plane, std::move(own.branches), own.start, request, curve, own.shooting, call.options()));
+      call.options().check_interrupt();
+      if (!curves->curves.empty())
+        kept.emplace(studies::content_of(studies::plane_of(scene, over, basis, curve, *curves), curves,
+                                         studies::command_of(own.command, curve), call.options()));
+    }
+    return std::tuple(std::move(own), curves, std::move(kept));
   });
-  if (!found->base.found.converged()) raise_not_found(found->base.found);
+  if (!found && method.balances) require_balance(base.balance, base.balance.trials, result);
+  if (!found) raise_not_found(base.orbit);
   if (!result) raise(NumericalFailure(studies::nothing_followed(*found, over, request, curve), 0.0, {}, 0.0));
   for (const results::NamedBranch& one : found->curves) require_whole(one.branch, found->along, *result);
   return *result;
@@ -246,15 +284,12 @@ Result continue_orbit(const Scene& scene, const std::string& over, double to, co
   if (request.from == request.to)
     throw InvalidInput(fmt::format("continue_orbit: to = {}: the range has no length", to));
   const std::optional<studies::CurveRequest> curve = curve_request(keywords);
-  if (curve && method.balances)
-    throw InvalidInput(
-        "continue_orbit: along, point: special points are followed by shooting; leave out by = 'balance'");
   BranchCertificates own;
   if (method.balances) keywords.read(own);
   const ModelChoice choice(keywords);
   Call call(keywords);
+  if (curve) return continue_special(scene, over, method, request, *curve, choice, call);
   if (method.balances) return continue_balance(scene, over, method, request, own, choice, call);
-  if (curve) return continue_special(scene, over, search, request, *curve, choice, call);
   const auto [found, result] = call([&] {
     const auto basis = choice.basis(scene, call.options());
     studies::Continuation continuation = studies::continue_orbit(scene, over, basis, search, request, call.options());

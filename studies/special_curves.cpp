@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace slipmode::studies {
 namespace {
@@ -41,13 +42,14 @@ bool is_of(const SpecialPoint& point, SpecialKind kind) {
 bool passes(const orbits::Branch& curve, const SpecialPoint& point, const ContinuationRequest& over,
             const CurveRequest& along, double value) {
   constexpr double kSagitta = 0.06, kRounding = 1e-7;
+  const auto trace_of = [](const orbits::PeriodicOrbit& orbit) { return orbit.multipliers.sum().real(); };
   const double range = std::abs(over.to - over.from), own = std::abs(along.to - along.from),
-               trace = point.orbit.monodromy.trace();
+               trace = trace_of(point.orbit);
   for (std::size_t k = 1; k < curve.points.size(); ++k) {
     const BranchPoint &a = curve.points[k - 1], &b = curve.points[k];
     const double before = a.parameter - value, after = b.parameter - value;
     if (before * after > 0.0 || before == after || a.orbit.order != point.orbit.order) continue;
-    const double one = a.orbit.monodromy.trace(), other = b.orbit.monodromy.trace();
+    const double one = trace_of(a.orbit), other = trace_of(b.orbit);
     const double alike = std::abs(other - one) + 1e-2 * (1.0 + std::abs(trace));
     const bool jumps = along.kind == SpecialKind::kGrazing;  // from one side of a grazing to the other
     if (!jumps && std::max(std::abs(one - trace), std::abs(other - trace)) > 2.0 * alike) continue;
@@ -58,9 +60,10 @@ bool passes(const orbits::Branch& curve, const SpecialPoint& point, const Contin
   return false;
 }
 
-std::vector<const SpecialPoint*> points_of(const Continuation& base, const CurveRequest& curve) {
+std::vector<const SpecialPoint*> points_of(const std::vector<results::NamedBranch>& branches,
+                                           const CurveRequest& curve) {
   std::vector<const SpecialPoint*> found;
-  for (const results::NamedBranch& branch : base.branches)
+  for (const results::NamedBranch& branch : branches)
     for (const SpecialPoint& point : branch.branch.special)
       if (is_of(point, curve.kind)) found.push_back(&point);
   if (!curve.near || found.empty()) return found;
@@ -96,32 +99,37 @@ std::string point_text(const CurveRequest& request) {
   return word_of(request.kind) + (request.near ? fmt::format(":{}", *request.near) : "");
 }
 
-SpecialCurves special_curves(const scene::Scene& scene, const std::string& key,
-                             const std::optional<pod::NamedBasis>& basis, const OrbitSearch& search,
-                             const ContinuationRequest& request, const CurveRequest& curve, const RunOptions& run) {
+CurvePlane curve_plane(const scene::Scene& scene, const std::string& key, const std::optional<pod::NamedBasis>& basis,
+                       const ContinuationRequest& request, const CurveRequest& curve) {
   if (curve.along == key)
     throw InvalidInput(fmt::format("--along {}: is the key of --over; name a second one", curve.along));
   const double own = scene::get_continuous_key(scene, curve.along);
   const auto [low, high] = std::minmax(curve.from, curve.to);
   const double along = low <= own && own <= high ? own : curve.from;
   const scene::Scene there = along == own ? scene : scene::set_key(scene, curve.along, along);
-  const Family plane(there, {key, curve.along}, basis);
+  CurvePlane plane{there, Family(there, {key, curve.along}, basis), along};
   for (const double end : {curve.from, curve.to}) {
     (void)scene::set_key(there, curve.along, end);
-    (void)plane.at({request.from, end});
+    (void)plane.family.at({request.from, end});
   }
-  SpecialCurves out{.base = continue_orbit(there, key, basis, search, request, run), .along = along};
-  orbits::ContinuationOptions options{.from = curve.from,
-                                      .to = curve.to,
-                                      .step = request.step,
-                                      .max_step = request.max_step,
-                                      .max_points = request.max_points,
-                                      .shooting = shooting_options(plane, search)};
-  out.interrupted = is_interrupted(out.base.branches);
-  for (const SpecialPoint* point : points_of(out.base, curve)) {
+  return plane;
+}
+
+SpecialCurves special_curves(const CurvePlane& plane, std::vector<results::NamedBranch> branches, double start,
+                             const ContinuationRequest& request, const CurveRequest& curve,
+                             const orbits::ShootingOptions& shooting, const RunOptions& run) {
+  SpecialCurves out{.branches = std::move(branches), .start = start, .along = plane.along};
+  const orbits::ContinuationOptions options{.from = curve.from,
+                                            .to = curve.to,
+                                            .step = request.step,
+                                            .max_step = request.max_step,
+                                            .max_points = request.max_points,
+                                            .shooting = shooting};
+  out.interrupted = is_interrupted(out.branches);
+  for (const SpecialPoint* point : points_of(out.branches, curve)) {
     if (out.interrupted) break;
     const auto followed = [&](const results::NamedBranch& other) {
-      return passes(other.branch, *point, request, curve, along);
+      return passes(other.branch, *point, request, curve, plane.along);
     };
     if (std::ranges::any_of(out.curves, followed)) continue;
     const std::string title = fmt::format("{} at {:.8g}", orbits::to_string(point->kind), point->parameter);
@@ -129,9 +137,9 @@ SpecialCurves special_curves(const scene::Scene& scene, const std::string& key,
       out.curves.push_back({title, orbits::continue_special(
                                        [&plane, &run](double over, double value) {
                                          run.check_interrupt();
-                                         return plane.at({over, value});
+                                         return plane.family.at({over, value});
                                        },
-                                       *point, along, {request.from, request.to}, options)});
+                                       *point, plane.along, {request.from, request.to}, options)});
       out.interrupted = is_interrupted(out.curves);
     } catch (const InvalidInput& refused) {
       out.refused.emplace_back(refused.what());
@@ -142,10 +150,17 @@ SpecialCurves special_curves(const scene::Scene& scene, const std::string& key,
   return out;
 }
 
+void require_no_certificate(const BalanceSearch& search) {
+  if (search.certify || search.error)
+    throw InvalidInput(
+        "--certify, --error: not of curves by balance, as beside a fold there may be no orbit; give --harmonics a "
+        "number, and see how far the curve moves with it, or beside the exact one by shooting");
+}
+
 Family plane_of(const scene::Scene& scene, const std::string& key, const std::optional<pod::NamedBasis>& basis,
                 const CurveRequest& curve, const SpecialCurves& found) {
-  return Family(scene::set_key(scene::set_key(scene, key, found.base.start), curve.along, found.along),
-                {key, curve.along}, basis);
+  return Family(scene::set_key(scene::set_key(scene, key, found.start), curve.along, found.along), {key, curve.along},
+                basis);
 }
 
 std::string nothing_followed(const SpecialCurves& found, const std::string& key, const ContinuationRequest& request,
@@ -153,10 +168,10 @@ std::string nothing_followed(const SpecialCurves& found, const std::string& key,
   if (!found.curves.empty()) return {};
   if (!found.refused.empty()) return fmt::format("{}", fmt::join(found.refused, "; "));
   std::vector<std::string> others;
-  for (const results::NamedBranch& branch : found.base.branches)
+  for (const results::NamedBranch& branch : found.branches)
     for (const SpecialPoint& point : branch.branch.special)
       others.push_back(fmt::format("{} at {:.8g}", orbits::to_string(point.kind), point.parameter));
-  const orbits::Branch& main = found.base.branches.front().branch;
+  const orbits::Branch& main = found.branches.front().branch;
   const bool whole = main.end == orbits::BranchEnd::kRange;
   return fmt::format("no {} of {} between {} and {} with {} = {}: the branch has {}{}", orbits::to_string(curve.kind),
                      key, request.from, request.to, curve.along, found.along,
@@ -164,10 +179,9 @@ std::string nothing_followed(const SpecialCurves& found, const std::string& key,
                      whole ? "; widen --over" : "; it ends early: " + main.reason);
 }
 
-std::string command_of(const std::string& key, const std::string& model, const OrbitSearch& search,
-                       const ContinuationRequest& request, const CurveRequest& curve) {
-  return fmt::format("{} --along {}={}:{} --point {}", command_of(key, model, search, request), curve.along, curve.from,
-                     curve.to, point_text(curve));
+std::string command_of(const std::string& continuation, const CurveRequest& curve) {
+  return fmt::format("{} --along {}={}:{} --point {}", continuation, curve.along, curve.from, curve.to,
+                     point_text(curve));
 }
 
 results::Content content_of(const Family& model, std::shared_ptr<const SpecialCurves> found, const std::string& command,

@@ -2,6 +2,7 @@
 
 #include <slipmode/core/errors.hpp>
 #include "orbits/balance/internal/balance_orbit.hpp"
+#include "orbits/balance/internal/balance_touch.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -34,13 +35,26 @@ BalanceAt::BalanceAt(dynamics::HybridSystem own, int order, int harmonics)
 
 BalanceBranchSolver::BalanceBranchSolver(dynamics::SystemFamily family, const Balance& from, double parameter,
                                          const ContinuationOptions& options, bool symmetric)
+    : BalanceBranchSolver([own = std::move(family)](double, double at) { return own(at); }, from, parameter, 0.0,
+                          options, symmetric, std::nullopt) {}
+
+BalanceBranchSolver::BalanceBranchSolver(dynamics::PlaneFamily family, const SpecialPoint& special, double parameter,
+                                         const KeyRange& other, const ContinuationOptions& options)
+    : BalanceBranchSolver(std::move(family), *special.balance, parameter, special.parameter, options,
+                          special.orbit.symmetric, condition_of(special, other)) {}
+
+BalanceBranchSolver::BalanceBranchSolver(dynamics::PlaneFamily family, const Balance& from, double parameter,
+                                         double other, const ContinuationOptions& options, bool symmetric,
+                                         const std::optional<CurveCondition>& condition)
     : family_(std::move(family)),
       options_(options),
+      condition_(condition),
       first_(from),
       symmetric_(symmetric),
       range_(std::abs(options.to - options.from)) {
-  const Eigen::VectorXd x = unknowns_of({.parameter = parameter, .orbit = {}, .balance = from}).x;
-  const ContactResponse first(family_(parameter), from.order, from.harmonics);
+  const dynamics::HybridSystem system = family_(other, parameter);
+  const Eigen::VectorXd x = unknowns_of({.parameter = parameter, .orbit = {}, .balance = from, .other = other}).x;
+  const ContactResponse first(system, from.order, from.harmonics);
   displacements_ = x.size() - from.rigid.size();
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     const Eigen::Index order = first.order_of(i);
@@ -49,14 +63,15 @@ BalanceBranchSolver::BalanceBranchSolver(dynamics::SystemFamily family, const Ba
   }
   size_ = x.cwiseAbs().maxCoeff();
   if (!(size_ > 0.0)) size_ = 1.0;
-  for (const BalancedLaw& law : balanced_laws(family_(parameter)))
-    stiffness_ = std::max(stiffness_, strongest(law, 0.0));
+  for (const BalancedLaw& law : balanced_laws(system)) stiffness_ = std::max(stiffness_, strongest(law, 0.0));
+  if (condition_ && condition_->kind == SpecialKind::kGrazing) condition_ = grazed(system, from, *condition_);
 }
 
 BalanceUnknowns BalanceBranchSolver::unknowns_of(const BranchPoint& point) const {
   const Balance& balance = *point.balance;
-  const BalanceAt own(family_(point.parameter), balance.order, balance.harmonics);
-  BalanceUnknowns out{orbits::unknowns_of(balance.displacement, own.response), point.parameter};
+  BalanceUnknowns out{{}, point.parameter, point.other.value_or(0.0)};
+  if (condition_) out.touch = condition_->touch;
+  out.x = orbits::unknowns_of(balance.displacement, equations_at(out)->response);
   out.x.tail(balance.rigid.size()) = balance.rigid;
   if (symmetric_) clear_even(out.x);
   return out;
@@ -66,35 +81,65 @@ void BalanceBranchSolver::clear_even(Eigen::VectorXd& x) const {
   for (const Eigen::Index i : even_) x[i] = 0.0;
 }
 
-Eigen::VectorXd BalanceBranchSolver::scaled(const Eigen::VectorXd& column) const {
-  Eigen::VectorXd out = picked(column, solved_);
+Eigen::VectorXd BalanceBranchSolver::scaled(const Eigen::VectorXd& column,
+                                            const std::vector<Eigen::Index>& entries) const {
+  Eigen::VectorXd out = picked(column, entries);
   for (Eigen::Index i = 0; i < out.size(); ++i)
-    if (solved_[static_cast<std::size_t>(i)] >= displacements_) out[i] /= stiffness_;
+    if (entries[static_cast<std::size_t>(i)] >= displacements_) out[i] /= stiffness_;
   return out / size_;
 }
 
+Eigen::MatrixXd BalanceBranchSolver::scaled_block(const Eigen::MatrixXd& jacobian,
+                                                  const std::vector<Eigen::Index>& entries) const {
+  const auto N = std::ssize(entries);
+  Eigen::MatrixXd out(N, N);
+  for (Eigen::Index j = 0; j < N; ++j)
+    out.col(j) = size_ * scaled(jacobian.col(entries[static_cast<std::size_t>(j)]), entries);
+  return out;
+}
+
+bool BalanceBranchSolver::in_range(const BalanceUnknowns& at) const {
+  return std::ranges::all_of(keys(), [&](const BranchKey<BalanceUnknowns>& key) {
+    const double slack = 1e-12 * key.range(), value = at.*key.value;
+    return value >= key.low - slack && value <= key.high + slack;
+  });
+}
+
 BalanceBranchEvaluation BalanceBranchSolver::evaluate(const BalanceUnknowns& at) const {
-  const double slack = 1e-12 * range_, low = std::min(options_.from, options_.to),
-               high = std::max(options_.from, options_.to);
-  if (at.parameter < low - slack || at.parameter > high + slack)
+  if (!in_range(at))
     throw NumericalFailure(fmt::format("the parameter {:.9g} is outside the range of the branch", at.parameter), 0.0,
                            at.x, 0.0);
-  const auto equations_at = [&](double parameter) {
-    return std::make_shared<const BalanceAt>(family_(parameter), first_.order, first_.harmonics);
-  };
-  BalanceBranchEvaluation out{at, equations_at(at.parameter), {}, {}, {}};
+  BalanceBranchEvaluation out = balanced(at, true);
+  if (condition_) add_condition(out);
+  return out;
+}
+
+BalanceBranchEvaluation BalanceBranchSolver::balanced(const BalanceUnknowns& at, bool with_parameters) const {
+  BalanceBranchEvaluation out{at, equations_at(at), {}, {}, {}};
   out.balance = out.own->problem.evaluate(at.x);
   const auto N = std::ssize(solved_);
-  out.r = scaled(out.balance.residual);
-  out.J.resize(N, N + 1);
-  for (Eigen::Index j = 0; j < N; ++j)
-    out.J.col(j) = size_ * scaled(out.balance.jacobian.col(solved_[static_cast<std::size_t>(j)]));
-  const double h = kParameterStep * range_, above = std::min(at.parameter + h, high),
-               below = std::max(at.parameter - h, low);
-  out.J.col(N) = (scaled(equations_at(above)->problem.evaluate(at.x).residual) -
-                  scaled(equations_at(below)->problem.evaluate(at.x).residual)) *
-                 (range_ / (above - below));
+  out.r = scaled(out.balance.residual, solved_);
+  out.J = Eigen::MatrixXd::Zero(N, parameter_row().size());
+  out.J.leftCols(N) = scaled_block(out.balance.jacobian, solved_);
+  if (!with_parameters) return out;
+  for (const BranchKey<BalanceUnknowns>& key : keys()) {
+    Eigen::Index column = 0;
+    key.row.maxCoeff(&column);
+    out.J.col(column) = parameter_column(at, key);
+  }
   return out;
+}
+
+Eigen::VectorXd BalanceBranchSolver::parameter_column(const BalanceUnknowns& at,
+                                                      const BranchKey<BalanceUnknowns>& key) const {
+  const double h = kParameterStep * key.range(), above = std::min(at.*key.value + h, key.high),
+               below = std::max(at.*key.value - h, key.low);
+  const auto residual_at = [&](double value) {
+    BalanceUnknowns moved_to = at;
+    moved_to.*key.value = value;
+    return scaled(equations_at(moved_to)->problem.evaluate(at.x).residual, solved_);
+  };
+  return (residual_at(above) - residual_at(below)) * (key.range() / (above - below));
 }
 
 Eigen::VectorXd BalanceBranchSolver::tangent(const BalanceBranchEvaluation& at, const Eigen::VectorXd& along) const {
@@ -108,7 +153,7 @@ BalanceUnknowns BalanceBranchSolver::moved(const BalanceBranchEvaluation& from, 
                                            double /*share*/) const {
   BalanceUnknowns out = from.at;
   for (std::size_t i = 0; i < solved_.size(); ++i) out.x[solved_[i]] += size_ * step[static_cast<Eigen::Index>(i)];
-  out.parameter += range_ * step[step.size() - 1];
+  for (const BranchKey<BalanceUnknowns>& key : keys()) out.*key.value += key.range() * key.row.dot(step);
   return out;
 }
 
@@ -157,10 +202,9 @@ BalanceBranchEvaluation BalanceBranchSolver::polished(BalanceBranchEvaluation at
 }
 
 Eigen::VectorXd BalanceBranchSolver::difference(const BalanceUnknowns& b, const BalanceUnknowns& a) const {
-  const auto N = std::ssize(solved_);
-  Eigen::VectorXd out(N + 1);
-  out.head(N) = picked(b.x - a.x, solved_) / size_;
-  out[N] = (b.parameter - a.parameter) / range_;
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(parameter_row().size());
+  out.head(std::ssize(solved_)) = picked(b.x - a.x, solved_) / size_;
+  for (const BranchKey<BalanceUnknowns>& key : keys()) out += (b.*key.value - a.*key.value) / key.range() * key.row;
   return out;
 }
 
@@ -185,20 +229,20 @@ BalanceBranchSolver::Simpler BalanceBranchSolver::simpler_beside(SpecialKind /*k
                                                                  const BalanceBranchEvaluation& near,
                                                                  const PeriodicOrbit& /*orbit*/,
                                                                  const Eigen::VectorXd& /*apart*/) const {
-  BalanceBranchSolver solver(family_, *balance_of(near), near.at.parameter, options_, true);
+  BalanceBranchSolver solver(family_, *balance_of(near), near.at.parameter, near.at.other, options_, true,
+                             std::nullopt);
   BalanceUnknowns guess = near.at;
   solver.clear_even(guess.x);
   return {std::move(solver), std::move(guess)};
 }
 
 Eigen::VectorXd BalanceBranchSolver::parameter_row() const {
-  const auto N = std::ssize(solved_);
-  return Eigen::VectorXd::Unit(N + 1, N);
+  const Eigen::Index size = std::ssize(solved_) + (on_curve() ? 2 : 1);
+  return Eigen::VectorXd::Unit(size, size - 1);
 }
 
 std::vector<BranchKey<BalanceUnknowns>> BalanceBranchSolver::keys() const {
-  const auto [low, high] = std::minmax(options_.from, options_.to);
-  return {{&BalanceUnknowns::parameter, low, high, parameter_row()}};
+  return branch_keys<BalanceUnknowns>(options_, condition_, parameter_row());
 }
 
 }  // namespace slipmode::orbits

@@ -81,10 +81,9 @@ Eigen::MatrixXd hill_matrix(const dynamics::HybridSystem& system, const Balance&
 /// Those of the strip |Im α| ≤ `edge`, `count` of them. Near its edges truncation leaves each multiplier −e^{aT} as a
 /// pair a ± ib, b just inside or just outside, and each pair of complex ones as two such, one inside and one outside.
 std::vector<std::complex<double>> of_the_strip(const Eigen::VectorXcd& exponents, double edge, Eigen::Index count) {
-  constexpr double kBand = 0.1;  // of the edge
   std::vector<std::complex<double>> inside, pairs;
   for (const std::complex<double>& alpha : exponents) {
-    if (std::abs(alpha.imag()) < (1.0 - kBand) * edge)
+    if (std::abs(alpha.imag()) < kHillsBand * edge)
       inside.push_back(alpha);
     else if (alpha.imag() > 0.0)
       pairs.push_back(alpha);

@@ -15,6 +15,9 @@ struct HillOptions {
   bool half_period = false;
 };
 
+/// Share of the strip |Im α| ≤ Ω/2 within which exponents are taken as they are.
+inline constexpr double kHillsBand = 0.9;
+
 /// Floquet multipliers of a balance by Hill's method: perturbations δq = e^{αt} Σ φ_k e^{ikΩt} balance up to order L,
 ///
 ///     [M(α + ikΩ)² + C(α + ikΩ) + K] φ_k = Σ_c w_c Σ_j (s_{k−j} + (α + ijΩ) d_{k−j})_c w_cᵀ φ_j,

@@ -10,8 +10,6 @@
 namespace slipmode::orbits {
 namespace {
 
-/// Of a grazing, of the motion: its orbits are those that stay this far off the stop, on the side that knows no touch.
-constexpr double kUntouched = 1e-10;
 /// A stop met more slowly than this, of the top speed, has multipliers go like a square root that no difference
 /// follows.
 constexpr double kSlowTouch = 5e-4;
@@ -55,14 +53,11 @@ std::function<double(BranchEvaluation&)> BranchSolver::condition_near(const Bran
       return touch.clearance / scale_[0] - kUntouched;
     };
   if (kind == SpecialKind::kNeimarkSacker)
-    return [n, halves, pair = critical_pair(at.J, n, halves, {})](const BranchEvaluation& there) {
-      return critical_pair(there.J, n, halves, pair).product - 1.0;
+    return [n, halves, pair = critical_pair(multipliers_of(at.J, n, halves), {})](const BranchEvaluation& there) {
+      return critical_pair(multipliers_of(there.J, n, halves), pair).product - 1.0;
     };
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(critical_matrix(kind, at.J, n, halves),
-                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Index last = svd.matrixV().cols() - 1;
-  return [kind, n, halves, u = Eigen::VectorXd(svd.matrixU().col(last)), v = Eigen::VectorXd(svd.matrixV().col(last))](
-             const BranchEvaluation& there) { return u.dot(critical_matrix(kind, there.J, n, halves) * v); };
+  return [kind, n, halves, least = least_singular_value_near(critical_matrix(kind, at.J, n, halves))](
+             const BranchEvaluation& there) { return least(critical_matrix(kind, there.J, n, halves)); };
 }
 
 std::string BranchSolver::curve_end(const BranchEvaluation& at, const PeriodicOrbit& orbit) const {
@@ -71,10 +66,8 @@ std::string BranchSolver::curve_end(const BranchEvaluation& at, const PeriodicOr
     return "the orbit shrinks to a state of rest: a Hopf point, where orbits begin";
   if (condition_->kind == SpecialKind::kGrazing) return {};
   if (condition_->kind == SpecialKind::kNeimarkSacker) {
-    const MultiplierPair pair = critical_pair(at.J, scale_.size(), half_period(), {});
-    if (!pair.complex())
-      return fmt::format("the pair of multipliers meets at {}: a strong resonance, where Neimark-Sacker points end",
-                         pair.sum < 0.0 ? "-1" : "1");
+    const std::string met = resonance_met(critical_pair(multipliers_of(at.J, scale_.size(), half_period()), {}));
+    if (!met.empty()) return met;
   }
   const double touch = slowest_touch(orbit.events) / scale_[orbit.start.q.size()];
   if (touch < kSlowTouch)

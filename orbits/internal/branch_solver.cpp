@@ -79,9 +79,8 @@ BranchSolver::BranchSolver(dynamics::SystemFamily family, const PeriodicOrbit& o
 
 BranchSolver::BranchSolver(dynamics::PlaneFamily family, const SpecialPoint& special, double parameter,
                            const KeyRange& other, const ContinuationOptions& options)
-    : BranchSolver(
-          std::move(family), special.orbit, parameter, special.parameter, options,
-          CurveCondition{special.kind == SpecialKind::kNonSmoothFold ? SpecialKind::kGrazing : special.kind, other}) {}
+    : BranchSolver(std::move(family), special.orbit, parameter, special.parameter, options,
+                   condition_of(special, other)) {}
 
 BranchSolver::BranchSolver(dynamics::PlaneFamily family, const PeriodicOrbit& orbit, double parameter, double other,
                            const ContinuationOptions& options, const std::optional<CurveCondition>& condition)
@@ -375,16 +374,7 @@ Eigen::VectorXd BranchSolver::parameter_row() const {
 }
 
 std::vector<BranchKey<BranchUnknowns>> BranchSolver::keys() const {
-  const auto key = [](double BranchUnknowns::*value, double from, double to, Eigen::VectorXd row) {
-    return BranchKey<BranchUnknowns>{value, std::min(from, to), std::max(from, to), std::move(row)};
-  };
-  const Eigen::VectorXd last = parameter_row();
-  std::vector<BranchKey<BranchUnknowns>> out;
-  if (condition_)
-    out.push_back(key(&BranchUnknowns::other, condition_->other.from, condition_->other.to,
-                      Eigen::VectorXd::Unit(last.size(), last.size() - 2)));
-  out.push_back(key(&BranchUnknowns::parameter, options_.from, options_.to, last));
-  return out;
+  return branch_keys<BranchUnknowns>(options_, condition_, parameter_row());
 }
 
 }  // namespace slipmode::orbits

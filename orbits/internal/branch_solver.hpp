@@ -34,6 +34,22 @@ struct BranchKey {
   [[nodiscard]] double range() const { return high - low; }
 };
 
+/// The parameter as last unknown, before it the other one of a curve. @param last  unit vector of the parameter
+template <class Unknowns>
+[[nodiscard]] std::vector<BranchKey<Unknowns>> branch_keys(const ContinuationOptions& options,
+                                                           const std::optional<CurveCondition>& condition,
+                                                           const Eigen::VectorXd& last) {
+  const auto key = [](double Unknowns::*value, double from, double to, Eigen::VectorXd row) {
+    return BranchKey<Unknowns>{value, std::min(from, to), std::max(from, to), std::move(row)};
+  };
+  std::vector<BranchKey<Unknowns>> out;
+  if (condition)
+    out.push_back(key(&Unknowns::other, condition->other.from, condition->other.to,
+                      Eigen::VectorXd::Unit(last.size(), last.size() - 2)));
+  out.push_back(key(&Unknowns::parameter, options.from, options.to, last));
+  return out;
+}
+
 /// A point on (or near) a branch with the linearised conditions there. Scaled unknowns: (x₁ [N], ln T if unknown, on
 /// curves the other parameter, p).
 struct BranchEvaluation {

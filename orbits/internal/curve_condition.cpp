@@ -16,8 +16,6 @@ namespace {
 using dynamics::State;
 
 constexpr int kTouchSamples = 256;  ///< of what is run, to part extremes
-/// A special point's orbit is found to 1e-8 and better: a stop further off than this, of the motion, is not touched.
-constexpr double kTouches = 1e-4;
 /// A correction below this, scaled, changes a condition by less than it is known.
 constexpr double kLeastCorrection = 1e-13;
 
@@ -34,11 +32,9 @@ struct Approach {
 };
 
 std::optional<Approach> approach(const friction::Contact& contact, int side) {
-  const friction::Clearance* law = friction::clearance(contact.law);
-  if (law == nullptr) return std::nullopt;
-  const std::optional<friction::Stop>& stop = side > 0 ? law->right : law->left;
-  if (!stop) return std::nullopt;
-  return Approach{contact, side, stop->gap};
+  const std::optional<double> gap = gap_towards(contact, side);
+  if (!gap) return std::nullopt;
+  return Approach{contact, side, *gap};
 }
 
 /// A stretch in which an approach turns back.
@@ -94,10 +90,29 @@ Touch located(ShootingProblem& problem, const ShootingPoint& point, const Approa
   return {approach.gap - approach.way(top), (turn.after + at) / point.period};
 }
 
-/// The distance between shares of the period, at most a half.
-double apart(double a, double b) { return std::abs(a - b - std::round(a - b)); }
-
 }  // namespace
+
+CurveCondition condition_of(const SpecialPoint& special, const KeyRange& other) {
+  return {special.kind == SpecialKind::kNonSmoothFold ? SpecialKind::kGrazing : special.kind, other};
+}
+
+std::optional<double> gap_towards(const friction::Contact& contact, int side) {
+  const friction::Clearance* law = friction::clearance(contact.law);
+  if (law == nullptr) return std::nullopt;
+  const std::optional<friction::Stop>& stop = side > 0 ? law->right : law->left;
+  return stop ? std::optional(stop->gap) : std::nullopt;
+}
+
+double shares_apart(double a, double b) { return std::abs(a - b - std::round(a - b)); }
+
+void require_touch(double clearance, double size) {
+  if (clearance <= kTouches * size) return;
+  throw InvalidInput(fmt::format(
+      "a grazing is followed where a contact with a clearance just reaches a stop; of this one the nearest comes "
+      "within "
+      "{:.3g} of one, {:.1e} of the motion: what comes or goes there is a separation, or a stop that lets go",
+      clearance, clearance / size));
+}
 
 Touch touch_near(ShootingProblem& problem, const ShootingPoint& point, const CurveCondition& condition, double share) {
   const bool halves = problem.covered() < 1.0;
@@ -110,7 +125,7 @@ Touch touch_near(ShootingProblem& problem, const ShootingPoint& point, const Cur
     if (!own) continue;
     for (const Turn& turn : turns(problem, point, *own)) {
       const double middle = (turn.after + 0.5 * turn.length) / point.period;
-      const double away = apart(middle + (side == condition.side ? 0.0 : 0.5), share);
+      const double away = shares_apart(middle + (side == condition.side ? 0.0 : 0.5), share);
       if (away < nearest) nearest = away, best = turn, best_side = side;
     }
   }
@@ -139,13 +154,8 @@ CurveCondition grazed(ShootingProblem& problem, const ShootingPoint& point, cons
       }
     }
   }
-  const double size = problem.scale().head(problem.system().size()).maxCoeff();
-  if (least <= kTouches * size) return out;
-  throw InvalidInput(fmt::format(
-      "a grazing is followed where a contact with a clearance just reaches a stop; of this one the nearest comes "
-      "within "
-      "{:.3g} of one, {:.1e} of the motion: what comes or goes there is a separation, or a stop that lets go",
-      least, least / size));
+  require_touch(least, problem.scale().head(problem.system().size()).maxCoeff());
+  return out;
 }
 
 Eigen::MatrixXd critical_matrix(SpecialKind kind, const Eigen::MatrixXd& J, Eigen::Index states, bool half_period) {
@@ -155,11 +165,19 @@ Eigen::MatrixXd critical_matrix(SpecialKind kind, const Eigen::MatrixXd& J, Eige
   return half_period ? Eigen::MatrixXd(twice - closing) : Eigen::MatrixXd(twice + closing);
 }
 
-MultiplierPair critical_pair(const Eigen::MatrixXd& J, Eigen::Index states, bool half_period,
-                             const std::optional<MultiplierPair>& near) {
+std::function<double(const Eigen::MatrixXd&)> least_singular_value_near(const Eigen::MatrixXd& from) {
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(from, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::Index last = svd.matrixV().cols() - 1;
+  return [u = Eigen::VectorXd(svd.matrixU().col(last)),
+          v = Eigen::VectorXd(svd.matrixV().col(last))](const Eigen::MatrixXd& A) { return u.dot(A * v); };
+}
+
+Eigen::VectorXcd multipliers_of(const Eigen::MatrixXd& J, Eigen::Index states, bool half_period) {
   const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(states, states), closing = J.topLeftCorner(states, states);
-  const Eigen::VectorXcd mu =
-      sorted_eigenvalues(half_period ? Eigen::MatrixXd(one - closing) : Eigen::MatrixXd(one + closing));
+  return sorted_eigenvalues(half_period ? Eigen::MatrixXd(one - closing) : Eigen::MatrixXd(one + closing));
+}
+
+MultiplierPair critical_pair(const Eigen::VectorXcd& mu, const std::optional<MultiplierPair>& near) {
   std::optional<MultiplierPair> best;
   double least = std::numeric_limits<double>::infinity();
   for (Eigen::Index i = 0; i < mu.size(); ++i)
@@ -172,6 +190,12 @@ MultiplierPair critical_pair(const Eigen::MatrixXd& J, Eigen::Index states, bool
     }
   if (best) return *best;
   throw NumericalFailure("there is no pair of multipliers", 0.0, {}, 0.0);
+}
+
+std::string resonance_met(const MultiplierPair& pair) {
+  if (pair.complex()) return {};
+  return fmt::format("the pair of multipliers meets at {}: a strong resonance, where Neimark-Sacker points end",
+                     pair.sum < 0.0 ? "-1" : "1");
 }
 
 double slowest_touch(const std::vector<dynamics::Event>& events) {

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <functional>
 #include <optional>
+#include <string>
 
 namespace slipmode::orbits {
 
@@ -17,12 +18,24 @@ struct CurveCondition {
   int side = 0;             ///< +1 its right stop, −1 its left one
   double touch = 0.0;       ///< when, as a share of the period after the origin; at first
 };
+/// A branch that turns back at a grazing is followed as that.
+[[nodiscard]] CurveCondition condition_of(const SpecialPoint& special, const KeyRange& other);
+
+/// Way from the middle of a contact's gap to a stop [m]; nothing where it has none on that side.
+[[nodiscard]] std::optional<double> gap_towards(const friction::Contact& contact, int side);
+
+/// Of a grazing, of the motion: its orbits are those that stay this far off the stop, on the side that knows no touch.
+inline constexpr double kUntouched = 1e-10;
+/// A special point's orbit is found to 1e-8 and better: a stop further off than this, of the motion, is not touched.
+inline constexpr double kTouches = 1e-4;
 
 /// Where a contact is nearest to a stop: a local extreme of its displacement.
 struct Touch {
   double clearance = 0.0;  ///< way left to the stop, negative beyond it [m]
   double share = 0.0;      ///< when, as a share of the period after the origin
 };
+/// The distance between shares of the period, at most a half.
+[[nodiscard]] double shares_apart(double a, double b);
 
 /// The extreme nearest in time to a share of the period. Where half periods are run, those towards the other stop are
 /// their mirror images half a period on.
@@ -30,7 +43,7 @@ struct Touch {
 [[nodiscard]] Touch touch_near(ShootingProblem& problem, const ShootingPoint& point, const CurveCondition& condition,
                                double share);
 /// The contact, side and share at which the point comes nearest to any stop.
-/// @throws InvalidInput  where that is not within 1e-4 of the motion's size: no stop is grazed
+/// @throws InvalidInput  where that is not within kTouches of the motion's size: no stop is grazed
 [[nodiscard]] CurveCondition grazed(ShootingProblem& problem, const ShootingPoint& point, const CurveCondition& like);
 
 /// The matrix that is singular at a point of the kind. @param J  closing conditions, and phase; by columns x, [ln T]
@@ -44,10 +57,21 @@ struct MultiplierPair {
 };
 /// The pair nearest to another, or the one whose product is nearest to 1.
 /// @throws NumericalFailure  where there is no pair
-[[nodiscard]] MultiplierPair critical_pair(const Eigen::MatrixXd& J, Eigen::Index states, bool half_period,
+[[nodiscard]] MultiplierPair critical_pair(const Eigen::VectorXcd& multipliers,
                                            const std::optional<MultiplierPair>& near);
+/// Why a curve of Neimark-Sacker points ends at a pair; empty where it goes on.
+[[nodiscard]] std::string resonance_met(const MultiplierPair& pair);
+/// uᵀA v with the singular vectors of the least singular value at `from`: near it as smooth as A, and zero where A is
+/// singular.
+[[nodiscard]] std::function<double(const Eigen::MatrixXd& A)> least_singular_value_near(const Eigen::MatrixXd& from);
+/// Of DP where half periods are run.
+[[nodiscard]] Eigen::VectorXcd multipliers_of(const Eigen::MatrixXd& J, Eigen::Index states, bool half_period);
 /// The slowest speed at which a stop is reached; infinite where none is [m/s].
 [[nodiscard]] double slowest_touch(const std::vector<dynamics::Event>& events);
+
+/// That the nearest extreme of all, a clearance, is no touch.
+/// @throws InvalidInput  where it is beyond kTouches of `size`
+void require_touch(double clearance, double size);
 
 /// Derivatives of a condition in the directions in which the branch goes on, and towards it; in others zero, as
 /// Newton's method on J needs no more.

@@ -143,6 +143,16 @@ TEST_F(OrbitVerbs, SpecialPointsAreFollowedOverASecondKey) {
       json_of(with("fold", "drive.amplitude=0.5:2", "drive.omega=0.9:1.3", {"--set", "drive.amplitude=1.1"}));
   ASSERT_EQ(folds["curves"].size(), 1U);
   EXPECT_EQ(folds["curves"][0]["special"][0]["kind"], "cusp");
+  EXPECT_EQ(folds["by"], "shooting");
+  // By balance nearly the same cusp: 9 harmonics are 3e-6 from the exact one (docs/theory/harmonic-balance.md).
+  const auto balanced = json_of(with("fold", "drive.amplitude=0.5:2", "drive.omega=0.9:1.3",
+                                     {"--set", "drive.amplitude=1.1", "--by", "balance", "--harmonics", "9"}));
+  ASSERT_EQ(balanced["curves"].size(), 1U);
+  EXPECT_EQ(balanced["by"], "balance");
+  EXPECT_EQ(results::StoreReader(folder.path() / "c.h5").number("curves/0/harmonics"), 9.0);
+  for (const char* key : {"over", "along"})
+    EXPECT_NEAR(balanced["curves"][0]["special"][0][key].get<double>(),
+                folds["curves"][0]["special"][0][key].get<double>(), 1e-5);
   const auto one = json_of(with("fold:0.96", "drive.amplitude=1:1.2", "drive.omega=0.9:1.3"));
   EXPECT_EQ(one["curves"].size(), 1U);
 
@@ -156,8 +166,8 @@ TEST_F(OrbitVerbs, SpecialPointsAreFollowedOverASecondKey) {
   expect_refused(with("fold", "drive.amplitud=0.5:2", "drive.omega=0.6:1.5"), {"drive.amplitud", "no such key"});
   expect_refused(with("fold", "drive.amplitude=0.5", "drive.omega=0.6:1.5"), {"--along", "no range FROM:TO"});
   expect_refused(with("fold", "contact.0.stop.gap=-1:x", "drive.omega=0.6:1.5"), {"--along", "'x'"});
-  expect_refused(with("fold", "drive.amplitude=0.5:2", "drive.omega=0.6:1.5", {"--by", "balance"}),
-                 {"--along, --point", "--by balance"});
+  expect_refused(with("fold", "drive.amplitude=0.5:2", "drive.omega=0.6:1.5", {"--by", "balance", "--certify"}),
+                 {"--certify", "by shooting"});
   expect_refused({"continue", play, "--over", "drive.omega=0.6:1.5", "--point", "fold", "-o", "c.h5"},
                  {"--point needs --along"});
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "c.h5"));

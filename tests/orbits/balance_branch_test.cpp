@@ -74,20 +74,11 @@ TEST(Hill, HalfPeriodsHaveTheRoots) {
   EXPECT_THROW((void)hill_multipliers(system, own, {.perturbation = -1}), InvalidInput);
 }
 
-/// Two masses, the first with a stiff undamped stop on one side, the second under the force.
-HybridSystem two_masses(double omega) {
-  return {fem::masses({.mass = {1.0, 1.0}, .links = {{0, 1, 0.0, 0.0}, {1, 2, 1.0, 0.03}, {2, 0, 1.0, 0.03}}}),
-          {{Eigen::Vector2d::Unit(0), friction::Clearance{{}, friction::Stop{.stiffness = 100.0, .gap = 1.0}}}},
-          Backlash::drive(0.1, omega),
-          {},
-          Eigen::Vector2d::Unit(1)};
-}
-
 TEST(Hill, PairsOnTheStripsEdgeAreNegativeMultipliers) {
   // At both period doublings, by shooting −1, 0.98988, −0.71574, 0.66779 and −1, 0.79550 ± 0.20632i, −0.68870: a pair
   // on the edge each, counted twice or not at all by their imaginary parts alone. Third order, 45⁻³ = 1.1e-5 of what a
   // stiff stop makes of it: measured 1.4e-4.
-  const HybridSystem at_rest = two_masses(0.8);
+  const HybridSystem at_rest = before_a_stop(0.8);
   const Branch exact = continue_orbit(over_frequency(at_rest, 0.1), find_orbit(at_rest, at_rest.rest()), 0.8,
                                       {.from = 0.8, .to = 0.65, .direction = -1});
   int doublings = 0;
@@ -165,7 +156,7 @@ TEST(BalanceBranch, SpecialPointsTendToThoseOfShootingPlay) {
 }
 
 TEST(BalanceBranch, SpecialPointsTendToThoseOfShootingTwoMasses) {
-  const HybridSystem base = two_masses(0.8);
+  const HybridSystem base = before_a_stop(0.8);
   const ContinuationOptions options{.from = 0.8, .to = 0.5, .direction = -1};
   const PeriodicOrbit first = find_orbit(base, base.rest());
   const Branch exact = continue_orbit(over_frequency(base, 0.1), first, 0.8, options);

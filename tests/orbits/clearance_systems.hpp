@@ -63,9 +63,34 @@ struct Backlash {
           adjugate * Eigen::Vector2d(0.25, 0.0)};
 }
 
+/// NLvib's third example (datasets/stop_2mass): two masses, the first before a stiff stop, the second under a force.
+[[nodiscard]] inline dynamics::HybridSystem before_a_stop(double omega) {
+  const friction::Stop stop{.stiffness = 100.0, .gap = 1.0};
+  return {fem::masses({.mass = {1.0, 1.0}, .links = {{1, 2, 1.0, 0.03}, {2, 0, 1.0, 0.03}}}),
+          {{Eigen::Vector2d(1.0, 0.0),
+            friction::Clearance{.left = {}, .right = stop, .loss = friction::ContactLoss::kGap}}},
+          Backlash::drive(0.1, omega),
+          {},
+          Eigen::Vector2d(0.0, 1.0)};
+}
+
 /// The same system under A sin ωt at other frequencies: regimes are shared.
 [[nodiscard]] inline dynamics::SystemFamily over_frequency(const dynamics::HybridSystem& base, double amplitude = 1.0) {
   return [base, amplitude](double omega) { return base.with_drive(Backlash::drive(amplitude, omega)); };
+}
+
+/// The system over frequency and amplitude of its force.
+[[nodiscard]] inline dynamics::PlaneFamily over_force(const dynamics::HybridSystem& base) {
+  return [base](double omega, double amplitude) {
+    friction::Force force = *base.drive().force();
+    force.omega = omega;
+    force.harmonics.front().amplitude = amplitude;
+    return base.with_drive(force);
+  };
+}
+
+[[nodiscard]] inline dynamics::SystemFamily at_amplitude(const dynamics::PlaneFamily& family, double amplitude) {
+  return [family, amplitude](double omega) { return family(omega, amplitude); };
 }
 
 [[nodiscard]] inline dynamics::State displaced(const dynamics::HybridSystem& system, Eigen::Index dof, double x) {

@@ -145,6 +145,14 @@ class BesideTheExecutable(unittest.TestCase):
                               along=("drive.amplitude", 1.0, 1.5))
         with self.assertRaisesRegex(sm.InvalidInput, "along"):
             sm.continue_orbit(PLAY, over="drive.omega", to=1.3, point="fold")
+        self.executable("orbit", "continue", PLAY, "--over", "drive.omega=0.9:1.3", "--by", "balance", "--point", "fold",
+                        "--along", "drive.amplitude=0.5:2", "-o", self.folder / "folds.h5")
+        folds = sm.continue_orbit(PLAY, over="drive.omega", from_=0.9, to=1.3, by="balance", point="fold",
+                                  along=("drive.amplitude", 0.5, 2.0))
+        self.assert_same(folds, self.folder / "folds.h5")
+        with self.assertRaisesRegex(sm.InvalidInput, "by shooting"):
+            sm.continue_orbit(PLAY, over="drive.omega", from_=0.9, to=1.3, by="balance", point="fold", certify=True,
+                              along=("drive.amplitude", 0.5, 2.0))
 
     def test_a_run_of_a_reduced_model(self):
         scene = sm.Scene.load(CHAIN, set=SHORT)
