@@ -176,6 +176,27 @@ Json accuracy(const Levels& levels, const StoreReader& store) {
                 all > 0 && alike == all && worst <= kAccurate ? "good" : "fair");
 }
 
+/// Reduced models under a shaker: the smallest that lies as near as two full sweeps do, and the nearest of all.
+struct ShakenModels {
+  Table models;
+  double noise;
+  std::optional<std::size_t> smallest = {}, nearest = {};
+
+  explicit ShakenModels(const StoreReader& validation)
+      : models(results::load_table(validation, "shaken_validation/agreement")),
+        noise(validation.number("shaken_validation/noise")) {
+    const auto& distance = models.numbers("mean_distance");
+    const auto& modes = models.numbers("modes");
+    for (std::size_t i = 0; i < models.rows(); ++i) {
+      if (!std::isfinite(distance[i])) continue;
+      if (!nearest || distance[i] < distance[*nearest]) nearest = i;
+      if (distance[i] <= kScatter * noise && (!smallest || modes[i] < modes[*smallest])) smallest = i;
+    }
+  }
+  /// Where any gave a settled motion: the one that is spoken of.
+  [[nodiscard]] std::size_t told() const { return smallest.value_or(*nearest); }
+};
+
 }  // namespace
 
 std::string model_text(const scene::Scene& scene) {
@@ -204,20 +225,22 @@ Json belt_answers(const StoreReader& validation) {
   return out;
 }
 
+std::optional<NamedModel> told_of_shaken(const StoreReader& validation) {
+  const ShakenModels found(validation);
+  if (!found.nearest) return std::nullopt;
+  return NamedModel{found.models.texts("basis")[found.told()],
+                    static_cast<Eigen::Index>(found.models.numbers("modes")[found.told()])};
+}
+
 Json shaken_answers(const StoreReader& validation) {
-  const Table models = results::load_table(validation, "shaken_validation/agreement");
-  const double noise = validation.number("shaken_validation/noise");
+  const ShakenModels found(validation);
+  const Table& models = found.models;
+  const std::optional<std::size_t>&smallest = found.smallest, &nearest = found.nearest;
   const auto& distance = models.numbers("mean_distance");
   const auto& modes = models.numbers("modes");
-  std::optional<std::size_t> smallest, nearest;
-  for (std::size_t i = 0; i < models.rows(); ++i) {
-    if (!std::isfinite(distance[i])) continue;
-    if (!nearest || distance[i] < distance[*nearest]) nearest = i;
-    if (distance[i] <= kScatter * noise && (!smallest || modes[i] < modes[*smallest])) smallest = i;
-  }
   constexpr const char* kTrust = "Are reduced models to be trusted?";
   if (!nearest) return Json::array({answer(kTrust, "None gave a settled motion.", "poor")});
-  const std::size_t told = smallest.value_or(*nearest);
+  const std::size_t told = found.told();
   const auto model_name = [&](std::size_t i) {
     return fmt::format("{} modes of {}", modes[i], models.texts("basis")[i]);
   };
@@ -229,7 +252,8 @@ Json shaken_answers(const StoreReader& validation) {
           "{:.3g} apart; the same kind of motion at {:.3g} % of the values. Nearest of all that were tried: {}, "
           "{:.3g}.",
           smallest ? "Yes, from" : "Not within the scatter of two full sweeps. Nearest:", model_name(told),
-          distance[told], noise, 100.0 * models.numbers("same_label")[told], model_name(*nearest), distance[*nearest]),
+          distance[told], found.noise, 100.0 * models.numbers("same_label")[told], model_name(*nearest),
+          distance[*nearest]),
       smallest ? "good" : "fair"));
   if (!validation.has("shaken_validation/full_cpu")) return out;
   const double full = validation.number("shaken_validation/full_cpu"), reduced = models.numbers("cpu")[told];

@@ -1,14 +1,19 @@
 #include <slipmode/studies/motions.hpp>
 
 #include <slipmode/core/errors.hpp>
+#include <slipmode/diagnostics/attractors/sweep.hpp>
 #include <slipmode/fem/modes.hpp>
+#include <slipmode/results/driven_store.hpp>
+#include <slipmode/results/sweep_store.hpp>
 #include <slipmode/rom/reduce.hpp>
 #include <slipmode/scene/shaken.hpp>
 #include <slipmode/scene/solver_options.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <type_traits>
 
 namespace slipmode::studies {
 namespace {
@@ -16,24 +21,38 @@ namespace {
 using diagnostics::Model;
 using dynamics::Event;
 
-/// Times that all models share: those of the full structure.
+/// Times that all models share.
 struct MotionTimes {
   double interval = 0.0, lead = 0.0, kept = 0.0, spectrum = 0.0, highest_hz = 0.0;
 
-  MotionTimes(const dynamics::HybridSystem& full, const MotionsRequest& request) {
-    constexpr Eigen::Index kResolved = 20;
-    const Eigen::VectorXd omega = fem::natural_modes(full.structure(), std::min(kResolved, full.size())).omega;
-    const auto vibrates = std::ranges::find_if(omega, [](double one) { return one > 0.0; });
-    if (vibrates == omega.end())
-      throw InvalidInput("motions: expected a structure that vibrates, found none that does");
-    const double slowest = 2.0 * std::numbers::pi / *vibrates;
-    kept = request.periods * slowest;
-    interval = kept / static_cast<double>(request.samples - 1);
-    lead = 2.0 * slowest;
-    spectrum = request.spectrum_periods * slowest;
-    highest_hz = 1.3 * omega[omega.size() - 1] / (2.0 * std::numbers::pi);
-  }
+  /// @param period   of which the request counts @param highest_hz  that a spectrum shows
+  MotionTimes(double period, double highest, const MotionsRequest& request)
+      : interval(request.periods * period / static_cast<double>(request.samples - 1)),
+        lead(2.0 * period),
+        kept(request.periods * period),
+        spectrum(request.spectrum_periods * period),
+        highest_hz(highest) {}
 };
+
+/// Natural frequencies of the full structure, up to twenty [Hz]: those that vibrate.
+std::vector<double> natural_hz(const dynamics::HybridSystem& full) {
+  constexpr Eigen::Index kResolved = 20;
+  std::vector<double> hz;
+  for (const double omega : fem::natural_modes(full.structure(), std::min(kResolved, full.size())).omega)
+    if (omega > 0.0) hz.push_back(omega / (2.0 * std::numbers::pi));
+  if (hz.empty()) throw InvalidInput("motions: expected a structure that vibrates, found none that does");
+  return hz;
+}
+constexpr double kAboveModes = 1.3;  ///< of the highest of these: shown
+
+template <class Point>
+std::string said_of(const Point& point) {
+  if (!point.ok()) return "failed: " + point.failure;
+  if constexpr (std::is_same_v<Point, diagnostics::SweepPoint>)
+    return results::motion_text(point.settled.period);
+  else
+    return results::motion_text(point.settled);
+}
 
 /// Time from the start to the first contact's slip from the largest displacement within the lead; 0: it does not slip.
 double time_to_slip(const dynamics::HybridSystem& system, const dynamics::State& start, const MotionTimes& times) {
@@ -50,10 +69,9 @@ double time_to_slip(const dynamics::HybridSystem& system, const dynamics::State&
   return begin == nullptr ? 0.0 : begin->time - start.time;
 }
 
-Motion recorded(const dynamics::HybridSystem& system, const Model& model, const dynamics::State& start,
+/// @param basis  of a reduced model, else null @param lead  from the start to what is kept
+Motion recorded(const dynamics::HybridSystem& system, const pod::Basis* basis, const dynamics::State& from, double lead,
                 const MotionsRequest& request, const MotionTimes& times) {
-  const dynamics::State from = dynamics::handed_on(system, start);
-  const double lead = time_to_slip(system, from, times);
   const dynamics::Trajectory run = dynamics::simulate(system, from,
                                                       {.duration = lead + times.kept + 0.5 * times.interval,
                                                        .transient = lead,
@@ -70,9 +88,10 @@ Motion recorded(const dynamics::HybridSystem& system, const Model& model, const 
                 .spectrum = {}};
   const Eigen::Index shapes = (count + request.samples_per_shape - 1) / request.samples_per_shape;
   const Eigen::MatrixXd q = run.q(Eigen::all, Eigen::seqN(0, shapes, request.samples_per_shape));
-  motion.shape = model.basis ? Eigen::MatrixXd((request.readings * model.basis->vectors * q).colwise() +
-                                               request.readings * model.basis->mean)
-                             : Eigen::MatrixXd(request.readings * q);
+  motion.shape =
+      basis != nullptr
+          ? Eigen::MatrixXd((request.readings * basis->vectors * q).colwise() + request.readings * basis->mean)
+          : Eigen::MatrixXd(request.readings * q);
   for (Event event : run.events) {
     event.time -= run.times[0];
     motion.events.push_back(event);
@@ -92,27 +111,75 @@ Motion recorded(const dynamics::HybridSystem& system, const Model& model, const 
   return motion;
 }
 
-MotionsOf motions_of(const Model& model, const dynamics::State& start, const scene::Scene& scene,
-                     const MotionsRequest& request, const MotionTimes& times, const StopFlag* stop) {
+/// The motions that are kept. @param at  the motion at the k-th value; empty where none was settled to
+void record(const MotionsRequest& request, const StopFlag* stop,
+            const std::function<std::optional<Motion>(std::size_t)>& at, MotionsOf& out) {
+  for (std::size_t k = 0; k < request.values.size(); ++k) {
+    if (!request.recorded[k]) continue;
+    if (stop != nullptr && stop->load()) throw Interrupted();
+    std::optional<Motion>& motion = out.motions.emplace_back();
+    try {
+      motion = at(k);
+    } catch (const NumericalFailure&) {
+      motion.reset();  // as a point that failed: nothing to show
+    }
+  }
+}
+
+MotionsOf on_a_belt(const Model& model, const dynamics::State& start, const scene::Scene& scene,
+                    const MotionsRequest& request, const MotionTimes& times, const StopFlag* stop) {
   diagnostics::SweepOptions options;
   options.mode = SweepMode::kFollow;
   options.settle = scene::sweep_settle_options(scene);
   options.settle.energy_samples = 0;
   options.parallel = {.threads = 1, .stop = stop, .progress = {}};
-  diagnostics::SweepResult swept = diagnostics::sweep(model, request.speeds, start, options);
+  const diagnostics::SweepResult swept = diagnostics::sweep(model, request.values, start, options);
   if (swept.interrupted) throw Interrupted();
-  MotionsOf out{.modes = model.basis ? model.basis->modes() : 0, .points = std::move(swept.points), .motions = {}};
-  for (std::size_t k = 0; k < request.speeds.size(); ++k) {
-    if (!request.recorded[k]) continue;
-    if (stop != nullptr && stop->load()) throw Interrupted();
-    std::optional<Motion>& motion = out.motions.emplace_back();
-    if (!out.points[k].ok()) continue;
-    try {
-      motion = recorded(model.system(request.speeds[k]), model, out.points[k].settled.end, request, times);
-    } catch (const NumericalFailure&) {
-      motion.reset();  // as a point that failed: nothing to show
-    }
+  MotionsOf out{.modes = model.basis ? model.basis->modes() : 0, .points = {}, .motions = {}};
+  for (const diagnostics::SweepPoint& point : swept.points) {
+    out.points.push_back({.value = point.parameter, .said = said_of(point)});
+    for (const diagnostics::SlipState& slip : point.settled.slips)
+      if (slip.contact == 0) out.points.back().states.push_back(slip.displacement);
   }
+  const pod::Basis* basis = model.basis ? &*model.basis : nullptr;
+  record(
+      request, stop,
+      [&](std::size_t k) -> std::optional<Motion> {
+        if (!swept.points[k].ok()) return std::nullopt;
+        const dynamics::HybridSystem system = model.system(request.values[k]);
+        const dynamics::State from = dynamics::handed_on(system, swept.points[k].settled.end);
+        return recorded(system, basis, from, time_to_slip(system, from, times), request, times);
+      },
+      out);
+  return out;
+}
+
+MotionsOf on_a_shaker(const diagnostics::DrivenModel& model, const pod::Basis* basis, const dynamics::State& start,
+                      const scene::Scene& scene, const MotionsRequest& request, const std::vector<double>& natural,
+                      const StopFlag* stop) {
+  constexpr double kHarmonics = 25.0;  // shown of the shaker's frequency: modes may lie far above all that is seen
+  diagnostics::DrivenSweepOptions options;
+  options.driven = scene::driven_options(scene);
+  options.driven.exponent_cycles = 0.0;
+  options.driven.flow.audit = false;
+  options.parallel = {.threads = 1, .stop = stop, .progress = {}};
+  const diagnostics::DrivenSweep swept = diagnostics::driven_sweep(model, request.values, start, options);
+  if (swept.interrupted) throw Interrupted();
+  MotionsOf out{.modes = basis != nullptr ? basis->modes() : 0, .points = {}, .motions = {}};
+  for (const diagnostics::DrivenPoint& point : swept.points) {
+    out.points.push_back({.value = point.parameter, .said = said_of(point)});
+    if (!point.ok()) continue;
+    for (const double reading : point.settled.readings.row(0)) out.points.back().states.push_back(reading);
+  }
+  record(
+      request, stop,
+      [&](std::size_t k) -> std::optional<Motion> {
+        if (!swept.points[k].ok()) return std::nullopt;
+        const double hz = swept.points[k].settled.frequency_hz;
+        const MotionTimes times(1.0 / hz, std::min(kAboveModes * natural.back(), kHarmonics * hz), request);
+        return recorded(model(request.values[k]).system, basis, swept.points[k].settled.end, 0.0, request, times);
+      },
+      out);
   return out;
 }
 
@@ -120,17 +187,27 @@ MotionsOf motions_of(const Model& model, const dynamics::State& start, const sce
 
 std::vector<MotionsOf> motions(const scene::Scene& scene, const pod::NamedBasis& basis, const MotionsRequest& request,
                                const RunOptions& run) {
-  if (scene.force || is_shaken(scene)) throw InvalidInput("motions: expected a belt, found another drive");
-  if (request.speeds.empty()) throw InvalidInput("motions: expected at least one speed, found none");
-  const dynamics::HybridSystem full = scene::build_system(scene);
-  const MotionTimes times(full, request);
-  const dynamics::State start = scene::initial_state(scene, full);
+  if (scene.force) throw InvalidInput("motions: expected a belt or a shaker, found a force");
+  if (request.values.empty()) throw InvalidInput("motions: expected at least one value of the drive, found none");
+  const bool shaken = is_shaken(scene);
+  const diagnostics::DrivenCase full =
+      shaken ? scene::shaken_case(scene) : diagnostics::DrivenCase{.system = scene::build_system(scene)};
+  const std::vector<double> natural = natural_hz(full.system);
+  const dynamics::State start = scene::initial_state(scene, full.system);
   std::vector<MotionsOf> out(request.modes.size() + 1);
   rethrow_first(parallel_for(out.size(), run.parallel("motions"), [&](std::size_t m) {
-    const Model model = m == 0 ? diagnostics::belt_model(full)
-                               : diagnostics::reduced_belt_model(full, basis.basis.truncated(request.modes[m - 1]));
-    const dynamics::State own = m == 0 ? start : rom::restrict_state(full.structure(), *model.basis, start);
-    out[m] = motions_of(model, own, scene, request, times, run.stop);
+    std::optional<pod::Basis> own;
+    if (m > 0) own = basis.basis.truncated(request.modes[m - 1]);
+    const dynamics::State from = own ? rom::restrict_state(full.system.structure(), *own, start) : start;
+    if (shaken) {
+      out[m] = on_a_shaker(
+          diagnostics::driven_model(own ? diagnostics::reduced_case(full, *own) : full, drive_over_frequency(scene)),
+          own ? &*own : nullptr, from, scene, request, natural, run.stop);
+      return;
+    }
+    const Model model = own ? diagnostics::reduced_belt_model(full.system, *own) : diagnostics::belt_model(full.system);
+    out[m] = on_a_belt(model, from, scene, request,
+                       MotionTimes(1.0 / natural.front(), kAboveModes * natural.back(), request), run.stop);
   }));
   return out;
 }

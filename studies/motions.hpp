@@ -1,6 +1,5 @@
 #pragma once
 
-#include <slipmode/diagnostics/attractors/sweep.hpp>
 #include <slipmode/diagnostics/series/spectrum.hpp>
 #include <slipmode/dynamics/simulate.hpp>
 #include <slipmode/pod/basis.hpp>
@@ -16,19 +15,19 @@ namespace slipmode::studies {
 
 /// Which motions are computed, and how much of each is kept.
 struct MotionsRequest {
-  std::vector<double> speeds = {};       ///< belt speeds, in the order they are gone through
+  std::vector<double> values = {};       ///< belt speeds or shaker frequencies, in the order they are gone through
   std::vector<bool> recorded = {};       ///< at which of them the motion itself is kept
   std::vector<Eigen::Index> modes = {};  ///< of the reduced models
   /// What is kept of the structure's shape, from the full degrees of freedom [readings x n].
   Eigen::MatrixXd readings = {};
   Eigen::Index samples = 1500;         ///< kept of contacts
   Eigen::Index samples_per_shape = 4;  ///< the shape is kept at every so many
-  double periods = 6.0;                ///< of the slowest natural mode, kept
+  double periods = 6.0;                ///< of the slowest natural mode or of the shaker, kept
   double spectrum_periods = 40.0;      ///< of which the spectrum is taken
 };
 
-/// A settled motion from one of its slips on, that from the largest displacement within two slowest periods: so
-/// periodic motions of two models are in phase.
+/// A settled motion. On a belt from one of its slips on, that from the largest displacement within two slowest periods;
+/// under a shaker from where its velocity passes zero upward: so periodic motions of two models are in phase.
 struct Motion {
   double interval = 0.0;                     ///< between samples [s]
   Eigen::MatrixXd q, v, lambda;              ///< of the contacts [contacts x samples]
@@ -38,18 +37,26 @@ struct Motion {
   diagnostics::AmplitudeSpectrum spectrum;   ///< of the first contact's velocity
 };
 
-/// One model over the speeds.
-struct MotionsOf {
-  Eigen::Index modes = 0;                       ///< 0: the full model
-  std::vector<diagnostics::SweepPoint> points;  ///< one per speed
-  std::vector<std::optional<Motion>> motions;   ///< one per recorded speed; empty where it failed
+/// What a model settles to at a value.
+struct MotionPoint {
+  double value = 0.0;
+  /// Of the first contact the displacements at its slips; under a shaker the scene's reading at each section.
+  std::vector<double> states = {};
+  std::string said = {};  ///< "period 1", …
 };
 
-/// What the full model and reduced ones settle to over the belt's speed, each following its own motion from speed to
-/// speed from the scene's start, settled as [validation] says for its sweep.
+/// One model over the values.
+struct MotionsOf {
+  Eigen::Index modes = 0;                      ///< 0: the full model
+  std::vector<MotionPoint> points;             ///< one per value
+  std::vector<std::optional<Motion>> motions;  ///< one per recorded value; empty where it failed
+};
+
+/// What the full model and reduced ones settle to over a belt's speed or a shaker's frequency, settled as [validation]
+/// says for its sweep; on a belt each follows its own motion from value to value from the scene's start.
 /// @param basis  with as many vectors as the largest model has modes
 /// @return       the full model, then the reduced ones in their order
-/// @throws InvalidInput  for no speeds, a scene without a belt, more modes than vectors
+/// @throws InvalidInput  for no values, a scene under a force, more modes than vectors
 /// @throws Interrupted   when the stop flag was set
 [[nodiscard]] std::vector<MotionsOf> motions(const scene::Scene& scene, const pod::NamedBasis& basis,
                                              const MotionsRequest& request, const RunOptions& run);

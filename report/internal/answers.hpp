@@ -4,6 +4,8 @@
 #include <slipmode/scene/scene.hpp>
 #include "report/internal/json.hpp"
 
+#include <Eigen/Core>
+#include <optional>
 #include <string>
 
 namespace slipmode::report {
@@ -16,7 +18,15 @@ namespace slipmode::report {
 /// @throws InvalidInput  when the file lacks a table
 [[nodiscard]] Json belt_answers(const results::StoreReader& validation);
 
-/// The same of a validation under a shaker.
+/// A reduced model by its basis and number of modes.
+struct NamedModel {
+  std::string basis;
+  Eigen::Index modes = 0;
+};
+/// Of a validation under a shaker: the reduced model that answers speak of. Nothing where none gave a settled motion.
+[[nodiscard]] std::optional<NamedModel> told_of_shaken(const results::StoreReader& validation);
+
+/// The same as belt_answers of a validation under a shaker.
 [[nodiscard]] Json shaken_answers(const results::StoreReader& validation);
 
 }  // namespace slipmode::report

@@ -1,4 +1,4 @@
-// The motions behind a bifurcation diagram: a speed and a number of modes are chosen, all figures follow.
+// The motions behind a diagram over speed or frequency: a value and a number of modes are chosen, all figures follow.
 
 function decodedMotion(own) {
   if (!own || own.time) return own;
@@ -20,10 +20,12 @@ function motionSection(main, own, diagram) {
   const label = own.labels, speeds = own.speeds;
   const state = {speed: Math.max(0, speeds.indexOf(own.own_speed)), model: Math.max(1, own.models.findIndex(model => model.modes === own.chosen)),
     time: 0, playing: !kStill};
-  const made = section(main, "motions", "Motions at a speed",
-    `Click a speed in the diagram, or use the sliders. Motions are kept at ${speeds.length} speeds: the nearest is shown. ` +
-    `Each model settled by itself, following its own motion from speed to speed; what is shown begins with a slip and lasts ` +
-    `${own.periods} of the slowest natural periods, spectra are of ${own.spectrum_periods}.`);
+  const many = speeds.length > 1;
+  const made = section(main, "motions", many ? `Motions at a ${own.word}` : "Motion, in full and reduced",
+    (many ? `Click a ${own.word} in the diagram, or use the sliders. Motions are kept at ${speeds.length} of them: the nearest is ` +
+      `shown. ` : "The slider changes the reduced model. ") +
+    `Each model settled by itself; what is shown begins ${own.begins} and lasts ${own.periods} of ${own.counted}, spectra are ` +
+    `of ${own.spectrum_periods}.`);
 
   const bar = made.append("div").attr("class", "bar controls");
   const slider = (id, text, most, act) => {
@@ -33,8 +35,10 @@ function motionSection(main, own, diagram) {
       .on("input", function () { act(+this.value); });
     return {input, output: one.append("output")};
   };
-  const bySpeed = slider("speed", plain(label.speed).replace(/\s*\[.*/, ""), speeds.length - 1, k => { state.speed = speeds.length - 1 - k; choose(); });
-  const byModes = slider("modes", `number of ${own.basis}s`, own.models.length - 2, k => { state.model = k + 1; choose(); });
+  const slot = k => speeds[0] > speeds[speeds.length - 1] ? speeds.length - 1 - k : k;  // larger values to the right
+  const bySpeed = slider("speed", plain(label.speed).replace(/\s*\[.*/, ""), speeds.length - 1, k => { state.speed = slot(k); choose(); });
+  bySpeed.input.property("disabled", !many);
+  const byModes = slider("modes", `number of ${own.vectors}`, own.models.length - 2, k => { state.model = k + 1; choose(); });
   const play = bar.append("button").attr("type", "button").attr("id", "play").on("click", () => { state.playing = !state.playing; tellPlaying(); });
   const byTime = slider("time", "time", 1000, k => { state.playing = false; tellPlaying(); state.time = k / 1000 * end(); move(); });
   const told = made.append("p").attr("id", "told").attr("aria-live", "polite");
@@ -45,14 +49,14 @@ function motionSection(main, own, diagram) {
   const domain = {x: span([speeds, ...panels.map(panel => panel.series[0].x), slips[0].x]),
     y: span([...panels.map(panel => panel.series[0].y), ...slips.map(one => one.y)])};
   const pick = x => { state.speed = d3.scan(speeds, (a, b) => Math.abs(a - x) - Math.abs(b - x)); choose(); };
-  const diagrams = [0, 1].map(k => chart(made.append("div").attr("class", k ? "reduced-diagram" : "full-diagram").node(),
+  const diagrams = (many ? [0, 1] : []).map(k => chart(made.append("div").attr("class", k ? "reduced-diagram" : "full-diagram").node(),
     {...slipPanel(k ? state.model : 0), height: 260, domain, pick, x_label: label.speed, y_label: label.slip}));
 
   function slipPanel(m) {
     const model = own.models[m], swept = panels[m === 0 ? 0 : 1];
     const colour = m === 0 ? "#222222" : "#0072B2";
     if (swept && (m === 0 || model.modes === own.chosen)) return {title: swept.title, series: swept.series};
-    return {title: `${model.title}, computed for this page at ${own.all_speeds} speeds`,
+    return {title: `${model.title}, computed for this page at ${own.all_speeds} values`,
       series: [{title: "", look: "dots", colour, side: 2.6, ...slips[m]}]};
   }
 
@@ -94,13 +98,15 @@ function motionSection(main, own, diagram) {
   function choose() {
     const both = current(), models = [own.models[0], own.models[state.model]], speed = speeds[state.speed];
     state.time = Math.min(state.time, end());
-    bySpeed.input.property("value", speeds.length - 1 - state.speed);
+    bySpeed.input.property("value", slot(state.speed));
     bySpeed.output.text(number(speed));
     byModes.input.property("value", state.model - 1);
     byModes.output.text(models[1].modes);
     told.text(`${quantity(label.speed, speed)}: ` + models.map(model => `${model.title}: ${model.said[state.speed]}`).join("; ") + ".");
-    diagrams[1].set(slipPanel(state.model));
-    for (const one of diagrams) one.mark([{x: speed, colour: "--second"}]);
+    diagrams.forEach((one, k) => {
+      if (k) one.set(slipPanel(state.model));
+      one.mark([{x: speed, colour: "--second"}]);
+    });
     for (const one of overModes) one.mark([{x: models[1].modes, colour: "--second"}]);
     const series = (x, y) => both.map((motion, k) => motion && {title: models[k].title, look: "line",
       colour: k ? "#0072B2" : "#222222", width: k ? 1.1 : 1.7, x: motion[x], y: motion[y]}).filter(one => one);

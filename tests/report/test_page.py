@@ -239,6 +239,91 @@ class RunOfAChain(unittest.TestCase):
         self.page.frame()
 
 
+# Three masses, the last one held by a shaken slider with friction that sticks and slips.
+SHAKEN = """
+title = "shaken"
+units = "dimensionless"
+[structure]
+kind = "chain"
+masses = 3
+damping = 0.1
+[[contact]]
+at = 3
+law = "coulomb"
+mu_s = 0.4
+mu_k = 0.3
+normal_load = 1.0
+[drive]
+kind = "shaker"
+frequency = 0.1
+amplitude = 1.0
+[time]
+cycles = 60
+transient_cycles = 40
+samples_per_cycle = 64
+[ensemble]
+members = 2
+spread = 0.01
+[reduction]
+modes = 2
+[validation]
+cycles = 200
+kept = 60
+frequencies = { from = 0.05, to = 0.15, step = 0.05 }
+modes = [1, 2, 3]
+cost_cycles = 20
+cost_repeats = 1
+"""
+
+
+@unittest.skipUnless(chromium.executable(), "no Chromium here (Debian: chromium)")
+class RunOnAShaker(unittest.TestCase):
+    def look(self, examine, *sets):
+        with tempfile.TemporaryDirectory() as folder:
+            (pathlib.Path(folder) / "scene.toml").write_text(SHAKEN)
+            slipmode("run", "scene.toml", "-o", "out", *sets, folder=folder)
+            with chromium.Page(pathlib.Path(folder) / "out" / "report.html") as page:
+                page.run("document.querySelector('#play').click()")
+                examine(page)
+                self.assertEqual(page.complaints, [])
+
+    def test_a_click_on_a_frequency_shows_its_motion_in_full_and_reduced(self):
+        def examine(page):
+            self.assertEqual(page.run("document.querySelector('#motions h2').textContent"), "Motions at a frequency")
+            for share, frequency in ((0.04, "0.05"), (0.96, "0.15")):  # of the diagram's width, margins of 4 %
+                page.click(".full-diagram svg > rect", x=share)
+                self.assertIn(f"= {frequency}", page.run("document.querySelector('#told').textContent"))
+            page.run("document.querySelector('#motions .panels').scrollIntoView()")
+            for modes in (1, 3):
+                page.run(f"""(() => {{ const own = document.querySelector('#modes');
+                  own.value = {modes - 1}; own.dispatchEvent(new Event('input')); }})()""")
+                page.frame()
+                for chart in page.run("[...document.querySelectorAll('#motions .panels svg')].map(s => s.textContent)"):
+                    self.assertIn(f"{modes} modes of ", chart)
+            # All modes kept: the full motion in other coordinates; it repeats with the shaker, so both are in phase.
+            apart = page.run("""(async () => {
+              const own = await documentOf(document.getElementById("motion-data")), last = own.models.length - 1;
+              return own.speeds.map((frequency, k) => {
+                const [a, b] = [0, last].map(m => list(own.models[m].motions[k].q));
+                return [own.models[0].said[k], d3.max(a.map((value, i) => Math.abs(value - b[i]))) / (d3.max(a) - d3.min(a))];
+              });
+            })()""")
+            compared = [distance for said, distance in apart if "period" in said]
+            self.assertTrue(compared, apart)
+            self.assertLess(max(compared), 2e-3)  # two steps of a list are a thousandth of its span
+
+        self.look(examine)
+
+    def test_at_one_frequency_there_is_no_choice_of_it(self):
+        def examine(page):
+            self.assertEqual(page.run("document.querySelector('#motions h2').textContent"),
+                             "Motion, in full and reduced")
+            self.assertTrue(page.run("document.querySelector('#speed').disabled"))
+            self.assertIsNone(page.run("document.querySelector('.full-diagram')"))
+
+        self.look(examine, "--set", "validation.frequencies={ from = 0.1, to = 0.1, step = 0.1 }")
+
+
 @unittest.skipUnless(chromium.executable(), "no Chromium here (Debian: chromium)")
 class FilesOfOtherKinds(unittest.TestCase):
     BACKLASH = str(pathlib.Path(__file__).parents[2] / "datasets" / "backlash_sdof" / "scene.toml")
