@@ -2,11 +2,22 @@
 
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <mutex>
 
 namespace slipmode::dynamics {
+
+/// The longest step of 24 binary digits up to a length. Its halves have no more, so times that are sums of steps are
+/// exact until 2⁵³⁻²⁴ of the last level's: with any length clock and motion part by the rounding of the time at each
+/// step, always to one side, and by their number, as the square of the time, in all.
+[[nodiscard]] inline double first_step(double longest) {
+  constexpr int kDigits = 24;
+  int exponent = 0;
+  const double mantissa = std::frexp(longest, &exponent);
+  return std::isfinite(longest) ? std::ldexp(std::floor(std::ldexp(mantissa, kDigits)), exponent - kDigits) : longest;
+}
 
 /// One table per level, built when first asked for and kept; safe to share between threads.
 template <class T, int levels>

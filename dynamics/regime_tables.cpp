@@ -96,8 +96,8 @@ Moments moments(const ModalModel& pairs, Eigen::Index i, double rate, const Eige
 RegimeTables::RegimeTables(const HybridSystem& system, const ModalModel& slipping,
                            const std::vector<ContactRole>& roles)
     : regime_(system, slipping, roles) {
-  for (int level = 0; level < kLevels; ++level)
-    length_[static_cast<std::size_t>(level)] = std::ldexp(kTopPhase / regime_.rate, -level);
+  const double first = first_step(kTopPhase / regime_.rate);
+  for (int level = 0; level < kLevels; ++level) length_[static_cast<std::size_t>(level)] = std::ldexp(first, -level);
 }
 
 int RegimeTables::level_covering(double wanted) const {

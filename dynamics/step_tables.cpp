@@ -46,7 +46,7 @@ StepTables::StepTables(const ModalModel& model)
       driven_(model.force_input.cols() > 0 ? std::optional(with_given_forces(model)) : std::nullopt),
       acted_on_(driven_ ? *driven_ : model),
       motion_(model),
-      top_(kLongestPhase / (model.fastest > 0 ? model.fastest : 1.0)),
+      top_(first_step(kLongestPhase / (model.fastest > 0 ? model.fastest : 1.0))),
       loaded_(!model.load.isZero(0.0)) {}
 
 Eigen::MatrixXd StepTables::changes(const Eigen::VectorXd& times) const {
