@@ -142,8 +142,10 @@ Report balance_report(const std::string& verb, const studies::Family& model, con
   if (found.hill.size() > 0) {
     report.data["hill"] = {{"multipliers", complex_json(found.hill)},
                            {"without_jumps", complex_json(found.hill_without_jumps)}};
-    report.text += fmt::format("  multipliers by Hill's method {}; were the jumps at stops left out, {}\n",
-                               multipliers_text(found.hill), multipliers_text(found.hill_without_jumps));
+    report.text += fmt::format("  multipliers by Hill's method {}", multipliers_text(found.hill));
+    if (found.hill != found.hill_without_jumps)
+      report.text += fmt::format("; were the jumps at stops left out, {}", multipliers_text(found.hill_without_jumps));
+    report.text += "\n";
   }
   if (balance.converged && orbits::has_memory(model.own())) {
     constexpr const char* kWhy =

@@ -57,8 +57,9 @@ struct Balance {
 /// limits of friction. Cost of a step O((nc H)³), whatever the structure's size; receptances O(n nc² H), once.
 /// @return  `converged` false, with the best residual, when Newton's method does not arrive
 /// @throws InvalidInput  for harmonics < 1, samples from 1 to 2H, order < 1, a guess for another number of contacts, a
-///                       drive without a period, a shaker whose order is above H, and laws other than clearances and
-///                       Coulomb friction behind contact springs under constant limits, with what to do instead
+///                       drive without a period, a shaker whose order is above H, and laws other than clearances, tanh
+///                       friction and Coulomb friction behind contact springs under constant limits, with what to do
+///                       instead
 /// Source: docs/theory/harmonic-balance.md, sections 2 and 3; S2's schemes are the exact and the sampled one.
 [[nodiscard]] Balance balance(const dynamics::HybridSystem& system, const BalanceOptions& options = {});
 

@@ -64,6 +64,7 @@ BalanceBranchSolver::BalanceBranchSolver(dynamics::PlaneFamily family, const Bal
   size_ = x.cwiseAbs().maxCoeff();
   if (!(size_ > 0.0)) size_ = 1.0;
   for (const BalancedLaw& law : balanced_laws(system)) stiffness_ = std::max(stiffness_, strongest(law, 0.0));
+  if (!(stiffness_ > 0.0)) stiffness_ = 1.0;  // nothing holds a mean displacement
   if (condition_ && condition_->kind == SpecialKind::kGrazing) condition_ = grazed(system, from, *condition_);
 }
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <cmath>
 #include <complex>
+#include <utility>
 
 namespace slipmode::orbits {
 namespace {
@@ -30,11 +31,20 @@ BalancedLaw balanced_law(const friction::Contact& contact, std::size_t c) {
   if (const auto* clearance = std::get_if<friction::Clearance>(&contact.law)) return BalancedClearance{*clearance};
   if (const auto* compliant = std::get_if<friction::CompliantCoulomb>(&contact.law))
     return jenkins_of(*compliant, contact, c);
+  if (friction::ContactForces forces = friction::contact_forces(contact); forces.kind == friction::LawKind::kSmooth)
+    return BalancedSmooth{std::move(forces)};
   throw InvalidInput(fmt::format(
-      "harmonic balance holds clearances and Coulomb friction behind a contact spring (contact.{}.law = "
-      "\"clearance\" or \"compliant\"), and contact '{}' has another law; give it a contact spring, or find "
+      "harmonic balance holds clearances, Coulomb friction behind a contact spring and smooth friction (contact.{}.law "
+      "= \"clearance\", \"compliant\" or \"tanh\"), and contact '{}' has another law; give it a contact spring, or "
+      "find "
       "this orbit by shooting, which holds every law",
       c, contact.name));
+}
+
+ForceTangent tangent(const BalancedLaw& law, const TrigonometricPolynomial& y, double omega, Eigen::Index moments,
+                     bool jumps) {
+  if (const auto* clearance = std::get_if<BalancedClearance>(&law)) return clearance->tangent(y, omega, moments, jumps);
+  return std::get<BalancedSmooth>(law).tangent(y, omega, moments);
 }
 
 std::optional<double> own_state(const BalancedLaw& law, const TrigonometricPolynomial& y) {

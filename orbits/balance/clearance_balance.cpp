@@ -131,9 +131,9 @@ ContactMode mode_at(double side) { return side < 0.0 ? ContactMode::kLeftStop : 
 
 }  // namespace
 
-StopTangent stop_tangent(const friction::Clearance& law, const TrigonometricPolynomial& y, double omega,
-                         Eigen::Index moments, bool jumps) {
-  StopTangent out{Eigen::VectorXcd::Zero(moments + 1), Eigen::VectorXcd::Zero(moments + 1)};
+ForceTangent BalancedClearance::tangent(const TrigonometricPolynomial& y, double omega, Eigen::Index moments,
+                                        bool jumps) const {
+  ForceTangent out{Eigen::VectorXcd::Zero(moments + 1), Eigen::VectorXcd::Zero(moments + 1)};
   for_each_stop(law, omega, [&](const StopLaw& own) {
     const Occupation where = exact_occupation(own, y, moments);
     out.stiffness -= own.stop.stiffness * where.set;

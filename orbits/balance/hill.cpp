@@ -3,7 +3,7 @@
 #include <slipmode/core/decompositions.hpp>
 #include <slipmode/core/errors.hpp>
 #include <slipmode/orbits/floquet.hpp>
-#include "orbits/balance/internal/clearance_balance.hpp"
+#include "orbits/balance/internal/balanced_law.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -45,7 +45,7 @@ Eigen::MatrixXd multiplication(const Eigen::VectorXcd& g, const Grid& grid) {
 
 /// The matrix whose eigenvalues are the exponents, on (φ; φ̇) function after function.
 Eigen::MatrixXd hill_matrix(const dynamics::HybridSystem& system, const Balance& balance,
-                            const std::vector<StopTangent>& answers, const Grid& grid) {
+                            const std::vector<ForceTangent>& answers, const Grid& grid) {
   const Eigen::Index n = system.size(), B = grid.size(), half = n * B;
   const Eigen::LLT<Eigen::MatrixXd> mass(fem::to_dense(system.structure().M()));
   const Eigen::MatrixXd K = mass.solve(fem::to_dense(system.structure().K())),
@@ -150,10 +150,12 @@ Eigen::VectorXcd hill_multipliers(const dynamics::HybridSystem& system, const Ba
         "Hill's method does not hold where friction has a contact spring, whose force depends on the motion before; "
         "certify the balance (--certify): the orbit behind it has exact multipliers");
   const Eigen::Index L = options.perturbation > 0 ? options.perturbation : balance.harmonics;
-  std::vector<StopTangent> answers;
-  for (std::size_t c = 0; c < system.contacts().size(); ++c)
-    answers.push_back(stop_tangent(*friction::clearance(system.contacts()[c].law),
-                                   polynomial_of(balance.displacement[c]), balance.omega, 2 * L, options.jumps));
+  std::vector<ForceTangent> answers;
+  const TrigonometricPolynomial d = counterpart_motion(system.drive(), balance.order, balance.harmonics);
+  const std::vector<BalancedLaw> laws = balanced_laws(system);
+  for (std::size_t c = 0; c < laws.size(); ++c)
+    answers.push_back(tangent(laws[c], seen_by(laws[c], polynomial_of(balance.displacement[c]), d), balance.omega,
+                              2 * L, options.jumps));
   const Eigen::Index count = 2 * system.size();
   const auto exponents = [&](const Grid& grid) {
     return sorted_eigenvalues(hill_matrix(system, balance, answers, grid));

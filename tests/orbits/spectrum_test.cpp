@@ -1,5 +1,6 @@
 // Fourier coefficients of exact orbits: against an independent program, and against the equations of motion.
 #include <slipmode/core/errors.hpp>
+#include <slipmode/fem/chain.hpp>
 #include <slipmode/fem/structure.hpp>
 #include <slipmode/orbits/shooting.hpp>
 #include <slipmode/orbits/spectrum.hpp>

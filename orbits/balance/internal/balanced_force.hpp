@@ -42,6 +42,11 @@ struct BalancedForce {
         jacobian(Eigen::MatrixXd::Zero(own.numbers(), own.numbers())) {}
 };
 
+/// How a contact's force answers a motion beside y, δλ = s(θ) δy + d(θ) δẏ, as g_m = (1/2π) ∫ e^{imθ} s dθ of s and d.
+struct ForceTangent {
+  Eigen::VectorXcd stiffness, damping;  ///< m = 0 … M
+};
+
 /// g_m = (1/2π) ∫ e^{imθ} dθ over the arc from `begin` to `end` ≤ begin + 2π, m = 0 … `moments`.
 [[nodiscard]] Eigen::VectorXcd arc_moments(double begin, double end, Eigen::Index moments);
 

@@ -3,6 +3,7 @@
 #include <slipmode/friction/contact.hpp>
 #include "orbits/balance/internal/clearance_balance.hpp"
 #include "orbits/balance/internal/jenkins_balance.hpp"
+#include "orbits/balance/internal/smooth_balance.hpp"
 
 #include <variant>
 
@@ -18,8 +19,8 @@ namespace slipmode::orbits {
 ///     impedance(omega)                 −λ/y of the linear law at share 0, at this frequency
 ///     strongest(omega)                 largest |−∂λ/∂y| there is, at this frequency
 ///
-/// A law with a state of its own has it told by `own_state`.
-using BalancedLaw = std::variant<BalancedClearance, BalancedJenkins>;
+/// A law with a state of its own has it told by `own_state`, one without memory its answers to neighbours by `tangent`.
+using BalancedLaw = std::variant<BalancedClearance, BalancedJenkins, BalancedSmooth>;
 
 /// @param c  the contact's number, for the message
 /// @throws InvalidInput  for a law, load or coefficients that balance does not hold, with the key and what to do
@@ -51,6 +52,10 @@ using BalancedLaw = std::variant<BalancedClearance, BalancedJenkins>;
 [[nodiscard]] inline double strongest(const BalancedLaw& law, double omega) {
   return std::visit([&](const auto& own) { return own.strongest(omega); }, law);
 }
+/// How the force of a law without memory answers a motion beside y. @param moments  M @param jumps  with those of
+/// forces
+[[nodiscard]] ForceTangent tangent(const BalancedLaw& law, const TrigonometricPolynomial& y, double omega,
+                                   Eigen::Index moments, bool jumps);
 /// The contact's own state at θ = 0; nothing where it has none.
 [[nodiscard]] std::optional<double> own_state(const BalancedLaw& law, const TrigonometricPolynomial& y);
 

@@ -9,15 +9,6 @@
 
 namespace slipmode::orbits {
 
-/// How a contact's force answers a motion beside y, δλ = s(θ) δy + d(θ) δẏ, as g_m = (1/2π) ∫ e^{imθ} s dθ of s and d.
-struct StopTangent {
-  Eigen::VectorXcd stiffness, damping;  ///< m = 0 … M
-};
-/// @param moments  M
-/// @param jumps    with s = Σ_s [λ]/|ẏ| at the switches at which the force jumps by [λ]
-[[nodiscard]] StopTangent stop_tangent(const friction::Clearance& law, const TrigonometricPolynomial& y, double omega,
-                                       Eigen::Index moments, bool jumps);
-
 /// Stops with play between them, as BalancedLaw lists it.
 ///
 /// A stop presses with λ = −k (y ∓ b) − c Ω y′ on the set of θ where its law says so, which ends at zeros of
@@ -37,6 +28,11 @@ struct BalancedClearance {
   /// Of both stops, each half the time.
   [[nodiscard]] std::complex<double> impedance(double omega) const;
   [[nodiscard]] double strongest(double omega) const;
+  /// How the force answers a motion beside y.
+  /// @param moments  M
+  /// @param jumps    with s = Σ_s [λ]/|ẏ| at the switches at which the force jumps by [λ]
+  [[nodiscard]] ForceTangent tangent(const TrigonometricPolynomial& y, double omega, Eigen::Index moments,
+                                     bool jumps) const;
 };
 
 }  // namespace slipmode::orbits
