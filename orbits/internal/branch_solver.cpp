@@ -23,6 +23,8 @@ constexpr double kDifferenceStep = 1e-6;
 
 /// Springs' forces that reach this much further to one side, of their largest, need not be moved.
 constexpr double kMiddle = 1e-6;
+/// Stretches of springs below this share of a family's largest are rounding.
+constexpr double kStretched = 1e-9;
 /// Of an orbit, to tell how far forces reach: their largest values to 1e-4.
 constexpr int kProbes = 256;
 
@@ -59,7 +61,9 @@ Eigen::VectorXd way_to_middle(const dynamics::HybridSystem& system, const Period
     return {};
   const Eigen::MatrixXd stretched = orbit.family(own_states, Eigen::all),
                         moved = directions.transpose() * orbit.family.topRows(system.size());
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(stretched, Eigen::ComputeThinU | Eigen::ComputeFullV);
+  // The family is found to rounding of the orbit: a structure that moves as a whole stretches springs by 1e-16 or so.
+  Eigen::JacobiSVD<Eigen::MatrixXd> svd(stretched, Eigen::ComputeThinU | Eigen::ComputeFullV);
+  svd.setThreshold(kStretched);
   const Eigen::VectorXd shift = -svd.solve(off);
   const Eigen::MatrixXd open = svd.matrixV().rightCols(orbit.family.cols() - svd.rank());
   if (open.cols() == 0) return orbit.family * shift;
