@@ -66,7 +66,7 @@ std::string BranchSolver::curve_end(const BranchEvaluation& at, const PeriodicOr
     return "the orbit shrinks to a state of rest: a Hopf point, where orbits begin";
   if (condition_->kind == SpecialKind::kGrazing) return {};
   if (condition_->kind == SpecialKind::kNeimarkSacker) {
-    const std::string met = resonance_met(critical_pair(multipliers_of(at.J, scale_.size(), half_period()), {}));
+    std::string met = resonance_met(critical_pair(multipliers_of(at.J, scale_.size(), half_period()), {}));
     if (!met.empty()) return met;
   }
   const double touch = slowest_touch(orbit.events) / scale_[orbit.start.q.size()];
