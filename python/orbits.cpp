@@ -64,6 +64,7 @@ struct BranchCertificates {
     return std::tuple{optional("every", &BranchCertificates::every, "",
                                "with certify: every so many points, and the last; 0: all", kFromZero)};
   }
+  [[nodiscard]] std::optional<int> points() const { return every > 0 ? std::optional(every) : std::nullopt; }
 };
 
 /// How an orbit is looked for.
@@ -178,7 +179,7 @@ void require_whole(const orbits::Branch& branch, double start, const Result& kep
 Result continue_balance(const Scene& scene, const std::string& over, const Method& method,
                         const studies::ContinuationRequest& request, const BranchCertificates& certificates,
                         const ModelChoice& choice, Call& call) {
-  const std::optional<int> every = certificates.every > 0 ? std::optional(certificates.every) : std::nullopt;
+  const std::optional<int> every = certificates.points();
   const auto [found, result] = call([&] {
     const auto basis = choice.basis(scene, call.options());
     studies::BalanceContinuation own = studies::continue_balance(scene, over, basis, method.balance, request, every,
@@ -224,16 +225,17 @@ struct CurveBase {
 };
 
 CurveBase curve_base(const studies::CurvePlane& plane, const std::optional<pod::NamedBasis>& basis,
-                     const std::string& over, const Method& method, const studies::ContinuationRequest& request,
-                     const std::string& model, const studies::RunOptions& run) {
+                     const std::string& over, const Method& method, const std::optional<int>& every,
+                     const studies::ContinuationRequest& request, const std::string& model,
+                     const studies::RunOptions& run) {
   const studies::OrbitSearch& search = method.search;
   if (method.balances) {
     studies::require_no_certificate(method.balance);
     studies::BalanceContinuation found =
-        studies::continue_balance(plane.scene, over, basis, method.balance, request, {}, certifying(search), run);
+        studies::continue_balance(plane.scene, over, basis, method.balance, request, every, certifying(search), run);
     CurveBase out{.start = found.start,
                   .shooting = {.tolerance = search.tolerance},
-                  .command = studies::command_of(over, model, search, method.words, method.start, {}, request)};
+                  .command = studies::command_of(over, model, search, method.words, method.start, every, request)};
     if (!found.branch.points.empty()) out.branches = *studies::branches_of(found);
     out.balance = std::move(found.found);
     return out;
@@ -247,12 +249,13 @@ CurveBase curve_base(const studies::CurvePlane& plane, const std::optional<pod::
 }
 
 Result continue_special(const Scene& scene, const std::string& over, const Method& method,
-                        const studies::ContinuationRequest& request, const studies::CurveRequest& curve,
-                        const ModelChoice& choice, Call& call) {
+                        const studies::ContinuationRequest& request, const BranchCertificates& certificates,
+                        const studies::CurveRequest& curve, const ModelChoice& choice, Call& call) {
   const auto [base, found, result] = call([&] {
     const auto basis = choice.basis(scene, call.options());
     const studies::CurvePlane plane = studies::curve_plane(scene, over, basis, request, curve);
-    CurveBase own = curve_base(plane, basis, over, method, request, choice.word(), call.options());
+    CurveBase own =
+        curve_base(plane, basis, over, method, certificates.points(), request, choice.word(), call.options());
     std::shared_ptr<const studies::SpecialCurves> curves;
     std::optional<Result> kept;
     if (!own.branches.empty()) {
@@ -288,7 +291,7 @@ Result continue_orbit(const Scene& scene, const std::string& over, double to, co
   if (method.balances) keywords.read(own);
   const ModelChoice choice(keywords);
   Call call(keywords);
-  if (curve) return continue_special(scene, over, method, request, *curve, choice, call);
+  if (curve) return continue_special(scene, over, method, request, own, *curve, choice, call);
   if (method.balances) return continue_balance(scene, over, method, request, own, choice, call);
   const auto [found, result] = call([&] {
     const auto basis = choice.basis(scene, call.options());
