@@ -182,8 +182,10 @@ Report run_curves(const Session& session, const OrbitContinueArguments& argument
                           const orbits::ShootingOptions& shooting, const std::string& command) {
     const auto found = std::make_shared<const studies::SpecialCurves>(studies::special_curves(
         plane, std::move(branches), start, followed.request, curve, shooting, session.run_options()));
-    return curves_report(studies::plane_of(followed.scene, followed.key, followed.basis, curve, *found), found,
-                         followed.request, curve, studies::command_of(command, curve), arguments.output);
+    Report out = curves_report(studies::plane_of(followed.scene, followed.key, followed.basis, curve, *found), found,
+                               followed.request, curve, studies::command_of(command, curve), arguments.output);
+    out.data["by"] = arguments.balance.by;
+    return out;
   };
   if (arguments.balance.by == "balance") {
     const studies::BalanceSearch search = balance_search_of(arguments);

@@ -96,7 +96,6 @@ Report curves_report(const studies::Family& model, const std::shared_ptr<const s
                  {"over", {{"key", keys[0]}, {"from", request.from}, {"to", request.to}, {"start", found->start}}},
                  {"along", {{"key", keys[1]}, {"from", curve.from}, {"to", curve.to}, {"start", found->along}}},
                  {"point", studies::point_text(curve)},
-                 {"by", found->branches.front().branch.points.front().balance ? "balance" : "shooting"},
                  {"curves", list}};
   for (const std::string& refused : found->refused) report.text += "not followed: " + refused + "\n";
   if (found->curves.empty()) {

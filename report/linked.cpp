@@ -43,17 +43,27 @@ std::size_t nearest(const std::vector<double>& values, double value) {
 struct Compared {
   const char *full, *models;     ///< the full model's sweep, and the table of reduced ones
   const char* word;              ///< of a value of the drive
+  const char* settled;           ///< how its models did
   const char *periods, *begins;  ///< of what a motion's length is counted in, and where it begins
 };
-constexpr Compared kBelt{"sweep/full", "validation/shares", "speed", "the slowest natural periods", "with a slip"};
-constexpr Compared kShaker{"shaken_validation/full", "shaken_validation/agreement", "frequency", "the shaker's periods",
+constexpr Compared kBelt{"sweep/full",
+                         "validation/shares",
+                         "speed",
+                         "by itself, following its own motion from speed to speed",
+                         "the slowest natural periods",
+                         "with a slip"};
+constexpr Compared kShaker{"shaken_validation/full",
+                           "shaken_validation/agreement",
+                           "frequency",
+                           "by itself, from the scene's start",
+                           "the shaker's periods",
                            "where the shaker's velocity passes zero upward"};
 
 /// The reduced model shown first: on a belt the basis compared first and the chosen number, under a shaker the model
 /// that the first screen names.
-std::optional<NamedModel> shown_first(const StoreReader& validation, bool shaken) {
+std::optional<NamedModel> shown_first(const StoreReader& validation, const results::Table& models, bool shaken) {
   if (shaken) return told_of_shaken(validation);
-  return NamedModel{results::load_table(validation, kBelt.models).texts("basis").front(),
+  return NamedModel{models.texts("basis").front(),
                     static_cast<Eigen::Index>(validation.integer("validation/chosen_modes"))};
 }
 
@@ -132,7 +142,8 @@ Json linked_motions(const StoreReader& validation, const StoreReader& bases, con
   if (!validation.has(std::string(own.full) + "/values") || scene.force || scene.size() > kMostDrawnDofs)
     return nullptr;
   if (!shaken && !has_sticking_law(scene)) return nullptr;  // motions are found by their slips
-  const std::optional<NamedModel> first = shown_first(validation, shaken);
+  const results::Table models_made = results::load_table(validation, own.models);
+  const std::optional<NamedModel> first = shown_first(validation, models_made, shaken);
   if (!first) return nullptr;
   const std::vector<pod::NamedBasis> all = studies::load_bases(scene, scene::build_system(scene), bases);
   const auto basis_found = std::ranges::find(all, first->basis, &pod::NamedBasis::name);
@@ -141,7 +152,7 @@ Json linked_motions(const StoreReader& validation, const StoreReader& bases, con
   const DrawnStructure structure = drawn_structure(scene);
   MotionsRequest request =
       request_of(scene, results::load_table(validation, std::string(own.full) + "/values").numbers("parameter"));
-  request.modes = modes_of(results::load_table(validation, own.models), *first);
+  request.modes = modes_of(models_made, *first);
   if (request.modes.empty()) return nullptr;
   request.readings = structure.readings;
   const std::vector<MotionsOf> found = studies::motions(scene, basis, request, run);
@@ -162,6 +173,7 @@ Json linked_motions(const StoreReader& validation, const StoreReader& bases, con
       {"own_speed", number_json(scene::drive_parameter(scene))},
       {"chosen", first->modes},
       {"word", own.word},
+      {"settled", own.settled},
       {"counted", own.periods},
       {"begins", own.begins},
       {"vectors", vectors},

@@ -13,7 +13,6 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
-#include <type_traits>
 
 namespace slipmode::studies {
 namespace {
@@ -44,15 +43,6 @@ std::vector<double> natural_hz(const dynamics::HybridSystem& full) {
   return hz;
 }
 constexpr double kAboveModes = 1.3;  ///< of the highest of these: shown
-
-template <class Point>
-std::string said_of(const Point& point) {
-  if (!point.ok()) return "failed: " + point.failure;
-  if constexpr (std::is_same_v<Point, diagnostics::SweepPoint>)
-    return results::motion_text(point.settled.period);
-  else
-    return results::motion_text(point.settled);
-}
 
 /// Time from the start to the first contact's slip from the largest displacement within the lead; 0: it does not slip.
 double time_to_slip(const dynamics::HybridSystem& system, const dynamics::State& start, const MotionTimes& times) {
@@ -137,7 +127,9 @@ MotionsOf on_a_belt(const Model& model, const dynamics::State& start, const scen
   if (swept.interrupted) throw Interrupted();
   MotionsOf out{.modes = model.basis ? model.basis->modes() : 0, .points = {}, .motions = {}};
   for (const diagnostics::SweepPoint& point : swept.points) {
-    out.points.push_back({.value = point.parameter, .said = said_of(point)});
+    out.points.push_back(
+        {.value = point.parameter,
+         .said = point.ok() ? results::motion_text(point.settled.period) : "failed: " + point.failure});
     for (const diagnostics::SlipState& slip : point.settled.slips)
       if (slip.contact == 0) out.points.back().states.push_back(slip.displacement);
   }
@@ -167,7 +159,8 @@ MotionsOf on_a_shaker(const diagnostics::DrivenModel& model, const pod::Basis* b
   if (swept.interrupted) throw Interrupted();
   MotionsOf out{.modes = basis != nullptr ? basis->modes() : 0, .points = {}, .motions = {}};
   for (const diagnostics::DrivenPoint& point : swept.points) {
-    out.points.push_back({.value = point.parameter, .said = said_of(point)});
+    out.points.push_back({.value = point.parameter,
+                          .said = point.ok() ? results::motion_text(point.settled) : "failed: " + point.failure});
     if (!point.ok()) continue;
     for (const double reading : point.settled.readings.row(0)) out.points.back().states.push_back(reading);
   }

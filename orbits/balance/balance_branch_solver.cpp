@@ -99,13 +99,6 @@ Eigen::MatrixXd BalanceBranchSolver::scaled_block(const Eigen::MatrixXd& jacobia
   return out;
 }
 
-bool BalanceBranchSolver::in_range(const BalanceUnknowns& at) const {
-  return std::ranges::all_of(keys(), [&](const BranchKey<BalanceUnknowns>& key) {
-    const double slack = 1e-12 * key.range(), value = at.*key.value;
-    return value >= key.low - slack && value <= key.high + slack;
-  });
-}
-
 BalanceBranchEvaluation BalanceBranchSolver::evaluate(const BalanceUnknowns& at) const {
   if (!in_range(at))
     throw NumericalFailure(fmt::format("the parameter {:.9g} is outside the range of the branch", at.parameter), 0.0,

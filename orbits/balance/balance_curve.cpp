@@ -7,14 +7,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace slipmode::orbits {
 namespace {
-
-/// Step of a condition's differences, where Newton's matrix stretches nothing.
-constexpr double kConditionStep = 1e-5;
 
 /// Where a contact turns back before a stop, all of them.
 std::vector<Touch> touches(const Harmonics& displacement, double gap, int side) {
@@ -29,22 +25,12 @@ std::vector<Touch> touches(const Harmonics& displacement, double gap, int side) 
 }  // namespace
 
 CurveCondition grazed(const dynamics::HybridSystem& system, const Balance& balance, const CurveCondition& like) {
-  CurveCondition out = like;
-  double least = std::numeric_limits<double>::infinity(), size = 0.0;
-  for (std::size_t c = 0; c < system.contacts().size(); ++c) {
-    size = std::max(size, balance.displacement[c].amplitude().sum());
-    for (const int side : {1, -1}) {
-      const std::optional<double> gap = gap_towards(system.contacts()[c], side);
-      if (!gap) continue;
-      for (const Touch& touch : touches(balance.displacement[c], *gap, side)) {
-        if (std::abs(touch.clearance) >= least) continue;
-        least = std::abs(touch.clearance);
-        out.contact = c, out.side = side, out.touch = touch.share;
-      }
-    }
-  }
-  require_touch(least, size);
-  return out;
+  double size = 0.0;
+  for (const Harmonics& y : balance.displacement) size = std::max(size, y.amplitude().sum());
+  return nearest_touch(system.contacts().size(), size, like, [&](std::size_t c, int side) {
+    const std::optional<double> gap = gap_towards(system.contacts()[c], side);
+    return gap ? touches(balance.displacement[c], *gap, side) : std::vector<Touch>{};
+  });
 }
 
 Touch touch_near(const dynamics::HybridSystem& system, const Balance& balance, const CurveCondition& condition,
@@ -58,8 +44,7 @@ Touch touch_near(const dynamics::HybridSystem& system, const Balance& balance, c
 void BalanceBranchSolver::add_condition(BalanceBranchEvaluation& out) const {
   const auto condition = condition_near(out);
   const double here = condition(out);
-  const auto N = std::ssize(solved_);
-  const double h = kConditionStep / std::sqrt(std::max(1.0, out.J.leftCols(N).norm()));
+  const double h = condition_step(out.J.leftCols(std::ssize(solved_)));
   const Eigen::RowVectorXd row =
       condition_row(out.J, out.r, here, h, [&](const Eigen::VectorXd& step) -> std::optional<double> {
         const BalanceUnknowns beside = moved(out, step, 0.0);
@@ -67,10 +52,7 @@ void BalanceBranchSolver::add_condition(BalanceBranchEvaluation& out) const {
         BalanceBranchEvaluation there = balanced(beside, false);
         return condition(there);
       });
-  out.J.conservativeResize(N + 1, Eigen::NoChange);
-  out.J.bottomRows(1) = row;
-  out.r.conservativeResize(N + 1);
-  out.r[N] = here;
+  append(row, here, out.J, out.r);
 }
 
 std::function<double(BalanceBranchEvaluation&)> BalanceBranchSolver::condition_near(
@@ -108,9 +90,9 @@ Eigen::VectorXcd BalanceBranchSolver::multipliers_at(const BalanceBranchEvaluati
   return hill_multipliers(at.own->system, *balance_of(at), {.half_period = symmetric_});
 }
 
-std::string BalanceBranchSolver::curve_end(const BalanceBranchEvaluation& at, const PeriodicOrbit& /*orbit*/) const {
+std::string BalanceBranchSolver::curve_end(const BalanceBranchEvaluation& /*at*/, const PeriodicOrbit& orbit) const {
   if (!on_curve() || condition_->kind != SpecialKind::kNeimarkSacker) return {};
-  const MultiplierPair pair = critical_pair(multipliers_at(at), {});
+  const MultiplierPair pair = critical_pair(symmetric_ ? orbit.half_multipliers : orbit.multipliers, {});
   if (!pair.complex()) return resonance_met(pair);
   if (symmetric_ || 0.5 * pair.sum > std::cos(0.99 * kHillsBand * std::numbers::pi)) return {};
   return "the pair of multipliers nears -1, a strong resonance, where truncation no longer tells one from the other: "

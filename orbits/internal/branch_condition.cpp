@@ -17,15 +17,13 @@ constexpr double kSlowTouch = 5e-4;
 constexpr double kAtRest = 1e-3;
 /// Share of a touch's depth that a difference may change.
 constexpr double kOfTouch = 0.02;
-/// Step of a condition's differences, where Φ stretches nothing.
-constexpr double kConditionStep = 1e-5;
 
 }  // namespace
 
 void BranchSolver::add_condition(BranchEvaluation& out) const {
   const auto condition = condition_near(out);
   out.condition = condition(out);
-  double h = kConditionStep / std::sqrt(std::max(1.0, out.J.leftCols(scale_.size()).norm()));
+  double h = condition_step(out.J.leftCols(scale_.size()));
   // A touch of scaled speed v goes about v²/2 deep: differences are to keep it.
   const double touch = slowest_touch(out.shooting.events) / scale_[out.problem->system().size()];
   if (condition_->kind != SpecialKind::kGrazing) h = std::min(h, kOfTouch * touch * touch);
@@ -36,10 +34,7 @@ void BranchSolver::add_condition(BranchEvaluation& out) const {
         BranchEvaluation there = closing(beside, false);
         return condition(there);
       });
-  out.J.conservativeResize(out.J.rows() + 1, Eigen::NoChange);
-  out.J.bottomRows(1) = row;
-  out.r.conservativeResize(out.J.rows());
-  out.r[out.r.size() - 1] = out.condition;
+  append(row, out.condition, out.J, out.r);
 }
 
 std::function<double(BranchEvaluation&)> BranchSolver::condition_near(const BranchEvaluation& at) const {

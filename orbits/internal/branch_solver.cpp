@@ -129,13 +129,6 @@ void BranchSolver::set_times(BranchUnknowns& at, const dynamics::HybridSystem& s
     at.point.nodes[k].time = at.phase * *drive_period + length * static_cast<double>(k);
 }
 
-bool BranchSolver::in_range(const BranchUnknowns& at) const {
-  return std::ranges::all_of(keys(), [&](const BranchKey<BranchUnknowns>& key) {
-    const double slack = 1e-12 * key.range(), value = at.*key.value;
-    return value >= key.low - slack && value <= key.high + slack;
-  });
-}
-
 BranchEvaluation BranchSolver::evaluate(const BranchUnknowns& at) const {
   if (!in_range(at))
     throw NumericalFailure(fmt::format("the parameter {:.9g} is outside the range of the branch", at.parameter),

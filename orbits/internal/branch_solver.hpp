@@ -50,6 +50,15 @@ template <class Unknowns>
   return out;
 }
 
+/// All keys of a point within their ranges.
+template <class Unknowns>
+[[nodiscard]] bool is_within(const std::vector<BranchKey<Unknowns>>& keys, const Unknowns& at) {
+  return std::ranges::all_of(keys, [&](const BranchKey<Unknowns>& key) {
+    const double slack = 1e-12 * key.range(), value = at.*key.value;
+    return value >= key.low - slack && value <= key.high + slack;
+  });
+}
+
 /// A point on (or near) a branch with the linearised conditions there. Scaled unknowns: (x₁ [N], ln T if unknown, on
 /// curves the other parameter, p).
 struct BranchEvaluation {
@@ -180,7 +189,7 @@ class BranchSolver {
   void add_condition(BranchEvaluation& out) const;
   /// What vanishes on the curve, as it is measured near a point; may follow the touch of that.
   [[nodiscard]] std::function<double(BranchEvaluation&)> condition_near(const BranchEvaluation& at) const;
-  [[nodiscard]] bool in_range(const BranchUnknowns& at) const;
+  [[nodiscard]] bool in_range(const BranchUnknowns& at) const { return is_within(keys(), at); }
   [[nodiscard]] Eigen::VectorXd newton_step(const BranchEvaluation& at, const BranchUnknowns& guess,
                                             const Eigen::VectorXd& row) const;
   /// The step, or a half, a quarter … of it, that lowers the residual. Where Φ jumps (a stop touched) full steps

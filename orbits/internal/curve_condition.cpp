@@ -16,6 +16,10 @@ namespace {
 using dynamics::State;
 
 constexpr int kTouchSamples = 256;  ///< of what is run, to part extremes
+/// A special point's orbit is found to 1e-8 and better: a stop further off than this, of the motion, is not touched.
+constexpr double kTouches = 1e-4;
+/// Step of a condition's differences, where the matrix stretches nothing.
+constexpr double kConditionStep = 1e-5;
 /// A correction below this, scaled, changes a condition by less than it is known.
 constexpr double kLeastCorrection = 1e-13;
 
@@ -105,13 +109,34 @@ std::optional<double> gap_towards(const friction::Contact& contact, int side) {
 
 double shares_apart(double a, double b) { return std::abs(a - b - std::round(a - b)); }
 
-void require_touch(double clearance, double size) {
-  if (clearance <= kTouches * size) return;
+CurveCondition nearest_touch(std::size_t contacts, double size, const CurveCondition& like,
+                             const std::function<std::vector<Touch>(std::size_t contact, int side)>& touches) {
+  CurveCondition out = like;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t c = 0; c < contacts; ++c)
+    for (const int side : {1, -1})
+      for (const Touch& touch : touches(c, side)) {
+        if (std::abs(touch.clearance) >= least) continue;
+        least = std::abs(touch.clearance);
+        out.contact = c, out.side = side, out.touch = touch.share;
+      }
+  if (least <= kTouches * size) return out;
   throw InvalidInput(fmt::format(
       "a grazing is followed where a contact with a clearance just reaches a stop; of this one the nearest comes "
       "within "
       "{:.3g} of one, {:.1e} of the motion: what comes or goes there is a separation, or a stop that lets go",
-      clearance, clearance / size));
+      least, least / size));
+}
+
+double condition_step(const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
+  return kConditionStep / std::sqrt(std::max(1.0, matrix.norm()));
+}
+
+void append(const Eigen::RowVectorXd& row, double value, Eigen::MatrixXd& out_J, Eigen::VectorXd& out_r) {
+  out_J.conservativeResize(out_J.rows() + 1, Eigen::NoChange);
+  out_J.bottomRows(1) = row;
+  out_r.conservativeResize(out_J.rows());
+  out_r[out_r.size() - 1] = value;
 }
 
 Touch touch_near(ShootingProblem& problem, const ShootingPoint& point, const CurveCondition& condition, double share) {
@@ -139,23 +164,14 @@ Touch touch_near(ShootingProblem& problem, const ShootingPoint& point, const Cur
 }
 
 CurveCondition grazed(ShootingProblem& problem, const ShootingPoint& point, const CurveCondition& like) {
-  CurveCondition out = like;
-  double least = std::numeric_limits<double>::infinity();
   const auto& contacts = problem.system().contacts();
-  for (std::size_t c = 0; c < contacts.size(); ++c) {
-    for (const int side : {1, -1}) {
-      const auto own = approach(contacts[c], side);
-      if (!own) continue;
-      for (const Turn& turn : turns(problem, point, *own)) {
-        const Touch touch = located(problem, point, *own, turn);
-        if (std::abs(touch.clearance) >= least) continue;
-        least = std::abs(touch.clearance);
-        out.contact = c, out.side = side, out.touch = touch.share;
-      }
-    }
-  }
-  require_touch(least, problem.scale().head(problem.system().size()).maxCoeff());
-  return out;
+  const double size = problem.scale().head(problem.system().size()).maxCoeff();
+  return nearest_touch(contacts.size(), size, like, [&](std::size_t c, int side) {
+    std::vector<Touch> out;
+    if (const auto own = approach(contacts[c], side))
+      for (const Turn& turn : turns(problem, point, *own)) out.push_back(located(problem, point, *own, turn));
+    return out;
+  });
 }
 
 Eigen::MatrixXd critical_matrix(SpecialKind kind, const Eigen::MatrixXd& J, Eigen::Index states, bool half_period) {

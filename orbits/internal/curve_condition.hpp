@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace slipmode::orbits {
 
@@ -26,8 +27,6 @@ struct CurveCondition {
 
 /// Of a grazing, of the motion: its orbits are those that stay this far off the stop, on the side that knows no touch.
 inline constexpr double kUntouched = 1e-10;
-/// A special point's orbit is found to 1e-8 and better: a stop further off than this, of the motion, is not touched.
-inline constexpr double kTouches = 1e-4;
 
 /// Where a contact is nearest to a stop: a local extreme of its displacement.
 struct Touch {
@@ -43,8 +42,13 @@ struct Touch {
 [[nodiscard]] Touch touch_near(ShootingProblem& problem, const ShootingPoint& point, const CurveCondition& condition,
                                double share);
 /// The contact, side and share at which the point comes nearest to any stop.
-/// @throws InvalidInput  where that is not within kTouches of the motion's size: no stop is grazed
+/// @throws InvalidInput  as nearest_touch
 [[nodiscard]] CurveCondition grazed(ShootingProblem& problem, const ShootingPoint& point, const CurveCondition& like);
+/// The same of any motion. @param touches  the extremes of a contact towards a side @param size  of the motion
+/// @throws InvalidInput  where the nearest is not within 1e-4 of the size: no stop is grazed
+[[nodiscard]] CurveCondition nearest_touch(
+    std::size_t contacts, double size, const CurveCondition& like,
+    const std::function<std::vector<Touch>(std::size_t contact, int side)>& touches);
 
 /// The matrix that is singular at a point of the kind. @param J  closing conditions, and phase; by columns x, [ln T]
 [[nodiscard]] Eigen::MatrixXd critical_matrix(SpecialKind kind, const Eigen::MatrixXd& J, Eigen::Index states,
@@ -69,9 +73,10 @@ struct MultiplierPair {
 /// The slowest speed at which a stop is reached; infinite where none is [m/s].
 [[nodiscard]] double slowest_touch(const std::vector<dynamics::Event>& events);
 
-/// That the nearest extreme of all, a clearance, is no touch.
-/// @throws InvalidInput  where it is beyond kTouches of `size`
-void require_touch(double clearance, double size);
+/// Step of a condition's differences. @param matrix  that closes the orbits, by the unknowns without parameters
+[[nodiscard]] double condition_step(const Eigen::Ref<const Eigen::MatrixXd>& matrix);
+/// One equation more.
+void append(const Eigen::RowVectorXd& row, double value, Eigen::MatrixXd& out_J, Eigen::VectorXd& out_r);
 
 /// Derivatives of a condition in the directions in which the branch goes on, and towards it; in others zero, as
 /// Newton's method on J needs no more.

@@ -151,7 +151,7 @@ async function start() {
   contents(main, data, motions);
   // What stands among the motions is not shown twice.
   const place = motions && main.append("div");
-  const diagram = motions && takeFigure(data.files[0], "bifurcation");
+  const diagram = motions && motions.speeds.length > 1 && takeFigure(data.files[0], "bifurcation");
   data.files.forEach((file, i) => fileSection(main, file, i));
   if (motions) motionSection(place, motions, diagram);
   const licence = main.append("details");

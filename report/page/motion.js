@@ -24,7 +24,7 @@ function motionSection(main, own, diagram) {
   const made = section(main, "motions", many ? `Motions at a ${own.word}` : "Motion, in full and reduced",
     (many ? `Click a ${own.word} in the diagram, or use the sliders. Motions are kept at ${speeds.length} of them: the nearest is ` +
       `shown. ` : "The slider changes the reduced model. ") +
-    `Each model settled by itself; what is shown begins ${own.begins} and lasts ${own.periods} of ${own.counted}, spectra are ` +
+    `Each model settled ${own.settled}; what is shown begins ${own.begins} and lasts ${own.periods} of ${own.counted}, spectra are ` +
     `of ${own.spectrum_periods}.`);
 
   const bar = made.append("div").attr("class", "bar controls");

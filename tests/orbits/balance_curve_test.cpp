@@ -1,6 +1,5 @@
 // Curves of special points of balances, against closed forms, branches of balances over one parameter, and the exact
 // curves by shooting.
-#include <slipmode/core/errors.hpp>
 #include "curve_checks.hpp"
 
 #include <gmock/gmock.h>
@@ -111,23 +110,7 @@ TEST(BalanceCurve, NeimarkSackerPointsEndAtAStrongResonance) {
   expect_found_alone(start, curve, SpecialKind::kNeimarkSacker, 0.002);
 }
 
-TEST(BalanceCurve, RefusesWhatItCannotFollow) {
-  const CurveStart start = two_masses_balances(7);
-  const auto refusal = [&](const SpecialPoint& special, const KeyRange& over) -> std::string {
-    try {
-      static_cast<void>(continue_special(start.family, special, 0.1, over, {.from = 0.05, .to = 0.2}));
-      return "none";
-    } catch (const InvalidInput& refused) {
-      return refused.what();
-    }
-  };
-  SpecialPoint point = of_kind(start.branch, SpecialKind::kPeriodDoubling).at(0);
-  EXPECT_THAT(refusal(point, {0.5, 0.6}), testing::HasSubstr("outside its range"));
-  point.kind = SpecialKind::kGrazing;
-  EXPECT_THAT(refusal(point, {0.5, 0.8}), testing::HasSubstr("just reaches a stop"));
-  point.kind = SpecialKind::kStickChange;
-  EXPECT_THAT(refusal(point, {0.5, 0.8}), testing::HasSubstr("followed over two keys are"));
-}
+TEST(BalanceCurve, RefusesWhatItCannotFollow) { expect_refusals(two_masses_balances(7)); }
 
 }  // namespace
 }  // namespace slipmode::orbits

@@ -1,6 +1,7 @@
 // Harmonic balance: its equations, its solutions against exact orbits, and what certifies them.
 #include <slipmode/core/errors.hpp>
 #include <slipmode/orbits/certificate.hpp>
+#include "balance_checks.hpp"
 #include "clearance_systems.hpp"
 #include "orbits/balance/internal/balanced_law.hpp"
 #include "play_table.hpp"
@@ -96,39 +97,15 @@ TEST(BalancedForce, IsTheLimitOfManySamples) {
   }
 }
 
-/// Jacobian against central differences with fourth-order extrapolation.
-void expect_exact_jacobian(const HybridSystem& system, Balance at) {
-  const Eigen::MatrixXd J = balance_equations(system, at).jacobian;
-  const Eigen::Index B = 2 * at.harmonics + 1;
-  std::mt19937 random(3);
-  std::normal_distribution<double> normal;
-  for (int trial = 0; trial < 4; ++trial) {
-    Eigen::VectorXd direction(J.cols());
-    for (double& entry : direction) entry = normal(random);
-    direction.tail(at.rigid.size()).setZero();  // set by the means
-    const auto moved = [&](double h) {
-      Balance there = at;
-      for (std::size_t c = 0; c < at.displacement.size(); ++c) {
-        const auto own = direction.segment(static_cast<Eigen::Index>(c) * B, B);
-        there.displacement[c].cosine += h * own.head(at.harmonics + 1);
-        there.displacement[c].sine.tail(at.harmonics) += h * own.tail(at.harmonics);
-      }
-      return balance_equations(system, there).residual;
-    };
-    const double h = 1e-4;
-    const Eigen::VectorXd rate = (8.0 * (moved(h) - moved(-h)) - (moved(2.0 * h) - moved(-2.0 * h))) / (12.0 * h);
-    EXPECT_LT((rate - J * direction).norm(), 1e-7 * (J * direction).norm());
-  }
-}
-
 TEST(Balance, JacobianIsExactWithTheJumps) {
-  expect_exact_jacobian(one_sided(1.3), balance(one_sided(1.3), {.harmonics = 12}));
-  const HybridSystem early = one_sided(1.3, friction::ContactLoss::kZeroForce);
-  expect_exact_jacobian(early, balance(early, {.harmonics = 12}));
-  const HybridSystem backlash = Backlash{.omega = 1.2}.system();
-  expect_exact_jacobian(backlash, balance(backlash, {.harmonics = 9}));
-  expect_exact_jacobian(three_masses(1.1), balance(three_masses(1.1), {.harmonics = 8}));
-  expect_exact_jacobian(four_masses(1.1), balance(four_masses(1.1), {.harmonics = 8}));
+  const auto expect_exact = [](const HybridSystem& system, int H) {
+    expect_exact_jacobian(system, balance(system, {.harmonics = H}), 1e-4, 1e-7);
+  };
+  expect_exact(one_sided(1.3), 12);
+  expect_exact(one_sided(1.3, friction::ContactLoss::kZeroForce), 12);
+  expect_exact(Backlash{.omega = 1.2}.system(), 9);
+  expect_exact(three_masses(1.1), 8);
+  expect_exact(four_masses(1.1), 8);
 }
 
 TEST(Balance, Table2OfS2FromNothingAndFromANeighbour) {

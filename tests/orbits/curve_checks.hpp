@@ -1,12 +1,15 @@
 #pragma once
 
+#include <slipmode/core/errors.hpp>
 #include <slipmode/orbits/balance/balance_branch.hpp>
 #include <slipmode/orbits/special_curve.hpp>
 #include "special_points.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <cmath>
 #include <optional>
+#include <string>
 
 namespace slipmode::orbits {
 
@@ -19,6 +22,31 @@ struct CurveStart {
 
 [[nodiscard]] inline Branch curve_from(const CurveStart& start, const SpecialPoint& special, double low, double high) {
   return continue_special(start.family, special, start.amplitude, {0.05, 3.0}, {.from = low, .to = high});
+}
+
+template <class Call>
+std::string message_of(const Call& call) {
+  try {
+    call();
+    return "none";
+  } catch (const InvalidInput& refused) {
+    return refused.what();
+  }
+}
+
+/// A period doubling elsewhere than on the curve, and taken for what cannot be followed. @param start  of two masses
+inline void expect_refusals(const CurveStart& start) {
+  const auto refusal = [&](const SpecialPoint& special, const KeyRange& over) {
+    return message_of([&] {
+      static_cast<void>(continue_special(start.family, special, start.amplitude, over, {.from = 0.05, .to = 0.2}));
+    });
+  };
+  SpecialPoint point = of_kind(start.branch, SpecialKind::kPeriodDoubling).at(0);
+  EXPECT_THAT(refusal(point, {0.5, 0.6}), testing::HasSubstr("outside its range"));
+  point.kind = SpecialKind::kGrazing;
+  EXPECT_THAT(refusal(point, {0.5, 0.8}), testing::HasSubstr("just reaches a stop"));
+  point.kind = SpecialKind::kStickChange;
+  EXPECT_THAT(refusal(point, {0.5, 0.8}), testing::HasSubstr("followed over two keys are"));
 }
 
 /// A balance beside a curve's point, by Newton's method or, where that misses it as beside folds, some steps along the

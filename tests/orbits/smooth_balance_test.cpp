@@ -3,13 +3,13 @@
 #include <slipmode/orbits/balance/balance_branch.hpp>
 #include <slipmode/orbits/balance/hill.hpp>
 #include <slipmode/orbits/floquet.hpp>
+#include "balance_checks.hpp"
 #include "special_points.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <cmath>
 #include <complex>
-#include <random>
 
 namespace slipmode::orbits {
 namespace {
@@ -50,29 +50,13 @@ TEST(SmoothBalance, FarWithinItsRegularisationIsADamper) {
 }
 
 TEST(SmoothBalance, JacobianIsExact) {
-  // Central differences of fourth order along random directions.
   for (const bool shaken : {false, true}) {
     const friction::Drive drive =
         shaken ? friction::Drive(friction::Shaker{.amplitude = 2.0, .frequency_hz = 0.08}) : pushed(0.5);
     const HybridSystem system = smoothly_rubbed(kSmoothLaw, drive);
     const Balance at = balance(system, {.harmonics = 9});
     ASSERT_TRUE(at.converged) << at.message;
-    const Eigen::MatrixXd J = balance_equations(system, at).jacobian;
-    std::mt19937 random(3);
-    std::normal_distribution<double> normal;
-    for (int trial = 0; trial < 3; ++trial) {
-      Eigen::VectorXd direction(J.cols());
-      for (double& entry : direction) entry = normal(random);
-      const auto moved = [&](double h) {
-        Balance there = at;
-        there.displacement[0].cosine += h * direction.head(at.harmonics + 1);
-        there.displacement[0].sine.tail(at.harmonics) += h * direction.tail(at.harmonics);
-        return balance_equations(system, there).residual;
-      };
-      constexpr double h = 1e-5;
-      const Eigen::VectorXd rate = (8.0 * (moved(h) - moved(-h)) - (moved(2.0 * h) - moved(-2.0 * h))) / (12.0 * h);
-      EXPECT_LT((rate - J * direction).norm(), 1e-8 * (J * direction).norm());
-    }
+    expect_exact_jacobian(system, at, 1e-5, 1e-8);
   }
 }
 

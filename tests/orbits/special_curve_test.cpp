@@ -1,5 +1,4 @@
 // Curves of special points over two parameters, against closed forms and against special points of branches over one.
-#include <slipmode/core/errors.hpp>
 #include "curve_checks.hpp"
 #include "fixtures/scenes.hpp"
 
@@ -43,16 +42,6 @@ CurveStart two_masses_start() {
 }
 
 std::vector<SpecialPoint> points_of(const CurveStart& start, SpecialKind kind) { return of_kind(start.branch, kind); }
-
-template <class Call>
-std::string message_of(const Call& call) {
-  try {
-    call();
-    return "none";
-  } catch (const InvalidInput& refused) {
-    return refused.what();
-  }
-}
 
 TEST(SpecialCurve, GrazingOfTheOscillatorWithPlayInClosedForm) {
   // In the gap x = a/√(ω⁴ + 4ξ²ω²) cos(ωt − φ) reaches 1.
@@ -172,19 +161,7 @@ TEST(SpecialCurve, FoldsOfSelfExcitedOrbits) {
   EXPECT_THAT(message_of([&] { (void)curve_from(start, hopf[0], 0.1, 0.35); }), testing::HasSubstr("followed over"));
 }
 
-TEST(SpecialCurve, RefusesWhatItCannotFollow) {
-  const CurveStart start = two_masses_start();
-  const auto refusal = [&](const SpecialPoint& special, const KeyRange& over) {
-    return message_of(
-        [&] { static_cast<void>(continue_special(start.family, special, 0.1, over, {.from = 0.05, .to = 0.2})); });
-  };
-  SpecialPoint point = points_of(start, SpecialKind::kPeriodDoubling).at(0);
-  EXPECT_THAT(refusal(point, {0.5, 0.6}), testing::HasSubstr("outside its range"));
-  point.kind = SpecialKind::kGrazing;
-  EXPECT_THAT(refusal(point, {0.5, 0.8}), testing::HasSubstr("just reaches a stop"));
-  point.kind = SpecialKind::kStickChange;
-  EXPECT_THAT(refusal(point, {0.5, 0.8}), testing::HasSubstr("followed over two keys are"));
-}
+TEST(SpecialCurve, RefusesWhatItCannotFollow) { expect_refusals(two_masses_start()); }
 
 }  // namespace
 }  // namespace slipmode::orbits

@@ -117,7 +117,7 @@ class BalanceBranchSolver {
   /// By a parameter of the unknowns, in keys().
   [[nodiscard]] Eigen::VectorXd parameter_column(const BalanceUnknowns& at,
                                                  const BranchKey<BalanceUnknowns>& key) const;
-  [[nodiscard]] bool in_range(const BalanceUnknowns& at) const;
+  [[nodiscard]] bool in_range(const BalanceUnknowns& at) const { return is_within(keys(), at); }
   void add_condition(BalanceBranchEvaluation& out) const;
   /// What vanishes on the curve, as it is measured near a point; may follow the touch of that.
   [[nodiscard]] std::function<double(BalanceBranchEvaluation&)> condition_near(const BalanceBranchEvaluation& at) const;
