@@ -167,32 +167,31 @@ Json linked_motions(const StoreReader& validation, const StoreReader& bases, con
     if (request.recorded[k]) speeds.push_back(number_json(request.values[k]));
   }
   for (const MotionsOf& model : found) models.push_back(model_json(model, request, vectors));
-  return {
-      {"speeds", std::move(speeds)},
-      {"all_speeds", request.values.size()},
-      {"own_speed", number_json(scene::drive_parameter(scene))},
-      {"chosen", first->modes},
-      {"word", own.word},
-      {"settled", own.settled},
-      {"counted", own.periods},
-      {"begins", own.begins},
-      {"vectors", vectors},
-      {"structure", structure.about},
-      {"samples_per_shape", request.samples_per_shape},
-      {"periods", request.periods},
-      {"spectrum_periods", request.spectrum_periods},
-      {"labels",
-       {{"speed", figures::axis_label(validation.text(std::string(own.full) + "/label"),
-                                      shaken ? units.frequency : units.velocity)},
-        {"slip", shaken ? figures::axis_label(scene::reading_name(scene) + " at sections", scene::reading_unit(scene))
-                        : label("slip-state displacement x", units.length)},
-        {"time", figures::axis_label("time", units.time)},
-        {"q", label("displacement x", units.length)},
-        {"v", label("velocity v", units.velocity)},
-        {"force", label("contact force λ", units.force)},
-        {"hz", figures::axis_label("frequency", units.frequency)},
-        {"amplitude", label("amplitude of the velocity v", units.velocity)}}},
-      {"models", std::move(models)}};
+  return {{"speeds", std::move(speeds)},
+          {"all_speeds", request.values.size()},
+          {"own_speed", number_json(scene::drive_parameter(scene))},
+          {"chosen", first->modes},
+          {"word", own.word},
+          {"settled", own.settled},
+          {"counted", own.periods},
+          {"begins", own.begins},
+          {"vectors", vectors},
+          {"structure", structure.about},
+          {"samples_per_shape", request.samples_per_shape},
+          {"periods", request.periods},
+          {"spectrum_periods", request.spectrum_periods},
+          {"labels",
+           {{"speed", figures::axis_label(validation.text(std::string(own.full) + "/label"),
+                                          shaken ? units.frequency : units.velocity)},
+            {"slip", shaken ? figures::axis_label(scene::reading_name(scene), scene::reading_unit(scene))
+                            : label("slip-state displacement x", units.length)},
+            {"time", figures::axis_label("time", units.time)},
+            {"q", label("displacement x", units.length)},
+            {"v", label("velocity v", units.velocity)},
+            {"force", label("contact force λ", units.force)},
+            {"hz", figures::axis_label("frequency", units.frequency)},
+            {"amplitude", label("amplitude of the velocity v", units.velocity)}}},
+          {"models", std::move(models)}};
 }
 
 }  // namespace slipmode::report

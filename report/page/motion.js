@@ -18,7 +18,8 @@ function stickStretches(own) {
 
 function motionSection(main, own, diagram) {
   const label = own.labels, speeds = own.speeds;
-  const state = {speed: Math.max(0, speeds.indexOf(own.own_speed)), model: Math.max(1, own.models.findIndex(model => model.modes === own.chosen)),
+  const nearest = x => d3.scan(speeds, (a, b) => Math.abs(a - x) - Math.abs(b - x));
+  const state = {speed: nearest(own.own_speed), model: Math.max(1, own.models.findIndex(model => model.modes === own.chosen)),
     time: 0, playing: !kStill};
   const many = speeds.length > 1;
   const made = section(main, "motions", many ? `Motions at a ${own.word}` : "Motion, in full and reduced",
@@ -48,7 +49,7 @@ function motionSection(main, own, diagram) {
   const slips = own.models.map(model => ({x: list(model.slips.x), y: list(model.slips.y)}));
   const domain = {x: span([speeds, ...panels.map(panel => panel.series[0].x), slips[0].x]),
     y: span([...panels.map(panel => panel.series[0].y), ...slips.map(one => one.y)])};
-  const pick = x => { state.speed = d3.scan(speeds, (a, b) => Math.abs(a - x) - Math.abs(b - x)); choose(); };
+  const pick = x => { state.speed = nearest(x); choose(); };
   const diagrams = (many ? [0, 1] : []).map(k => chart(made.append("div").attr("class", k ? "reduced-diagram" : "full-diagram").node(),
     {...slipPanel(k ? state.model : 0), height: 260, domain, pick, x_label: label.speed, y_label: label.slip}));
 
