@@ -111,6 +111,8 @@ Unstrained unstrained(const Eigen::MatrixXd& K, const Eigen::MatrixXd& M, const 
 
 /// A with nothing left along these shapes.
 Eigen::MatrixXd without(const Eigen::MatrixXd& A, const Eigen::MatrixXd& shapes, const Eigen::MatrixXd& M) {
+  // They are all there is: what rounding would leave has nothing beside it to be small to.
+  if (shapes.cols() == A.cols()) return Eigen::MatrixXd::Zero(A.rows(), A.cols());
   const Eigen::MatrixXd inertia = M * shapes, right = A - (A * shapes) * inertia.transpose();
   return right - inertia * (shapes.transpose() * right);
 }

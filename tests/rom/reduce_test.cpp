@@ -140,6 +140,24 @@ TEST(Reduce, RestsWhereThePotentialEnergyIsLeastInTheBasis) {
   }
 }
 
+// Two masses on a spring of their own, the only mode kept the one that leaves it as it is. A stiffness of 1e-64 was
+// left, and a load of 1e-20 beside it: a place of equilibrium at 1e44, from which the motion was a difference.
+TEST(Reduce, LeavesNoStiffnessWhereOnlyRigidMotionsAreKept) {
+  Random random(59);
+  for (int trial = 0; trial < 200; ++trial) {
+    const double k = std::exp(3.0 * random.normal());
+    const fem::Structure pair(Eigen::Vector2d(std::exp(random.normal()), std::exp(random.normal())).asDiagonal(),
+                              Eigen::Matrix2d::Zero(), k * Eigen::Matrix2d{{1.0, -1.0}, {-1.0, 1.0}});
+    const HybridSystem full(pair, {{Eigen::VectorXd::Unit(2, 0), friction::Coulomb{0.4, 0.2}}},
+                            friction::Belt::constant(0.2));
+    pod::Basis basis = lnm_basis(pair, 1);
+    EXPECT_EQ(to_dense(reduce(full, basis).structure().K())(0, 0), 0.0) << trial;
+    const double scale = std::exp(random.normal());  // any length, and turned by rounding
+    basis.vectors.col(0) << scale / 3.0, scale / 3.0 * (1.0 + 4e-16);
+    EXPECT_EQ(to_dense(reduce(full, basis).structure().K())(0, 0), 0.0) << trial;
+  }
+}
+
 TEST(Reduce, EnergyOfTheLiftedStateDiffersByAConstant) {
   Random random(54);
   const HybridSystem full = random_system(random, 8);
