@@ -1,7 +1,7 @@
 #include "cli/validation_report.hpp"
 
 #include <slipmode/results/driven_store.hpp>
-#include <slipmode/scene/shaken.hpp>
+#include <slipmode/scene/driven.hpp>
 #include "cli/json_values.hpp"
 #include "cli/text_table.hpp"
 
@@ -35,9 +35,10 @@ Json row_json(const DrivenRow& row) {
   return out;
 }
 
-std::string candidate_text(const DrivenCandidateReport& candidate, const DrivenValidationReport& report) {
+std::string candidate_text(const DrivenCandidateReport& candidate, const DrivenValidationReport& report,
+                           const std::string& unit) {
   TextTable table({"L", "distance", "median", "Hausdorff", "same label [%]", "same period [%]", "trusted [%]",
-                   "trusted band [Hz]", "time [ms]", "full/reduced"});
+                   "trusted band" + unit, "time [ms]", "full/reduced"});
   const auto percent = [](double share) { return fixed(100.0 * share, 1); };
   for (const DrivenRow& row : candidate.rows) {
     if (!row.failure.empty()) {
@@ -81,7 +82,7 @@ Json to_json(const DrivenValidationReport& report) {
 std::string summary_text(const DrivenValidationReport& report, const scene::Scene& scene) {
   std::string out = fmt::format("Full against reduced at {} {}: {} at the sections of {:g} cycles of {:g}\n",
                                 report.full.size(), report.full.size() == 1 ? "frequency" : "frequencies",
-                                reading_name(scene), scene.shaken.kept, scene.shaken.cycles);
+                                reading_name(scene), scene.driven.kept, scene.driven.cycles);
   for (const results::MotionCount& count : results::count_motions(report.full))
     out += fmt::format("  {:5} {}\n", count.values, count.motion);
   out += fmt::format(
@@ -92,10 +93,12 @@ std::string summary_text(const DrivenValidationReport& report, const scene::Scen
       report.noise.mean_wasserstein, report.noise.median_wasserstein, 100.0 * report.noise.same_label,
       100.0 * report.noise.same_period, results::peaks_text(report.peaks));
   if (report.cost.wall > 0.0) {
-    out += fmt::format("  time of {:g} cycles at {:g} Hz, full model: {:.3g} ms\n", scene.shaken.cost_cycles,
-                       scene::drive_parameter(scene), 1e3 * report.cost.wall);
+    out += fmt::format("  time of {:g} cycles at {} = {:g}, full model: {:.3g} ms\n", scene.driven.cost_cycles,
+                       drive_key(scene), scene::drive_parameter(scene), 1e3 * report.cost.wall);
   }
-  for (const DrivenCandidateReport& candidate : report.candidates) out += '\n' + candidate_text(candidate, report);
+  const std::string unit = results::sweep_axis(scene, drive_key(scene)).units;
+  for (const DrivenCandidateReport& candidate : report.candidates)
+    out += '\n' + candidate_text(candidate, report, unit == "1" ? "" : fmt::format(" [{}]", unit));
   return out;
 }
 

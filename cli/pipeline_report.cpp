@@ -1,7 +1,7 @@
 #include "cli/pipeline_report.hpp"
 #include <slipmode/results/table.hpp>
 #include <slipmode/results/validation_store.hpp>
-#include <slipmode/scene/shaken.hpp>
+#include <slipmode/scene/driven.hpp>
 #include "cli/modes_report.hpp"
 #include "cli/text_table.hpp"
 #include "cli/validation_report.hpp"

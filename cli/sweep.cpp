@@ -33,7 +33,7 @@ void say_motions(const std::vector<Point>& points, Report& out_report) {
   out_report.text += motions.text.str();
 }
 
-void say_shaken(const SweepRequest& request, const studies::Sweep& sweep, double cycles, Report& out_report) {
+void say_driven(const SweepRequest& request, const studies::Sweep& sweep, double cycles, Report& out_report) {
   const auto& points = sweep.up.empty() ? sweep.down : sweep.up;
   double audit = 0.0;
   for (const auto& point : points)
@@ -62,7 +62,7 @@ Report summary(const SweepRequest& request, const studies::Family& family, const
   report.text = fmt::format("{}: {} values of {}\n", family.title(), values, key);
   Json failures;
   if (sweep.belt.empty()) {
-    say_shaken(request, sweep, scene::driven_options(family.scene()).cycles, report);
+    say_driven(request, sweep, scene::driven_options(family.scene()).cycles, report);
     failures = failures_of(sweep.up.empty() ? sweep.down : sweep.up);
   } else {
     say_motions(sweep.belt, report);
@@ -116,7 +116,7 @@ Report run(const Session& session, SweepRequest request) {
 
 Verb add_sweep(CLI::App& app) {
   CLI::App* command =
-      app.add_subcommand("sweep", "settled motion against one key of the scene, on a belt or under a shaker");
+      app.add_subcommand("sweep", "settled motion against one key of the scene, on a belt, under a shaker or a force");
   const auto arguments = std::make_shared<SweepRequest>();
   command->add_option("SCENE", arguments->scene, "scene file (TOML)")->required();
   command->add_option("--over", arguments->over, "key and range: KEY=FROM:TO:STEP")->required();
@@ -126,11 +126,12 @@ Verb add_sweep(CLI::App& app) {
                       "full, or rom:FILE with a result of 'slipmode reduce'; under a shaker also BASIS:L, e.g. pomf:3, "
                       "lnm:10, lnm+static:4, mass-pom:3");
   command->footer(
-      "Time simulated at each value: [validation] transient, block, sweep_limit; under a shaker cycles.\n"
-      "Under a force: 'slipmode orbit continue' and 'orbit map'.\n"
+      "Time simulated at each value: [validation] transient, block, sweep_limit; under a shaker or a force\n"
+      "cycles. Unstable motions, and folds between them: 'slipmode orbit continue'.\n"
       "Example:\n  slipmode sweep datasets/chain10/scene.toml --over drive.speed=0.5:0.001:0.001 --follow "
       "-o sweep.h5\n"
-      "  slipmode sweep datasets/beam_sweep/scene.toml --over drive.frequency=5:60:0.5 --model pomf:3 -o sweep.h5");
+      "  slipmode sweep datasets/beam_sweep/scene.toml --over drive.frequency=5:60:0.5 --model pomf:3 -o sweep.h5\n"
+      "  slipmode sweep datasets/jenkins_chain/scene.toml --over drive.omega=0.1:0.6:0.005 -o sweep.h5");
   return {.command = command,
           .run = [arguments](const Session& session) { return run(session, *arguments); },
           .divides = true};

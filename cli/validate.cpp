@@ -25,9 +25,9 @@ Report run(const Session& session, const ValidateArguments& arguments) {
   Report report;
   report.data = {{"verb", "validate"},
                  {"file", arguments.output},
-                 {"validation", done.belt ? to_json(*done.belt) : to_json(*done.shaken)}};
+                 {"validation", done.belt ? to_json(*done.belt) : to_json(*done.driven)}};
   report.text = done.belt ? summary_text(*done.belt, results::Units::of(done.scene.units))
-                          : summary_text(*done.shaken, done.scene);
+                          : summary_text(*done.driven, done.scene);
   tell_without_slips(done.scene, report);
   tell_chosen_times(done.scene, {"validation"}, report);
   tell_resumed(session, done.values.resumed, "values", report);
@@ -47,7 +47,7 @@ Verb add_validate(CLI::App& app) {
       ->required();
   command->add_option("-o,--output", arguments->output, "result file (HDF5)")->required();
   command->add_flag("--no-sweep", arguments->no_sweep,
-                    "leave the bifurcation diagram out; under a shaker: the drive's own frequency only");
+                    "leave the bifurcation diagram out; under a shaker or a force: at the drive's own frequency only");
   command->add_flag("--verdict", arguments->verdict,
                     "also exponents, dimensions, delay, embedding, spectrum, stick of full and reduced side by side");
   command->footer("Example:\n  slipmode validate datasets/chain10/scene.toml pod.h5 -o validation.h5");

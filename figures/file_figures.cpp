@@ -13,7 +13,7 @@
 #include <slipmode/figures/spectrum_figures.hpp>
 #include <slipmode/figures/trade_figures.hpp>
 #include <slipmode/results/provenance.hpp>
-#include <slipmode/scene/shaken.hpp>
+#include <slipmode/scene/driven.hpp>
 
 #include <algorithm>
 #include <utility>
@@ -29,7 +29,7 @@ using FiguresOf = std::vector<FileFigure> (*)(const results::StoreReader&);
 struct KindFigures {
   FileKind kind;
   FiguresOf figures;
-  FiguresOf under_shaker = nullptr;  ///< if they are others there
+  FiguresOf under_shaker = nullptr, under_force = nullptr;  ///< if they are others there
 };
 
 constexpr KindFigures kFigures[] = {
@@ -37,8 +37,8 @@ constexpr KindFigures kFigures[] = {
     {FileKind::kPod, belt_pod_figures_of, shaken_pod_figures_of},
     {FileKind::kModes, natural_mode_figures_of},
     {FileKind::kReduced, belt_reduced_figures_of, shaken_reduced_figures_of},
-    {FileKind::kValidation, belt_validation_figures_of, shaken_validation_figures_of},
-    {FileKind::kSweep, belt_sweep_figures_of, shaken_sweep_figures_of},
+    {FileKind::kValidation, belt_validation_figures_of, driven_validation_figures_of, driven_validation_figures_of},
+    {FileKind::kSweep, belt_sweep_figures_of, driven_sweep_figures_of, driven_sweep_figures_of},
     {FileKind::kExponents, exponents_figures_of},
     {FileKind::kVerdict, exponents_figures_of},
     {FileKind::kExponentSweep, exponent_sweep_figures_of},
@@ -67,8 +67,12 @@ std::vector<FileFigure> figures_of(const results::StoreReader& store) {
   const auto kind = results::kind_of(store);
   for (const KindFigures& drawn : kFigures) {
     if (drawn.kind != kind) continue;
-    const bool shaken = drawn.under_shaker != nullptr && is_shaken(results::load_scene_of(store));
-    return (shaken ? drawn.under_shaker : drawn.figures)(store);
+    FiguresOf other = nullptr;
+    if (drawn.under_shaker != nullptr) {
+      const scene::Scene scene = results::load_scene_of(store);
+      other = scene.force ? drawn.under_force : is_shaken(scene) ? drawn.under_shaker : nullptr;
+    }
+    return (other != nullptr ? other : drawn.figures)(store);
   }
   return {};
 }

@@ -8,7 +8,7 @@
 #include <slipmode/results/provenance.hpp>
 #include <slipmode/results/records.hpp>
 #include <slipmode/results/units.hpp>
-#include <slipmode/scene/shaken.hpp>
+#include <slipmode/scene/driven.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -30,7 +30,7 @@ ReadingSeries reading_of(const StoreReader& store) {
   const scene::Scene scene = results::load_scene_of(store);
   const dynamics::Trajectory run = results::load_trajectory(store);
   if (run.times.size() < 2) store.fail("trajectory/times", "too few samples to draw; simulate for longer");
-  return {.values = shaken_case(scene).readings.of(run.q).row(0),
+  return {.values = driven_case(scene).readings.of(run.q).row(0),
           .interval = run.times[1] - run.times[0],
           .period = scene.drive.shaker()->period(),
           .label = axis_label(reading_name(scene), reading_unit(scene))};

@@ -11,7 +11,7 @@
 #include <slipmode/results/records.hpp>
 #include <slipmode/results/shaken_modes.hpp>
 #include <slipmode/results/table.hpp>
-#include <slipmode/scene/shaken.hpp>
+#include <slipmode/scene/driven.hpp>
 #include "figures/internal/shapes.hpp"
 
 #include <fmt/format.h>
@@ -26,8 +26,8 @@ namespace {
 using results::StoreReader;
 
 std::string_view colour_of_basis(const std::string& basis) {
-  if (basis == "pomf") return kPomColour;
-  if (basis == "lnm") return kLnmColour;
+  if (basis == "pomf" || basis == "POM") return kPomColour;
+  if (basis == "lnm" || basis == "LNM") return kLnmColour;
   return basis == "lnm+static" ? kSecondColour : "#CC79A7";
 }
 
@@ -69,8 +69,8 @@ Figure sweep_sections(const StoreReader& store) {
 /// √2 rms over the swept key, a colour for each label.
 Panel labelled_amplitudes(const StoreReader& store, const std::string& group) {
   const results::Table values = results::load_table(store, group + "/values");
-  const std::array<std::pair<const char*, std::string_view>, 3> labels = {
-      {{"stick", kFullColour}, {"stick-slip", kPomColour}, {"slip", kLnmColour}}};
+  const std::array<std::pair<const char*, std::string_view>, 4> labels = {
+      {{"stick", kFullColour}, {"stick-slip", kPomColour}, {"slip", kLnmColour}, {"no friction", kFullColour}}};
   Panel panel{store.text(group + "/title"), {}};
   const Eigen::VectorXd parameter = to_vector(values.numbers("parameter"));
   const Eigen::VectorXd amplitude = std::numbers::sqrt2 * to_vector(values.numbers("rms"));
@@ -100,7 +100,7 @@ Figure amplitudes(const StoreReader& store, const std::vector<std::string>& grou
 /// Models of a validation by basis (the part of the group's name before the number), in order of L.
 std::map<std::string, std::vector<std::string>> models_by_basis(const StoreReader& store) {
   std::map<std::string, std::vector<std::string>> models;
-  const std::string group = std::string(results::kShakenValidationGroup) + "/models";
+  const std::string group = std::string(results::kDrivenValidationGroup) + "/models";
   if (!store.has(group)) return models;
   for (const std::string& name : store.names(group)) models[name.substr(0, name.rfind('_'))].push_back(name);
   return models;
@@ -109,7 +109,7 @@ std::map<std::string, std::vector<std::string>> models_by_basis(const StoreReade
 /// L = 1 … 6 of one basis over the full model.
 Figure multiples(const StoreReader& store, const std::vector<std::string>& models, std::string_view colour) {
   constexpr std::size_t kShown = 6;
-  const std::string root = results::kShakenValidationGroup;
+  const std::string root = results::kDrivenValidationGroup;
   std::vector<Panel> panels;
   for (std::size_t i = 0; i < std::min(kShown, models.size()); ++i) {
     const std::string group = root + "/models/" + models[i];
@@ -124,7 +124,7 @@ Figure multiples(const StoreReader& store, const std::vector<std::string>& model
 }
 
 Figure agreement(const StoreReader& store) {
-  const std::string root = results::kShakenValidationGroup;
+  const std::string root = results::kDrivenValidationGroup;
   const results::Table table = results::load_table(store, root + "/agreement");
   std::map<std::string, std::vector<Eigen::Index>> rows;
   for (std::size_t i = 0; i < table.rows(); ++i) rows[table.texts("basis")[i]].push_back(static_cast<Eigen::Index>(i));
@@ -178,8 +178,8 @@ bool is_of_beam(const StoreReader& store) { return results::load_scene_of(store)
 
 }  // namespace
 
-std::vector<FileFigure> shaken_validation_figures_of(const StoreReader& store) {
-  const std::string root = results::kShakenValidationGroup;
+std::vector<FileFigure> driven_validation_figures_of(const StoreReader& store) {
+  const std::string root = results::kDrivenValidationGroup;
   std::vector<FileFigure> out{
       {"agreement", "distance of reduced models to the full one against the number of modes", agreement}};
   const bool swept = results::load_table(store, root + "/full/values").rows() > 1;
@@ -195,7 +195,7 @@ std::vector<FileFigure> shaken_validation_figures_of(const StoreReader& store) {
   return out;
 }
 
-std::vector<FileFigure> shaken_sweep_figures_of(const StoreReader&) {
+std::vector<FileFigure> driven_sweep_figures_of(const StoreReader&) {
   return {{"sections", "sections against the swept key", sweep_sections},
           {"labels", "amplitude and label against the swept key",
            [](const StoreReader& file) { return amplitudes(file, sweep_groups(file)); }}};

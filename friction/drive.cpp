@@ -70,6 +70,13 @@ double Drive::omega() const {
   return force() ? force()->omega : 0.0;
 }
 
+double Drive::frequency_hz() const {
+  if (shaker()) return shaker()->frequency_hz;
+  return force() ? 1.0 / force()->period() : 0.0;
+}
+
+double Drive::section_time() const { return shaker() ? shaker()->next_upward_zero(0.0) : 0.0; }
+
 double Drive::way(double t0, double t1) const {
   if (force()) return 0.0;
   if (shaker()) return shaker()->displacement(t1) - shaker()->displacement(t0);

@@ -106,6 +106,12 @@ class Drive {
   /// Angular frequency of a shaker or a force; 0 for a belt [rad/s].
   [[nodiscard]] double omega() const;
 
+  /// A time from 0 on at which its Poincaré sections are taken, a period apart: the velocity of a shaker passes zero
+  /// upward there (S4 section 6.3.2); 0 for a force, whose ω t is a whole number of turns then, and for a belt [s].
+  [[nodiscard]] double section_time() const;
+  /// ω/2π; 0 for a belt [Hz].
+  [[nodiscard]] double frequency_hz() const;
+
   /// True for a belt of constant speed.
   [[nodiscard]] bool is_constant() const { return belt() != nullptr && belt()->is_constant(); }
   /// Velocity of the counterpart at t [m/s].

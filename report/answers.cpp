@@ -3,7 +3,7 @@
 #include <slipmode/fem/beam.hpp>
 #include <slipmode/friction/contact.hpp>
 #include <slipmode/results/table.hpp>
-#include <slipmode/scene/shaken.hpp>
+#include <slipmode/scene/driven.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -37,7 +37,9 @@ std::string structure_text(const scene::Scene& scene) {
 }
 
 std::string drive_text(const scene::Scene& scene) {
-  if (scene.force) return fmt::format("driven by a force at ω = {:g}", scene.force->omega);
+  if (scene.force)
+    return fmt::format("driven by a force at {} = {:g}", scene.force->frequency_hz ? "f" : "ω",
+                       scene::drive_parameter(scene));
   if (is_shaken(scene)) return fmt::format("shaken at {:g} Hz", scene::drive_parameter(scene));
   return fmt::format("on a belt at V = {:g}", scene::drive_parameter(scene));
 }
@@ -177,12 +179,12 @@ Json accuracy(const Levels& levels, const StoreReader& store) {
 }
 
 /// Reduced models under a shaker: the smallest that lies as near as two full sweeps do, and the nearest of all.
-struct ShakenModels {
+struct DrivenModels {
   Table models;
   double noise;
   std::optional<std::size_t> smallest = {}, nearest = {};
 
-  explicit ShakenModels(const StoreReader& validation)
+  explicit DrivenModels(const StoreReader& validation)
       : models(results::load_table(validation, "shaken_validation/agreement")),
         noise(validation.number("shaken_validation/noise")) {
     const auto& distance = models.numbers("mean_distance");
@@ -225,15 +227,15 @@ Json belt_answers(const StoreReader& validation) {
   return out;
 }
 
-std::optional<NamedModel> told_of_shaken(const StoreReader& validation) {
-  const ShakenModels found(validation);
+std::optional<NamedModel> told_of_driven(const StoreReader& validation) {
+  const DrivenModels found(validation);
   if (!found.nearest) return std::nullopt;
   return NamedModel{found.models.texts("basis")[found.told()],
                     static_cast<Eigen::Index>(found.models.numbers("modes")[found.told()])};
 }
 
-Json shaken_answers(const StoreReader& validation) {
-  const ShakenModels found(validation);
+Json driven_answers(const StoreReader& validation) {
+  const DrivenModels found(validation);
   const Table& models = found.models;
   const std::optional<std::size_t>&smallest = found.smallest, &nearest = found.nearest;
   const auto& distance = models.numbers("mean_distance");

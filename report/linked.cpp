@@ -3,10 +3,11 @@
 #include <slipmode/core/to_vector.hpp>
 #include <slipmode/figures/style.hpp>
 #include <slipmode/results/provenance.hpp>
+#include <slipmode/results/sweep_store.hpp>
 #include <slipmode/results/table.hpp>
 #include <slipmode/results/units.hpp>
+#include <slipmode/scene/driven.hpp>
 #include <slipmode/scene/own_times.hpp>
-#include <slipmode/scene/shaken.hpp>
 #include <slipmode/studies/bases.hpp>
 #include <slipmode/studies/motions.hpp>
 #include "report/internal/answers.hpp"
@@ -52,17 +53,17 @@ constexpr Compared kBelt{"sweep/full",
                          "by itself, following its own motion from speed to speed",
                          "the slowest natural periods",
                          "with a slip"};
-constexpr Compared kShaker{"shaken_validation/full",
+constexpr Compared kDriven{"shaken_validation/full",
                            "shaken_validation/agreement",
                            "frequency",
                            "by itself, from the scene's start",
-                           "the shaker's periods",
+                           "the drive's periods",
                            "where the shaker's velocity passes zero upward"};
 
-/// The reduced model shown first: on a belt the basis compared first and the chosen number, under a shaker the model
-/// that the first screen names.
-std::optional<NamedModel> shown_first(const StoreReader& validation, const results::Table& models, bool shaken) {
-  if (shaken) return told_of_shaken(validation);
+/// The reduced model shown first: on a belt the basis compared first and the chosen number, under a shaker or a force
+/// the model that the first screen names.
+std::optional<NamedModel> shown_first(const StoreReader& validation, const results::Table& models, bool driven) {
+  if (driven) return told_of_driven(validation);
   return NamedModel{models.texts("basis").front(),
                     static_cast<Eigen::Index>(validation.integer("validation/chosen_modes"))};
 }
@@ -84,7 +85,7 @@ std::vector<Eigen::Index> modes_of(const results::Table& models, const NamedMode
 MotionsRequest request_of(const scene::Scene& scene, const std::vector<double>& swept) {
   std::set<std::size_t> shown = spread(swept.size(), kMostValues), recorded = spread(swept.size(), kMostRecorded);
   std::vector<double> own;
-  if (!is_shaken(scene)) own = scene.validation.orbits;
+  if (!is_driven(scene)) own = scene.validation.orbits;
   own.push_back(scene::drive_parameter(scene));
   for (const double value : own) recorded.insert(nearest(swept, value));
   shown.insert(recorded.begin(), recorded.end());
@@ -137,13 +138,12 @@ Json model_json(const MotionsOf& model, const MotionsRequest& request, const std
 
 Json linked_motions(const StoreReader& validation, const StoreReader& bases, const studies::RunOptions& run) {
   const scene::Scene scene = scene::with_own_times(results::load_scene_of(validation));
-  const bool shaken = is_shaken(scene);
-  const Compared& own = shaken ? kShaker : kBelt;
-  if (!validation.has(std::string(own.full) + "/values") || scene.force || scene.size() > kMostDrawnDofs)
-    return nullptr;
-  if (!shaken && !has_sticking_law(scene)) return nullptr;  // motions are found by their slips
+  const bool driven = is_driven(scene);
+  const Compared& own = driven ? kDriven : kBelt;
+  if (!validation.has(std::string(own.full) + "/values") || scene.size() > kMostDrawnDofs) return nullptr;
+  if (!driven && !has_sticking_law(scene)) return nullptr;  // motions are found by their slips
   const results::Table models_made = results::load_table(validation, own.models);
-  const std::optional<NamedModel> first = shown_first(validation, models_made, shaken);
+  const std::optional<NamedModel> first = shown_first(validation, models_made, driven);
   if (!first) return nullptr;
   const std::vector<pod::NamedBasis> all = studies::load_bases(scene, scene::build_system(scene), bases);
   const auto basis_found = std::ranges::find(all, first->basis, &pod::NamedBasis::name);
@@ -161,7 +161,7 @@ Json linked_motions(const StoreReader& validation, const StoreReader& bases, con
   const auto label = [&](const char* what, const std::string& unit) {
     return figures::axis_label(fmt::format("{}_{{{}}}", what, place), unit);
   };
-  const std::string vectors = shaken ? "modes of " + basis.name : basis.name + "s";
+  const std::string vectors = is_shaken(scene) ? "modes of " + basis.name : basis.name + "s";
   Json speeds = Json::array(), models = Json::array();
   for (std::size_t k = 0; k < request.values.size(); ++k) {
     if (request.recorded[k]) speeds.push_back(number_json(request.values[k]));
@@ -174,7 +174,7 @@ Json linked_motions(const StoreReader& validation, const StoreReader& bases, con
           {"word", own.word},
           {"settled", own.settled},
           {"counted", own.periods},
-          {"begins", own.begins},
+          {"begins", scene.force ? "at a whole turn of the force" : own.begins},
           {"vectors", vectors},
           {"structure", structure.about},
           {"samples_per_shape", request.samples_per_shape},
@@ -182,8 +182,8 @@ Json linked_motions(const StoreReader& validation, const StoreReader& bases, con
           {"spectrum_periods", request.spectrum_periods},
           {"labels",
            {{"speed", figures::axis_label(validation.text(std::string(own.full) + "/label"),
-                                          shaken ? units.frequency : units.velocity)},
-            {"slip", shaken ? figures::axis_label(scene::reading_name(scene), scene::reading_unit(scene))
+                                          results::sweep_axis(scene, drive_key(scene)).units)},
+            {"slip", driven ? figures::axis_label(scene::reading_name(scene), scene::reading_unit(scene))
                             : label("slip-state displacement x", units.length)},
             {"time", figures::axis_label("time", units.time)},
             {"q", label("displacement x", units.length)},

@@ -4,7 +4,7 @@
 #include <slipmode/results/file_kind.hpp>
 #include <slipmode/results/part.hpp>
 #include <slipmode/results/provenance.hpp>
-#include <slipmode/scene/shaken.hpp>
+#include <slipmode/scene/driven.hpp>
 #include "report/internal/answers.hpp"
 #include "report/internal/assets.hpp"
 #include "report/internal/file_content.hpp"
@@ -113,7 +113,7 @@ Json document(const std::vector<StoreReader>& stores) {
     for (Json& one : belt_answers(*validation)) out["answers"].push_back(std::move(one));
   }
   if (validation != nullptr && validation->has("shaken_validation/agreement")) {
-    for (Json& one : shaken_answers(*validation)) out["answers"].push_back(std::move(one));
+    for (Json& one : driven_answers(*validation)) out["answers"].push_back(std::move(one));
   }
   const StoreReader* pod = first_of(stores, FileKind::kPod);
   out["files"] = Json::array();

@@ -2,7 +2,7 @@
 
 #include <slipmode/results/driven_store.hpp>
 #include <slipmode/results/table.hpp>
-#include <slipmode/scene/shaken.hpp>
+#include <slipmode/scene/driven.hpp>
 #include "results/internal/field_record.hpp"
 
 #include <fmt/format.h>
@@ -21,10 +21,11 @@ using diagnostics::DrivenValidationReport;
 std::string group_name(const DrivenCandidateReport& candidate, const DrivenRow& row) {
   std::string name = candidate.name;
   std::replace(name.begin(), name.end(), '+', '_');
-  return fmt::format("{}/models/{}_{:02}", kShakenValidationGroup, name, row.modes);
+  return fmt::format("{}/models/{}_{:02}", kDrivenValidationGroup, name, row.modes);
 }
 
-Table agreement_table(const DrivenValidationReport& report) {
+/// @param unit  of the drive's frequency
+Table agreement_table(const DrivenValidationReport& report, const std::string& unit) {
   std::vector<std::string> basis, failure;
   std::vector<double> modes, trusted, from, to;
   std::vector<const DrivenRow*> rows;
@@ -43,8 +44,8 @@ Table agreement_table(const DrivenValidationReport& report) {
           joined({{{"basis", {"", "what the vectors are"}, basis}, {"modes", {"", "number of modes L"}, modes}},
                   columns_of(rows, &DrivenRow::agreement),
                   {{"trusted_share", {"1", "share of values where the distance is within what is trusted"}, trusted},
-                   {"band_from", {"Hz", "longest run of trusted values: first"}, from},
-                   {"band_to", {"Hz", "longest run of trusted values: last"}, to}},
+                   {"band_from", {unit, "longest run of trusted values: first"}, from},
+                   {"band_to", {unit, "longest run of trusted values: last"}, to}},
                   columns_of(rows, &DrivenRow::cost),
                   {{"failure", {"", "why there is no such model; empty: there is"}, failure}}})};
 }
@@ -53,9 +54,9 @@ Table agreement_table(const DrivenValidationReport& report) {
 
 void store_driven_validation(StoreWriter& writer, const DrivenValidationReport& report, const scene::Scene& scene) {
   const Units units = Units::of(scene.units);
-  const DrivenAxes axes{sweep_axis(scene, "drive.frequency"), reading_name(scene), reading_unit(scene)};
-  const std::string group = kShakenValidationGroup;
-  save(writer, group + "/agreement", agreement_table(report));
+  const DrivenAxes axes{sweep_axis(scene, drive_key(scene)), reading_name(scene), reading_unit(scene)};
+  const std::string group = kDrivenValidationGroup;
+  save(writer, group + "/agreement", agreement_table(report, axes.swept.units));
   writer.write(group + "/noise", report.noise.mean_wasserstein,
                {"1", "mean distance between two full sweeps from different starts"});
   writer.write(group + "/noise_at", report.noise.wasserstein, {"1", "the same at each value"});

@@ -6,7 +6,7 @@
 
 namespace slipmode::results {
 
-inline constexpr const char* kShakenValidationGroup = "shaken_validation";
+inline constexpr const char* kDrivenValidationGroup = "shaken_validation";
 
 /// Writes the group `shaken_validation`: a table of agreements and costs, the sweeps behind them.
 void store_driven_validation(StoreWriter& writer, const diagnostics::DrivenValidationReport& report,

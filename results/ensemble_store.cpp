@@ -52,10 +52,11 @@ void store_ensemble(StoreWriter& writer, const scene::Scene& scene, const diagno
     residual.push_back(member.failure.empty() ? member.audit.residual() : std::numeric_limits<double>::quiet_NaN());
     failure.push_back(member.failure);
   }
-  const bool shaken = scene.drive.shaker() != nullptr;
-  const Column driven = shaken        ? Column{"frequency", {units.frequency, "shaker frequency"}, parameter}
-                        : scene.force ? Column{"omega", {units.angular, "frequency of the force"}, parameter}
-                                      : Column{"speed", {units.velocity, "belt speed"}, parameter};
+  const std::string key = drive_key(scene);
+  const Column driven = key == "drive.frequency"
+                            ? Column{"frequency", {units.frequency, "frequency of the drive"}, parameter}
+                        : key == "drive.omega" ? Column{"omega", {units.angular, "frequency of the force"}, parameter}
+                                               : Column{"speed", {units.velocity, "belt speed"}, parameter};
   members.columns = {driven,
                      {"start", {"", "number of the initial state"}, start},
                      {"snapshots", {"", "snapshots it gave"}, columns},

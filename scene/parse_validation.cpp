@@ -8,8 +8,8 @@ namespace slipmode::scene {
 
 namespace {
 
-constexpr const char* kShakerOnly = "belongs to a shaker, the drive is a belt";
-constexpr const char* kBeltOnly = "belongs to a belt, the drive is a shaker";
+constexpr const char* kShakerOnly = "belongs to a shaker or a force, the drive is a belt";
+constexpr const char* kBeltOnly = "belongs to a belt, the drive has a period";
 
 /// The words of the bases a structure can have.
 std::vector<std::string> basis_words(const Scene& scene) {
@@ -47,7 +47,23 @@ Limits beam_limits(double end, const std::string& valid, bool above = false) {
   return {.low = 0.0, .high = end * (1.0 + kEndSlack), .above = above, .text = valid.c_str()};
 }
 
+/// Every value of a sweep must be one the drive can have.
+void check_sweep(TomlReader& in, const DrivenValidationSpec& spec, const Scene& scene) {
+  const auto& swept = spec.frequencies;
+  if (scene.force || !swept || scene.amplitude.covers(swept->from, swept->to)) return;
+  in.fail("frequencies",
+          fmt::format("the amplitude curve has no value >= 0 everywhere from {} to {} Hz", swept->from, swept->to),
+          "a range the curve of drive.amplitude covers");
+}
+
 }  // namespace
+
+Without without_in_validation(const Scene& scene) {
+  Without absent = values_of_other_drives(scene);
+  if (scene.force) absent.emplace_back("bases");  // those of [reduction] and natural modes are compared
+  if (scene.beam() == nullptr) absent.emplace_back("gauge");
+  return absent;
+}
 
 SensorSpec read_sensors(TomlReader in, const Scene& scene) {
   constexpr double kClosest = 1e-9;  // of the reach, as pod::SensorArray
@@ -105,7 +121,7 @@ ReductionSpec read_reduction(TomlReader in, const Scene& scene) {
 }
 
 ValidationSpec read_validation(TomlReader in, const Scene& scene) {
-  refuse_others<ShakenValidationSpec, ValidationSpec>(in, kShakerOnly, "drive.kind = \"shaker\" with it");
+  refuse_others<DrivenValidationSpec, ValidationSpec>(in, kShakerOnly, "drive.kind = \"shaker\" or \"force\" with it");
   ValidationSpec spec;
   read_fields(in, spec, {.limits = [&](std::string_view key, const Limits& own) {
                 return key == "modes" ? mode_limits(scene) : own;
@@ -117,24 +133,24 @@ ValidationSpec read_validation(TomlReader in, const Scene& scene) {
   return spec;
 }
 
-ShakenValidationSpec read_shaken_validation(TomlReader in, const Scene& scene) {
-  refuse_others<ValidationSpec, ShakenValidationSpec>(in, kBeltOnly, "drive.kind = \"belt\" with it");
-  ShakenValidationSpec spec;
+DrivenValidationSpec read_driven_validation(TomlReader in, const Scene& scene) {
+  refuse_others<ValidationSpec, DrivenValidationSpec>(in, kBeltOnly, "drive.kind = \"belt\" with it");
+  refuse_values_of_other_drives(in, scene);
+  if (scene.force)
+    in.refuse("bases", "belongs to a shaker, the drive is a force", "no such key; POMs and LNMs are compared");
+  DrivenValidationSpec spec;
   const double length = scene.beam() != nullptr ? beam_length(*scene.beam()) : 0.0;
   const std::string valid = fmt::format("a place on the beam, x >= 0 and <= {} (its length)", length);
+  Without absent = without_in_validation(scene);
+  absent.emplace_back("bases");  // read below, as what a scene without them has
   read_fields(in, spec,
-              {.without = scene.beam() != nullptr ? Without{"bases"} : Without{"bases", "gauge"},
-               .limits = [&](std::string_view key, const Limits& own) {
+              {.without = absent, .limits = [&](std::string_view key, const Limits& own) {
                  return key == "modes" ? mode_limits(scene) : key == "gauge" ? beam_limits(length, valid) : own;
                }});
-  if (const auto& swept = spec.frequencies; swept && !scene.amplitude.covers(swept->from, swept->to)) {
-    in.fail("frequencies",
-            fmt::format("the amplitude curve has no value >= 0 everywhere from {} to {} Hz", swept->from, swept->to),
-            "a range the curve of drive.amplitude covers");
-  }
+  check_sweep(in, spec, scene);
   if (!in.has("kept")) spec.kept = std::min(spec.kept, spec.cycles);
   if (spec.kept > spec.cycles) in.fail("kept", "more than are run", fmt::format("at most cycles = {}", spec.cycles));
-  spec.bases = read_bases(in, scene);
+  if (!scene.force) spec.bases = read_bases(in, scene);
   in.finish();
   return spec;
 }

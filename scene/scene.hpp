@@ -46,7 +46,7 @@ struct Scene {
   std::optional<SensorSpec> sensors;
   ReductionSpec reduction;
   ValidationSpec validation;                       ///< for a belt
-  ShakenValidationSpec shaken;                     ///< for a shaker; a scene with a force has neither
+  DrivenValidationSpec driven;                     ///< for a shaker or a force
   dynamics::FlowOptions flow = {.certify = true};  ///< method and tolerance from [flow]
   SceneSource source;
 
@@ -105,14 +105,17 @@ struct Scene {
 /// are shared. @throws InvalidInput  for another number of contacts
 [[nodiscard]] dynamics::HybridSystem with_laws_of(const Scene& scene, const dynamics::HybridSystem& system);
 
-/// The drive at another belt speed [m/s], force's ω [rad/s] or, with the amplitude its curve has there, shaker
-/// frequency [Hz].
+/// The drive's own key: "drive.speed" of a belt, "drive.frequency" of a shaker, of a force that or "drive.omega",
+/// whichever the scene gives.
+[[nodiscard]] std::string drive_key(const Scene& scene);
+/// The drive at another value of that key: a belt's speed [m/s], a frequency [Hz] or ω [rad/s]; a shaker has the
+/// amplitude of its curve there.
 /// @throws InvalidInput  for a frequency the amplitude curve does not cover
-[[nodiscard]] friction::Drive drive_at(const Scene& scene, double speed_or_frequency);
-/// The parameter of drive_at the scene itself is at: the belt's speed at time 0, the force's ω, the shaker's frequency.
+[[nodiscard]] friction::Drive drive_at(const Scene& scene, double value);
+/// The value of that key the scene itself is at (of a belt at time 0).
 [[nodiscard]] double drive_parameter(const Scene& scene);
-/// [time] at another shaker frequency: a time in cycles is another one in seconds there.
-[[nodiscard]] TimeSpec time_at(const Scene& scene, double frequency_hz);
+/// [time] there: a time in cycles is another one in seconds at another frequency.
+[[nodiscard]] TimeSpec time_at(const Scene& scene, double value);
 
 /// Where a run starts (see InitialSpec), at time 0. In "static" contact springs and bristles carry the sliding force
 /// and normal oscillators are at rest; elsewhere contacts' own states are left to the flow (dynamics::State::internal).

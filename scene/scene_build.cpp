@@ -122,28 +122,35 @@ dynamics::HybridSystem with_laws_of(const Scene& scene, const dynamics::HybridSy
   return system.with_laws(std::move(contacts));
 }
 
-friction::Drive drive_at(const Scene& scene, double speed_or_frequency) {
-  if (const friction::Force* force = scene.drive.force()) return friction::Force{speed_or_frequency, force->harmonics};
+std::string drive_key(const Scene& scene) {
+  if (scene.drive.belt() != nullptr) return "drive.speed";
+  return scene.force && !scene.force->frequency_hz ? "drive.omega" : "drive.frequency";
+}
+
+friction::Drive drive_at(const Scene& scene, double value) {
+  if (const friction::Force* force = scene.drive.force())
+    return friction::Force{scene.force->frequency_hz ? 2.0 * std::numbers::pi * value : value, force->harmonics};
   const friction::Shaker* shaker = scene.drive.shaker();
-  if (shaker == nullptr) return friction::Belt::constant(speed_or_frequency);
-  return friction::Shaker{scene.amplitude.at(speed_or_frequency), speed_or_frequency, shaker->phase};
+  if (shaker == nullptr) return friction::Belt::constant(value);
+  return friction::Shaker{scene.amplitude.at(value), value, shaker->phase};
 }
 
 double drive_parameter(const Scene& scene) {
-  if (const friction::Force* force = scene.drive.force()) return force->omega;
+  if (scene.force) return scene.force->frequency_hz.value_or(scene.force->omega);
   const friction::Shaker* shaker = scene.drive.shaker();
   return shaker != nullptr ? shaker->frequency_hz : scene.drive.velocity(0.0);
 }
 
-TimeSpec in_seconds(const TimeSpec::Cycles& cycles, double frequency_hz) {
+TimeSpec in_seconds(const TimeSpec::Cycles& cycles, const friction::Drive& drive) {
+  const double frequency_hz = drive.frequency_hz();
   return {.duration = cycles.cycles / frequency_hz,
           .transient = cycles.transient_cycles / frequency_hz,
           .sample = 1.0 / (frequency_hz * static_cast<double>(cycles.samples)),
           .cycles = cycles};
 }
 
-TimeSpec time_at(const Scene& scene, double frequency_hz) {
-  return scene.time.cycles ? in_seconds(*scene.time.cycles, frequency_hz) : scene.time;
+TimeSpec time_at(const Scene& scene, double value) {
+  return scene.time.cycles ? in_seconds(*scene.time.cycles, drive_at(scene, value)) : scene.time;
 }
 
 dynamics::SimulateOptions simulate_options(const Scene& scene) {
@@ -171,7 +178,7 @@ Eigen::MatrixXd sensor_readings(const Scene& scene, const fem::Beam& beam, const
 }
 
 double gauge_position(const Scene& scene) {
-  return scene.shaken.gauge.value_or(beam_length(beam_of(scene, "a gauge")) / 8.0);
+  return scene.driven.gauge.value_or(beam_length(beam_of(scene, "a gauge")) / 8.0);
 }
 
 }  // namespace slipmode::scene

@@ -14,7 +14,17 @@ namespace slipmode::scene {
 
 namespace {
 
-TimeSpec read_cycles(TomlReader& in, double frequency_hz) {
+/// What a list or a range of a drive's own key is called (see drive_key).
+struct DriveValues {
+  const char *key, *values, *owner;
+};
+constexpr std::array kDriveValues{
+    DriveValues{"drive.speed", "speeds", "a belt"},
+    DriveValues{"drive.frequency", "frequencies", "a shaker or a force given in Hz"},
+    DriveValues{"drive.omega", "omegas", "a force given by omega"},
+};
+
+TimeSpec read_cycles(TomlReader& in, const friction::Drive& drive) {
   refuse_others<TimeSpec, TimeSpec::Cycles>(in, "the time is given in cycles too", "either cycles or seconds");
   TimeSpec::Cycles cycles = in.has("cycles") ? TimeSpec::Cycles{} : kUsualCycles;
   read_fields(in, cycles);
@@ -24,7 +34,7 @@ TimeSpec read_cycles(TomlReader& in, double frequency_hz) {
   if ((cycles.cycles - cycles.transient_cycles) * static_cast<double>(cycles.samples) < 1.0) {
     in.fail("cycles", "no sample fits", "at least one sample after transient_cycles");
   }
-  return in_seconds(cycles, frequency_hz);
+  return in_seconds(cycles, drive);
 }
 
 /// On a belt what is not given is chosen by the structure's slowest period.
@@ -67,10 +77,9 @@ TimeSpec read_seconds(TomlReader& in, Scene& scene) {
 void read_time(TomlReader in, Scene& scene) {
   TimeSpec& time = scene.time;
   const friction::Drive& drive = scene.drive;
-  if (const auto period = drive.period()) {
-    const double frequency = drive.shaker() != nullptr ? drive.shaker()->frequency_hz : 1.0 / *period;
+  if (drive.period()) {
     const bool in_cycles = has_any<TimeSpec::Cycles>(in) || !has_any<TimeSpec>(in);
-    time = in_cycles ? read_cycles(in, frequency) : read_seconds(in, scene);
+    time = in_cycles ? read_cycles(in, drive) : read_seconds(in, scene);
   } else {
     refuse_others<TimeSpec::Cycles, TimeSpec>(in, "counts a shaker's cycles or a force's, the drive is a belt",
                                               "duration");
@@ -106,21 +115,11 @@ InitialSpec read_initial(TomlReader in, const Scene& scene) {
 }
 
 EnsembleSpec read_ensemble(TomlReader in, const Scene& scene) {
-  const Without others = without_other_drives(scene.drive);
-  for (const std::string_view key : others) {
-    if (scene.force) {
-      in.refuse(std::string(key), "belongs to a belt or a shaker, the drive is a force",
-                "no such key; change drive.omega with --set");
-    } else if (scene.drive.shaker() != nullptr) {
-      in.refuse("speeds", "belongs to a belt, the drive is a shaker", "frequencies");
-    } else {
-      in.refuse("frequencies", "belongs to a shaker, the drive is a belt", "speeds");
-    }
-  }
+  refuse_values_of_other_drives(in, scene);
   EnsembleSpec ensemble;
-  read_fields(in, ensemble, {.without = others});
+  read_fields(in, ensemble, {.without = values_of_other_drives(scene)});
   for (const double frequency : ensemble.frequencies) {
-    if (scene.amplitude.covers(frequency, frequency)) continue;
+    if (scene.force || scene.amplitude.covers(frequency, frequency)) continue;
     in.fail("frequencies", fmt::format("the amplitude curve has no value >= 0 at {} Hz", frequency),
             "frequencies the curve of drive.amplitude covers");
   }
@@ -156,11 +155,23 @@ std::string read_file(const std::filesystem::path& path) {
 
 }  // namespace
 
-Without without_other_drives(const friction::Drive& drive) {
+Without values_of_other_drives(const Scene& scene) {
   Without others;
-  if (drive.belt() == nullptr) others.emplace_back("speeds");
-  if (drive.shaker() == nullptr) others.emplace_back("frequencies");
+  for (const DriveValues& one : kDriveValues)
+    if (drive_key(scene) != one.key) others.emplace_back(one.values);
   return others;
+}
+
+void refuse_values_of_other_drives(TomlReader& in, const Scene& scene) {
+  const auto own = std::ranges::find(kDriveValues, drive_key(scene), &DriveValues::key);
+  const std::string drive = scene.drive.belt() != nullptr ? "a belt"
+                            : scene.force == std::nullopt ? "a shaker"
+                            : scene.force->frequency_hz   ? "a force given in Hz"
+                                                          : "a force given by omega";
+  for (const DriveValues& one : kDriveValues) {
+    if (one.key == own->key) continue;
+    in.refuse(one.values, fmt::format("belongs to {}, the drive is {}", one.owner, drive), own->values);
+  }
 }
 
 Scene parse_scene(const std::string& text, const std::vector<std::string>& overrides, const std::string& path) {
@@ -182,11 +193,8 @@ Scene parse_scene(const std::string& text, const std::vector<std::string>& overr
     scene.sensors = read_sensors(in.table("sensors"), scene);
   }
   scene.reduction = read_reduction(in.table_or_empty("reduction"), scene);
-  if (scene.force) {
-    in.refuse("validation", "compares under a belt or a shaker, the drive is a force",
-              "no such table; find and continue orbits with 'slipmode orbit'");
-  } else if (scene.drive.shaker() != nullptr) {
-    scene.shaken = read_shaken_validation(in.table_or_empty("validation"), scene);
+  if (scene.drive.period()) {
+    scene.driven = read_driven_validation(in.table_or_empty("validation"), scene);
   } else {
     scene.validation = read_validation(in.table_or_empty("validation"), scene);
   }

@@ -184,7 +184,7 @@ Json validation_schema() {
   for (const auto& own : kValidationTimes) {
     belt.otherwise(own.key, fmt::format("{:g} slowest natural periods", own.periods));
   }
-  return any_of({belt.json(), TableSchema().fields<ShakenValidationSpec>().json()});
+  return any_of({belt.json(), TableSchema().fields<DrivenValidationSpec>().json()});
 }
 
 Json time_schema() {

@@ -38,11 +38,11 @@ class SceneText {
     out += structure_toml(scene_) + contacts_toml(scene_) + drive_toml(scene_);
     out += scene_.time.cycles ? given("time", *scene_.time.cycles) : given("time", scene_.time);
     out += said("initial", initial_toml(scene_.initial));
-    out += said("ensemble", table_toml("ensemble", scene_.ensemble, without_other_drives(scene_.drive)));
+    out += said("ensemble", table_toml("ensemble", scene_.ensemble, values_of_other_drives(scene_)));
     if (scene_.sensors) out += table_toml("sensors", *scene_.sensors);
     out += said("reduction", reduction_toml(scene_.reduction, scene_.sensors.has_value()));
-    if (scene_.drive.belt() != nullptr) out += given("validation", scene_.validation);
-    if (scene_.drive.shaker() != nullptr) out += given("validation", scene_.shaken);
+    out += scene_.drive.period() ? given("validation", scene_.driven, without_in_validation(scene_))
+                                 : given("validation", scene_.validation);
     const std::string flow = table_toml("flow", scene_.flow);
     return out + (all_ || flow != table_toml("flow", Scene().flow) ? flow : "");
   }
@@ -55,9 +55,8 @@ class SceneText {
   }
   /// A table without the keys that the scene leaves to its periods.
   template <class S>
-  [[nodiscard]] std::string given(const char* name, const S& own) const {
-    if (all_) return table_toml(name, own);
-    Without left_out;
+  [[nodiscard]] std::string given(const char* name, const S& own, Without left_out = {}) const {
+    if (all_) return table_toml(name, own, left_out);
     for_each_field<S>([&](const auto& field) {
       if (!scene_.source.given.contains(fmt::format("{}.{}", name, field.name))) left_out.push_back(field.name);
     });

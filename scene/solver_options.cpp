@@ -31,10 +31,10 @@ diagnostics::SettleOptions sweep_settle_options(const Scene& scene) {
 }
 
 diagnostics::DrivenOptions driven_options(const Scene& scene) {
-  return {.cycles = scene.shaken.cycles,
-          .kept = scene.shaken.kept,
-          .tolerance = scene.shaken.period_tolerance,
-          .max_period = scene.shaken.max_period,
+  return {.cycles = scene.driven.cycles,
+          .kept = scene.driven.kept,
+          .tolerance = scene.driven.period_tolerance,
+          .max_period = scene.driven.max_period,
           .flow = uncertified(scene.flow)};
 }
 
@@ -50,14 +50,6 @@ diagnostics::ModelVerdictOptions verdict_options(const Scene& scene) {
   options.tangent.seed = scene.ensemble.seed;
   options.tangent.flow = uncertified(scene.flow);
   return options;
-}
-
-void refuse_force(const Scene& scene, const std::string& verb) {
-  if (!scene.force) return;
-  throw InvalidInput(fmt::format(
-      "{}: drive.kind = \"force\": {} compares motions by their slips or by a shaker's cycles; valid: a belt "
-      "or a shaker, or 'slipmode orbit find', 'orbit continue', 'orbit map' for this scene",
-      scene.source.path, verb));
 }
 
 }  // namespace slipmode::scene

@@ -18,15 +18,11 @@ namespace slipmode::scene {
 /// The same at each value of a sweep: waits no longer than `sweep_limit`, and audits nothing.
 [[nodiscard]] diagnostics::SettleOptions sweep_settle_options(const Scene& scene);
 
-/// [validation] and [flow] of a shaken scene.
+/// [validation] and [flow] of a scene whose drive has a period.
 [[nodiscard]] diagnostics::DrivenOptions driven_options(const Scene& scene);
 
 /// What the verdict runs by [validation] and [time]: exponents over a fifth of lyapunov_duration, a record
 /// of 2,000 to 20,000 samples.
 [[nodiscard]] diagnostics::ModelVerdictOptions verdict_options(const Scene& scene);
-
-/// Studies that compare motions by their slips, or at upward zeros of a shaker, have nothing to go by under a force.
-/// @throws InvalidInput  for a scene with a force, naming what to use
-void refuse_force(const Scene& scene, const std::string& verb);
 
 }  // namespace slipmode::scene

@@ -127,7 +127,7 @@ struct EnsembleSpec {
   int members = 1;
   std::uint64_t seed = 1;
   double spread = 0.0;
-  std::vector<double> speeds, frequencies;
+  std::vector<double> speeds, frequencies, omegas;  ///< those of the drive, see drive_key
 
   static constexpr auto fields() {
     using Own = EnsembleSpec;
@@ -136,7 +136,9 @@ struct EnsembleSpec {
                       optional("spread", &Own::spread, "m, m/s", "standard deviation of the starts", kNonNegative),
                       optional("speeds", &Own::speeds, "m/s", "belt speeds to run at; empty: the drive's own"),
                       optional("frequencies", &Own::frequencies, "Hz",
-                               "shaker frequencies to run at; empty: the drive's own", kPositive)};
+                               "of a shaker, or of a force given in Hz, to run at; empty: the drive's own", kPositive),
+                      optional("omegas", &Own::omegas, "rad/s",
+                               "of a force given by omega, to run at; empty: the drive's own", kPositive)};
   }
 };
 
@@ -238,8 +240,8 @@ struct ValidationSpec {
   }
 };
 
-/// How full and reduced models are compared under a shaker ([validation]).
-struct ShakenValidationSpec {
+/// How full and reduced models are compared under a shaker or a force ([validation]).
+struct DrivenValidationSpec {
   /// Which ways a sweep goes when each frequency starts where the one before ended, to show hysteresis.
   enum class Follow {
     kNone,     ///< each frequency starts from the scene's start
@@ -247,7 +249,7 @@ struct ShakenValidationSpec {
     kBoth,     ///< and back
   };
 
-  std::optional<Range> frequencies;
+  std::optional<Range> frequencies, omegas;  ///< one at most, see drive_key
   double cycles = 600.0, kept = 100.0;
   std::optional<double> gauge;
   std::vector<int> modes;
@@ -259,16 +261,17 @@ struct ShakenValidationSpec {
   int cost_repeats = 5;
 
   static constexpr auto fields() {
-    using Own = ShakenValidationSpec;
+    using Own = DrivenValidationSpec;
     return std::tuple{
         optional("frequencies", &Own::frequencies, "Hz",
-                 "of the sweep; the amplitude curve covers them; absent: no sweep", kPositive),
+                 "of the sweep; a shaker's amplitude curve covers them; absent: no sweep", kPositive),
+        optional("omegas", &Own::omegas, "rad/s", "the same of a force given by omega", kPositive),
         optional("cycles", &Own::cycles, "", "run at each frequency", kPositive),
         optional("kept", &Own::kept, "", "cycles kept, the last ones (S4 6.3.2)", kPositive),
         optional("gauge", &Own::gauge, "m", "x of the strain in Poincare sections; absent: see gauge_position"),
         optional("modes", &Own::modes, "", "sizes of the reduced models compared; empty: all up to 12, then fewer",
                  kCount),
-        optional("bases", &Own::bases, "", "bases compared; default: what the scene's structure and sensors allow"),
+        optional("bases", &Own::bases, "", "bases compared under a shaker; default: what structure and sensors allow"),
         optional("follow", &Own::follow, "", "which ways a sweep goes on from value to value"),
         optional("period_tolerance", &Own::period_tolerance, "1",
                  "section states closer than this, relative to their range, are the same", kPositive),

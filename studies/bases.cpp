@@ -11,7 +11,7 @@
 #include <slipmode/results/reduced_file.hpp>
 #include <slipmode/rom/candidates.hpp>
 #include <slipmode/rom/reduce.hpp>
-#include <slipmode/scene/shaken.hpp>
+#include <slipmode/scene/driven.hpp>
 #include <slipmode/studies/ensemble.hpp>
 
 #include <fmt/format.h>
@@ -136,7 +136,7 @@ std::vector<trade::OfferedBasis> offered_shaken(const scene::Scene& scene, const
     return *made;
   };
   std::vector<trade::OfferedBasis> bases;
-  for (const scene::BasisChoice word : scene.shaken.bases) {
+  for (const scene::BasisChoice word : scene.driven.bases) {
     trade::OfferedBasis offered{.choice = word, .basis = {}};
     offered.seconds = processor_time([&] { offered.basis = shaken_basis(word, scene, system, motion); });
     const bool from_motion = word != scene::BasisChoice::kLnm && word != scene::BasisChoice::kLnmStatic;
@@ -248,7 +248,7 @@ pod::Basis shaken_basis(scene::BasisChoice word, const scene::Scene& scene, cons
 std::vector<pod::NamedBasis> shaken_bases(const scene::Scene& scene, const dynamics::HybridSystem& system,
                                           const std::function<const results::ShakenModes&()>& motion) {
   std::vector<pod::NamedBasis> bases;
-  for (const scene::BasisChoice word : scene.shaken.bases) {
+  for (const scene::BasisChoice word : scene.driven.bases) {
     bases.push_back({.name = scene::to_string(word), .basis = shaken_basis(word, scene, system, motion)});
   }
   return bases;
@@ -299,7 +299,7 @@ pod::NamedBasis load_basis(const scene::Scene& scene, const dynamics::HybridSyst
   if (kind == FileKind::kPod) {
     if (is_shaken(scene)) {  // such a POD holds several bases: the one that reduction.basis names is taken
       scene::Scene one = scene;
-      one.shaken.bases = {scene.reduction.basis};
+      one.driven.bases = {scene.reduction.basis};
       pod::NamedBasis found = load_shaken_bases(one, full, store).front();
       found.captured = pod::cumulative(found.basis.energy);
       return found;

@@ -12,24 +12,28 @@ namespace slipmode::studies {
 namespace {
 
 diagnostics::Model ensemble_model(const scene::Scene& scene) {
-  if (scene.drive.is_constant()) return Family(scene, {"drive.speed"}).model();
-  if (scene.drive.shaker() != nullptr) return Family(scene, {"drive.frequency"}).model();
+  if (scene.drive.is_constant() || scene.drive.period()) return Family(scene, {drive_key(scene)}).model();
   return {.system = [family = Family(scene)](double) { return family.own(); }};
 }
 
 /// One run after the other, in order.
 void append(diagnostics::EnsembleRun& all, diagnostics::EnsembleRun part) {
-  const Eigen::Index before = all.ensemble.snapshots.cols();
-  Eigen::MatrixXd joined(part.ensemble.snapshots.rows(), before + part.ensemble.snapshots.cols());
-  if (before > 0) joined.leftCols(before) = all.ensemble.snapshots;
-  joined.rightCols(part.ensemble.snapshots.cols()) = part.ensemble.snapshots;
-  all.ensemble.snapshots = std::move(joined);
+  const Eigen::Index before = all.ensemble.snapshots.cols(), more = part.ensemble.snapshots.cols();
+  if (before == 0) {
+    all.ensemble.snapshots = std::move(part.ensemble.snapshots);
+  } else if (more > 0) {  // a share of the members may have none of these runs
+    all.ensemble.snapshots.conservativeResize(Eigen::NoChange, before + more);
+    all.ensemble.snapshots.rightCols(more) = part.ensemble.snapshots;
+  }
   for (const Eigen::Index begin : part.ensemble.run_begin) all.ensemble.run_begin.push_back(before + begin);
   for (auto& member : part.members) all.members.push_back(std::move(member));
 }
 
 std::vector<double> parameters_of(const scene::Scene& scene) {
-  const auto& named = scene.drive.shaker() != nullptr ? scene.ensemble.frequencies : scene.ensemble.speeds;
+  const std::string key = drive_key(scene);
+  const auto& named = key == "drive.speed"       ? scene.ensemble.speeds
+                      : key == "drive.frequency" ? scene.ensemble.frequencies
+                                                 : scene.ensemble.omegas;
   return named.empty() ? std::vector{scene::drive_parameter(scene)} : named;
 }
 
@@ -59,6 +63,19 @@ struct Members {
     options.parallel = parallel;
     return diagnostics::run_ensemble(model, values, starts, options);
   }
+
+  /// A time in cycles is another one at each frequency.
+  [[nodiscard]] diagnostics::EnsembleRun run_all(const scene::Scene& scene, const ParallelOptions& parallel,
+                                                 diagnostics::EnsembleOptions options = {}) const {
+    if (!scene.drive.period()) return run(parameters, scene.time, parallel, options);
+    diagnostics::EnsembleRun all;
+    for (const double frequency : parameters) {
+      append(all, run({frequency}, scene::time_at(scene, frequency), parallel, options));
+      ++options.model;
+      options.sink.first_piece += starts.size();
+    }
+    return all;
+  }
 };
 
 }  // namespace
@@ -68,14 +85,7 @@ diagnostics::EnsembleRun ensemble(const scene::Scene& scene, const RunOptions& r
   const ParallelOptions parallel = run.parallel("ensemble");
   diagnostics::EnsembleOptions options;
   if (journal != nullptr) options.sink = results::ensemble_sink(*journal);
-  if (scene.drive.shaker() == nullptr) return members.run(members.parameters, scene.time, parallel, options);
-  diagnostics::EnsembleRun all;  // a time in cycles is another one at each frequency
-  for (const double frequency : members.parameters) {
-    append(all, members.run({frequency}, scene::time_at(scene, frequency), parallel, options));
-    ++options.model;
-    options.sink.first_piece += members.starts.size();
-  }
-  return all;
+  return members.run_all(scene, parallel, options);
 }
 
 Pieces ensemble_pieces(const scene::Scene& scene) {
@@ -94,8 +104,7 @@ diagnostics::EnsembleRun ensemble_part(const scene::Scene& scene, std::size_t pa
         "{}: drive.kind = \"shaker\": its modes are found by one process; start it without mpirun", scene.source.path));
   }
   const Members members(scene);
-  diagnostics::EnsembleRun own =
-      members.run(members.parameters, scene.time, run.parallel("ensemble"), {.part = part, .parts = parts});
+  diagnostics::EnsembleRun own = members.run_all(scene, run.parallel("ensemble"), {.part = part, .parts = parts});
   if (own.ensemble.snapshots.cols() == 0) own.ensemble.snapshots.resize(members.dofs, 0);
   return own;
 }

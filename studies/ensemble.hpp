@@ -11,8 +11,8 @@
 
 namespace slipmode::studies {
 
-/// Runs what [ensemble] asks for: `members` starts (see scene::ensemble_states) at each of its belt speeds or shaker
-/// frequencies; a belt that is not constant, or a force, keeps its own.
+/// Runs what [ensemble] asks for: `members` starts (see scene::ensemble_states) at each of its belt speeds or
+/// frequencies of the drive; a belt that is not constant keeps its own.
 /// @param journal  keeps finished members and gives back earlier ones; nullptr: in memory only
 /// @throws as diagnostics::run_ensemble
 [[nodiscard]] diagnostics::EnsembleRun ensemble(const scene::Scene& scene, const RunOptions& run = {},

@@ -2,7 +2,7 @@
 
 #include <slipmode/core/errors.hpp>
 #include <slipmode/rom/reduce.hpp>
-#include <slipmode/scene/shaken.hpp>
+#include <slipmode/scene/driven.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -59,7 +59,7 @@ bool is_of_law(const std::string& key) {
 }
 
 DrivenCase full_case(const scene::Scene& scene) {
-  if (is_shaken(scene)) return scene::shaken_case(scene);
+  if (is_driven(scene)) return scene::driven_case(scene);
   DrivenCase belt{.system = scene::build_system(scene), .readings = {}};
   belt.readings.rows.resize(0, belt.system.size());  // none, and projected there are none
   return belt;

@@ -6,7 +6,7 @@
 #include <slipmode/results/driven_store.hpp>
 #include <slipmode/results/sweep_store.hpp>
 #include <slipmode/rom/reduce.hpp>
-#include <slipmode/scene/shaken.hpp>
+#include <slipmode/scene/driven.hpp>
 #include <slipmode/scene/solver_options.hpp>
 
 #include <algorithm>
@@ -39,7 +39,6 @@ std::vector<double> natural_hz(const dynamics::HybridSystem& full) {
   std::vector<double> hz;
   for (const double omega : fem::natural_modes(full.structure(), std::min(kResolved, full.size())).omega)
     if (omega > 0.0) hz.push_back(omega / (2.0 * std::numbers::pi));
-  if (hz.empty()) throw InvalidInput("motions: expected a structure that vibrates, found none that does");
   return hz;
 }
 constexpr double kAboveModes = 1.3;  ///< of the highest of these: shown
@@ -146,10 +145,10 @@ MotionsOf on_a_belt(const Model& model, const dynamics::State& start, const scen
   return out;
 }
 
-MotionsOf on_a_shaker(const diagnostics::DrivenModel& model, const pod::Basis* basis, const dynamics::State& start,
-                      const scene::Scene& scene, const MotionsRequest& request, const std::vector<double>& natural,
-                      const StopFlag* stop) {
-  constexpr double kHarmonics = 25.0;  // shown of the shaker's frequency: modes may lie far above all that is seen
+MotionsOf under_a_period(const diagnostics::DrivenModel& model, const pod::Basis* basis, const dynamics::State& start,
+                         const scene::Scene& scene, const MotionsRequest& request, const std::vector<double>& natural,
+                         const StopFlag* stop) {
+  constexpr double kHarmonics = 25.0;  // shown of the drive's frequency: modes may lie far above all that is seen
   diagnostics::DrivenSweepOptions options;
   options.driven = scene::driven_options(scene);
   options.driven.exponent_cycles = 0.0;
@@ -169,7 +168,9 @@ MotionsOf on_a_shaker(const diagnostics::DrivenModel& model, const pod::Basis* b
       [&](std::size_t k) -> std::optional<Motion> {
         if (!swept.points[k].ok()) return std::nullopt;
         const double hz = swept.points[k].settled.frequency_hz;
-        const MotionTimes times(1.0 / hz, std::min(kAboveModes * natural.back(), kHarmonics * hz), request);
+        const double seen = kHarmonics * hz;
+        const MotionTimes times(1.0 / hz, natural.empty() ? seen : std::min(kAboveModes * natural.back(), seen),
+                                request);
         return recorded(model(request.values[k]).system, basis, swept.points[k].settled.end, 0.0, request, times);
       },
       out);
@@ -180,20 +181,21 @@ MotionsOf on_a_shaker(const diagnostics::DrivenModel& model, const pod::Basis* b
 
 std::vector<MotionsOf> motions(const scene::Scene& scene, const pod::NamedBasis& basis, const MotionsRequest& request,
                                const RunOptions& run) {
-  if (scene.force) throw InvalidInput("motions: expected a belt or a shaker, found a force");
   if (request.values.empty()) throw InvalidInput("motions: expected at least one value of the drive, found none");
-  const bool shaken = is_shaken(scene);
+  const bool driven = is_driven(scene);
   const diagnostics::DrivenCase full =
-      shaken ? scene::shaken_case(scene) : diagnostics::DrivenCase{.system = scene::build_system(scene)};
+      driven ? scene::driven_case(scene) : diagnostics::DrivenCase{.system = scene::build_system(scene)};
   const std::vector<double> natural = natural_hz(full.system);
+  if (!driven && natural.empty())
+    throw InvalidInput("motions: expected a structure that vibrates on its belt, found none that does");
   const dynamics::State start = scene::initial_state(scene, full.system);
   std::vector<MotionsOf> out(request.modes.size() + 1);
   rethrow_first(parallel_for(out.size(), run.parallel("motions"), [&](std::size_t m) {
     std::optional<pod::Basis> own;
     if (m > 0) own = basis.basis.truncated(request.modes[m - 1]);
     const dynamics::State from = own ? rom::restrict_state(full.system.structure(), *own, start) : start;
-    if (shaken) {
-      out[m] = on_a_shaker(
+    if (driven) {
+      out[m] = under_a_period(
           diagnostics::driven_model(own ? diagnostics::reduced_case(full, *own) : full, drive_over_frequency(scene)),
           own ? &*own : nullptr, from, scene, request, natural, run.stop);
       return;

@@ -15,19 +15,19 @@ namespace slipmode::studies {
 
 /// Which motions are computed, and how much of each is kept.
 struct MotionsRequest {
-  std::vector<double> values = {};       ///< belt speeds or shaker frequencies, in the order they are gone through
-  std::vector<bool> recorded = {};       ///< at which of them the motion itself is kept
+  std::vector<double> values = {};  ///< belt speeds or frequencies of the drive, in the order they are gone through
+  std::vector<bool> recorded = {};  ///< at which of them the motion itself is kept
   std::vector<Eigen::Index> modes = {};  ///< of the reduced models
   /// What is kept of the structure's shape, from the full degrees of freedom [readings x n].
   Eigen::MatrixXd readings = {};
   Eigen::Index samples = 1500;         ///< kept of contacts
   Eigen::Index samples_per_shape = 4;  ///< the shape is kept at every so many
-  double periods = 6.0;                ///< of the slowest natural mode or of the shaker, kept
+  double periods = 6.0;                ///< of the slowest natural mode, or of the drive that has one, kept
   double spectrum_periods = 40.0;      ///< of which the spectrum is taken
 };
 
 /// A settled motion. On a belt from one of its slips on, that from the largest displacement within two slowest periods;
-/// under a shaker from where its velocity passes zero upward: so periodic motions of two models are in phase.
+/// under a shaker or a force from its section: so periodic motions of two models are in phase.
 struct Motion {
   double interval = 0.0;                     ///< between samples [s]
   Eigen::MatrixXd q, v, lambda;              ///< of the contacts [contacts x samples]
@@ -40,7 +40,8 @@ struct Motion {
 /// What a model settles to at a value.
 struct MotionPoint {
   double value = 0.0;
-  /// Of the first contact the displacements at its slips; under a shaker the scene's reading at each section.
+  /// Of the first contact the displacements at its slips; under a shaker or a force the scene's reading at each
+  /// section.
   std::vector<double> states = {};
   std::string said = {};  ///< "period 1", …
 };
@@ -52,7 +53,7 @@ struct MotionsOf {
   std::vector<std::optional<Motion>> motions;  ///< one per recorded value; empty where it failed
 };
 
-/// What the full model and reduced ones settle to over a belt's speed or a shaker's frequency, settled as [validation]
+/// What the full model and reduced ones settle to over a belt's speed or the drive's frequency, settled as [validation]
 /// says for its sweep; on a belt each follows its own motion from value to value from the scene's start.
 /// @param basis  with as many vectors as the largest model has modes
 /// @return       the full model, then the reduced ones in their order

@@ -8,8 +8,8 @@
 #include <slipmode/results/provenance.hpp>
 #include <slipmode/results/records.hpp>
 #include <slipmode/rom/reduce.hpp>
+#include <slipmode/scene/driven.hpp>
 #include <slipmode/scene/own_times.hpp>
-#include <slipmode/scene/shaken.hpp>
 #include <slipmode/studies/bases.hpp>
 #include <slipmode/studies/ensemble.hpp>
 #include <slipmode/studies/natural_modes.hpp>
@@ -34,7 +34,7 @@ bool gathers_ensemble(const scene::Scene& scene) {
 std::vector<LeftOut> left_out_of(const scene::Scene& scene) {
   std::vector<LeftOut> out;
   if (!gathers_ensemble(scene)) out.push_back({"ensemble, proper orthogonal modes and reduced models", "[ensemble]"});
-  if (!has_section(scene, "validation") && !scene.force)  // under a force orbits are compared
+  if (!has_section(scene, "validation"))
     out.push_back({"comparison of reduced models with the full one", "[validation]"});
   return out;
 }
@@ -164,7 +164,7 @@ class Pipeline {
 
   void validate() {
     const Validation done = studies::validate(scene_, bases_, ValidationRequest{}, file("validation.h5"), run_);
-    result_.driven_validation = done.shaken;
+    result_.driven_validation = done.driven;
     result_.validation = done.belt;
   }
 

@@ -38,7 +38,7 @@ struct PipelineResult {
   std::string reduced = {};                                         ///< "POM", "LNM": what [reduction] names
   double captured = 0.0;                                            ///< share of the energy in so many of these
   std::shared_ptr<const diagnostics::ValidationReport> validation;  ///< under a belt
-  std::shared_ptr<const diagnostics::DrivenValidationReport> driven_validation;  ///< under a shaker
+  std::shared_ptr<const diagnostics::DrivenValidationReport> driven_validation;  ///< under a shaker or a force
   std::vector<LeftOut> left_out;
   std::vector<std::string> files, figures;  ///< names in the folder
 

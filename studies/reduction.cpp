@@ -4,7 +4,7 @@
 #include <slipmode/core/none.hpp>
 #include <slipmode/results/ensemble_store.hpp>
 #include <slipmode/rom/reduce.hpp>
-#include <slipmode/scene/shaken.hpp>
+#include <slipmode/scene/driven.hpp>
 #include <slipmode/studies/bases.hpp>
 
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 
 #include <slipmode/core/errors.hpp>
 #include <slipmode/results/driven_store.hpp>
-#include <slipmode/scene/shaken.hpp>
+#include <slipmode/scene/driven.hpp>
 #include <slipmode/scene/solver_options.hpp>
 
 #include <utility>
@@ -23,7 +23,7 @@ void sweep_belt(const Family& family, const SweepOptions& options, const RunOpti
   out.interrupted = result.interrupted;
 }
 
-void sweep_shaken(const Family& family, const SweepOptions& options, const RunOptions& run, Sweep& out) {
+void sweep_driven(const Family& family, const SweepOptions& options, const RunOptions& run, Sweep& out) {
   diagnostics::DrivenSweepOptions driven{.mode = mode_of(options),
                                          .segments = options.segments,
                                          .driven = scene::driven_options(family.scene()),
@@ -45,10 +45,10 @@ void sweep_shaken(const Family& family, const SweepOptions& options, const RunOp
 }  // namespace
 
 void check(const scene::Scene& scene, const SweepOptions& options) {
-  scene::refuse_force(scene, "sweep");
-  if (!is_shaken(scene) && (options.reverse || options.both || options.exponent_cycles != 0.0)) {
+  if (!is_driven(scene) && (options.reverse || options.both || options.exponent_cycles != 0.0)) {
     throw InvalidInput(
-        "--reverse, --both and --lyapunov are for scenes with a shaker; a belt's sweep runs from FROM to TO");
+        "--reverse, --both and --lyapunov are for scenes with a shaker or a force; a belt's sweep runs from FROM to "
+        "TO");
   }
   if (options.both && !options.follow) {
     throw InvalidInput("--both: without --follow every value starts alike, and up and down are the same; add --follow");
@@ -72,8 +72,8 @@ Sweep sweep(const Family& family, const std::vector<double>& values, const Sweep
   check(family.scene(), options);
   Sweep out;
   out.values = values;
-  if (is_shaken(family.scene())) {
-    sweep_shaken(family, options, run, out);
+  if (is_driven(family.scene())) {
+    sweep_driven(family, options, run, out);
   } else {
     sweep_belt(family, options, run, out);
   }
@@ -84,7 +84,7 @@ void store(results::StoreWriter& writer, const Family& family, const Sweep& swee
   const scene::Scene& scene = family.scene();
   const results::Units units = results::Units::of(scene.units);
   const std::string group = family.basis() ? "sweep/reduced" : "sweep/full";
-  if (!is_shaken(scene)) {
+  if (!is_driven(scene)) {
     results::store_sweep(writer, group, family.title(), family.axis(), units, sweep.belt);
     return;
   }

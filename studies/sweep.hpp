@@ -26,14 +26,15 @@ struct SweepOptions {
     return std::tuple{
         optional("follow", &Own::follow, "", "each value starts where the one before it ended"),
         optional("segments", &Own::segments, "", "of a sweep that follows: chains side by side", kCount),
-        optional("reverse", &Own::reverse, "", "under a shaker: from the last value to the first"),
-        optional("both", &Own::both, "", "under a shaker, following: up and down, to show hysteresis"),
+        optional("reverse", &Own::reverse, "", "under a shaker or a force: from the last value to the first"),
+        optional("both", &Own::both, "", "under a shaker or a force, following: up and down, to show hysteresis"),
         optional("lyapunov", &Own::exponent_cycles, "",
-                 "under a shaker: the largest Lyapunov exponent over so many cycles more; 0: none", kNonNegative)};
+                 "under a shaker or a force: the largest Lyapunov exponent over so many cycles more; 0: none",
+                 kNonNegative)};
   }
 };
 
-/// Settled motion over values of one key: under a belt `belt`, under a shaker `up` and `down`.
+/// Settled motion over values of one key: under a belt `belt`, under a shaker or a force `up` and `down`.
 struct Sweep {
   std::vector<double> values;
   std::vector<diagnostics::SweepPoint> belt;

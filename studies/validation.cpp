@@ -5,8 +5,8 @@
 #include <slipmode/results/driven_validation_store.hpp>
 #include <slipmode/results/sweep_store.hpp>
 #include <slipmode/results/validation_store.hpp>
+#include <slipmode/scene/driven.hpp>
 #include <slipmode/scene/own_times.hpp>
-#include <slipmode/scene/shaken.hpp>
 #include <slipmode/scene/solver_options.hpp>
 #include <slipmode/studies/bases.hpp>
 #include <slipmode/studies/portraits.hpp>
@@ -36,12 +36,13 @@ ResultFile file_of(const Target& target, const scene::Scene& scene, const std::v
 }
 
 diagnostics::DrivenValidationOptions options_of(const scene::Scene& scene) {
-  const auto& spec = scene.shaken;
+  const auto& spec = scene.driven;
   diagnostics::DrivenValidationOptions options;
-  options.values = spec.frequencies ? spec.frequencies->values() : std::vector{scene::drive_parameter(scene)};
+  const auto& swept = spec.frequencies ? spec.frequencies : spec.omegas;
+  options.values = swept ? swept->values() : std::vector{scene::drive_parameter(scene)};
   options.modes.assign(spec.modes.begin(), spec.modes.end());
   options.mode =
-      spec.follow == scene::ShakenValidationSpec::Follow::kNone ? SweepMode::kIndependent : SweepMode::kFollow;
+      spec.follow == scene::DrivenValidationSpec::Follow::kNone ? SweepMode::kIndependent : SweepMode::kFollow;
   options.driven = scene::driven_options(scene);
   options.cost_parameter = scene::drive_parameter(scene);
   options.cost_cycles = spec.cost_cycles;
@@ -94,7 +95,7 @@ namespace {
 /// What a share of it keeps: its values alone.
 Validation share_of(const scene::Scene& scene, ResultFile& file) {
   results::Content content = file.finish([](results::StoreWriter&) {});
-  return {.scene = scene, .values = file.progress(), .belt = {}, .shaken = {}, .content = std::move(content)};
+  return {.scene = scene, .values = file.progress(), .belt = {}, .driven = {}, .content = std::move(content)};
 }
 
 Validation validate_belt(const scene::Scene& scene, const std::vector<pod::NamedBasis>& bases,
@@ -121,12 +122,12 @@ Validation validate_belt(const scene::Scene& scene, const std::vector<pod::Named
     results::store_portraits(writer, "portraits/orbits", orbits, units);
   };
   results::Content content = file.finish(write);
-  return {.scene = scene, .values = file.progress(), .belt = report, .shaken = {}, .content = std::move(content)};
+  return {.scene = scene, .values = file.progress(), .belt = report, .driven = {}, .content = std::move(content)};
 }
 
-Validation validate_shaken(const scene::Scene& scene, const std::vector<pod::NamedBasis>& bases,
+Validation validate_driven(const scene::Scene& scene, const std::vector<pod::NamedBasis>& bases,
                            const ValidationRequest& request, const Target& target, const RunOptions& run) {
-  const diagnostics::DrivenCase full = scene::shaken_case(scene);
+  const diagnostics::DrivenCase full = scene::driven_case(scene);
   auto options = options_of(scene);
   const std::size_t sweeps = driven_validation_sweeps(bases, options);
   const bool follows = options.mode == SweepMode::kFollow;
@@ -144,7 +145,7 @@ Validation validate_shaken(const scene::Scene& scene, const std::vector<pod::Nam
     results::store_driven_validation(writer, *report, scene);
   };
   results::Content content = file.finish(write);
-  return {.scene = scene, .values = file.progress(), .belt = {}, .shaken = report, .content = std::move(content)};
+  return {.scene = scene, .values = file.progress(), .belt = {}, .driven = report, .content = std::move(content)};
 }
 
 }  // namespace
@@ -152,10 +153,9 @@ Validation validate_shaken(const scene::Scene& scene, const std::vector<pod::Nam
 Validation validate(const scene::Scene& scene, const results::StoreReader& bases, const ValidationRequest& request,
                     const std::filesystem::path& file, const RunOptions& run, const Division& division) {
   scene::Scene own = scene::with_own_times(scene);
-  scene::refuse_force(own, "validate");
   const std::vector<pod::NamedBasis> found = load_bases(own, scene::build_system(own), bases);
   const bool is_reduced = results::kind_of(bases) == results::FileKind::kReduced;  // its own size is the one to judge
-  if (is_shaken(own) && is_reduced) own.shaken.modes = {static_cast<int>(found.front().basis.modes())};
+  if (is_driven(own) && is_reduced) own.driven.modes = {static_cast<int>(found.front().basis.modes())};
   return validate(own, found, request, file, run, division);
 }
 
@@ -163,15 +163,19 @@ Validation validate(const scene::Scene& scene, const std::vector<pod::NamedBasis
                     const ValidationRequest& request, const std::filesystem::path& file, const RunOptions& run,
                     const Division& division) {
   const Target target{file, division};
-  if (!is_shaken(scene)) return validate_belt(scene, bases, request, target, run);
+  if (!is_driven(scene)) return validate_belt(scene, bases, request, target, run);
   if (request.verdict)
     throw InvalidInput(
-        "verdict: expected a belt, found a shaker; there 'slipmode diagnose SCENE FILE --verdict', in Python "
+        "verdict: expected a belt, found a shaker or a force; there 'slipmode diagnose SCENE FILE --verdict', in "
+        "Python "
         "exponents, "
         "does it");
   scene::Scene own = scene;
-  if (!request.sweep) own.shaken.frequencies.reset();
-  return validate_shaken(own, bases, request, target, run);
+  if (!request.sweep) {
+    own.driven.frequencies.reset();
+    own.driven.omegas.reset();
+  }
+  return validate_driven(own, bases, request, target, run);
 }
 
 }  // namespace slipmode::studies

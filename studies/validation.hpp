@@ -34,22 +34,22 @@ struct ValidationRequest {
   }
 };
 
-/// A comparison, of a belt's scene or a shaken one, and what is kept of it: tables, sweeps and portraits. A share of
-/// it, as one of several processes computes, is values of its sweeps alone.
+/// A comparison, of a belt's scene or one under a shaker or a force, and what is kept of it: tables, sweeps and
+/// portraits. A share of it, as one of several processes computes, is values of its sweeps alone.
 struct Validation {
   scene::Scene scene;   ///< with its times, as compared
   FileProgress values;  ///< of the sweeps
   std::shared_ptr<const diagnostics::ValidationReport> belt;
-  std::shared_ptr<const diagnostics::DrivenValidationReport> shaken;
+  std::shared_ptr<const diagnostics::DrivenValidationReport> driven;
   results::Content content;
 };
 
 /// Reduced models against the full one, under a belt or, over [validation] frequencies or at the drive's own where
-/// there are none, a shaker.
+/// there are none, a shaker or a force.
 /// @param bases  a result that load_bases takes
 /// @param file   written, and resumable; empty: none
 /// @param division  of the sweeps' values: a sweep that follows at its chains
-/// @throws InvalidInput  for a force, a basis of another size, a verdict under a shaker
+/// @throws InvalidInput  for a basis of another size, a verdict under a shaker or a force
 /// @throws Interrupted   when the stop flag was set; what was finished is kept beside the file
 Validation validate(const scene::Scene& scene, const results::StoreReader& bases, const ValidationRequest& request,
                     const std::filesystem::path& file, const RunOptions& run, const Division& division = {});

@@ -63,7 +63,7 @@ Schedule schedule_of(const scene::Scene& scene) {
   }
   const double period = *scene.drive.period();
   if (scene.drive.shaker() != nullptr) {
-    const scene::ShakenValidationSpec& spec = scene.shaken;
+    const scene::DrivenValidationSpec& spec = scene.driven;
     const double kept = std::max(1.0, std::floor(spec.kept));
     const double timed = spec.cost_cycles > 0.0 ? std::min(spec.cost_cycles, kTimedPeriods) : kTimedPeriods;
     return in_periods(period, std::max(0.0, std::floor(spec.cycles) - kept), kept, timed, spec.cost_repeats);

@@ -33,10 +33,9 @@ std::vector<dynamics::State> starts_of(const scene::Scene& scene, const dynamics
   return starts;
 }
 
-/// A start whose time is a section of a shaker; elsewhere time 0.
+/// A start whose time is a section of the drive.
 dynamics::State at_phase(const dynamics::HybridSystem& system, const dynamics::State& state) {
-  const friction::Shaker* shaker = system.drive().shaker();
-  return dynamics::handed_on(system, state, shaker != nullptr ? shaker->next_upward_zero(0.0) : 0.0);
+  return dynamics::handed_on(system, state, system.drive().section_time());
 }
 
 /// So many that two standard errors of a difference, and their own scatter, fit into `change`.

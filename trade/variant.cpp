@@ -17,7 +17,7 @@ constexpr std::array<std::string_view, 13> kAxes = {"scene",    "modes",  "flow"
 
 /// Fewer elements have fewer modes to compare.
 void drop_modes_beyond(scene::Scene& scene) {
-  for (std::vector<int>* modes : {&scene.validation.modes, &scene.shaken.modes}) {
+  for (std::vector<int>* modes : {&scene.validation.modes, &scene.driven.modes}) {
     std::erase_if(*modes, [&scene](int L) { return L > scene.size(); });
   }
   scene.reduction.choice.modes = std::min(scene.reduction.choice.modes, scene.size());

@@ -99,7 +99,7 @@ std::vector<Variant> of(Axis axis, std::vector<OtherContacts> others) {
 
 /// Those asked for that the basis has, or a few.
 std::vector<Eigen::Index> sizes_of(const scene::Scene& scene, Eigen::Index size) {
-  const std::vector<int>& asked = scene.drive.shaker() != nullptr ? scene.shaken.modes : scene.validation.modes;
+  const std::vector<int>& asked = scene.drive.period() ? scene.driven.modes : scene.validation.modes;
   std::vector<Eigen::Index> sizes;
   for (const int L : asked) {
     if (L <= size) sizes.push_back(L);

@@ -20,9 +20,9 @@ using dynamics::EventKind;
 
 bool is_whole(double value) { return std::isfinite(value) && value == std::floor(value); }
 
-const friction::Shaker& shaker_of(const dynamics::HybridSystem& system) {
-  if (const friction::Shaker* shaker = system.drive().shaker()) return *shaker;
-  throw InvalidInput("driven motion: expected a shaker, found a belt; belts are for settle()");
+double period_of(const dynamics::HybridSystem& system) {
+  if (const std::optional<double> period = system.drive().period()) return *period;
+  throw InvalidInput("driven motion: expected a shaker or a force, found a belt; belts are for settle()");
 }
 
 void check(const dynamics::HybridSystem& system, const Readings& readings, const DrivenOptions& options) {
@@ -105,21 +105,22 @@ void judge_contacts(const dynamics::HybridSystem& system, const dynamics::Trajec
   for (const dynamics::Event& event : run.events) {
     if (event.contact >= 0) histories[static_cast<std::size_t>(event.contact)].turn(event);
   }
-  bool holds = false, slides = false;
+  bool rubs = false, slides = false;
   std::vector<double> stick_time;
   for (std::size_t c = 0; c < histories.size(); ++c) {
     ContactHistory& history = histories[c];
     history.close(end);
     stick_time.push_back(history.stuck());
     if (friction::clearance(system.contacts()[c].law) != nullptr) continue;
-    holds = true;
+    rubs = true;
     slides = slides || history.slides();
     out.longest_stick = std::max(out.longest_stick, history.longest() / T);
     out.jumps += history.jumps();
     out.separations += history.separations();
   }
   out.stick_fraction = stick_share(system, stick_time, end - begin);
-  out.label = holds && !slides                   ? DrivenLabel::kStick
+  out.label = !rubs                              ? DrivenLabel::kNoFriction
+              : !slides                          ? DrivenLabel::kStick
               : out.longest_stick <= micro_stick ? DrivenLabel::kSlip
                                                  : DrivenLabel::kStickSlip;
 }
@@ -169,6 +170,8 @@ const char* to_string(DrivenLabel label) {
       return "stick-slip";
     case DrivenLabel::kSlip:
       return "slip";
+    case DrivenLabel::kNoFriction:
+      return "no friction";
   }
   return "";
 }
@@ -222,7 +225,7 @@ DrivenPeriod driven_period(const Eigen::MatrixXd& points, const Eigen::VectorXd&
 }
 
 dynamics::State at_first_section(const dynamics::HybridSystem& system, const dynamics::State& start) {
-  const double first = shaker_of(system).next_upward_zero(0.0);
+  const double first = system.drive().section_time();
   if (start.time > 0.0) return dynamics::handed_on(system, start, first);
   if (first == 0.0) return start;
   return dynamics::simulate(system, start, {.duration = first, .keep_events = false}).final_state;
@@ -231,8 +234,7 @@ dynamics::State at_first_section(const dynamics::HybridSystem& system, const dyn
 DrivenMotion settle_driven(const dynamics::HybridSystem& system, const Readings& readings, const dynamics::State& start,
                            const DrivenOptions& options) {
   check(system, readings, options);
-  const friction::Shaker& shaker = shaker_of(system);
-  const double T = shaker.period();
+  const double T = period_of(system);
   const dynamics::State begin = at_first_section(system, start);
   const double transient = (options.cycles - options.kept) * T, duration = options.cycles * T;
   const dynamics::Trajectory run = dynamics::simulate(system, begin,
@@ -241,7 +243,7 @@ DrivenMotion settle_driven(const dynamics::HybridSystem& system, const Readings&
                                                        .sample = T / static_cast<double>(options.samples),
                                                        .flow = options.flow});
 
-  DrivenMotion out{.frequency_hz = shaker.frequency_hz};
+  DrivenMotion out{.frequency_hz = system.drive().frequency_hz()};
   const auto step = static_cast<Eigen::Index>(options.samples), kept = static_cast<Eigen::Index>(options.kept);
   const Eigen::Index count = kept * step;  // the last instant, where the next period begins, is left out
   const auto q = run.q.leftCols(count), v = run.v.leftCols(count);

@@ -22,9 +22,10 @@ struct Readings {
 /// spring is turned round, and under μ_s > μ_k often while it slides: an episode of stick shorter than
 /// DrivenOptions::micro_stick is called micro-stick.
 enum class DrivenLabel : std::uint8_t {
-  kStick,      ///< every contact sticks all the time, and no contact point jumps
-  kStickSlip,  ///< neither of the others
-  kSlip,       ///< no stick but micro-stick
+  kStick,       ///< every contact sticks all the time, and no contact point jumps
+  kStickSlip,   ///< neither of the others
+  kSlip,        ///< no stick but micro-stick
+  kNoFriction,  ///< no contact has friction: there are stops alone
 };
 
 /// Whether motion repeats with the drive.
@@ -66,8 +67,8 @@ struct DrivenOptions {
   const StopFlag* stop = nullptr;  ///< polled during the exponent's measurement
 };
 
-/// The motion a shaken system settles to, over the cycles kept. Sections are the instants when the slider's velocity
-/// passes zero upward.
+/// The motion that a shaker or a force makes a system settle to, over the cycles kept. Sections are those of the drive
+/// (friction::Drive::section_time).
 struct DrivenMotion {
   double frequency_hz = 0.0;            ///< of the drive
   Eigen::MatrixXd readings = {};        ///< at each section [m x kept]
@@ -87,13 +88,12 @@ struct DrivenMotion {
   dynamics::State end = {};  ///< at a section, a whole number of periods after the start
 };
 
-/// The state at a shaken system's first section from time 0 on: run to it from a start at time 0, as simulate() would;
+/// The state at a driven system's first section from time 0 on: run to it from a start at time 0, as simulate() would;
 /// one of a later time was at a section of another drive, and is handed on, so that phase is continuous.
 [[nodiscard]] dynamics::State at_first_section(const dynamics::HybridSystem& system, const dynamics::State& start);
 
-/// Runs a shaken system for `cycles` of its drive from its first section on, see at_first_section().
-/// @throws InvalidInput      for a drive that does not shake or stands still (amplitude 0 shakes), options out of
-/// range,
+/// Runs a driven system for `cycles` of its drive from its first section on, see at_first_section().
+/// @throws InvalidInput      for a drive without a period (amplitude 0 has one), options out of range,
 ///                           readings of another size, and as simulate
 /// @throws NumericalFailure  as simulate
 [[nodiscard]] DrivenMotion settle_driven(const dynamics::HybridSystem& system, const Readings& readings,

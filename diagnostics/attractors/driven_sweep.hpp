@@ -9,14 +9,14 @@
 
 namespace slipmode::diagnostics {
 
-/// A shaken system and what is read from it.
+/// A system under a shaker or a force, and what is read from it.
 struct DrivenCase {
   dynamics::HybridSystem system;
   Readings readings = {};
   double energy_offset = 0.0;  ///< added to mean energies, as Model::energy_offset [J]
 };
 
-/// A shaken model for every value of a parameter: shaker frequency, amplitude, friction, stiffness, load …
+/// A driven model for every value of a parameter: the drive's frequency, amplitude, friction, stiffness, load …
 /// Called from several threads at once: must not change anything.
 using DrivenModel = std::function<DrivenCase(double parameter)>;
 

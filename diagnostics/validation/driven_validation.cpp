@@ -159,9 +159,8 @@ class DrivenValidationRun {
   }
 
   DrivenCost clock(const dynamics::HybridSystem& system, const dynamics::State& start, double projection) const {
-    const friction::Shaker& shaker = *system.drive().shaker();
     const dynamics::State begin = at_first_section(system, start);
-    const dynamics::SimulateOptions run{.duration = options_.cost_cycles * shaker.period(),
+    const dynamics::SimulateOptions run{.duration = options_.cost_cycles * system.drive().period().value(),
                                         .keep_events = false,
                                         .output = dynamics::SimulateOptions::Output::kContacts,
                                         .flow = options_.driven.flow};
@@ -177,7 +176,8 @@ class DrivenValidationRun {
   /// Systems of their own, so that set-up is seen.
   void measure() {
     const friction::Drive drive = drive_(options_.cost_parameter);
-    const dynamics::HybridSystem full(full_.system.structure(), full_.system.contacts(), drive, full_.system.load());
+    const dynamics::HybridSystem full(full_.system.structure(), full_.system.contacts(), drive, full_.system.load(),
+                                      full_.system.force_directions());
     out_.cost = clock(full, start_, 0.0);
     for (std::size_t c = 0; c < candidates_.size(); ++c) {
       for (DrivenRow& row : out_.candidates[c].rows) {

@@ -10,13 +10,14 @@
 namespace slipmode::diagnostics {
 
 struct DrivenValidationOptions {
-  std::vector<double> values = {};       ///< of the swept parameter, not empty (shaker frequencies [Hz])
+  std::vector<double> values =
+      {};  ///< of the swept parameter, not empty (the drive's frequency, as the scene gives it)
   std::vector<Eigen::Index> modes = {};  ///< L to try, those that a basis has; empty: mode_ladder of the basis' size
   SweepMode mode = SweepMode::kIndependent;
   std::size_t segments = 1;
   DrivenOptions driven = {};
   Eigen::Index reading = 0;       ///< row of the readings that is compared
-  double cost_parameter = 0.0;    ///< value at which times are taken (the scene's own frequency)
+  double cost_parameter = 0.0;    ///< value at which times are taken (the scene's own)
   double cost_cycles = 600.0;     ///< simulated by a timed run; 0: no timing
   int cost_repeats = 5;           ///< times are medians of so many runs
   ParallelOptions parallel = {};  ///< parallel.progress counts values of all sweeps

@@ -24,9 +24,9 @@ struct NamedModel {
   Eigen::Index modes = 0;
 };
 /// Of a validation under a shaker: the reduced model that answers speak of. Nothing where none gave a settled motion.
-[[nodiscard]] std::optional<NamedModel> told_of_shaken(const results::StoreReader& validation);
+[[nodiscard]] std::optional<NamedModel> told_of_driven(const results::StoreReader& validation);
 
 /// The same as belt_answers of a validation under a shaker.
-[[nodiscard]] Json shaken_answers(const results::StoreReader& validation);
+[[nodiscard]] Json driven_answers(const results::StoreReader& validation);
 
 }  // namespace slipmode::report

@@ -17,9 +17,14 @@ inline constexpr double kEndSlack = 1e-12;
 [[nodiscard]] double beam_length(const fem::BeamOptions& beam);
 [[nodiscard]] double beam_reach(const fem::BeamOptions& beam);
 
-/// The fields of a span that a theory has not, and those of [ensemble] that a drive has not.
+/// The fields of a span that a theory has not.
 [[nodiscard]] Without without_shear(fem::BeamTheory theory);
-[[nodiscard]] Without without_other_drives(const friction::Drive& drive);
+/// The fields of [ensemble] and [validation] that hold values of another drive's own key, see drive_key.
+[[nodiscard]] Without values_of_other_drives(const Scene& scene);
+/// The fields of DrivenValidationSpec that a scene has not.
+[[nodiscard]] Without without_in_validation(const Scene& scene);
+/// Refuses values_of_other_drives, naming the one that is this drive's own.
+void refuse_values_of_other_drives(TomlReader& in, const Scene& scene);
 
 /// [structure] of any kind.
 [[nodiscard]] StructureSpec read_structure(TomlReader in, const std::string& units);
@@ -49,12 +54,12 @@ void read_drive(TomlReader in, Scene& scene);
 [[nodiscard]] SensorSpec read_sensors(TomlReader in, const Scene& scene);
 /// [reduction] with the sensors of `scene`.
 [[nodiscard]] ReductionSpec read_reduction(TomlReader in, const Scene& scene);
-/// [validation] on a belt, and under a shaker.
+/// [validation] on a belt, and under a shaker or a force.
 [[nodiscard]] ValidationSpec read_validation(TomlReader in, const Scene& scene);
-[[nodiscard]] ShakenValidationSpec read_shaken_validation(TomlReader in, const Scene& scene);
+[[nodiscard]] DrivenValidationSpec read_driven_validation(TomlReader in, const Scene& scene);
 
-/// The time in seconds of a time in cycles.
-[[nodiscard]] TimeSpec in_seconds(const TimeSpec::Cycles& cycles, double frequency_hz);
+/// The time in seconds of a time in cycles of a drive.
+[[nodiscard]] TimeSpec in_seconds(const TimeSpec::Cycles& cycles, const friction::Drive& drive);
 
 /// Adds the key of an override to SceneSource::given.
 void note_given(std::set<std::string>& out_given, const std::string& key);

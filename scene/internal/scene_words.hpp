@@ -36,7 +36,7 @@ inline constexpr std::array kWords<pod::SensorKind> = {"strain", "displacement"}
 template <>
 inline constexpr std::array kWords<pod::FitFamily> = {"modes", "polynomial"};
 template <>
-inline constexpr std::array kWords<scene::ShakenValidationSpec::Follow> = {"none", "forward", "both"};
+inline constexpr std::array kWords<scene::DrivenValidationSpec::Follow> = {"none", "forward", "both"};
 template <>
 inline constexpr std::array kWords<scene::InitialSpec::At> = {"rest", "static"};
 template <>

@@ -6,6 +6,7 @@
 #include <slipmode/diagnostics/series/spectrum.hpp>
 #include <slipmode/diagnostics/validation/driven_validation.hpp>
 #include <slipmode/rom/reduce.hpp>
+#include "fixtures/den_hartog.hpp"
 
 #include <gtest/gtest.h>
 
@@ -110,6 +111,62 @@ TEST(Driven, SlidingAllTheTimeIsTheResponseToASquareWave) {
   EXPECT_EQ(found.separations, 0);
   EXPECT_NEAR(found.contact_q(0, 0), at_section(0), 1e-9);
   EXPECT_NEAR(found.contact_v(0, 0), at_section(1), 1e-9);
+}
+
+/// m q̈ + c q̇ + k q = λ + A sin(ωt + φ), the counterpart at rest.
+dynamics::HybridSystem forced(const Oscillator& o, friction::Law law, double load, friction::Force force) {
+  const dynamics::HybridSystem still = o.with(std::move(law), load, {});
+  return {still.structure(), still.contacts(), std::move(force), {}, Eigen::MatrixXd::Ones(1, 1)};
+}
+
+TEST(Driven, UnderAForceALinearOscillatorMovesAsItsTransferFunctionSays) {
+  // Stops too far to be met. Sections are at ωt = 0, 2π, …, where Im(H A e^{i(ωt + φ)}) = Im(H A e^{iφ}).
+  const Oscillator o;
+  constexpr double kOmega = 2.3, kForce = 0.8, kPhase = 0.4;
+  const friction::Stop far{.stiffness = 1.0, .gap = 1e3};
+  const auto system = forced(o, friction::Clearance{far, far}, 0.0, {kOmega, {{.amplitude = kForce, .phase = kPhase}}});
+  const DrivenMotion found = settle_driven(system, kDisplacement, system.rest(), kQuick);
+  const std::complex<double> answer =
+      std::polar(kForce, kPhase) / std::complex<double>(o.k - o.m * kOmega * kOmega, o.c * kOmega);
+  EXPECT_EQ(found.label, DrivenLabel::kNoFriction);
+  EXPECT_EQ(found.period.repeat, DrivenRepeat::kPeriodic);
+  EXPECT_EQ(found.period.period, 1);
+  EXPECT_NEAR(found.frequency_hz, kOmega / (2.0 * kPi), 1e-15);
+  EXPECT_NEAR(found.rms(0), std::abs(answer) / std::numbers::sqrt2, 1e-11);
+  for (Eigen::Index k = 0; k < found.readings.cols(); ++k) {
+    EXPECT_NEAR(found.readings(0, k), answer.imag(), 1e-11) << "section " << k;
+    EXPECT_NEAR(found.contact_v(0, k), kOmega * answer.real(), 1e-11) << "section " << k;
+  }
+  EXPECT_LT(std::abs(found.audit_residual), 1e-10);
+}
+
+TEST(Driven, UnderAForceAStateHandedOnKeepsThePhase) {
+  // What one run ends with, the next begins with: no transient is left where the motion has settled.
+  const Oscillator o;
+  const auto system = forced(o, friction::Coulomb{0.05, 0.05}, 1.0, {2.3, {{.amplitude = 0.8, .phase = 0.4}}});
+  const DrivenMotion first = settle_driven(system, kDisplacement, system.rest(), kQuick);
+  const DrivenMotion second = settle_driven(system, kDisplacement, first.end, {.cycles = 30.0, .kept = 25.0});
+  ASSERT_EQ(first.period.period, 1);
+  for (Eigen::Index k = 0; k < second.readings.cols(); ++k)
+    EXPECT_NEAR(second.readings(0, k), first.readings(0, first.readings.cols() - 1), 1e-11);
+}
+
+// In coordinates of the base Den Hartog's oscillator is one on dry ground under a force; φ = ψ begins at a turning
+// point, so sections are (x₀, 0).
+TEST(Driven, UnderAForceDenHartogsOscillatorReturnsToItsTurningPoint) {
+  const fixtures::DenHartog own;
+  const double w = own.omega();
+  const auto system =
+      forced({own.mass, 0.0, own.stiffness}, friction::Coulomb{own.friction, own.friction}, 1.0,
+             {w, {{.amplitude = own.base * (own.mass * w * w - own.stiffness), .phase = own.shaker().phase}}});
+  dynamics::State start = system.rest();
+  start.q[0] = 1.01 * own.amplitude();
+  const DrivenMotion found = settle_driven(system, kDisplacement, start, {.cycles = 4000.0, .kept = 100.0});
+  EXPECT_EQ(found.label, DrivenLabel::kSlip);
+  EXPECT_EQ(found.period.period, 1);
+  EXPECT_NEAR(found.readings.row(0).maxCoeff(), own.amplitude(), 1e-9);
+  EXPECT_NEAR(found.readings.row(0).minCoeff(), own.amplitude(), 1e-9);
+  EXPECT_LT(found.contact_v.row(0).cwiseAbs().maxCoeff(), 1e-9);
 }
 
 TEST(Driven, TurningTheContactSpringRoundIsMicroStick) {

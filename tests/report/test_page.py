@@ -276,11 +276,19 @@ cost_repeats = 1
 """
 
 
+# The same, pushed at the first mass.
+PUSHED = SHAKEN.replace('kind = "shaker"\nfrequency = 0.1', 'kind = "force"\nat = 1\nomega = 0.7').replace(
+    "frequencies = { from = 0.05, to = 0.15, step = 0.05 }", "omegas = { from = 0.4, to = 1.0, step = 0.3 }")
+
+
 @unittest.skipUnless(chromium.executable(), "no Chromium here (Debian: chromium)")
 class RunOnAShaker(unittest.TestCase):
+    scene, least, most = SHAKEN, "0.05", "0.15"
+    one = "validation.frequencies={ from = 0.1, to = 0.1, step = 0.1 }"
+
     def look(self, examine, *sets):
         with tempfile.TemporaryDirectory() as folder:
-            (pathlib.Path(folder) / "scene.toml").write_text(SHAKEN)
+            (pathlib.Path(folder) / "scene.toml").write_text(self.scene)
             slipmode("run", "scene.toml", "-o", "out", *sets, folder=folder)
             with chromium.Page(pathlib.Path(folder) / "out" / "report.html") as page:
                 page.run("document.querySelector('#play').click()")
@@ -290,7 +298,7 @@ class RunOnAShaker(unittest.TestCase):
     def test_a_click_on_a_frequency_shows_its_motion_in_full_and_reduced(self):
         def examine(page):
             self.assertEqual(page.run("document.querySelector('#motions h2').textContent"), "Motions at a frequency")
-            for share, frequency in ((0.04, "0.05"), (0.96, "0.15")):  # of the diagram's width, margins of 4 %
+            for share, frequency in ((0.04, self.least), (0.96, self.most)):  # of the diagram's width, margins of 4 %
                 page.click(".full-diagram svg > rect", x=share)
                 self.assertIn(f"= {frequency}", page.run("document.querySelector('#told').textContent"))
             page.run("document.querySelector('#motions .panels').scrollIntoView()")
@@ -299,8 +307,8 @@ class RunOnAShaker(unittest.TestCase):
                   own.value = {modes - 1}; own.dispatchEvent(new Event('input')); }})()""")
                 page.frame()
                 for chart in page.run("[...document.querySelectorAll('#motions .panels svg')].map(s => s.textContent)"):
-                    self.assertIn(f"{modes} modes of ", chart)
-            # All modes kept: the full motion in other coordinates; it repeats with the shaker, so both are in phase.
+                    self.assertRegex(chart, f"{modes} (modes of |POMs|LNMs)")
+            # All modes kept: the full motion in other coordinates; it repeats with the drive, so both are in phase.
             apart = page.run("""(async () => {
               const own = await documentOf(document.getElementById("motion-data")), last = own.models.length - 1;
               return own.speeds.map((frequency, k) => {
@@ -321,7 +329,12 @@ class RunOnAShaker(unittest.TestCase):
             self.assertTrue(page.run("document.querySelector('#speed').disabled"))
             self.assertIsNone(page.run("document.querySelector('.full-diagram')"))
 
-        self.look(examine, "--set", "validation.frequencies={ from = 0.1, to = 0.1, step = 0.1 }")
+        self.look(examine, "--set", self.one)
+
+
+class RunUnderAForce(RunOnAShaker):
+    scene, least, most = PUSHED, "0.4", "1"
+    one = "validation.omegas={ from = 0.7, to = 0.7, step = 0.1 }"
 
 
 @unittest.skipUnless(chromium.executable(), "no Chromium here (Debian: chromium)")

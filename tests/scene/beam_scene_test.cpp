@@ -64,10 +64,10 @@ TEST(BeamScene, ReadsEveryValue) {
   EXPECT_EQ(s.reduction.fit, pod::FitFamily::kPolynomials);
   EXPECT_EQ(s.reduction.functions, 3);
   EXPECT_EQ(s.reduction.choice.modes, 2);
-  EXPECT_EQ(s.shaken.frequencies->values().size(), 551U);  // 5 to 60 by 0.1
-  EXPECT_EQ(s.shaken.bases, (std::vector{scene::BasisChoice::kPomf, scene::BasisChoice::kLnmStatic}));
-  EXPECT_EQ(s.shaken.follow, scene::ShakenValidationSpec::Follow::kBoth);
-  EXPECT_EQ(s.shaken.kept, 50.0);
+  EXPECT_EQ(s.driven.frequencies->values().size(), 551U);  // 5 to 60 by 0.1
+  EXPECT_EQ(s.driven.bases, (std::vector{scene::BasisChoice::kPomf, scene::BasisChoice::kLnmStatic}));
+  EXPECT_EQ(s.driven.follow, scene::DrivenValidationSpec::Follow::kBoth);
+  EXPECT_EQ(s.driven.kept, 50.0);
 }
 
 /// Every way of saying a thing, each with a part of the text it must be written back as.

@@ -95,6 +95,9 @@ TEST(ClearanceScene, ReadsBackFromItsOwnTextToTheSameBytes) {
       {"structure={kind=\"matrices\", mass=[[2.0,0.1],[0.1,1.0]], damping=[[0.3,0.1],[0.0,0.2]]}"},
       {"contact.0.right={stiffness=1.0, gap=0.0}", "contact.0.loss=zero-force"},
       {"time={duration=50.0, sample=0.1}"},
+      {"ensemble.omegas=[0.5, 1.5]", "validation={omegas={from=0.5, to=1.5, step=0.25}, cycles=50.0, kept=20.0}"},
+      {"drive={kind=\"force\", frequency=0.3, amplitude=1.0, at=1}", "ensemble.frequencies=[0.2, 0.4]",
+       "validation.frequencies={from=0.2, to=0.4, step=0.1}"},
   };
   for (const auto& overrides : changes) {
     const Scene scene = parse_scene(kPair, overrides);
@@ -151,6 +154,20 @@ TEST(ClearanceScene, DriveMovesAlongOmegaWithItsHarmonics) {
   const friction::Drive other = drive_at(scene, 0.5);
   EXPECT_EQ(other.force()->omega, 0.5);
   EXPECT_EQ(other.force()->harmonics.size(), 3U);
+}
+
+TEST(ClearanceScene, ADriveAndItsTimesMoveAlongTheKeyTheSceneGives) {
+  const Scene by_omega = parse_scene(kPair);
+  const Scene by_frequency = parse_scene(replaced(kPair, "omega = 1.25", "frequency = 0.25"));
+  EXPECT_EQ(drive_key(by_omega), "drive.omega");
+  EXPECT_EQ(drive_key(by_frequency), "drive.frequency");
+  EXPECT_EQ(drive_parameter(by_frequency), 0.25);
+  for (const Scene& scene : {by_omega, by_frequency}) {
+    const Scene other = set_key(scene, drive_key(scene), 0.7);
+    EXPECT_EQ(drive_at(scene, 0.7).force()->omega, other.drive.force()->omega);
+    EXPECT_EQ(time_at(scene, 0.7).duration, other.time.duration);
+    EXPECT_EQ(time_at(scene, 0.7).sample, other.time.sample);
+  }
 }
 
 TEST(ClearanceScene, ContinuousKeysAreRealNumbersOfTheModel) {
@@ -257,9 +274,21 @@ INSTANTIATE_TEST_SUITE_P(
         BadValue{"order = 3", "order = 0", {"drive.harmonic.0.order = 0", ">= 1"}},
         BadValue{"[1.0, -0.5]", "[0.0, 0.0]", {"drive.harmonic.0.direction", "all zero"}},
         BadValue{"[initial]",
-                 "[validation]\ncycles = 5\n[initial]",
-                 {"validation", "the drive is a force", "slipmode orbit"}},
-        BadValue{"[initial]", "[ensemble]\nspeeds = [1.0]\n[initial]", {"ensemble.speeds", "the drive is a force"}},
+                 "[ensemble]\nspeeds = [1.0]\n[initial]",
+                 {"ensemble.speeds", "the drive is a force given by omega", "omegas"}},
+        BadValue{"[initial]",
+                 "[validation]\nfrequencies = { from = 1, to = 2, step = 1 }\n[initial]",
+                 {"validation.frequencies", "the drive is a force given by omega", "omegas"}},
+        BadValue{"[initial]",
+                 "[validation]\nomegas = { from = 0, to = 2, step = 1 }\n[initial]",
+                 {"validation.omegas.from = 0", "a number > 0"}},
+        BadValue{"[initial]",
+                 "[validation]\nhorizon = 2.0\n[initial]",
+                 {"validation.horizon", "the drive has a period", "belt"}},
+        BadValue{"[initial]",
+                 "[validation]\nbases = [\"lnm\"]\n[initial]",
+                 {"validation.bases", "the drive is a force", "POMs and LNMs"}},
+        BadValue{"[initial]", "[validation]\nmodes = [1, 3]\n[initial]", {"validation.modes = [1, 3]", "from 1 to 2"}},
         BadValue{"displacement = [0.1, 0.7]", "at = \"static\"", {"initial.at = \"static\"", "a force", "\"rest\""}},
         BadValue{"[time]", "[time]\nduration = 3.0", {"time.duration", "given in cycles too"}}),
     tests::bad_value_name);

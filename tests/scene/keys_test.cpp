@@ -43,7 +43,7 @@ TEST(SceneKeys, OfEveryFieldListAreInTheReadme) {
                     fem::Rayleigh, fem::ModalRatios>(tables);
   expect_keys_named<scene::ForceSpec::Harmonic, scene::TimeSpec, scene::TimeSpec::Cycles, scene::InitialSpec,
                     scene::EnsembleSpec, scene::SensorSpec, scene::ReductionSpec, pod::ModeChoice, scene::Range,
-                    scene::ValidationSpec, scene::ShakenValidationSpec, dynamics::FlowOptions>(tables);
+                    scene::ValidationSpec, scene::DrivenValidationSpec, dynamics::FlowOptions>(tables);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include <slipmode/scene/shaken.hpp>
+#include <slipmode/scene/driven.hpp>
 
 #include <fmt/format.h>
 
@@ -6,7 +6,9 @@ namespace slipmode::scene {
 
 bool is_shaken(const Scene& scene) { return scene.drive.shaker() != nullptr; }
 
-diagnostics::DrivenCase shaken_case(const Scene& scene) {
+bool is_driven(const Scene& scene) { return scene.drive.period().has_value(); }
+
+diagnostics::DrivenCase driven_case(const Scene& scene) {
   if (scene.beam() == nullptr) {
     const dynamics::HybridSystem system = build_system(scene);
     return {.system = system, .readings = {.rows = system.contacts().front().direction.transpose(), .offset = {}}};
@@ -24,7 +26,7 @@ std::string reading_name(const Scene& scene) {
 std::string reading_unit(const Scene& scene) { return scene.beam() == nullptr && scene.units == "SI" ? "m" : "1"; }
 
 diagnostics::DriveAt drive_over_frequency(const Scene& scene) {
-  return [scene](double frequency) { return drive_at(scene, frequency); };
+  return [scene](double value) { return drive_at(scene, value); };
 }
 
 dynamics::State second_start(const Scene& scene, const dynamics::HybridSystem& system) {

@@ -7,17 +7,20 @@
 
 namespace slipmode::scene {
 
-/// True for a scene with a shaker: sections, labels and sweeps are then those of diagnostics/driven.hpp.
+/// True for a scene with a shaker: the bases that are made of its motion are then those of its own words.
 [[nodiscard]] bool is_shaken(const Scene& scene);
+/// True for a scene whose drive has a period, a shaker's or a force's: sections, labels and sweeps are then those of
+/// diagnostics/attractors/driven.hpp.
+[[nodiscard]] bool is_driven(const Scene& scene);
 
 /// The scene's full model with its one reading: the strain at the gauge of a beam, the first contact's displacement of
 /// a chain.
-[[nodiscard]] diagnostics::DrivenCase shaken_case(const Scene& scene);
+[[nodiscard]] diagnostics::DrivenCase driven_case(const Scene& scene);
 /// What that reading is: "strain at x = 0.05 m", "displacement of contact 1"; and its unit.
 [[nodiscard]] std::string reading_name(const Scene& scene);
 [[nodiscard]] std::string reading_unit(const Scene& scene);
 
-/// The drive over frequency, with the amplitude that the scene's curve has there.
+/// The drive over its own key, see drive_key.
 [[nodiscard]] diagnostics::DriveAt drive_over_frequency(const Scene& scene);
 
 /// A start near the scene's own, for a second run that shows the sampling noise of statistics: the first member of an
