@@ -28,7 +28,7 @@ using results::StoreReader;
 std::string_view colour_of_basis(const std::string& basis) {
   if (basis == "pomf" || basis == "POM") return kPomColour;
   if (basis == "lnm" || basis == "LNM") return kLnmColour;
-  return basis == "lnm+static" ? kSecondColour : "#CC79A7";
+  return basis == "lnm+static" || basis == "LNM+static" || basis == "LNM_static" ? kSecondColour : "#CC79A7";
 }
 
 Series sections(const StoreReader& store, const std::string& group, const std::string& title, std::string_view colour) {

@@ -137,7 +137,8 @@ DrivenValidationSpec read_driven_validation(TomlReader in, const Scene& scene) {
   refuse_others<ValidationSpec, DrivenValidationSpec>(in, kBeltOnly, "drive.kind = \"belt\" with it");
   refuse_values_of_other_drives(in, scene);
   if (scene.force)
-    in.refuse("bases", "belongs to a shaker, the drive is a force", "no such key; POMs and LNMs are compared");
+    in.refuse("bases", "belongs to a shaker, the drive is a force",
+              "no such key; POMs, LNMs, and LNMs with static modes are compared");
   DrivenValidationSpec spec;
   const double length = scene.beam() != nullptr ? beam_length(*scene.beam()) : 0.0;
   const std::string valid = fmt::format("a place on the beam, x >= 0 and <= {} (its length)", length);

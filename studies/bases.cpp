@@ -80,13 +80,13 @@ std::string basis_group(FileKind kind) {
   return kind == FileKind::kReduced ? std::string(results::kReducedGroup) + "/basis" : results::kBasisGroup;
 }
 
-std::vector<pod::NamedBasis> load_belt_bases(const scene::Scene& scene, const fem::Structure& structure,
-                                             const results::StoreReader& store) {
-  const Eigen::Index n = structure.size();
+std::vector<pod::NamedBasis> load_plain_bases(const scene::Scene& scene, const dynamics::HybridSystem& full,
+                                              const results::StoreReader& store) {
+  const Eigen::Index n = full.size();
   const FileKind kind = results::require_kind(store, kWithBases);
   if (kind == FileKind::kReduced || kind == FileKind::kBasis) return {kept_basis(store, basis_group(kind), n)};
-  return belt_bases(
-      scene, structure,
+  return plain_bases(
+      scene, full,
       kind == FileKind::kPod ? results::load_pod(store, results::kPodGroup, n) : pod::pod(snapshots_for(store, n)));
 }
 
@@ -146,8 +146,8 @@ std::vector<trade::OfferedBasis> offered_shaken(const scene::Scene& scene, const
   return bases;
 }
 
-std::vector<trade::OfferedBasis> offered_on_belt(const scene::Scene& scene, const dynamics::HybridSystem& system,
-                                                 const RunOptions& run) {
+std::vector<trade::OfferedBasis> offered_plain(const scene::Scene& scene, const dynamics::HybridSystem& system,
+                                               const RunOptions& run) {
   std::optional<pod::PodResult> result;
   double making = 0.0;
   try {
@@ -158,8 +158,10 @@ std::vector<trade::OfferedBasis> offered_on_belt(const scene::Scene& scene, cons
     return {lnm};
   }
   std::vector<trade::OfferedBasis> bases;
-  for (auto& offered : belt_bases(scene, system.structure(), *result)) {
-    bases.push_back({.choice = offered.name == "POM" ? scene::BasisChoice::kPom : scene::BasisChoice::kLnm,
+  for (auto& offered : plain_bases(scene, system, *result)) {
+    bases.push_back({.choice = offered.name == "POM"   ? scene::BasisChoice::kPom
+                               : offered.name == "LNM" ? scene::BasisChoice::kLnm
+                                                       : scene::BasisChoice::kLnmStatic,
                      .basis = std::move(offered.basis),
                      .seconds = making});
   }
@@ -254,16 +256,23 @@ std::vector<pod::NamedBasis> shaken_bases(const scene::Scene& scene, const dynam
   return bases;
 }
 
-std::vector<pod::NamedBasis> belt_bases(const scene::Scene& scene, const fem::Structure& structure,
-                                        const pod::PodResult& result) {
-  std::vector<pod::NamedBasis> bases = rom::pom_and_lnm(structure, result);
+std::vector<pod::NamedBasis> plain_bases(const scene::Scene& scene, const dynamics::HybridSystem& system,
+                                         const pod::PodResult& result) {
+  std::vector<pod::NamedBasis> bases = rom::pom_and_lnm(system.structure(), result);
   if (scene.reduction.basis == scene::BasisChoice::kLnm) std::swap(bases[0], bases[1]);
+  const auto contacts = static_cast<Eigen::Index>(system.contacts().size());
+  if (!scene.force || contacts >= system.size()) return bases;
+  try {
+    bases.push_back(rom::lnm_and_static(system, result));
+  } catch (const InvalidInput&) {
+    return bases;  // a structure that floats, or contacts side by side: there are no such modes
+  }
   return bases;
 }
 
 std::vector<pod::NamedBasis> load_bases(const scene::Scene& scene, const dynamics::HybridSystem& full,
                                         const results::StoreReader& store) {
-  return is_shaken(scene) ? load_shaken_bases(scene, full, store) : load_belt_bases(scene, full.structure(), store);
+  return is_shaken(scene) ? load_shaken_bases(scene, full, store) : load_plain_bases(scene, full, store);
 }
 
 std::vector<pod::NamedBasis> load_chosen_bases(const scene::Scene& scene, const dynamics::HybridSystem& full,
@@ -305,7 +314,7 @@ pod::NamedBasis load_basis(const scene::Scene& scene, const dynamics::HybridSyst
       return found;
     }
     const pod::PodResult result = results::load_pod(store, results::kPodGroup, n);
-    if (scene.reduction.basis == scene::BasisChoice::kLnm) return belt_bases(scene, full.structure(), result).front();
+    if (scene.reduction.basis == scene::BasisChoice::kLnm) return plain_bases(scene, full, result).front();
     return {.name = "POM", .basis = result.basis, .captured = pod::cumulative(result.shares)};
   }
   const pod::Basis basis = results::load_basis(store, basis_group(kind), n);
@@ -330,7 +339,7 @@ std::optional<pod::NamedBasis> model_basis(const scene::Scene& scene, const std:
 std::vector<trade::OfferedBasis> offered_bases(const scene::Scene& scene, const RunOptions& run) {
   const dynamics::HybridSystem system = scene::build_system(scene);
   if (system.size() < 2) return {};
-  return is_shaken(scene) ? offered_shaken(scene, system, run) : offered_on_belt(scene, system, run);
+  return is_shaken(scene) ? offered_shaken(scene, system, run) : offered_plain(scene, system, run);
 }
 
 }  // namespace slipmode::studies

@@ -34,11 +34,12 @@ namespace slipmode::studies {
                                       const std::function<const results::ShakenModes&()>& motion);
 
 /// The bases that a scene's reduced models are compared in: under a shaker those of validation.bases; elsewhere POMs
-/// and LNMs about the ensemble's mean, the kind that [reduction] names first.
+/// and LNMs about the ensemble's mean, the kind that [reduction] names first; under a force also LNMs with a static
+/// mode per contact, unless the structure floats or has as many contacts as degrees of freedom.
 [[nodiscard]] std::vector<pod::NamedBasis> shaken_bases(const scene::Scene& scene, const dynamics::HybridSystem& system,
                                                         const std::function<const results::ShakenModes&()>& motion);
-[[nodiscard]] std::vector<pod::NamedBasis> belt_bases(const scene::Scene& scene, const fem::Structure& structure,
-                                                      const pod::PodResult& result);
+[[nodiscard]] std::vector<pod::NamedBasis> plain_bases(const scene::Scene& scene, const dynamics::HybridSystem& system,
+                                                       const pod::PodResult& result);
 
 /// The bases a result file gives to be compared: the one of a reduced model; those above of a POD, or of an ensemble's
 /// or trajectory's snapshots.

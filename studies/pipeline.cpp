@@ -141,7 +141,7 @@ class Pipeline {
     });
   }
 
-  /// Under a belt POMs and LNMs of the same number, under a shaker the scene's own reduced model.
+  /// Elsewhere POMs and LNMs of the same number, under a shaker the scene's own reduced model.
   void reduce() {
     if (shaken_) {
       const auto motion = [this]() -> const results::ShakenModes& { return *result_.shaken_modes; };
@@ -152,13 +152,13 @@ class Pipeline {
       write_reduced("reduced.h5", basis.truncated(result_.chosen));
       return;
     }
-    bases_ = belt_bases(scene_, full_.structure(), *result_.pod);
+    bases_ = plain_bases(scene_, full_, *result_.pod);
     result_.chosen = validation_options(scene_, bases_).chosen;
     result_.reduced = bases_.front().name;
     result_.captured = bases_.front().captured[result_.chosen - 1];
     for (const pod::NamedBasis& basis : bases_) {
-      write_reduced(fmt::format("reduced_{}.h5", basis.name == "POM" ? "pom" : "lnm"),
-                    basis.basis.truncated(result_.chosen));
+      const std::string name = basis.name == "POM" ? "pom" : basis.name == "LNM" ? "lnm" : "lnm_static";
+      write_reduced(fmt::format("reduced_{}.h5", name), basis.basis.truncated(result_.chosen));
     }
   }
 
@@ -170,7 +170,8 @@ class Pipeline {
 
   /// Files that show the same as another one are skipped.
   void figures() {
-    const std::vector<std::string> skipped = {"reduced_pom.h5", "reduced_lnm.h5", "reduced.h5"};
+    const std::vector<std::string> skipped = {"reduced_pom.h5", "reduced_lnm.h5", "reduced_lnm_static.h5",
+                                              "reduced.h5"};
     result_.figures = figures::save_figures_of(folder_, result_.files, skipped,
                                                {.threads = run_.threads, .stop = run_.stop, .progress = {}});
   }

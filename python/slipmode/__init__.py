@@ -74,8 +74,14 @@ def _load(source, set=None):
 
 
 Scene.load = staticmethod(_load)
-Scene.set = lambda self, **changes: _load(self, {key.replace("__", "."): value for key, value in changes.items()})
-Scene.set.__doc__ = "The same scene with keys changed: scene.set(drive__speed=0.25)."
+
+
+def _set(self, changes=None, /, **named):
+    """The same scene with keys changed: scene.set({"drive.speed": 0.25}), or scene.set(drive__speed=0.25)."""
+    return _load(self, dict(changes or {}) | {key.replace("__", "."): value for key, value in named.items()})
+
+
+Scene.set = _set
 
 
 class Tables(dict):
@@ -204,11 +210,29 @@ class _Branch:
             unit, meaning = self._store.meaning(self._prefix + name)
             yield name, said if len(said) <= 40 else said[:37] + "...", unit, meaning
 
+    def _shown(self):
+        """The rows, of groups that hold the same only the first ones: a comparison has one for each reduced model."""
+        members = {}
+        for name in self._names:
+            for at in (k for k, letter in enumerate(name) if letter == "/"):
+                members.setdefault(name[:at], []).append(name[at:])
+        alike = {}
+        for group, held in members.items():
+            alike.setdefault((group.rpartition("/")[0], *held), []).append(group)
+        folded = {group: groups for groups in alike.values() if len(groups) > 3 for group in groups[1:]}
+        for row in self._rows():
+            above = [row[0][:at] for at, letter in enumerate(row[0]) if letter == "/"]
+            first = next((group for group in above if group in folded), None)
+            if first is None:
+                yield row
+            elif first == folded[first][1] and row[0] == first + members[first][0]:
+                yield f"{first}, ...", f"{len(folded[first]) - 1} groups", "", f"as {folded[first][0]}"
+
     def __repr__(self):
-        return _aligned(list(self._rows()))
+        return _aligned(list(self._shown()))
 
     def _repr_html_(self):
-        return _html_table(("name", "value", "unit", "meaning"), self._rows())
+        return _html_table(("name", "value", "unit", "meaning"), self._shown())
 
 
 class Result(_Branch):

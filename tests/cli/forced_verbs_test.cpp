@@ -88,7 +88,7 @@ TEST_F(Forced, AnEnsembleOverFrequenciesIsTheRunsAtEachOneAfterTheOther) {
 TEST_F(Forced, AllModesAreTheFullModelAndFewerAreFurtherFromIt) {
   json({"simulate", "pushed.toml", "-o", "ensemble.h5"});
   const auto found = json({"validate", "pushed.toml", "ensemble.h5", "-o", "validation.h5"});
-  ASSERT_EQ(found["validation"]["bases"].size(), 2U);
+  ASSERT_EQ(found["validation"]["bases"].size(), 3U);
   for (const auto& basis : found["validation"]["bases"]) {
     const auto& rows = basis["rows"];
     ASSERT_EQ(rows.size(), 3U);
@@ -134,11 +134,21 @@ TEST_F(Forced, AReducedModelIsSweptAndJudgedByItself) {
   EXPECT_EQ(rows[0]["modes"], 3);
 }
 
+// Where nothing holds the structure a constant contact force has no static response.
+TEST_F(Forced, AStructureThatFloatsIsComparedWithoutStaticModes) {
+  const auto summary =
+      json({"run", SLIPMODE_SOURCE_DIR "/datasets/backlash_4mass/scene.toml", "-o", "out", "--set", "ensemble={}",
+            "--set", "validation={cycles=300.0, kept=50.0, modes=[4], cost_cycles=5.0, cost_repeats=1}"});
+  ASSERT_EQ(summary["validation"]["bases"].size(), 2U);
+  for (const auto& basis : summary["validation"]["bases"]) EXPECT_LT(basis["rows"][0]["mean_distance"], 1e-6);
+}
+
 TEST_F(Forced, ThePipelineValidatesAndDraws) {
   const auto summary = json({"run", "pushed.toml", "-o", "out"});
-  EXPECT_EQ(summary["validation"]["bases"].size(), 2U);
+  EXPECT_EQ(summary["validation"]["bases"].size(), 3U);
   EXPECT_FALSE(summary.contains("left_out"));
-  for (const std::string name : {"validation.h5", "reduced_pom.h5", "agreement.png", "sweep_POM.svg", "report.html"})
+  for (const std::string name : {"validation.h5", "reduced_pom.h5", "reduced_lnm_static.h5", "agreement.png",
+                                 "sweep_POM.svg", "sweep_LNM_static.svg", "report.html"})
     EXPECT_TRUE(fs::exists(path("out/" + name))) << name;
 }
 

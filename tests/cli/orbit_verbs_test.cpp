@@ -270,10 +270,7 @@ TEST_F(OrbitVerbs, ReducedModelWithAllModesHasTheSameOrbit) {
   expect_refused({"find", four, "--model", "rom:pod.h5"}, {"pod.h5", "expected a reduced model", "slipmode reduce"});
 }
 
-TEST_F(OrbitVerbs, OtherVerbsSayWhatToUseUnderAForce) {
-  const Outcome sweep = slipmode_in(folder, {"sweep", kSdof, "--over", "drive.omega=1:2:1", "-o", "s.h5"});
-  EXPECT_EQ(sweep.exit_code, 2);
-  EXPECT_THAT(sweep.err, HasSubstr("slipmode orbit"));
+TEST_F(OrbitVerbs, AMistypedVerbIsNamedBesideThoseThereAre) {
   const Outcome typing = call({"fnd"});
   EXPECT_EQ(typing.exit_code, 2);
   EXPECT_THAT(typing.err, HasSubstr("orbit fnd: no such verb; valid: find, continue"));

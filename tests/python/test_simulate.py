@@ -107,6 +107,7 @@ class Scenes(unittest.TestCase):
                   "drive": {"kind": "belt", "speed": 0.1}, "validation": {"horizon": 5.0}}
         scene = sm.Scene.load(tables)
         stiffer = scene.set(structure__stiffness=4e4)
+        self.assertEqual(scene.set({"structure.stiffness": 4e4}).toml(), stiffer.toml())
         self.assertEqual(stiffer.overrides, ["structure.stiffness=40000.0"])
         for own in (stiffer, stiffer.set(drive__speed=0.1)):
             self.assertAlmostEqual(sm.simulate(own).t[-1] / sm.simulate(scene).t[-1], 0.1, delta=1e-3)

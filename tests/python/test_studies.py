@@ -126,6 +126,23 @@ class BesideTheExecutable(unittest.TestCase):
         self.executable("validate", CHAIN, self.folder / "pod.h5", "-o", self.folder / "validation.h5", set=QUICK)
         self.assert_same(sm.validate(scene, basis), self.folder / "validation.h5")
 
+    def test_validation_and_sweep_under_a_force(self):
+        few = {"validation.omegas.from": 0.2, "validation.omegas.to": 0.3, "validation.omegas.step": 0.1,
+               "validation.cycles": 40, "validation.kept": 30, "validation.cost_cycles": 0, "ensemble.omegas": [0.2, 0.3]}
+        scene = sm.Scene.load(JENKINS, set=few)
+        basis = sm.pod(sm.ensemble(scene))
+        basis.save(self.folder / "pod.h5")
+        self.executable("validate", JENKINS, self.folder / "pod.h5", "-o", self.folder / "validation.h5", set=few)
+        own = sm.validate(scene, basis)
+        self.assert_same(own, self.folder / "validation.h5")
+        # Thirty reduced models hold the same: the first is listed, the rest are counted.
+        said = str(own)
+        self.assertLess(len(said.splitlines()), 110)
+        self.assertIn("29 groups", said)
+        self.assertIn("as shaken_validation/models/POM_01", said)
+        self.executable("sweep", JENKINS, "--over", "drive.omega=0.2:0.3:0.05", "-o", self.folder / "sweep.h5", set=few)
+        self.assert_same(sm.sweep(scene, "drive.omega", [0.2, 0.25, 0.3]), self.folder / "sweep.h5")
+
     def test_orbit_and_branch(self):
         self.executable("orbit", "find", BACKLASH, "-o", self.folder / "orbit.h5")
         self.assert_same(sm.find_orbit(BACKLASH), self.folder / "orbit.h5")

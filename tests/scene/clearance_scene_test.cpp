@@ -287,7 +287,7 @@ INSTANTIATE_TEST_SUITE_P(
                  {"validation.horizon", "the drive has a period", "belt"}},
         BadValue{"[initial]",
                  "[validation]\nbases = [\"lnm\"]\n[initial]",
-                 {"validation.bases", "the drive is a force", "POMs and LNMs"}},
+                 {"validation.bases", "the drive is a force", "POMs, LNMs"}},
         BadValue{"[initial]", "[validation]\nmodes = [1, 3]\n[initial]", {"validation.modes = [1, 3]", "from 1 to 2"}},
         BadValue{"displacement = [0.1, 0.7]", "at = \"static\"", {"initial.at = \"static\"", "a force", "\"rest\""}},
         BadValue{"[time]", "[time]\nduration = 3.0", {"time.duration", "given in cycles too"}}),
