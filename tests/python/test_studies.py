@@ -141,7 +141,7 @@ class BesideTheExecutable(unittest.TestCase):
         self.assertIn("29 groups", said)
         self.assertIn("as shaken_validation/models/POM_01", said)
         self.executable("sweep", JENKINS, "--over", "drive.omega=0.2:0.3:0.05", "-o", self.folder / "sweep.h5", set=few)
-        self.assert_same(sm.sweep(scene, "drive.omega", [0.2, 0.25, 0.3]), self.folder / "sweep.h5")
+        self.assert_same(sm.sweep(scene, "drive.omega", sm.values(0.2, 0.3, 0.05)), self.folder / "sweep.h5")
 
     def test_orbit_and_branch(self):
         self.executable("orbit", "find", BACKLASH, "-o", self.folder / "orbit.h5")
