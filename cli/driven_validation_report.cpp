@@ -51,7 +51,8 @@ std::string candidate_text(const DrivenCandidateReport& candidate, const DrivenV
                fmt::format("{:.3g}", a.median_wasserstein), fmt::format("{:.3g}", a.mean_hausdorff),
                percent(a.same_label), percent(a.same_period), percent(row.trusted_share),
                std::isnan(row.band.first) ? "none" : fmt::format("{:g} to {:g}", row.band.first, row.band.second),
-               timed ? fixed(1e3 * row.cost.wall, 1) : "–", timed ? fixed(report.cost.wall / row.cost.wall, 1) : "–"});
+               timed ? significant(1e3 * row.cost.wall, 3) : "–",
+               timed ? fixed(report.cost.wall / row.cost.wall, 1) : "–"});
   }
   std::string out = fmt::format("{}: {}\n{}", candidate.name,
                                 candidate.trusted_from > 0 ? fmt::format("trusted from L = {}", candidate.trusted_from)
@@ -85,6 +86,7 @@ std::string summary_text(const DrivenValidationReport& report, const scene::Scen
                                 reading_name(scene), scene.driven.kept, scene.driven.cycles);
   for (const results::MotionCount& count : results::count_motions(report.full))
     out += fmt::format("  {:5} {}\n", count.values, count.motion);
+  out += results::unsettled_note(report.full, scene.driven.cycles);
   out += fmt::format(
       "  distances: Wasserstein-1 of section points over the full model's root mean square, mean over frequencies\n"
       "  two full sweeps from different starts: {:.3g} (median {:.3g}), same label {:.1f} %, same period {:.1f} %\n"

@@ -118,6 +118,7 @@ double EventResolver::slide_velocity(const HybridPoint& point, int c, double dir
     force(c) = direction * law_at(point, c).onset(direction);
     load_rate += load.v * (model_.acceleration_row.col(c).dot(Eigen::Map<const Eigen::VectorXd>(x, 2 * model_.np)) +
                            model_.load_acceleration(c) + model_.mobility.row(c).dot(force));
+    if (drive_.force() != nullptr) load_rate += load.v * model_.force_acceleration.row(c).dot(drive_force(point.time));
   }
   if (load.oscillates()) {
     const double* own = own_states(point, c);

@@ -122,7 +122,7 @@ void store_driven(StoreWriter& writer, const std::string& group, const std::stri
       velocity.push_back(point.settled.contact_v(0, k));
     }
   }
-  Table sections{"one row per section kept: the slider's velocity passes zero upward",
+  Table sections{"one row per section kept: the slider's velocity passes zero upward, a force begins a turn",
                  {{"parameter", {axes.swept.units, axes.swept.key}, parameter},
                   {"reading", {axes.reading_unit, axes.reading}, reading}}};
   if (detail == SectionDetail::kAll) {

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <variant>
 #include <vector>
 
 namespace slipmode::diagnostics {
@@ -153,6 +154,23 @@ double mismatch(const Eigen::MatrixXd& points, const Eigen::VectorXd& scale, Eig
   return largest;
 }
 
+/// True where nothing happened at any contact, every law is linear in between, and something damps: what is not the
+/// drive's own dies out.
+bool is_damped_and_linear(const dynamics::HybridSystem& system, const dynamics::Trajectory& run) {
+  const bool damped = std::visit([](const auto& C) { return C.norm() > 0.0; }, system.structure().C());
+  return damped && run.events.empty() && std::ranges::all_of(system.contacts(), [](const friction::Contact& contact) {
+           return friction::is_piecewise_linear(contact.law);
+         });
+}
+
+/// The period such a motion is on its way to, whatever beats with it: the drive's. Undecided unless it draws nearer.
+DrivenPeriod linear_period(const Eigen::MatrixXd& points, const Eigen::VectorXd& scale) {
+  const Eigen::Index last = points.cols() - 1, half = last / 2;
+  const double early = mismatch(points, scale, 1, 1, half), late = mismatch(points, scale, 1, half + 1, last);
+  if (half < 1 || !(late < early)) return {.mismatch = std::numeric_limits<double>::quiet_NaN()};
+  return {DrivenRepeat::kSettling, 1, late};
+}
+
 bool settles_by(const Eigen::MatrixXd& points, const Eigen::VectorXd& scale, Eigen::Index p) {
   return is_settling(static_cast<std::size_t>(points.cols() - p), static_cast<std::size_t>(p), [&](std::size_t k) {
     const Eigen::Index later = static_cast<Eigen::Index>(k) + p;
@@ -253,9 +271,11 @@ DrivenMotion settle_driven(const dynamics::HybridSystem& system, const Readings&
   out.contact_v = every(run.contact_v, step, kept);
   out.mean = values.rowwise().mean();
   out.rms = (values.colwise() - out.mean).rowwise().norm() / std::sqrt(static_cast<double>(count));
-  out.period = driven_period(stacked(out.readings, out.contact_q, out.contact_v),
-                             reach(stacked(values, run.contact_q.leftCols(count), run.contact_v.leftCols(count))),
-                             options.tolerance, options.max_period);
+  const Eigen::MatrixXd points = stacked(out.readings, out.contact_q, out.contact_v);
+  const Eigen::VectorXd scale = reach(stacked(values, run.contact_q.leftCols(count), run.contact_v.leftCols(count)));
+  out.period = driven_period(points, scale, options.tolerance, options.max_period);
+  if (out.period.repeat != DrivenRepeat::kPeriodic && is_damped_and_linear(system, run))
+    out.period = linear_period(points, scale);
   judge_contacts(system, run, begin.time + transient, begin.time + duration, T, options.micro_stick, out);
   out.events = run.statistics.events;
   out.mean_energy = mean_energy(system, q, v);

@@ -142,6 +142,9 @@ class ClosedFormFlow {
   [[nodiscard]] GuardValue evaluate(const Guard& guard, double t) const;
   [[nodiscard]] double second_derivative(const Guard& guard, double t) const;
   [[nodiscard]] Search search(int level) const;
+  /// That of a guard without a bound at this level.
+  /// @throws NumericalFailure  at the finest one
+  [[nodiscard]] Search unknown(int guard, int level) const;
   void judge(const BernsteinPolynomial& polynomial, double remainder, double tolerance, int guard, Search& found) const;
   /// Takes the state on to where the guard vanishes, near tau, which follows. True if that is proved to be the first
   /// time after `from`.

@@ -1,3 +1,4 @@
+#include <slipmode/core/errors.hpp>
 #include <slipmode/dynamics/kernels/kernels.hpp>
 #include "dynamics/internal/closed_form_flow.hpp"
 
@@ -22,6 +23,7 @@ constexpr int kNewtonSteps = 20;
 /// Newton steps of less than this phase of the fastest pair go on from where the last one led.
 constexpr double kClose = 0.25;
 constexpr int kHalvings = 3;
+constexpr int kLargestRefinement = 9;
 
 }  // namespace
 
@@ -231,7 +233,7 @@ void ClosedFormFlow::judge(const BernsteinPolynomial& polynomial, double remaind
   }
   here.at = here.guess = root->at;
   if (!here.resolved) {
-    here.refinement = 1 + std::min(8, std::ilogb(remainder / tolerance) / 8);
+    here.refinement = std::min(kLargestRefinement, 1 + std::ilogb(remainder / tolerance) / 8);
     const std::optional<FirstRoot> likely = first_root(polynomial);
     here.guess = likely && !likely->touching ? likely->at : 0.0;
   }
@@ -241,6 +243,18 @@ void ClosedFormFlow::judge(const BernsteinPolynomial& polynomial, double remaind
   } else {
     found.others = std::min(found.others, here.at);
   }
+}
+
+ClosedFormFlow::Search ClosedFormFlow::unknown(int guard, int level) const {
+  // No bound: that of growing motion overflows in long windows. Nothing is passed over until there is one.
+  if (level + 1 >= RegimeTables::kLevels || !(begin_ + tables_->length(level) > begin_))
+    throw NumericalFailure("what a contact does next is no finite number at t = " + std::to_string(begin_), begin_,
+                           point_.x, std::numeric_limits<double>::quiet_NaN());
+  Search found;
+  found.guard = guard;
+  found.at = 0.0;
+  found.refinement = kLargestRefinement;
+  return found;
 }
 
 ClosedFormFlow::Search ClosedFormFlow::search(int level) const {
@@ -286,6 +300,8 @@ ClosedFormFlow::Search ClosedFormFlow::search(int level) const {
       found.spare = std::min(found.spare, std::max(least, 0.0) / std::max(remainder, 1e-300));
       continue;
     }
+    if (!std::isfinite(remainder) || !Eigen::Map<const Eigen::Array<double, kNodes, 1>>(values.data()).allFinite())
+      return unknown(static_cast<int>(g), level);
     BernsteinPolynomial polynomial;
     polynomial.degree = kNodes - 1;
     std::copy_n(values.begin(), kNodes, polynomial.coefficient.begin());

@@ -189,9 +189,10 @@ void check_pair_form(const PairForm& form, const Eigen::VectorXd& scale) {
 BalancedState balanced_state(const Eigen::VectorXd& omega, const Eigen::MatrixXd& damping,
                              const Eigen::VectorXd& coupling, double beside) {
   const Eigen::Index n = omega.size();
-  const double fastest = std::max({omega.maxCoeff(), damping.diagonal().maxCoeff(), beside, 1e-300});
-  BalancedState state{omega.cwiseMax(kSmallestScale * fastest), Eigen::MatrixXd::Zero(2 * n, 2 * n)};
-  if (coupling.size() > 0) state.scale = state.scale.cwiseMax(coupling);
+  const Eigen::VectorXd rate = coupling.size() > 0 ? Eigen::VectorXd(omega.cwiseMax(coupling)) : omega;
+  const double fastest = std::max({rate.maxCoeff(), damping.diagonal().maxCoeff(), beside});
+  const double least = fastest > 0.0 ? kSmallestScale * fastest : 1.0;  // what floats beside nothing has no rate at all
+  BalancedState state{rate.cwiseMax(least), Eigen::MatrixXd::Zero(2 * n, 2 * n)};
   state.A.topRightCorner(n, n).diagonal() = state.scale;
   state.A.bottomLeftCorner(n, n).diagonal() = -omega.cwiseAbs2().cwiseQuotient(state.scale);
   state.A.bottomRightCorner(n, n) = -damping;

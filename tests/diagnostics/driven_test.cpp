@@ -140,6 +140,26 @@ TEST(Driven, UnderAForceALinearOscillatorMovesAsItsTransferFunctionSays) {
   EXPECT_LT(std::abs(found.audit_residual), 1e-10);
 }
 
+// Two decaying motions that beat with the drive's never come back: of a damped linear motion no period but the drive's
+// is claimed, nor is it called aperiodic; without damping it is what it seems.
+TEST(Driven, WhereNothingHappensADampedMotionSettlesToTheDrivesPeriod) {
+  const auto motion = [](double damping) {
+    const Eigen::Matrix2d K{{7.0, -2.0}, {-2.0, 3.0}};
+    friction::Contact far{Eigen::VectorXd::Unit(2, 0),
+                          friction::Clearance{friction::Stop{1.0, 0.0, 1e3}, std::nullopt}};
+    const dynamics::HybridSystem system(
+        fem::Structure(Eigen::MatrixXd(Eigen::Matrix2d::Identity()), Eigen::MatrixXd(damping * K), Eigen::MatrixXd(K)),
+        {far}, friction::Force{1.1, {{.amplitude = 0.8}}}, {}, Eigen::MatrixXd::Ones(2, 1));
+    return settle_driven(system, {.rows = Eigen::RowVector2d(1.0, 0.0), .offset = {}}, system.rest(), kQuick);
+  };
+  const DrivenMotion slow = motion(1e-3), free = motion(0.0);
+  EXPECT_EQ(slow.period.repeat, DrivenRepeat::kSettling);
+  EXPECT_EQ(slow.period.period, 1);
+  EXPECT_GT(slow.period.mismatch, kQuick.tolerance);
+  EXPECT_EQ(free.period.repeat, DrivenRepeat::kAperiodic);
+  EXPECT_EQ(motion(0.1).period.repeat, DrivenRepeat::kPeriodic);
+}
+
 TEST(Driven, UnderAForceAStateHandedOnKeepsThePhase) {
   // What one run ends with, the next begins with: no transient is left where the motion has settled.
   const Oscillator o;

@@ -172,6 +172,40 @@ TEST(Clearance, ASlipThatBeginsUnderAForceIsTakenUpThere) {
   EXPECT_GE(slips, 10);
 }
 
+// Two masses that nothing connects or holds; one slides under a load that grows along its way, which is the only rate
+// there is, the other flies to its stop. That one's displacement was scaled by 1e-308: bounds overflowed, what was no
+// number counted as proved, and the stop was passed.
+TEST(Clearance, AFreeFlightBesideSlidingThatGrowsEndsAtTheStop) {
+  constexpr double kSpeed = 0.8, kWay = 0.5;
+  for (const ContactLoss loss : {ContactLoss::kGap, ContactLoss::kZeroForce}) {
+    for (const double slope : {0.05, 1.5, 40.0}) {
+      SCOPED_TRACE(slope);
+      const Stop stop{.stiffness = 7.0, .damping = 0.35, .gap = 0.0};
+      std::vector<Contact> contacts(2);
+      contacts[0] = {Eigen::VectorXd::Unit(2, 0),
+                     Clearance{Stop{.stiffness = 6.0, .damping = 0.35, .gap = 0.7}, stop, loss}};
+      contacts[1] = {Eigen::VectorXd::Unit(2, 1), friction::Coulomb{0.4, 0.2}, friction::NormalLoad{0.7, slope}};
+      const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(2, 2);
+      const HybridSystem system(
+          fem::Structure(Eigen::MatrixXd(Eigen::Vector2d(0.5, 1.3).asDiagonal()), none, Eigen::MatrixXd(none)),
+          contacts, friction::Shaker{.amplitude = 1e3, .frequency_hz = 0.01});
+      for (const double from : {-kWay, -0.75}) {  // in the gap, and pressing on the stop behind
+        const Trajectory run =
+            simulate(system, {0.0, Eigen::Vector2d(from, 0.0), Eigen::Vector2d(kSpeed, 0.1)}, {.duration = 1.2});
+        const bool pressed = from < -0.7;
+        ASSERT_GE(run.events.size(), pressed ? 2U : 1U);
+        const Event& met = run.events[pressed ? 1 : 0];
+        const double way = pressed && loss == ContactLoss::kGap ? 0.7 : pressed ? -run.events[0].displacement : kWay;
+        const double left = pressed ? run.events[0].time : 0.0, speed = pressed ? run.events[0].velocity : kSpeed;
+        EXPECT_EQ(met.kind, EventKind::kContact);
+        EXPECT_NEAR(met.time, left + way / speed, 1e-13);
+        EXPECT_NEAR(met.velocity, speed, 1e-13);
+        EXPECT_LT(std::abs(run.audit.residual()), 1e-12);
+      }
+    }
+  }
+}
+
 TEST(Clearance, AnUndampedStopReturnsTheSpeedItWasHitWith) {
   // No force but the stop's: the mass flies back with its speed after half a period of the contact's own vibration.
   const Stop stop{.stiffness = 9.0, .damping = 0.0, .gap = 0.5};
