@@ -274,8 +274,8 @@ DrivenMotion settle_driven(const dynamics::HybridSystem& system, const Readings&
   const Eigen::MatrixXd points = stacked(out.readings, out.contact_q, out.contact_v);
   const Eigen::VectorXd scale = reach(stacked(values, run.contact_q.leftCols(count), run.contact_v.leftCols(count)));
   out.period = driven_period(points, scale, options.tolerance, options.max_period);
-  if (out.period.repeat != DrivenRepeat::kPeriodic && is_damped_and_linear(system, run))
-    out.period = linear_period(points, scale);
+  const bool settled = out.period.repeat == DrivenRepeat::kPeriodic && out.period.period == 1;
+  if (!settled && is_damped_and_linear(system, run)) out.period = linear_period(points, scale);
   judge_contacts(system, run, begin.time + transient, begin.time + duration, T, options.micro_stick, out);
   out.events = run.statistics.events;
   out.mean_energy = mean_energy(system, q, v);

@@ -160,6 +160,17 @@ TEST(Driven, WhereNothingHappensADampedMotionSettlesToTheDrivesPeriod) {
   EXPECT_EQ(motion(0.1).period.repeat, DrivenRepeat::kPeriodic);
 }
 
+// Its own frequency a third of the drive's and hardly damped: all but the same three periods later, and no period 3.
+TEST(Driven, ADampedLinearMotionHasNoPeriodOfItsOwn) {
+  constexpr double kOmega = 1.2;
+  const friction::Stop far{.stiffness = 1.0, .gap = 1e3};
+  const auto system =
+      forced({1.0, 1e-7, kOmega * kOmega / 9.0}, friction::Clearance{far, far}, 0.0, {kOmega, {{.amplitude = 0.8}}});
+  const DrivenMotion found = settle_driven(system, kDisplacement, system.rest(), kQuick);
+  EXPECT_EQ(found.period.repeat, DrivenRepeat::kSettling);
+  EXPECT_EQ(found.period.period, 1);
+}
+
 TEST(Driven, UnderAForceAStateHandedOnKeepsThePhase) {
   // What one run ends with, the next begins with: no transient is left where the motion has settled.
   const Oscillator o;
