@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <map>
 #include <numbers>
 
@@ -25,10 +26,12 @@ namespace {
 
 using results::StoreReader;
 
-std::string_view colour_of_basis(const std::string& basis) {
-  if (basis == "pomf" || basis == "POM") return kPomColour;
-  if (basis == "lnm" || basis == "LNM") return kLnmColour;
-  return basis == "lnm+static" || basis == "LNM+static" || basis == "LNM_static" ? kSecondColour : "#CC79A7";
+/// @param basis  a scene's word, a name in capitals, or a group's name, which has no signs
+std::string_view colour_of_basis(std::string basis) {
+  std::ranges::transform(basis, basis.begin(), [](unsigned char letter) { return std::tolower(letter); });
+  if (basis.starts_with("pom")) return kPomColour;
+  if (basis == "lnm") return kLnmColour;
+  return basis.starts_with("lnm") ? kSecondColour : "#CC79A7";
 }
 
 Series sections(const StoreReader& store, const std::string& group, const std::string& title, std::string_view colour) {
@@ -89,6 +92,7 @@ Panel labelled_amplitudes(const StoreReader& store, const std::string& group) {
 
 Figure amplitudes(const StoreReader& store, const std::vector<std::string>& groups) {
   std::vector<Panel> panels;
+  panels.reserve(groups.size());
   for (const std::string& group : groups) panels.push_back(labelled_amplitudes(store, group));
   return panel_grid(panels, {.columns = 1,
                              .panel_height = panels.size() == 1 ? 480 : 360,

@@ -6,7 +6,7 @@
 
 namespace slipmode::figures {
 
-// Figures of results of scenes with a shaker, the most telling first.
+// Figures of results of scenes with a shaker, sweeps and validations also with a force, the most telling first.
 
 /// Agreement against the number of modes, small multiples of reduced models over the full one, labels.
 [[nodiscard]] std::vector<FileFigure> driven_validation_figures_of(const results::StoreReader& store);

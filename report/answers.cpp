@@ -178,7 +178,8 @@ Json accuracy(const Levels& levels, const StoreReader& store) {
                 all > 0 && alike == all && worst <= kAccurate ? "good" : "fair");
 }
 
-/// Reduced models under a shaker: the smallest that lies as near as two full sweeps do, and the nearest of all.
+/// Reduced models under a shaker or a force: the smallest that lies as near as two full sweeps do, and the nearest of
+/// all.
 struct DrivenModels {
   Table models;
   double noise;

@@ -29,7 +29,7 @@ class ValueTable {
  public:
   ValueTable(const DrivenAxes& axes, const Units& units) {
     number("parameter", axes.swept.units, axes.swept.key, [](const DrivenPoint& p) { return p.parameter; });
-    text("label", "stick, stick-slip, slip, or failed",
+    text("label", "stick, stick-slip, slip, no friction, or failed",
          [](const DrivenMotion& m) { return std::string(diagnostics::to_string(m.label)); });
     text("repeat", "periodic, settling, aperiodic, undecided, or failed",
          [](const DrivenMotion& m) { return std::string(diagnostics::to_string(m.period.repeat)); });
@@ -56,23 +56,29 @@ class ValueTable {
 
   Table filled(const std::vector<DrivenPoint>& points) const {
     Table table{"one row per value of the key; times and counts are those of the cycles kept", {}};
-    for (const Number& column : numbers_) {
-      std::vector<double> values;
-      for (const DrivenPoint& point : points) values.push_back(column.get(point));
-      table.columns.push_back({column.name, column.meaning, values});
-    }
+    for (const Number& column : numbers_)
+      table.columns.push_back({column.name, column.meaning, of_each<double>(points, column.get)});
     for (const Text& column : texts_) {
-      std::vector<std::string> values;
-      for (const DrivenPoint& point : points) values.push_back(point.ok() ? column.get(point.settled) : "failed");
-      table.columns.push_back({column.name, column.meaning, values});
+      const auto text = [&column](const DrivenPoint& point) {
+        return point.ok() ? column.get(point.settled) : std::string("failed");
+      };
+      table.columns.push_back({column.name, column.meaning, of_each<std::string>(points, text)});
     }
-    std::vector<std::string> failure;
-    for (const DrivenPoint& point : points) failure.push_back(point.failure);
-    table.columns.push_back({"failure", {"", "why the value failed; empty: it did not"}, failure});
+    const auto failure = [](const DrivenPoint& point) { return point.failure; };
+    table.columns.push_back(
+        {"failure", {"", "why the value failed; empty: it did not"}, of_each<std::string>(points, failure)});
     return table;
   }
 
  private:
+  /// What each point says.
+  template <class T, class Get>
+  static std::vector<T> of_each(const std::vector<DrivenPoint>& points, const Get& get) {
+    std::vector<T> values;
+    values.reserve(points.size());
+    for (const DrivenPoint& point : points) values.push_back(get(point));
+    return values;
+  }
   struct Number {
     std::string name;
     Meaning meaning;
@@ -156,6 +162,7 @@ std::vector<MotionCount> count_motions(const std::vector<DrivenPoint>& points) {
   std::map<std::string, std::size_t> counts;
   for (const DrivenPoint& point : points) ++counts[point.ok() ? motion_text(point.settled) : "failed"];
   std::vector<MotionCount> out;
+  out.reserve(counts.size());
   for (const auto& [motion, values] : counts) out.push_back({motion, values});
   std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.values > b.values; });
   return out;

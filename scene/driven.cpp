@@ -25,7 +25,7 @@ std::string reading_name(const Scene& scene) {
 
 std::string reading_unit(const Scene& scene) { return scene.beam() == nullptr && scene.units == "SI" ? "m" : "1"; }
 
-diagnostics::DriveAt drive_over_frequency(const Scene& scene) {
+diagnostics::DriveAt drive_over_own_key(const Scene& scene) {
   return [scene](double value) { return drive_at(scene, value); };
 }
 

@@ -21,7 +21,7 @@ namespace slipmode::scene {
 [[nodiscard]] std::string reading_unit(const Scene& scene);
 
 /// The drive over its own key, see drive_key.
-[[nodiscard]] diagnostics::DriveAt drive_over_frequency(const Scene& scene);
+[[nodiscard]] diagnostics::DriveAt drive_over_own_key(const Scene& scene);
 
 /// A start near the scene's own, for a second run that shows the sampling noise of statistics: the first member of an
 /// ensemble of another seed, with the ensemble's spread, or 1e-4 where it has none.

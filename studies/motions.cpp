@@ -196,7 +196,7 @@ std::vector<MotionsOf> motions(const scene::Scene& scene, const pod::NamedBasis&
     const dynamics::State from = own ? rom::restrict_state(full.system.structure(), *own, start) : start;
     if (driven) {
       out[m] = under_a_period(
-          diagnostics::driven_model(own ? diagnostics::reduced_case(full, *own) : full, drive_over_frequency(scene)),
+          diagnostics::driven_model(own ? diagnostics::reduced_case(full, *own) : full, drive_over_own_key(scene)),
           own ? &*own : nullptr, from, scene, request, natural, run.stop);
       return;
     }

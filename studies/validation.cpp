@@ -137,7 +137,7 @@ Validation validate_driven(const scene::Scene& scene, const std::vector<pod::Nam
   options.parallel = run.parallel("validate");
   if (file.journal() != nullptr) options.sink = results::driven_journal_sink(*file.journal());
   const auto report = std::make_shared<const diagnostics::DrivenValidationReport>(diagnostics::validate_driven(
-      full, scene::drive_over_frequency(scene), bases, scene::initial_state(scene, full.system),
+      full, scene::drive_over_own_key(scene), bases, scene::initial_state(scene, full.system),
       scene::second_start(scene, full.system), options));
   if (report->interrupted) throw Interrupted();
   if (!report->whole) return share_of(scene, file);

@@ -23,10 +23,11 @@ struct NamedModel {
   std::string basis;
   Eigen::Index modes = 0;
 };
-/// Of a validation under a shaker: the reduced model that answers speak of. Nothing where none gave a settled motion.
+/// Of a validation under a shaker or a force: the reduced model that answers speak of. Nothing where none gave a
+/// settled motion.
 [[nodiscard]] std::optional<NamedModel> told_of_driven(const results::StoreReader& validation);
 
-/// The same as belt_answers of a validation under a shaker.
+/// The same as belt_answers of a validation under a shaker or a force.
 [[nodiscard]] Json driven_answers(const results::StoreReader& validation);
 
 }  // namespace slipmode::report
