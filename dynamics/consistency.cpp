@@ -206,13 +206,15 @@ Resolution resolve(const Instant& now, const std::vector<ContactMode>& modes, co
   return out;
 }
 
-int start_multiplicity(const Instant& now, int c, ContactMode mode, const Eigen::VectorXd& force) {
+double contact_acceleration(const Instant& now, int c, const Eigen::VectorXd& force) {
   const ModalModel& m = now.model;
-  const double acceleration = m.acceleration_row.col(c).dot(Eigen::Map<const Eigen::VectorXd>(now.x, 2 * m.np)) +
-                              m.load_acceleration(c) + m.mobility.row(c).dot(force) +
-                              (now.force.size() > 0 ? m.force_acceleration.row(c).dot(now.force) : 0.0);
-  const double start = sign_of(mode) * (now.belt_acceleration - acceleration);
-  const double threshold = kSimpleTouch * m.mobility(c, c) * now.laws[static_cast<std::size_t>(c)].static_limit;
+  return m.acceleration_row.col(c).dot(Eigen::Map<const Eigen::VectorXd>(now.x, 2 * m.np)) + m.load_acceleration(c) +
+         m.mobility.row(c).dot(force) + (now.force.size() > 0 ? m.force_acceleration.row(c).dot(now.force) : 0.0);
+}
+
+int start_multiplicity(const Instant& now, int c, ContactMode mode, const Eigen::VectorXd& force) {
+  const double start = sign_of(mode) * (now.belt_acceleration - contact_acceleration(now, c, force));
+  const double threshold = kSimpleTouch * now.model.mobility(c, c) * now.laws[static_cast<std::size_t>(c)].static_limit;
   return start > threshold ? 1 : start >= -threshold ? 2 : -1;
 }
 

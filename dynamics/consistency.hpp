@@ -62,6 +62,9 @@ struct SingleResolution {
 };
 [[nodiscard]] SingleResolution resolve_single(const Instant& now, bool released, double release_sign);
 
+/// wᵀq̈ of a contact under these forces at the contacts.
+[[nodiscard]] double contact_acceleration(const Instant& now, int c, const Eigen::VectorXd& force);
+
 /// Order of the zero of the sliding speed of a contact that starts to slide now under these forces: 1, or 2 when its
 /// acceleration relative to the belt vanishes to rounding. Less than 0: it would be driven back onto the belt.
 [[nodiscard]] int start_multiplicity(const Instant& now, int c, ContactMode mode, const Eigen::VectorXd& force);

@@ -113,12 +113,9 @@ double EventResolver::slide_velocity(const HybridPoint& point, int c, double dir
   if (!load.varies()) return sliding;
   double load_rate = load.y * velocity;
   if (load.v != 0.0) {
-    Eigen::VectorXd force(model_.contacts);
-    for (int d = 0; d < model_.contacts; ++d) force(d) = d == c ? 0.0 : point.force(d);
+    Eigen::VectorXd force = point.force;
     force(c) = direction * law_at(point, c).onset(direction);
-    load_rate += load.v * (model_.acceleration_row.col(c).dot(Eigen::Map<const Eigen::VectorXd>(x, 2 * model_.np)) +
-                           model_.load_acceleration(c) + model_.mobility.row(c).dot(force));
-    if (drive_.force() != nullptr) load_rate += load.v * model_.force_acceleration.row(c).dot(drive_force(point.time));
+    load_rate += load.v * contact_acceleration(instant(point.time, x), c, force);
   }
   if (load.oscillates()) {
     const double* own = own_states(point, c);

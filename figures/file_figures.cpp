@@ -29,16 +29,17 @@ using FiguresOf = std::vector<FileFigure> (*)(const results::StoreReader&);
 struct KindFigures {
   FileKind kind;
   FiguresOf figures;
-  FiguresOf under_shaker = nullptr, under_force = nullptr;  ///< if they are others there
+  FiguresOf others = nullptr;                         ///< of scenes of which …
+  bool (*has_others)(const scene::Scene&) = nullptr;  ///< … this is true
 };
 
 constexpr KindFigures kFigures[] = {
-    {FileKind::kTrajectory, trajectory_figures_of, shaken_trajectory_figures_of},
-    {FileKind::kPod, belt_pod_figures_of, shaken_pod_figures_of},
+    {FileKind::kTrajectory, trajectory_figures_of, shaken_trajectory_figures_of, scene::is_shaken},
+    {FileKind::kPod, belt_pod_figures_of, shaken_pod_figures_of, scene::is_shaken},
     {FileKind::kModes, natural_mode_figures_of},
-    {FileKind::kReduced, belt_reduced_figures_of, shaken_reduced_figures_of},
-    {FileKind::kValidation, belt_validation_figures_of, driven_validation_figures_of, driven_validation_figures_of},
-    {FileKind::kSweep, belt_sweep_figures_of, driven_sweep_figures_of, driven_sweep_figures_of},
+    {FileKind::kReduced, belt_reduced_figures_of, shaken_reduced_figures_of, scene::is_shaken},
+    {FileKind::kValidation, belt_validation_figures_of, driven_validation_figures_of, scene::is_driven},
+    {FileKind::kSweep, belt_sweep_figures_of, driven_sweep_figures_of, scene::is_driven},
     {FileKind::kExponents, exponents_figures_of},
     {FileKind::kVerdict, exponents_figures_of},
     {FileKind::kExponentSweep, exponent_sweep_figures_of},
@@ -67,12 +68,8 @@ std::vector<FileFigure> figures_of(const results::StoreReader& store) {
   const auto kind = results::kind_of(store);
   for (const KindFigures& drawn : kFigures) {
     if (drawn.kind != kind) continue;
-    FiguresOf other = nullptr;
-    if (drawn.under_shaker != nullptr) {
-      const scene::Scene scene = results::load_scene_of(store);
-      other = scene.force ? drawn.under_force : is_shaken(scene) ? drawn.under_shaker : nullptr;
-    }
-    return (other != nullptr ? other : drawn.figures)(store);
+    const bool others = drawn.others != nullptr && drawn.has_others(results::load_scene_of(store));
+    return (others ? drawn.others : drawn.figures)(store);
   }
   return {};
 }

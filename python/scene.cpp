@@ -48,7 +48,7 @@ std::string scene_text() {
          table_text<scene::InitialSpec>("[initial]") + table_text<scene::EnsembleSpec>("[ensemble]") +
          table_text<scene::SensorSpec>("[sensors]") + table_text<scene::ReductionSpec>("[reduction]") +
          table_text<scene::ValidationSpec>("[validation] under a belt") +
-         table_text<scene::DrivenValidationSpec>("[validation] under a shaker");
+         table_text<scene::DrivenValidationSpec>("[validation] under a shaker or a force");
 }
 
 }  // namespace

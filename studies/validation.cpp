@@ -167,9 +167,7 @@ Validation validate(const scene::Scene& scene, const std::vector<pod::NamedBasis
   if (request.verdict)
     throw InvalidInput(
         "verdict: expected a belt, found a shaker or a force; there 'slipmode diagnose SCENE FILE --verdict', in "
-        "Python "
-        "exponents, "
-        "does it");
+        "Python exponents, does it");
   scene::Scene own = scene;
   if (!request.sweep) {
     own.driven.frequencies.reset();

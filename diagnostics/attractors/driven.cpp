@@ -273,9 +273,9 @@ DrivenMotion settle_driven(const dynamics::HybridSystem& system, const Readings&
   out.rms = (values.colwise() - out.mean).rowwise().norm() / std::sqrt(static_cast<double>(count));
   const Eigen::MatrixXd points = stacked(out.readings, out.contact_q, out.contact_v);
   const Eigen::VectorXd scale = reach(stacked(values, run.contact_q.leftCols(count), run.contact_v.leftCols(count)));
-  out.period = driven_period(points, scale, options.tolerance, options.max_period);
-  const bool settled = out.period.repeat == DrivenRepeat::kPeriodic && out.period.period == 1;
-  if (!settled && is_damped_and_linear(system, run)) out.period = linear_period(points, scale);
+  const bool linear = is_damped_and_linear(system, run);
+  out.period = driven_period(points, scale, options.tolerance, linear ? 1 : options.max_period);
+  if (linear && out.period.repeat != DrivenRepeat::kPeriodic) out.period = linear_period(points, scale);
   judge_contacts(system, run, begin.time + transient, begin.time + duration, T, options.micro_stick, out);
   out.events = run.statistics.events;
   out.mean_energy = mean_energy(system, q, v);
