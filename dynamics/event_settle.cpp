@@ -12,6 +12,9 @@ namespace {
 
 /// A stick force this close to its limit (relative), and rising, reaches it together with the one that has.
 constexpr double kTogether = 1e-9;
+/// Modal coordinates this small are at rest, in whatever units: a factor of 1e58 above the least number with all
+/// digits.
+constexpr double kDiedOut = 1e-250;
 
 bool presses(ContactMode mode) { return mode == ContactMode::kLeftStop || mode == ContactMode::kRightStop; }
 
@@ -55,6 +58,9 @@ void EventResolver::settle(HybridPoint& point, const Reached& reached) {
   } else {
     settle_coupled(point, reached);
   }
+  // Where nothing else excites it, a structure between stops without a gap rattles on while it dies out: what is left
+  // of it ends before it has fewer digits than a number has, whose roots no window isolates.
+  if (reached.kind == GuardKind::kStop) point.x = (point.x.array().abs() < kDiedOut).select(0.0, point.x);
   guard_against_zeno(point);
 }
 

@@ -17,9 +17,25 @@ namespace {
 constexpr double kOnGuard = 1e-12;
 /// The same where the state says its mode: it may come from a run that ended at an event, whose time was rounded.
 constexpr double kOnGuardAsGiven = 1e-9;
-/// States come from modal coordinates or from a projection, which round by all of the motion, not by what is at the
-/// contact.
-constexpr double kModalRounding = 64.0 * std::numeric_limits<double>::epsilon();
+
+/// What a contact's displacement and speed are uncertain by: states come from a projection or from modal coordinates,
+/// which round by all of the motion, not by what is at the contact, and by more where modes nearly cancel each other.
+struct Rounding {
+  double displacement, speed;
+
+  /// @param x  the start in modal coordinates
+  Rounding(const ModalModel& m, const friction::Contact& contact, std::size_t c, const State& start,
+           const Eigen::VectorXd& x) {
+    constexpr double kModalRounding = 64.0 * std::numeric_limits<double>::epsilon();
+    const auto i = static_cast<Eigen::Index>(c);
+    const auto of = [&](const Eigen::VectorXd& values, const Eigen::MatrixXd& rows) {
+      return kModalRounding * (contact.direction.lpNorm<1>() * values.lpNorm<Eigen::Infinity>() +
+                               rows.col(i).cwiseAbs().dot(x.cwiseAbs()));
+    };
+    displacement = of(start.q, m.displacement_row);
+    speed = of(start.v, m.velocity_row);
+  }
+};
 
 /// @param message  called only when the condition fails: runs are too short to compose it each time
 template <class Message>
@@ -54,7 +70,9 @@ struct AtStop {
   double size, press_size;    ///< which rounding is measured by
   double on_guard, on_press;  ///< what may be off where the state says its mode
 
-  AtStop(const friction::Stop& own, double side, const friction::Contact& contact, const State& start) : stop(own) {
+  AtStop(const friction::Stop& own, double side, const friction::Contact& contact, const State& start,
+         const Rounding& rounding)
+      : stop(own) {
     const double y = contact.direction.dot(start.q) + contact.offset;
     rate = side * contact.direction.dot(start.v);
     past = side * y - stop.gap;
@@ -63,10 +81,8 @@ struct AtStop {
     size = contact.direction.cwiseAbs().dot(start.q.cwiseAbs() + std::abs(start.time) * start.v.cwiseAbs()) +
            std::abs(contact.offset) + std::abs(stop.gap);
     press_size = stop.stiffness * size + stop.damping * contact.direction.cwiseAbs().dot(start.v.cwiseAbs());
-    const double all = contact.direction.lpNorm<1>() * start.q.lpNorm<Eigen::Infinity>();
-    const double all_rates = contact.direction.lpNorm<1>() * start.v.lpNorm<Eigen::Infinity>();
-    on_guard = kOnGuardAsGiven * size + kModalRounding * all;
-    on_press = kOnGuardAsGiven * press_size + kModalRounding * (stop.stiffness * all + stop.damping * all_rates);
+    on_guard = kOnGuardAsGiven * size + rounding.displacement;
+    on_press = kOnGuardAsGiven * press_size + stop.stiffness * rounding.displacement + stop.damping * rounding.speed;
   }
 };
 
@@ -98,10 +114,10 @@ bool agrees(const friction::Clearance& law, ContactMode mode, const std::optiona
 
 /// Where a clearance is at the start: as given, or by position and force; on a guard to rounding by the velocity.
 ContactMode start_mode(const friction::Clearance& law, const friction::Contact& contact, const State& start,
-                       std::size_t c) {
+                       std::size_t c, const Rounding& rounding) {
   std::optional<AtStop> left, right;
-  if (law.left) left.emplace(*law.left, -1.0, contact, start);
-  if (law.right) right.emplace(*law.right, 1.0, contact, start);
+  if (law.left) left.emplace(*law.left, -1.0, contact, start, rounding);
+  if (law.right) right.emplace(*law.right, 1.0, contact, start, rounding);
   if (!start.modes.empty()) {
     const ContactMode given = start.modes[c];
     require_or_say(agrees(law, given, left, right), [&] {
@@ -124,13 +140,14 @@ ContactMode start_mode(const friction::Clearance& law, const friction::Contact& 
 }
 
 /// Modes at the start: as given, or by the sign of the sliding speed with zero speed left to consistency.
-std::vector<ContactMode> start_modes(const HybridSystem& system, const State& start) {
+std::vector<ContactMode> start_modes(const HybridSystem& system, const ModalModel& m, const State& start,
+                                     const Eigen::VectorXd& x) {
   std::vector<ContactMode> modes(system.contacts().size());
   const double V = system.drive().velocity(start.time);
   for (std::size_t c = 0; c < modes.size(); ++c) {
     const auto& contact = system.contacts()[c];
     if (const auto* clearance = friction::clearance(contact.law)) {
-      modes[c] = start_mode(*clearance, contact, start, c);
+      modes[c] = start_mode(*clearance, contact, start, c, Rounding(m, contact, c, start, x));
       continue;
     }
     if (!contact_forces(contact).sticks()) {
@@ -140,10 +157,10 @@ std::vector<ContactMode> start_modes(const HybridSystem& system, const State& st
     const double sliding = V - contact.direction.dot(start.v);
     const double scale =
         system.drive().velocity_scale(start.time) + contact.direction.cwiseAbs().dot(start.v.cwiseAbs());
-    const double rounding = kModalRounding * contact.direction.lpNorm<1>() * start.v.lpNorm<Eigen::Infinity>();
-    const ContactMode by_sign = std::abs(sliding) <= 1e-12 * scale + rounding ? ContactMode::kStick
-                                : sliding > 0                                 ? ContactMode::kSlipPositive
-                                                                              : ContactMode::kSlipNegative;
+    const double at_rest = 1e-12 * scale + Rounding(m, contact, c, start, x).speed;
+    const ContactMode by_sign = std::abs(sliding) <= at_rest ? ContactMode::kStick
+                                : sliding > 0                ? ContactMode::kSlipPositive
+                                                             : ContactMode::kSlipNegative;
     const bool compliant = friction::kind(contact.law) == LawKind::kCompliant;
     if (start.modes.empty()) {
       modes[c] = compliant ? ContactMode::kStick : by_sign;
@@ -243,9 +260,10 @@ Prepared prepare(const HybridSystem& system, const State& start, FlowOptions opt
   if (const double fastest = fastest_rate(system, m); options.zeno_window == 0.0 && fastest > 0.0)
     options.zeno_window = 0.01 * 2.0 * std::numbers::pi / fastest;
   const auto nc = static_cast<Eigen::Index>(system.contacts().size());
+  std::vector<ContactMode> modes = start_modes(system, m, start, x);
   HybridPoint point{start.time,
                     std::move(x),
-                    start_modes(system, start),
+                    std::move(modes),
                     std::vector<int>(static_cast<std::size_t>(nc), 0),
                     Eigen::VectorXd::Zero(nc),
                     start_internal(system, start)};

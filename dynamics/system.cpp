@@ -42,8 +42,9 @@ void check_independence(const std::vector<friction::Contact>& contacts) {
           " contacts that stick rigidly, or have a spring or bristles beside such, are linearly dependent "
           "(rank " +
           std::to_string(rank) +
-          "): two contacts act on the same degree of freedom, or a reduced "
-          "basis has fewer vectors than contacts; merge them or keep more modes");
+          "): two contacts act on the same degree of freedom, contacts close a ring, or a reduced basis has fewer "
+          "vectors than contacts; merge them, put those of a ring behind springs (law \"compliant\"), or keep more "
+          "modes");
   };
   for (const friction::Contact& contact : contacts)
     if (friction::sticks_rigidly(friction::kind(contact.law))) rigid.push_back(contact.direction.normalized());
