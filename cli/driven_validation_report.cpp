@@ -89,11 +89,11 @@ std::string summary_text(const DrivenValidationReport& report, const scene::Scen
   out += results::unsettled_note(report.full, scene.driven.cycles);
   out += fmt::format(
       "  distances: Wasserstein-1 of section points over the full model's root mean square, mean over frequencies\n"
-      "  two full sweeps from different starts: {:.3g} (median {:.3g}), same label {:.1f} %, same period {:.1f} %\n"
+      "  two full sweeps from different starts: {:.3g} (median {:.3g}), same label {} %, same period {} %\n"
       "  trusted: a distance up to 0.1, or twice that of the two full sweeps\n"
       "  peaks of the full model at {}\n",
-      report.noise.mean_wasserstein, report.noise.median_wasserstein, 100.0 * report.noise.same_label,
-      100.0 * report.noise.same_period, results::peaks_text(report.peaks));
+      report.noise.mean_wasserstein, report.noise.median_wasserstein, fixed(100.0 * report.noise.same_label, 1),
+      fixed(100.0 * report.noise.same_period, 1), results::peaks_text(report.peaks));
   if (report.cost.wall > 0.0) {
     out += fmt::format("  time of {:g} cycles at {} = {:g}, full model: {:.3g} ms\n", scene.driven.cost_cycles,
                        drive_key(scene), scene::drive_parameter(scene), 1e3 * report.cost.wall);

@@ -9,6 +9,7 @@
 #include "cli/verbs.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 
 namespace slipmode::cli {
 namespace {
@@ -57,7 +58,7 @@ Report run(const Session& session, const TradeArguments& arguments) {
   const trade::Choice choice = trade::choose(done, request.wish);
   const trade::Row& row = done.rows[choice.row];
   report.data["choice"] = {{"name", row.variant.name}, {"sentence", choice.sentence}};
-  report.text += choice.sentence + '\n';
+  if (std::ranges::find(advice, choice.sentence) == advice.end()) report.text += choice.sentence + '\n';
   if (arguments.write.empty()) return report;
   write_renamed(arguments.write, trade::scene_text(row.variant));
   report.data["scene"] = arguments.write;

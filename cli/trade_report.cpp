@@ -4,7 +4,11 @@
 #include "cli/text_table.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace slipmode::cli {
 namespace {
@@ -135,11 +139,16 @@ std::string orbits_text(const trade::OrbitStudy& study) {
 }
 
 std::string failures_text(const Study& study) {
-  std::string text;
+  std::vector<std::pair<std::string, std::string>> reasons;  // each with those that it holds for, a line each
   for (const Row& row : study.rows) {
-    if (!row.failure.empty()) text += fmt::format("  {}: {}\n", row.variant.name, row.failure);
+    if (row.failure.empty()) continue;
+    auto known = std::ranges::find(reasons, row.failure, &std::pair<std::string, std::string>::first);
+    if (known == reasons.end()) known = reasons.insert(known, {row.failure, ""});
+    known->second += fmt::format("  {}\n", row.variant.name);
   }
-  return text.empty() ? "" : "Could not be run:\n" + text;
+  std::string text;
+  for (const auto& [reason, names] : reasons) text += fmt::format("Could not be run: {}\n{}", reason, names);
+  return text;
 }
 
 std::string how_to_run(const trade::Variant& variant, const std::string& path) {

@@ -245,7 +245,7 @@ Json driven_answers(const StoreReader& validation) {
   if (!nearest) return Json::array({answer(kTrust, "None gave a settled motion.", "poor")});
   const std::size_t told = found.told();
   const auto model_name = [&](std::size_t i) {
-    return fmt::format("{} modes of {}", modes[i], models.texts("basis")[i]);
+    return fmt::format("{} {} of {}", modes[i], modes[i] == 1.0 ? "mode" : "modes", models.texts("basis")[i]);
   };
   Json out = Json::array();
   out.push_back(answer(
@@ -260,6 +260,7 @@ Json driven_answers(const StoreReader& validation) {
       smallest ? "good" : "fair"));
   if (!validation.has("shaken_validation/full_cpu")) return out;
   const double full = validation.number("shaken_validation/full_cpu"), reduced = models.numbers("cpu")[told];
+  if (!std::isfinite(full / reduced)) return out;
   out.push_back(
       answer("What does it save?",
              fmt::format("The timed run takes {:.3g} s in full and {:.3g} s with {}, of processor time: {:.3g} "

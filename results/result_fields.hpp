@@ -255,7 +255,7 @@ inline constexpr auto kFields<diagnostics::DrivenAgreement> = [] {
       required("median_distance", &Own::median_wasserstein, "1", "the same, median"),
       required("mean_hausdorff", &Own::mean_hausdorff, "1", "Hausdorff distance of section points, mean over values"),
       required("same_label", &Own::same_label, "1", "share of values with the same label"),
-      required("same_period", &Own::same_period, "1", "share of values with the same period")};
+      required("same_period", &Own::same_period, "1", "share of values decided in both with the same period")};
 }();
 
 template <>

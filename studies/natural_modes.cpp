@@ -1,5 +1,6 @@
 #include <slipmode/studies/natural_modes.hpp>
 
+#include <slipmode/core/decompositions.hpp>
 #include <slipmode/core/errors.hpp>
 #include <slipmode/friction/places.hpp>
 #include <slipmode/results/provenance.hpp>
@@ -22,6 +23,17 @@ Eigen::MatrixXd directions_of(const std::vector<friction::Contact>& contacts, Ei
   return w;
 }
 
+/// Without the directions that follow from others: where contacts close a ring, those of all but one hold the last.
+Eigen::MatrixXd independent(const Eigen::MatrixXd& directions) {
+  if (directions.cols() < 2) return directions;
+  constexpr double kFollows = 1e-10;  // of a direction of length 1
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(directions.colwise().normalized());
+  qr.setThreshold(kFollows);
+  Eigen::ArrayXi kept = qr.colsPermutation().indices().head(qr.rank()).array();
+  std::ranges::sort(kept);
+  return directions(Eigen::all, kept);
+}
+
 /// Stiffness that holds a stuck contact, or one at its stop; 0 for a law without a spring.
 double contact_stiffness(const friction::Law& law) {
   const friction::Clearance* clearance = friction::clearance(law);
@@ -39,9 +51,10 @@ fem::Modes sticking_modes(const dynamics::HybridSystem& system, Eigen::Index cou
     };
     if (std::ranges::any_of(place, holds)) held.push_back(system.contacts()[place.front()]);
   }
-  const Eigen::Index free = system.size() - std::ssize(held);
+  const Eigen::MatrixXd directions = independent(directions_of(held, system.size()));
+  const Eigen::Index free = system.size() - directions.cols();
   if (held.empty() || free <= 0) return {};
-  return fem::constrained_modes(system.structure(), directions_of(held, system.size()), std::min(count, free));
+  return fem::constrained_modes(system.structure(), directions, std::min(count, free));
 }
 
 ModeSets natural_modes(const scene::Scene& scene, const dynamics::HybridSystem& system, Eigen::Index count) {

@@ -218,6 +218,8 @@ Eigen::MatrixXd Readings::of(const Eigen::MatrixXd& q) const {
 DrivenPeriod driven_period(const Eigen::MatrixXd& points, const Eigen::VectorXd& scale, double tolerance,
                            int max_period) {
   constexpr Eigen::Index kRepeats = 3, kFewest = 20;
+  constexpr double kNearly =
+      100.0;  // tolerances: so near to repeating, a slow decay that beats is as likely as no period
   if (!(tolerance > 0.0) || max_period < 1 || scale.size() != points.rows()) {
     throw InvalidInput(
         fmt::format("period of sections: expected tolerance > 0, max_period >= 1 and {} scales, found "
@@ -226,19 +228,22 @@ DrivenPeriod driven_period(const Eigen::MatrixXd& points, const Eigen::VectorXd&
   }
   const Eigen::Index last = points.cols() - 1;
   DrivenPeriod settling{.mismatch = std::numeric_limits<double>::quiet_NaN()};
-  bool decided = false;
+  double nearest = std::numeric_limits<double>::infinity();
   for (Eigen::Index p = 1; p <= max_period; ++p) {
     const Eigen::Index compared = std::max(kRepeats * p, kFewest);
     if (last + 1 < compared + p) break;
-    decided = true;
     const double late = mismatch(points, scale, p, last + 1 - compared, last);
     if (late <= tolerance) return {DrivenRepeat::kPeriodic, static_cast<int>(p), late};
+    nearest = std::min(nearest, late);
     if (settling.period == 0 && settles_by(points, scale, p)) {
       settling = {DrivenRepeat::kSettling, static_cast<int>(p), late};
     }
   }
   if (settling.period > 0) return settling;
-  settling.repeat = decided ? DrivenRepeat::kAperiodic : DrivenRepeat::kUndecided;
+  if (nearest < kNearly * tolerance)
+    settling.mismatch = nearest;
+  else if (std::isfinite(nearest))
+    settling.repeat = DrivenRepeat::kAperiodic;
   return settling;
 }
 
@@ -288,7 +293,7 @@ DrivenMotion settle_driven(const dynamics::HybridSystem& system, const Readings&
                                      .interval = T,
                                      .flow = options.flow,
                                      .stop = options.stop});
-    if (out.exponent->is_positive() && out.period.repeat == DrivenRepeat::kSettling)
+    if (out.exponent->is_positive() && out.period.repeat != DrivenRepeat::kPeriodic)
       out.period = {.repeat = DrivenRepeat::kAperiodic};
   }
   return out;

@@ -32,8 +32,8 @@ enum class DrivenLabel : std::uint8_t {
 enum class DrivenRepeat : std::uint8_t {
   kPeriodic,
   kSettling,   ///< not yet within tolerance, but nearer to repeating in each quarter of the cycles kept
-  kAperiodic,  ///< no period up to max_period
-  kUndecided,  ///< too few cycles kept to tell
+  kAperiodic,  ///< no period up to max_period, not even nearly
+  kUndecided,  ///< too few cycles kept to tell, or within 100 tolerances of repeating
 };
 
 [[nodiscard]] const char* to_string(DrivenLabel label);
@@ -41,8 +41,9 @@ enum class DrivenRepeat : std::uint8_t {
 
 struct DrivenPeriod {
   DrivenRepeat repeat = DrivenRepeat::kUndecided;
-  int period = 0;         ///< in drive periods; that approached by a settling motion; else 0
-  double mismatch = 0.0;  ///< largest difference of points `period` apart, relative to the scales; NaN without a period
+  int period = 0;  ///< in drive periods; that approached by a settling motion; else 0
+  double mismatch =
+      0.0;  ///< largest difference of points `period` apart, relative to the scales; NaN where nothing nearly repeats
 };
 
 /// Smallest number of drive periods after which section points repeat within tolerance, looked for among the last

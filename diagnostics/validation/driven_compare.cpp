@@ -57,6 +57,7 @@ DrivenAgreement compare_driven(const std::vector<DrivenPoint>& full, const std::
   check_same_values(full, reduced);
   DrivenAgreement out;
   std::vector<double> hausdorffs, found;
+  double same_labels = 0.0, same_periods = 0.0, decided = 0.0;
   for (std::size_t i = 0; i < full.size(); ++i) {
     out.wasserstein.push_back(kNone);
     if (!full[i].ok() || !reduced[i].ok()) {
@@ -65,17 +66,18 @@ DrivenAgreement compare_driven(const std::vector<DrivenPoint>& full, const std::
     }
     ++out.values;
     const DrivenMotion &a = full[i].settled, &b = reduced[i].settled;
-    out.same_label += a.label == b.label ? 1.0 : 0.0;
-    out.same_period += same_period(a.period, b.period) ? 1.0 : 0.0;
+    same_labels += a.label == b.label ? 1.0 : 0.0;
+    if (a.period.repeat != DrivenRepeat::kUndecided && b.period.repeat != DrivenRepeat::kUndecided) {
+      ++decided;
+      same_periods += same_period(a.period, b.period) ? 1.0 : 0.0;
+    }
     const std::vector<double> p = section_points(a, reading), q = section_points(b, reading);
     out.wasserstein.back() = wasserstein(p, q) / unit_of(a, reading);
     found.push_back(out.wasserstein.back());
     hausdorffs.push_back(hausdorff(p, q) / unit_of(a, reading));
   }
-  if (out.values > 0) {
-    out.same_label /= static_cast<double>(out.values);
-    out.same_period /= static_cast<double>(out.values);
-  }
+  if (out.values > 0) out.same_label = same_labels / static_cast<double>(out.values);
+  if (decided > 0.0) out.same_period = same_periods / decided;
   out.mean_wasserstein = mean_of(found);
   out.median_wasserstein = found.empty() ? kNone : detail::median(found);
   out.mean_hausdorff = mean_of(hausdorffs);

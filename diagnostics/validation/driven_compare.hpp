@@ -1,5 +1,6 @@
 #pragma once
 
+#include <slipmode/core/none.hpp>
 #include <slipmode/diagnostics/attractors/driven_sweep.hpp>
 
 #include <vector>
@@ -7,15 +8,15 @@
 namespace slipmode::diagnostics {
 
 /// Two driven sweeps, value by value. Distances are between the section points of one reading, in units of the full
-/// model's root mean square of that reading at the same value.
+/// model's root mean square of that reading at the same value. Without values there are no shares and distances: NaN.
 struct DrivenAgreement {
-  std::size_t values = 0;         ///< where both models gave a result
-  std::size_t failed = 0;         ///< where at least one did not
-  double same_label = 0.0;        ///< share of values with the same label
-  double same_period = 0.0;       ///< share with the same period, or none in both
-  double mean_wasserstein = 0.0;  ///< over the values
-  double median_wasserstein = 0.0;
-  double mean_hausdorff = 0.0;
+  std::size_t values = 0;           ///< where both models gave a result
+  std::size_t failed = 0;           ///< where at least one did not
+  double same_label = kNone;        ///< share of values with the same label
+  double same_period = kNone;       ///< share with the same period, or none in both, of values decided in both
+  double mean_wasserstein = kNone;  ///< over the values
+  double median_wasserstein = kNone;
+  double mean_hausdorff = kNone;
   std::vector<double> wasserstein;  ///< at each value; NaN where failed
 };
 

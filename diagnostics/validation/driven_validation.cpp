@@ -51,7 +51,6 @@ std::vector<Eigen::Index> sizes(const pod::NamedBasis& candidate, const std::vec
 
 /// Fills trusted_share and band.
 void judge(const std::vector<double>& values, const DrivenAgreement& noise, DrivenRow& row) {
-  row.band = {kNone, kNone};
   std::size_t trusted = 0, run = 0, longest = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!trusted_at(row.agreement.wasserstein[i], noise.wasserstein[i])) {

@@ -26,8 +26,8 @@ struct DrivenValidationOptions {
 
 /// Time of a run of cost_cycles, and of making the model able to run [s of clock].
 struct DrivenCost {
-  double wall = 0.0, cpu = 0.0;  ///< medians
-  double setup = 0.0;            ///< projection and modal data: the first run less the median
+  double wall = kNone, cpu = kNone;  ///< medians; NaN where nothing was timed
+  double setup = kNone;              ///< projection and modal data: the first run less the median
 };
 
 /// One basis at one L.
@@ -36,7 +36,8 @@ struct DrivenRow {
   std::vector<DrivenPoint> points = {};
   DrivenAgreement agreement = {};
   double trusted_share = 0.0;  ///< of the values: those where the distance is within what is trusted (see trusted_at)
-  std::pair<double, double> band = {};  ///< longest run of trusted values, first to last; both NaN without one
+  std::pair<double, double> band = {kNone,
+                                    kNone};  ///< longest run of trusted values, first to last; both NaN without one
   std::vector<AmplitudePeak> peaks = {};
   DrivenCost cost = {};
   std::string failure = {};  ///< empty, or why there is no such model

@@ -241,6 +241,11 @@ TEST(DrivenPeriod, FindsTheSmallestPeriodOfManufacturedSections) {
   EXPECT_EQ(rotation.repeat, DrivenRepeat::kAperiodic);
   EXPECT_EQ(rotation.period, 0);
   EXPECT_EQ(found(15, [](double k) { return k; }).repeat, DrivenRepeat::kUndecided);
+  // What beats while it dies out draws nearer to no period in every quarter; it is no motion without a period either.
+  const auto beats = found(100, [](double k) { return 0.01 * std::exp(-0.006 * k) * std::cos(0.05 * k); });
+  EXPECT_EQ(beats.repeat, DrivenRepeat::kUndecided);
+  EXPECT_EQ(beats.period, 0);
+  EXPECT_GT(beats.mismatch, 1e-5);
 }
 
 /// Largest exponent over 200 cycles.
@@ -372,6 +377,46 @@ TEST(DrivenValidation, AllModesAreTheFullModel) {
   EXPECT_GT(one.agreement.mean_wasserstein, 1e-3) << "one mode of two is not the full model";
   EXPECT_GT(report.cost.wall, 0.0);
   EXPECT_GT(all.cost.wall, 0.0);
+}
+
+// One mode cannot hold two contacts that stick rigidly: no distance, not one of 0, and nothing to be trusted.
+TEST(DrivenValidation, ABasisThatCannotServeHasNoDistance) {
+  DrivenCase model = two_masses(friction::Coulomb{.mu_s = 0.5, .mu_k = 0.4}, 0.6);
+  std::vector<friction::Contact> contacts = model.system.contacts();
+  contacts.push_back({Eigen::VectorXd::Unit(2, 0), contacts[0].law, 0.6});
+  model.system = {model.system.structure(), contacts, model.system.drive()};
+  const pod::NamedBasis lnm{.name = "lnm", .basis = rom::lnm_basis(model.system.structure(), 2)};
+  const auto report = validate_driven(model, kDrive, {lnm}, model.system.rest(), model.system.rest(),
+                                      {.values = {0.3},
+                                       .driven = kQuick,
+                                       .cost_parameter = 0.3,
+                                       .cost_cycles = 10.0,
+                                       .cost_repeats = 1,
+                                       .parallel = {.threads = 1}});
+  const DrivenRow &one = report.candidates.front().rows[0], &all = report.candidates.front().rows[1];
+  EXPECT_NE(one.failure, "");
+  EXPECT_TRUE(std::isnan(one.agreement.mean_wasserstein));
+  EXPECT_TRUE(std::isnan(one.agreement.same_label));
+  EXPECT_TRUE(std::isnan(one.cost.cpu));
+  EXPECT_EQ(one.trusted_share, 0.0);
+  EXPECT_EQ(all.failure, "");
+  EXPECT_EQ(report.candidates.front().trusted_from, 2);
+}
+
+// Undecided beside undecided is no agreement.
+TEST(DrivenCompare, PeriodsAreTheSameWhereBothAreDecided) {
+  const auto point = [](std::size_t index, DrivenRepeat repeat, int period) {
+    DrivenPoint out{.index = index, .parameter = static_cast<double>(index)};
+    out.settled.readings = Eigen::MatrixXd::Constant(1, 3, 0.5);
+    out.settled.rms = Eigen::VectorXd::Ones(1);
+    out.settled.period = {repeat, period, 0.0};
+    return out;
+  };
+  const DrivenPoint one = point(0, DrivenRepeat::kPeriodic, 1), unknown = point(1, DrivenRepeat::kUndecided, 0),
+                    two = point(2, DrivenRepeat::kPeriodic, 2), three = point(2, DrivenRepeat::kPeriodic, 3);
+  EXPECT_EQ(compare_driven({one, unknown, two}, {one, unknown, three}).same_period, 0.5);
+  EXPECT_EQ(compare_driven({one, unknown}, {one, unknown}).same_period, 1.0);
+  EXPECT_TRUE(std::isnan(compare_driven({unknown}, {unknown}).same_period));
 }
 
 TEST(DrivenCompare, PeaksAreThoseThatRiseAboveTheirGround) {

@@ -336,6 +336,18 @@ class RunUnderAForce(RunOnAShaker):
     scene, least, most = PUSHED, "0.4", "1"
     one = "validation.omegas={ from = 0.7, to = 0.7, step = 0.1 }"
 
+    def test_a_model_that_could_not_be_made_is_not_trusted(self):
+        # One mode cannot hold two contacts that stick rigidly.
+        own = "[[contact]]" + self.scene.split("[[contact]]")[1].split("[drive]")[0]
+        self.scene = self.scene.replace(own, own + own.replace("at = 3", "at = 2"))
+
+        def examine(page):
+            told = page.run("document.querySelector('.answers').textContent")
+            self.assertIn("section points lie", told)
+            self.assertNotRegex(told, r"\b1 mode |\binf\b|\bnan\b")
+
+        self.look(examine, "--set", self.one)
+
 
 @unittest.skipUnless(chromium.executable(), "no Chromium here (Debian: chromium)")
 class FilesOfOtherKinds(unittest.TestCase):

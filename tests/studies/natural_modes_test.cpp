@@ -28,6 +28,21 @@ TEST(StickingModes, HoldFrictionalContactsAndLeaveStopsOpen) {
   EXPECT_EQ(sticking_modes({belt.structure(), contacts, belt.drive()}, 10).omega.size(), 0);
 }
 
+// Four masses, each on a spring to the ground, held to the next by contacts that close a ring: they move as one, at
+// √(k/m) (closed form). The fourth contact holds nothing that the others do not.
+TEST(StickingModes, OfContactsThatCloseARing) {
+  const fem::Structure structure(Eigen::Vector4d::Constant(0.5).asDiagonal().toDenseMatrix(), fem::Rayleigh{},
+                                 Eigen::Vector4d::Constant(8.0).asDiagonal().toDenseMatrix());
+  std::vector<friction::Contact> contacts;
+  for (int i = 0; i < 4; ++i)
+    contacts.push_back({unit(4, (i + 1) % 4) - unit(4, i),
+                        friction::CompliantCoulomb{.mu_s = 0.3, .mu_k = 0.3, .stiffness = 5.0}, 1.0});
+  const fem::Modes held = sticking_modes({structure, contacts, friction::Belt::constant(0.0)}, 10);
+  ASSERT_EQ(held.omega.size(), 1);
+  EXPECT_NEAR(held.omega(0), 4.0, 1e-14);
+  EXPECT_LT((held.shapes.array() - held.shapes(0)).abs().maxCoeff(), 1e-14);
+}
+
 TEST(StickShare, IsTheMeanOverContactsWhoseLawSticks) {
   const dynamics::HybridSystem belt = belt_chain(friction::Stribeck{0.4, 0.2, 8.0}, friction::Belt::constant(0.2), 4);
   std::vector<friction::Contact> contacts = belt.contacts();
