@@ -33,8 +33,30 @@ Eigen::VectorXd middles(const Eigen::MatrixXd& values) {
   return 0.5 * (values.rowwise().maxCoeff() + values.rowwise().minCoeff());
 }
 
+/// What contacts move about in the middle of a family: the centre of the gap between two stops, else zero.
+Eigen::VectorXd centres_of(const dynamics::HybridSystem& system) {
+  Eigen::VectorXd centres = Eigen::VectorXd::Zero(std::ssize(system.contacts()));
+  for (Eigen::Index c = 0; c < centres.size(); ++c) {
+    const auto* own = friction::clearance(system.contacts()[static_cast<std::size_t>(c)].law);
+    if (own != nullptr && own->left && own->right) centres(c) = 0.5 * (own->right->gap - own->left->gap);
+  }
+  return centres;
+}
+
+/// Whether an orbit meets no stop and is one of a family of shifts, those of a structure that floats.
+bool floats(const dynamics::HybridSystem& system, const PeriodicOrbit& orbit) {
+  const bool between_stops = std::ranges::any_of(system.contacts(), [](const friction::Contact& contact) {
+    const auto* own = friction::clearance(contact.law);
+    return own != nullptr && own->left && own->right;
+  });
+  constexpr double kRests = 1e-9;  // of directions of length 1
+  return between_stops && orbit.events.empty() && orbit.family.middleRows(system.size(), system.size()).isZero(kRests);
+}
+
 /// What takes an orbit along its family to where the springs that never slide reach as far to either side, and beyond
-/// that contacts move about zero; stacked. Empty where it is there, or no such spring makes the family.
+/// that contacts move about their centres; stacked. Empty where it is there, or no such spring makes the family and it
+/// is not one of shifts in a gap either: those would creep along a stop from the parameter on at which one of them
+/// meets it.
 Eigen::VectorXd way_to_middle(const dynamics::HybridSystem& system, const PeriodicOrbit& orbit) {
   std::vector<Eigen::Index> held, own_states;
   for (Eigen::Index c = 0; c < std::ssize(system.contacts()); ++c) {
@@ -45,7 +67,7 @@ Eigen::VectorXd way_to_middle(const dynamics::HybridSystem& system, const Period
     held.push_back(c);
     own_states.push_back(2 * system.size() + system.internal_begin(static_cast<int>(c)));
   }
-  if (held.empty()) return {};
+  if (held.empty() && !floats(system, orbit)) return {};
   dynamics::SimulateOptions options{.duration = orbit.period, .sample = orbit.period / kProbes, .keep_events = false};
   options.output = dynamics::SimulateOptions::Output::kContacts;
   options.flow.audit = false;
@@ -55,12 +77,14 @@ Eigen::VectorXd way_to_middle(const dynamics::HybridSystem& system, const Period
     directions.col(c) = system.contacts()[static_cast<std::size_t>(c)].direction;
   for (Eigen::Index k = 0; k < stretch.rows(); ++k)
     stretch.row(k) /= friction::spring_stiffness(system.contacts()[static_cast<std::size_t>(held[k])].law);
-  const Eigen::VectorXd off = middles(stretch), aside = middles(run.contact_q);
-  if (off.cwiseAbs().maxCoeff() <= kMiddle * stretch.cwiseAbs().maxCoeff() &&
-      aside.cwiseAbs().maxCoeff() <= kMiddle * run.contact_q.cwiseAbs().maxCoeff())
-    return {};
+  const Eigen::VectorXd off = middles(stretch), aside = middles(run.contact_q) - centres_of(system);
   const Eigen::MatrixXd stretched = orbit.family(own_states, Eigen::all),
                         moved = directions.transpose() * orbit.family.topRows(system.size());
+  const bool centred = aside.cwiseAbs().maxCoeff() <= kMiddle * run.contact_q.cwiseAbs().maxCoeff();
+  if (held.empty())
+    return centred ? Eigen::VectorXd()
+                   : Eigen::VectorXd(-orbit.family * moved.completeOrthogonalDecomposition().solve(aside));
+  if (centred && off.cwiseAbs().maxCoeff() <= kMiddle * stretch.cwiseAbs().maxCoeff()) return {};
   // The family is found to rounding of the orbit: a structure that moves as a whole stretches springs by 1e-16 or so.
   Eigen::JacobiSVD<Eigen::MatrixXd> svd(stretched, Eigen::ComputeThinU | Eigen::ComputeFullV);
   svd.setThreshold(kStretched);

@@ -2,6 +2,7 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/core/parallel.hpp>
 #include <slipmode/orbits/floquet.hpp>
+#include <slipmode/orbits/gap_motion.hpp>
 #include "clearance_systems.hpp"
 #include "fixtures/belt_oscillator.hpp"
 #include "fixtures/den_hartog.hpp"
@@ -162,6 +163,27 @@ TEST(Continuation, GrazingOfFloatingOrbitsInClosedForm) {
   EXPECT_NEAR(grazings[0].parameter, std::sqrt(0.5 * (std::sqrt(c2 * c2 + 4.0) - c2)), 1e-8);
   EXPECT_THAT(grazings[0].note, testing::HasSubstr("\"g\""));
   EXPECT_EQ(branch.points.back().orbit.family.cols(), 1);
+}
+
+// Started aside in the gap the branch goes on in its middle, where stops leave most room: both are met at once, and it
+// leads on to orbit B of S0 (Table 4.1, an independent computation agrees). Aside it would creep along one stop for
+// ever.
+TEST(Continuation, AFloatingOrbitAsideLeadsOverBothStopsToOrbitB) {
+  const HybridSystem base = Backlash{.omega = 1.4}.system();
+  State aside = linear_response(base);
+  aside.q(0) += 0.2;
+  const PeriodicOrbit orbit = find_orbit(base, aside);
+  ASSERT_EQ(orbit.word, "g");
+  const Branch branch = continue_orbit(over_frequency(base), orbit, 1.4, {.from = 0.9, .to = 1.4, .direction = -1});
+  ASSERT_EQ(branch.end, BranchEnd::kRange) << branch.reason;
+  const std::vector<SpecialPoint> grazings = of_kind(branch, SpecialKind::kGrazing);
+  ASSERT_EQ(grazings.size(), 1u);
+  const double c2 = 0.05 * 0.05;
+  EXPECT_NEAR(grazings[0].parameter, std::sqrt(0.5 * (std::sqrt(c2 * c2 + 4.0) - c2)), 1e-8);
+  const PeriodicOrbit& last = branch.points.back().orbit;
+  EXPECT_EQ(last.crossings, 4);
+  EXPECT_NEAR(last.multipliers(0).real(), 1.4210, 5e-5);
+  EXPECT_NEAR(last.multipliers(1).real(), 0.1482, 5e-5);
 }
 
 TEST(Continuation, FloatingOrbitsHaveNoSymmetryToLose) {
