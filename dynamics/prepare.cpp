@@ -17,25 +17,16 @@ namespace {
 constexpr double kOnGuard = 1e-12;
 /// The same where the state says its mode: it may come from a run that ended at an event, whose time was rounded.
 constexpr double kOnGuardAsGiven = 1e-9;
+constexpr double kModalRounding = 64.0 * std::numeric_limits<double>::epsilon();
 
-/// What a contact's displacement and speed are uncertain by: states come from a projection or from modal coordinates,
+/// What a contact's displacement, or speed, is uncertain by: states come from a projection or from modal coordinates,
 /// which round by all of the motion, not by what is at the contact, and by more where modes nearly cancel each other.
-struct Rounding {
-  double displacement, speed;
-
-  /// @param x  the start in modal coordinates
-  Rounding(const ModalModel& m, const friction::Contact& contact, std::size_t c, const State& start,
-           const Eigen::VectorXd& x) {
-    constexpr double kModalRounding = 64.0 * std::numeric_limits<double>::epsilon();
-    const auto i = static_cast<Eigen::Index>(c);
-    const auto of = [&](const Eigen::VectorXd& values, const Eigen::MatrixXd& rows) {
-      return kModalRounding * (contact.direction.lpNorm<1>() * values.lpNorm<Eigen::Infinity>() +
-                               rows.col(i).cwiseAbs().dot(x.cwiseAbs()));
-    };
-    displacement = of(start.q, m.displacement_row);
-    speed = of(start.v, m.velocity_row);
-  }
-};
+/// @param values  of all degrees of freedom @param x  the start in modal coordinates @param rows  its readings there
+double rounding(const friction::Contact& contact, const Eigen::VectorXd& values, const Eigen::VectorXd& x,
+                const Eigen::MatrixXd& rows, std::size_t c) {
+  return kModalRounding * (contact.direction.lpNorm<1>() * values.lpNorm<Eigen::Infinity>() +
+                           rows.col(static_cast<Eigen::Index>(c)).cwiseAbs().dot(x.cwiseAbs()));
+}
 
 /// @param message  called only when the condition fails: runs are too short to compose it each time
 template <class Message>
@@ -70,8 +61,9 @@ struct AtStop {
   double size, press_size;    ///< which rounding is measured by
   double on_guard, on_press;  ///< what may be off where the state says its mode
 
-  AtStop(const friction::Stop& own, double side, const friction::Contact& contact, const State& start,
-         const Rounding& rounding)
+  /// @param rounding, rate_rounding  see rounding()
+  AtStop(const friction::Stop& own, double side, const friction::Contact& contact, const State& start, double rounding,
+         double rate_rounding)
       : stop(own) {
     const double y = contact.direction.dot(start.q) + contact.offset;
     rate = side * contact.direction.dot(start.v);
@@ -81,8 +73,8 @@ struct AtStop {
     size = contact.direction.cwiseAbs().dot(start.q.cwiseAbs() + std::abs(start.time) * start.v.cwiseAbs()) +
            std::abs(contact.offset) + std::abs(stop.gap);
     press_size = stop.stiffness * size + stop.damping * contact.direction.cwiseAbs().dot(start.v.cwiseAbs());
-    on_guard = kOnGuardAsGiven * size + rounding.displacement;
-    on_press = kOnGuardAsGiven * press_size + stop.stiffness * rounding.displacement + stop.damping * rounding.speed;
+    on_guard = kOnGuardAsGiven * size + rounding;
+    on_press = kOnGuardAsGiven * press_size + stop.stiffness * rounding + stop.damping * rate_rounding;
   }
 };
 
@@ -114,10 +106,12 @@ bool agrees(const friction::Clearance& law, ContactMode mode, const std::optiona
 
 /// Where a clearance is at the start: as given, or by position and force; on a guard to rounding by the velocity.
 ContactMode start_mode(const friction::Clearance& law, const friction::Contact& contact, const State& start,
-                       std::size_t c, const Rounding& rounding) {
+                       std::size_t c, const ModalModel& m, const Eigen::VectorXd& x) {
+  const double of_place = rounding(contact, start.q, x, m.displacement_row, c);
+  const double of_rate = rounding(contact, start.v, x, m.velocity_row, c);
   std::optional<AtStop> left, right;
-  if (law.left) left.emplace(*law.left, -1.0, contact, start, rounding);
-  if (law.right) right.emplace(*law.right, 1.0, contact, start, rounding);
+  if (law.left) left.emplace(*law.left, -1.0, contact, start, of_place, of_rate);
+  if (law.right) right.emplace(*law.right, 1.0, contact, start, of_place, of_rate);
   if (!start.modes.empty()) {
     const ContactMode given = start.modes[c];
     require_or_say(agrees(law, given, left, right), [&] {
@@ -147,7 +141,7 @@ std::vector<ContactMode> start_modes(const HybridSystem& system, const ModalMode
   for (std::size_t c = 0; c < modes.size(); ++c) {
     const auto& contact = system.contacts()[c];
     if (const auto* clearance = friction::clearance(contact.law)) {
-      modes[c] = start_mode(*clearance, contact, start, c, Rounding(m, contact, c, start, x));
+      modes[c] = start_mode(*clearance, contact, start, c, m, x);
       continue;
     }
     if (!contact_forces(contact).sticks()) {
@@ -157,7 +151,7 @@ std::vector<ContactMode> start_modes(const HybridSystem& system, const ModalMode
     const double sliding = V - contact.direction.dot(start.v);
     const double scale =
         system.drive().velocity_scale(start.time) + contact.direction.cwiseAbs().dot(start.v.cwiseAbs());
-    const double at_rest = 1e-12 * scale + Rounding(m, contact, c, start, x).speed;
+    const double at_rest = 1e-12 * scale + rounding(contact, start.v, x, m.velocity_row, c);
     const ContactMode by_sign = std::abs(sliding) <= at_rest ? ContactMode::kStick
                                 : sliding > 0                ? ContactMode::kSlipPositive
                                                              : ContactMode::kSlipNegative;

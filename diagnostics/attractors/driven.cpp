@@ -218,8 +218,8 @@ Eigen::MatrixXd Readings::of(const Eigen::MatrixXd& q) const {
 DrivenPeriod driven_period(const Eigen::MatrixXd& points, const Eigen::VectorXd& scale, double tolerance,
                            int max_period) {
   constexpr Eigen::Index kRepeats = 3, kFewest = 20;
-  constexpr double kNearly =
-      100.0;  // tolerances: so near to repeating, a slow decay that beats is as likely as no period
+  // In tolerances: so near to repeating, a slow decay that beats is as likely as no period.
+  constexpr double kNearly = 100.0;
   if (!(tolerance > 0.0) || max_period < 1 || scale.size() != points.rows()) {
     throw InvalidInput(
         fmt::format("period of sections: expected tolerance > 0, max_period >= 1 and {} scales, found "

@@ -42,8 +42,8 @@ enum class DrivenRepeat : std::uint8_t {
 struct DrivenPeriod {
   DrivenRepeat repeat = DrivenRepeat::kUndecided;
   int period = 0;  ///< in drive periods; that approached by a settling motion; else 0
-  double mismatch =
-      0.0;  ///< largest difference of points `period` apart, relative to the scales; NaN where nothing nearly repeats
+  /// Largest difference of points a period apart, relative to the scales; NaN where nothing nearly repeats.
+  double mismatch = 0.0;
 };
 
 /// Smallest number of drive periods after which section points repeat within tolerance, looked for among the last

@@ -36,8 +36,8 @@ struct DrivenRow {
   std::vector<DrivenPoint> points = {};
   DrivenAgreement agreement = {};
   double trusted_share = 0.0;  ///< of the values: those where the distance is within what is trusted (see trusted_at)
-  std::pair<double, double> band = {kNone,
-                                    kNone};  ///< longest run of trusted values, first to last; both NaN without one
+  /// Longest run of trusted values, first to last; both NaN without one.
+  std::pair<double, double> band = {kNone, kNone};
   std::vector<AmplitudePeak> peaks = {};
   DrivenCost cost = {};
   std::string failure = {};  ///< empty, or why there is no such model

@@ -3,12 +3,14 @@
 #include <slipmode/core/decompositions.hpp>
 #include <slipmode/core/errors.hpp>
 #include <slipmode/dynamics/simulate.hpp>
+#include <slipmode/orbits/gap_motion.hpp>
 #include "orbits/internal/describe_orbit.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace slipmode::orbits {
 namespace {
@@ -33,30 +35,8 @@ Eigen::VectorXd middles(const Eigen::MatrixXd& values) {
   return 0.5 * (values.rowwise().maxCoeff() + values.rowwise().minCoeff());
 }
 
-/// What contacts move about in the middle of a family: the centre of the gap between two stops, else zero.
-Eigen::VectorXd centres_of(const dynamics::HybridSystem& system) {
-  Eigen::VectorXd centres = Eigen::VectorXd::Zero(std::ssize(system.contacts()));
-  for (Eigen::Index c = 0; c < centres.size(); ++c) {
-    const auto* own = friction::clearance(system.contacts()[static_cast<std::size_t>(c)].law);
-    if (own != nullptr && own->left && own->right) centres(c) = 0.5 * (own->right->gap - own->left->gap);
-  }
-  return centres;
-}
-
-/// Whether an orbit meets no stop and is one of a family of shifts, those of a structure that floats.
-bool floats(const dynamics::HybridSystem& system, const PeriodicOrbit& orbit) {
-  const bool between_stops = std::ranges::any_of(system.contacts(), [](const friction::Contact& contact) {
-    const auto* own = friction::clearance(contact.law);
-    return own != nullptr && own->left && own->right;
-  });
-  constexpr double kRests = 1e-9;  // of directions of length 1
-  return between_stops && orbit.events.empty() && orbit.family.middleRows(system.size(), system.size()).isZero(kRests);
-}
-
 /// What takes an orbit along its family to where the springs that never slide reach as far to either side, and beyond
-/// that contacts move about their centres; stacked. Empty where it is there, or no such spring makes the family and it
-/// is not one of shifts in a gap either: those would creep along a stop from the parameter on at which one of them
-/// meets it.
+/// that contacts move about zero; stacked. Empty where it is there, or no such spring makes the family.
 Eigen::VectorXd way_to_middle(const dynamics::HybridSystem& system, const PeriodicOrbit& orbit) {
   std::vector<Eigen::Index> held, own_states;
   for (Eigen::Index c = 0; c < std::ssize(system.contacts()); ++c) {
@@ -67,7 +47,7 @@ Eigen::VectorXd way_to_middle(const dynamics::HybridSystem& system, const Period
     held.push_back(c);
     own_states.push_back(2 * system.size() + system.internal_begin(static_cast<int>(c)));
   }
-  if (held.empty() && !floats(system, orbit)) return {};
+  if (held.empty()) return {};
   dynamics::SimulateOptions options{.duration = orbit.period, .sample = orbit.period / kProbes, .keep_events = false};
   options.output = dynamics::SimulateOptions::Output::kContacts;
   options.flow.audit = false;
@@ -77,14 +57,12 @@ Eigen::VectorXd way_to_middle(const dynamics::HybridSystem& system, const Period
     directions.col(c) = system.contacts()[static_cast<std::size_t>(c)].direction;
   for (Eigen::Index k = 0; k < stretch.rows(); ++k)
     stretch.row(k) /= friction::spring_stiffness(system.contacts()[static_cast<std::size_t>(held[k])].law);
-  const Eigen::VectorXd off = middles(stretch), aside = middles(run.contact_q) - centres_of(system);
+  const Eigen::VectorXd off = middles(stretch), aside = middles(run.contact_q);
+  if (off.cwiseAbs().maxCoeff() <= kMiddle * stretch.cwiseAbs().maxCoeff() &&
+      aside.cwiseAbs().maxCoeff() <= kMiddle * run.contact_q.cwiseAbs().maxCoeff())
+    return {};
   const Eigen::MatrixXd stretched = orbit.family(own_states, Eigen::all),
                         moved = directions.transpose() * orbit.family.topRows(system.size());
-  const bool centred = aside.cwiseAbs().maxCoeff() <= kMiddle * run.contact_q.cwiseAbs().maxCoeff();
-  if (held.empty())
-    return centred ? Eigen::VectorXd()
-                   : Eigen::VectorXd(-orbit.family * moved.completeOrthogonalDecomposition().solve(aside));
-  if (centred && off.cwiseAbs().maxCoeff() <= kMiddle * stretch.cwiseAbs().maxCoeff()) return {};
   // The family is found to rounding of the orbit: a structure that moves as a whole stretches springs by 1e-16 or so.
   Eigen::JacobiSVD<Eigen::MatrixXd> svd(stretched, Eigen::ComputeThinU | Eigen::ComputeFullV);
   svd.setThreshold(kStretched);
@@ -97,6 +75,20 @@ Eigen::VectorXd way_to_middle(const dynamics::HybridSystem& system, const Period
 
 /// time / period without whole periods.
 double share_of(double time, double period) { return time / period - std::floor(time / period); }
+
+/// What takes an orbit that meets no stop, one of a family of shifts, to where stops leave most room; stacked. Aside, a
+/// branch would creep along the stop that is met first. Empty where it is there, or there is no such family.
+Eigen::VectorXd way_to_most_room(const dynamics::HybridSystem& system, const PeriodicOrbit& orbit) {
+  if (!orbit.events.empty()) return {};
+  const std::optional<GapMotion> gap = GapMotion::of(system);
+  if (!gap || gap->continuum() != GapMotion::Continuum::kShift || !(gap->room(gap->middle()).least > 0.0)) return {};
+  const dynamics::State middle{.q = gap->middle().head(system.size()), .v = gap->middle().tail(system.size())};
+  const double period = system.drive().period().value();
+  const Eigen::VectorXd start = stacked(orbit.start);
+  Eigen::VectorXd way = stacked(advanced(system, middle, period * share_of(orbit.start.time, period))) - start;
+  if (way.norm() <= kMiddle * start.norm()) return {};
+  return way;
+}
 
 }  // namespace
 
@@ -319,7 +311,8 @@ BranchEvaluation BranchSolver::shifted(const BranchEvaluation& at, double share)
 std::optional<BranchEvaluation> BranchSolver::middle_of_family(const BranchEvaluation& at,
                                                                const PeriodicOrbit& orbit) const {
   if (orbit.family.cols() == 0 || half_period() || on_curve()) return std::nullopt;
-  const Eigen::VectorXd way = way_to_middle(at.problem->system(), orbit);
+  Eigen::VectorXd way = way_to_middle(at.problem->system(), orbit);
+  if (way.size() == 0) way = way_to_most_room(at.problem->system(), orbit);
   if (way.size() == 0) return std::nullopt;
   Eigen::VectorXd step = Eigen::VectorXd::Zero(parameter_row().size());
   step.head(way.size()) = way.cwiseQuotient(scale_);
