@@ -30,7 +30,7 @@ Result simulate(const Scene& scene, const py::kwargs& given) {
   auto [failure, result] = call([&] {
     const studies::Family model(scene, {}, choice.basis(scene, call.options()));
     const auto run = std::make_shared<const studies::Simulation>(studies::simulate(model, call.options()));
-    return std::pair(run->failure, Result(studies::content_of(scene, run, choice.word())));
+    return std::pair(run->failure, Result::unread(studies::content_of(scene, run, choice.word())));
   });
   if (failure) raise(*failure, py::cast(std::move(result)));
   return std::move(result);

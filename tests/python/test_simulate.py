@@ -316,6 +316,23 @@ class Threads(unittest.TestCase):
             np.testing.assert_array_equal(run.q, alone)
         self.assertGreater(counted[0], 100)  # four runs take 0.5 s and more: without the lock released it gets none
 
+    def test_several_threads_may_be_the_first_to_look_at_a_run(self):
+        for _ in range(20):
+            run, together = sm.simulate(BELT), threading.Barrier(4)
+            with tempfile.TemporaryDirectory() as folder:
+                paths = [pathlib.Path(folder) / f"{k}.h5" for k in range(4)]
+
+                def save(path):
+                    together.wait()
+                    run.save(path)
+
+                threads = [threading.Thread(target=save, args=(path,)) for path in paths]
+                for thread in threads:
+                    thread.start()
+                for thread in threads:
+                    thread.join()
+                self.assertEqual(len({path.read_bytes() for path in paths}), 1)
+
 
 class Shown(unittest.TestCase):
     def test_a_result_says_what_it_has(self):
