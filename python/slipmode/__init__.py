@@ -14,6 +14,8 @@ import contextlib
 import functools
 import html
 import os
+import re
+import reprlib
 import sys
 import warnings
 
@@ -508,6 +510,19 @@ def _native_record(value):
     return os.fspath(value) if isinstance(value, os.PathLike) else value
 
 
+def _asked(study, *arguments, **options):
+    """study(...); arguments it does not take are refused in a line that says which it does."""
+    try:
+        return study(*arguments, **options)
+    except TypeError as error:
+        taken = re.search(r"incompatible function arguments.*\n +1\. (\(.*\)) -> ", str(error))
+        if taken is None:
+            raise
+        given = [*map(reprlib.repr, arguments), *(f"{key}={reprlib.repr(value)}" for key, value in options.items())]
+        taken = taken[1].replace("slipmode._slipmode.", "").replace("Store", "Result").replace("**kwargs", "**options")
+        raise InvalidInput(f"{study.__name__}({', '.join(given)}): expected {study.__name__}{taken}") from None
+
+
 def _named(function, name):
     function.__name__ = function.__qualname__ = name
     function.__doc__ = getattr(_slipmode, name).__doc__.split("\n", 1)[1].strip()  # without pybind11's signature
@@ -531,7 +546,7 @@ def _study(name, kind=Result, subject=None):
             options["output"] = os.fspath(options["output"])
         try:
             with bars:
-                return kind(study((subject or _load)(scene), *map(_native, arguments), **options))
+                return kind(_asked(study, (subject or _load)(scene), *map(_native, arguments), **options))
         except NumericalFailure as failure:
             if failure.result is not None:
                 failure.result = kind(failure.result)
@@ -553,15 +568,18 @@ exponents = _study("exponents")
 _trade = _study("trade", Trade)
 advise = _study("advise", Advice)
 run = _study("run", list)
-values = _slipmode.values
+
+
+def values(start, stop, step):
+    return _asked(_slipmode.values, start, stop, step)
 
 
 def modes(scene, count=0):
-    return Result(_slipmode.modes(_load(scene), count))
+    return Result(_asked(_slipmode.modes, _load(scene), count))
 
 
 def pod(motion, modes=0):
-    return Result(_slipmode.pod(_store("motion", motion, "a result of simulate or ensemble, or its file"), modes))
+    return Result(_asked(_slipmode.pod, _store("motion", motion, "a result of simulate or ensemble, or its file"), modes))
 
 
 def reduce(scene, basis, modes=0):
@@ -571,13 +589,13 @@ def reduce(scene, basis, modes=0):
             raise InvalidInput(f"basis: array of {basis.ndim} dimensions: expected two, dof x mode")
     elif not isinstance(basis, str) or basis.endswith(".h5"):
         basis = _store("basis", basis, 'a result of pod or reduce, the word "lnm", or an array, dof x mode')
-    return Result(_slipmode.reduce(_load(scene), basis, modes))
+    return Result(_asked(_slipmode.reduce, _load(scene), basis, modes))
 
 
 def spectrum(orbit, dofs=(), **options):
     if "model" in options:
         options["model"] = _native(options["model"])
-    return Result(_slipmode.spectrum(_native(orbit), list(dofs), **options))
+    return Result(_asked(_slipmode.spectrum, _native(orbit), list(dofs), **options))
 
 
 _diagnose = _study("diagnose", subject=_native_record)
@@ -591,5 +609,5 @@ def trade(scene, axes=None, **options):
     return _trade(scene, axes=",".join(axes) if isinstance(axes, (list, tuple)) else axes, **options)
 
 
-for _function in (modes, pod, reduce, spectrum, diagnose, trade):
+for _function in (values, modes, pod, reduce, spectrum, diagnose, trade):
     _named(_function, _function.__name__)

@@ -204,6 +204,16 @@ class Errors(unittest.TestCase):
             with self.subTest(options), self.assertRaisesRegex(sm.InvalidInput, words):
                 sm.simulate(BELT, **options)
 
+    def test_arguments_that_a_study_does_not_take_are_refused_in_a_line(self):
+        for call, words in ((lambda: sm.sweep(BELT, over=("drive.speed", [0.1])), r"over=\('drive.speed', \[0.1\]\)\): expected sw"),
+                            (lambda: sm.sweep(BELT, "drive.speed", 0.2), r"expected sweep\(.*values: List\[float\]"),
+                            (lambda: sm.simulate(BELT, 3), r", 3\): expected simulate\(scene: Scene, \*\*options\)"),
+                            (lambda: sm.validate(BELT), "basis: Result"), (lambda: sm.modes(BELT, "a"), "count: int"),
+                            (lambda: sm.reduce(BELT, "lnm", "a"), "modes: int"), (lambda: sm.spectrum(3), "orbit: Result")):
+            with self.subTest(words), self.assertRaisesRegex(sm.InvalidInput, words) as caught:
+                call()
+            self.assertNotIn("\n", str(caught.exception))
+
     def test_a_run_that_fails_keeps_what_came_before(self):
         # Two events in a window of 1e-3 are made the limit; stick-slip at V = 0.1 has them 1 apart: a window of 10.
         scene = sm.Scene.load(DATASETS / "chain10/scene.toml",
