@@ -22,8 +22,8 @@ std::string initial_toml(const InitialSpec& initial) {
 }
 
 std::string reduction_toml(const ReductionSpec& reduction, bool sensors) {
-  const std::string out = table_toml("reduction", reduction, {"fit", "functions"}) +
-                          lines_toml(reduction.choice, {reduction.choice.modes > 0 ? "energy" : "modes"});
+  std::string out = table_toml("reduction", reduction, {"fit", "functions"}) +
+                    lines_toml(reduction.choice, {reduction.choice.modes > 0 ? "energy" : "modes"});
   if (!sensors) return out;
   return out + lines_toml(reduction, reduction.functions > 0 ? Without{"basis"} : Without{"basis", "functions"});
 }
@@ -77,14 +77,8 @@ std::string number_text(double value) {
 
 std::string number_line(const char* key, double value) { return fmt::format("{} = {}\n", key, number_text(value)); }
 
-std::string numbers_text(const std::vector<double>& values) {
-  std::vector<std::string> texts;
-  for (const double value : values) texts.push_back(number_text(value));
-  return fmt::format("[{}]", fmt::join(texts, ", "));
-}
-
 std::string one_or_many_text(const std::vector<double>& values) {
-  return values.size() == 1 ? number_text(values.front()) : numbers_text(values);
+  return values.size() == 1 ? number_text(values.front()) : value_toml(values);
 }
 
 std::string quoted_text(const std::string& text) {

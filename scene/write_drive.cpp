@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <array>
 
 namespace slipmode::scene {
 
@@ -15,7 +16,7 @@ std::string belt_toml(const friction::Belt& belt) {
 
 std::string force_place_toml(const ForcePlace& place) {
   if (const auto* at = std::get_if<ContactPlace>(&place)) return place_toml(*at);
-  return fmt::format("direction = {}\n", numbers_text(std::get<1>(place)));
+  return fmt::format("direction = {}\n", value_toml(std::get<1>(place)));
 }
 
 std::string force_toml(const ForceSpec& force) {
@@ -24,7 +25,7 @@ std::string force_toml(const ForceSpec& force) {
   out += force.frequency_hz ? number_line("frequency", *force.frequency_hz) : number_line("omega", force.omega);
   out += lines_toml(first, {"order"}) + force_place_toml(first.at);
   const double* mean = std::get_if<double>(&force.mean);
-  out += fmt::format("mean = {}\n", mean != nullptr ? number_text(*mean) : numbers_text(std::get<1>(force.mean)));
+  out += fmt::format("mean = {}\n", mean != nullptr ? number_text(*mean) : value_toml(std::get<1>(force.mean)));
   for (std::size_t k = 1; k < force.harmonics.size(); ++k) {
     const ForceSpec::Harmonic& own = force.harmonics[k];
     out += "\n[[drive.harmonic]]\n" + lines_toml(own) + force_place_toml(own.at);
@@ -36,12 +37,12 @@ std::string amplitude_toml(const friction::AmplitudeCurve& curve) {
   using Curve = friction::AmplitudeCurve;
   return std::visit(Overloaded{[](const Curve::Constant& constant) { return number_text(constant.amplitude); },
                                [](const Curve::Polynomial& polynomial) {
-                                 return fmt::format("{{ polynomial = {} }}", numbers_text(polynomial.coefficients));
+                                 return fmt::format("{{ polynomial = {} }}", value_toml(polynomial.coefficients));
                                },
                                [](const Curve::Table& table) {
                                  std::vector<std::string> points;
                                  for (const auto& [f, amplitude] : table.points)
-                                   points.push_back(numbers_text({f, amplitude}));
+                                   points.push_back(value_toml(std::array{f, amplitude}));
                                  return fmt::format("{{ table = [{}] }}", fmt::join(points, ", "));
                                },
                                [](const Curve::Exponential& exponential) {

@@ -55,7 +55,7 @@ std::string matrix_text(const Eigen::MatrixXd& matrix) {
   std::vector<std::string> rows;
   for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
     const Eigen::VectorXd row = matrix.row(i);
-    rows.push_back(numbers_text({row.begin(), row.end()}));
+    rows.push_back(value_toml(row));
   }
   return fmt::format("[{}]", fmt::join(rows, ", "));
 }

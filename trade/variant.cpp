@@ -49,7 +49,7 @@ std::string scene_text(const Variant& variant) {
     scene.source.given.insert("reduction");
   }
   drop_modes_beyond(scene);
-  const std::string text = scene::scene_file(scene);
+  std::string text = scene::scene_file(scene);
   (void)scene::parse_scene(text);
   return text;
 }

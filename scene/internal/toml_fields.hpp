@@ -131,8 +131,8 @@ template <class T>
   } else if constexpr (std::integral<T>) {
     return fmt::format("{}", value);
   } else if constexpr (requires { value.begin(); }) {
-    std::vector<std::string> texts;
-    for (const auto& item : value) texts.push_back(value_toml(item));
+    std::vector<std::string> texts(static_cast<std::size_t>(value.size()));
+    std::ranges::transform(value, texts.begin(), [](const auto& item) { return value_toml(item); });
     return fmt::format("[{}]", fmt::join(texts, ", "));
   } else {
     return inline_table(value);
@@ -153,7 +153,7 @@ template <class S>
       if (!field.is_per_item)
         add(value_toml(value));
       else if (!value.empty())
-        add(value.size() == 1 ? number_text(value.front()) : value_toml(value));
+        add(one_or_many_text(value));
     } else {
       add(value_toml(value));
     }

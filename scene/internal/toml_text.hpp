@@ -13,7 +13,6 @@ namespace slipmode::scene {
 [[nodiscard]] std::string number_text(double value);
 /// `key = value` as a line.
 [[nodiscard]] std::string number_line(const char* key, double value);
-[[nodiscard]] std::string numbers_text(const std::vector<double>& values);
 /// A number for one value, an array for several.
 [[nodiscard]] std::string one_or_many_text(const std::vector<double>& values);
 /// A string in quotes, escaped.
