@@ -1,6 +1,7 @@
 // Tangents through Dahl's and the LuGre law: closed forms, differences of an independent integrator, volumes.
 #include "fixtures/against_reference.hpp"
 #include "fixtures/bristle_scenes.hpp"
+#include "fixtures/differences.hpp"
 #include "fixtures/scenes.hpp"
 
 #include <gtest/gtest.h>
@@ -19,35 +20,14 @@ using friction::LuGre;
 using friction::Shaker;
 
 constexpr FlowOptions kFinest{.tolerance = 1e-13};
+/// Of differences of order 6: they leave the rounding of starts and ends alone, a few 1e-16/1e-5; ten times as far
+/// apart a start of the random scenes passes an event.
+constexpr double kStep = 1e-5;
 
 Eigen::VectorXd all_of(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const Eigen::VectorXd& own) {
   Eigen::VectorXd x(q.size() + v.size() + own.size());
   x << q, v, own;
   return x;
-}
-
-State nudged(const State& start, Eigen::Index i, double step) {
-  State out = start;
-  const Eigen::Index n = start.q.size();
-  (i < n ? out.q[i] : i < 2 * n ? out.v[i - n] : out.internal[i - 2 * n]) += step;
-  return out;
-}
-
-/// Of a flow's end state by central differences of order 2, 4 or 6. At 1e-5 the last leaves the rounding of starts and
-/// ends alone, a few 1e-16/1e-5; ten times as far apart a start of the random scenes passes an event.
-template <class EndOf>
-Eigen::MatrixXd differences(const State& start, double h, int order, const EndOf& end_of) {
-  const Eigen::Index size = 2 * start.q.size() + start.internal.size();
-  Eigen::MatrixXd out(size, size);
-  for (Eigen::Index i = 0; i < size; ++i) {
-    const auto slope = [&](int k) -> Eigen::VectorXd {
-      return (end_of(nudged(start, i, k * h)) - end_of(nudged(start, i, -k * h))) / (2.0 * k * h);
-    };
-    out.col(i) = order == 2   ? slope(1)
-                 : order == 4 ? Eigen::VectorXd((4.0 * slope(1) - slope(2)) / 3.0)
-                              : Eigen::VectorXd((15.0 * slope(1) - 6.0 * slope(2) + slope(3)) / 10.0);
-  }
-  return out;
 }
 
 /// End state of the independent reference (Taylor series in long double).
@@ -123,7 +103,7 @@ TEST(BristleTangent, AgreesWithDifferencesOfTheReferenceThroughReversals) {
     const RandomScene scene = random_bristles(seed, false, 3);
     const TangentResult tangent = tangent_flow(scene.system, scene.start, 4.0, kFinest);
     reversals += tangent.events.size();
-    const Eigen::MatrixXd expected = differences(scene.start, 1e-5, 6, reference_end(scene.system, 4.0));
+    const Eigen::MatrixXd expected = slopes(scene.start, reference_end(scene.system, 4.0), kStep, 6);
     EXPECT_LT(relative_gap(tangent.monodromy, expected), 1e-10) << "seed " << seed;
   }
   EXPECT_GT(reversals, 20u);
@@ -142,7 +122,7 @@ TEST(BristleTangent, AgreesWithDifferencesOfTheReferenceBesideSticks) {
       releases += event.kind == EventKind::kRelease ? 1 : 0;
       sticks += event.kind == EventKind::kStick ? 1 : 0;
     }
-    const Eigen::MatrixXd expected = differences(scene.start, 1e-5, 6, reference_end(scene.system, 6.0));
+    const Eigen::MatrixXd expected = slopes(scene.start, reference_end(scene.system, 6.0), kStep, 6);
     EXPECT_LT(relative_gap(tangent.monodromy, expected), 1e-10) << "seed " << seed;
   }
   EXPECT_GT(sticks, 5u);
@@ -161,14 +141,14 @@ TEST(BristleTangent, DifferencesConvergeToItAtTheirOrder) {
   for (const int order : {2, 4}) {
     double before = 0.0;
     for (const double h : {8e-3, 4e-3, 2e-3}) {
-      const double gap = relative_gap(differences(start, h, order, end), tangent.monodromy);
+      const double gap = relative_gap(slopes(start, end, h, order), tangent.monodromy);
       if (before > 0.0) {
         EXPECT_NEAR(std::log2(before / gap), order, 0.1 * order) << order << ' ' << h;
       }
       before = gap;
     }
   }
-  EXPECT_LT(relative_gap(differences(start, 5e-4, 6, end), tangent.monodromy), 1e-11);
+  EXPECT_LT(relative_gap(slopes(start, end, 5e-4, 6), tangent.monodromy), 1e-11);
 }
 
 TEST(BristleTangent, VolumesShrinkByTheIntegratedDivergence) {

@@ -1,6 +1,7 @@
 // The tangent flow of the closed form: saltation at stops, contact springs, lost contact, stick and their mixtures.
 #include <slipmode/dynamics/simulate.hpp>
 #include "fixtures/clearance_scenes.hpp"
+#include "fixtures/differences.hpp"
 #include "fixtures/scenes.hpp"
 #include "fixtures/shaken_scenes.hpp"
 
@@ -14,13 +15,6 @@ namespace {
 
 using namespace slipmode::fixtures;
 
-State moved(const State& start, Eigen::Index i, double step) {
-  State out = start;
-  const Eigen::Index n = start.q.size();
-  (i < n ? out.q(i) : i < 2 * n ? out.v(i - n) : out.internal(i - 2 * n)) += step;
-  return out;
-}
-
 struct Differences {
   Eigen::MatrixXd matrix;
   bool smooth = true;  ///< every motion met the same events in the same order, and two steps agree
@@ -29,25 +23,18 @@ struct Differences {
 /// Fourth-order central differences of the end state. Where the order of events changes within the step, or a crossing
 /// comes close to grazing, there is nothing smooth to compare with.
 Differences by_differences(const HybridSystem& system, const State& start, double duration) {
-  const Eigen::Index size = stacked(start).size();
-  Differences out{Eigen::MatrixXd(size, size)};
-  Eigen::MatrixXd coarse(size, size);
+  Differences out;
   const SimulateOptions options{.duration = duration, .flow = {.method = FlowMethod::kClosedForm, .audit = false}};
   const std::vector<Event> events = simulate(system, start, options).events;
-  const auto end_of = [&](Eigen::Index i, double step) {
-    const Trajectory run = simulate(system, moved(start, i, step), options);
+  const auto end_of = [&](const State& from) {
+    const Trajectory run = simulate(system, from, options);
     out.smooth &= run.events.size() == events.size();
     for (std::size_t k = 0; out.smooth && k < events.size(); ++k)
       out.smooth &= run.events[k].contact == events[k].contact && run.events[k].after == events[k].after;
     return stacked(run.final_state);
   };
-  const auto column = [&](Eigen::Index i, double h) -> Eigen::VectorXd {
-    return (8.0 * (end_of(i, h) - end_of(i, -h)) - (end_of(i, 2 * h) - end_of(i, -2 * h))) / (12.0 * h);
-  };
-  for (Eigen::Index i = 0; i < size; ++i) {
-    out.matrix.col(i) = column(i, 1e-5);
-    coarse.col(i) = column(i, 3e-5);
-  }
+  out.matrix = slopes(start, end_of, 1e-5);
+  const Eigen::MatrixXd coarse = slopes(start, end_of, 3e-5);
   out.smooth &= (coarse - out.matrix).cwiseAbs().maxCoeff() < 1e-7 * out.matrix.cwiseAbs().maxCoeff();
   return out;
 }
@@ -109,11 +96,9 @@ TEST(ClearanceTangent, DeterminantIsTheDampingMetOnTheWay) {
 TEST(ClearanceTangent, RateIsWhatAnInstantMoreAdds) {
   const HybridSystem system = backlash_train(0.8);
   TangentFlow flow(system);
-  const double h = 1e-5;
   const TangentResult at = flow.run(system.rest(), 30.0);
-  const Eigen::VectorXd later = stacked(flow.run(system.rest(), 30.0 + h).end);
-  const Eigen::VectorXd earlier = stacked(flow.run(system.rest(), 30.0 - h).end);
-  EXPECT_LT(((later - earlier) / (2.0 * h) - at.rate).cwiseAbs().maxCoeff(), 1e-8);
+  const auto end_at = [&](double later) { return stacked(flow.run(system.rest(), 30.0 + later).end); };
+  EXPECT_LT((slope(end_at, 1e-5, 2) - at.rate).cwiseAbs().maxCoeff(), 1e-8);
 }
 
 TEST(ClearanceTangent, NoTangentsAtAllCarryNothing) {

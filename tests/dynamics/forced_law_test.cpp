@@ -2,6 +2,7 @@
 // closed-form flow, tangents by differences, and the energy balance.
 #include "fixtures/against_reference.hpp"
 #include "fixtures/bristle_scenes.hpp"
+#include "fixtures/differences.hpp"
 #include "fixtures/scenes.hpp"
 
 #include <gtest/gtest.h>
@@ -119,31 +120,16 @@ TEST(ForcedLaws, TheTangentFlowAgreesWithDifferences) {
   const State start = swinging(3, 2, 1.5);
   const TangentResult tangent = tangent_flow(system, start, 12.0, flow);
   EXPECT_GE(tangent.events.size(), 3u);
-  const auto end_of = [&](Eigen::Index i, double step) {
-    State moved = start;
-    (i < 3 ? moved.q[i] : moved.v[i - 3]) += step;
-    const State end = simulate(system, moved, {.duration = 12.0, .flow = flow}).final_state;
-    Eigen::VectorXd x(6);
-    x << end.q, end.v;
-    return x;
+  const auto end_of = [&](const State& from) {
+    return stacked(simulate(system, from, {.duration = 12.0, .flow = flow}).final_state);
   };
-  const double h = 3e-4;  // fourth order: truncation far below 1e-7
-  for (Eigen::Index i = 0; i < 6; ++i) {
-    const Eigen::VectorXd expected =
-        (8.0 * (end_of(i, h) - end_of(i, -h)) - (end_of(i, 2 * h) - end_of(i, -2 * h))) / (12.0 * h);
-    EXPECT_LT((tangent.monodromy.col(i) - expected).cwiseAbs().maxCoeff(), 1e-7);
-  }
+  const Eigen::MatrixXd expected = slopes(start, end_of, 3e-4);  // truncation far below 1e-7
+  EXPECT_LT((tangent.monodromy - expected).cwiseAbs().maxCoeff(), 1e-7);
   // The rate at the end, by the motion a little later.
-  const double step = 1e-3;
   const auto later = [&](double dt) {
-    const State end = simulate(system, start, {.duration = 12.0 + dt, .flow = flow}).final_state;
-    Eigen::VectorXd x(6);
-    x << end.q, end.v;
-    return x;
+    return stacked(simulate(system, start, {.duration = 12.0 + dt, .flow = flow}).final_state);
   };
-  const Eigen::VectorXd rate =
-      (8.0 * (later(step) - later(-step)) - (later(2 * step) - later(-2 * step))) / (12.0 * step);
-  EXPECT_LT((tangent.rate - rate).cwiseAbs().maxCoeff(), 1e-8);
+  EXPECT_LT((tangent.rate - slope(later, 1e-3)).cwiseAbs().maxCoeff(), 1e-8);
 }
 
 TEST(ForcedLaws, ThousandTimesAsStrongAsFrictionStaysWithinTolerance) {

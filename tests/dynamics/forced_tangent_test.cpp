@@ -2,6 +2,7 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/dynamics/simulate.hpp>
 #include "fixtures/clearance_scenes.hpp"
+#include "fixtures/differences.hpp"
 #include "fixtures/scenes.hpp"
 #include "fixtures/shaken_scenes.hpp"
 
@@ -82,8 +83,7 @@ std::optional<Eigen::MatrixXd> by_differences(const HybridSystem& system, const 
   const auto matrix = [&](double h) {
     Eigen::MatrixXd out(stacked(start).size(), changes.cols());
     for (Eigen::Index k = 0; k < changes.cols(); ++k) {
-      const Eigen::VectorXd step = h * changes.col(k);
-      out.col(k) = (8.0 * (end_of(step) - end_of(-step)) - (end_of(2.0 * step) - end_of(-2.0 * step))) / (12.0 * h);
+      out.col(k) = slope([&](double step) { return end_of(step * changes.col(k)); }, h);
     }
     return out;
   };

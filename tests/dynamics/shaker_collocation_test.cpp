@@ -1,6 +1,7 @@
 // A shaken counterpart in the collocation flow.
 #include "fixtures/against_reference.hpp"
 #include "fixtures/den_hartog.hpp"
+#include "fixtures/differences.hpp"
 #include "fixtures/scenes.hpp"
 
 #include <gtest/gtest.h>
@@ -143,20 +144,11 @@ TEST(ShakerCollocation, TheTangentFlowAgreesWithDifferences) {
   const State start = swinging(3, 2, 1.5);
   const TangentResult tangent = tangent_flow(system, start, 12.0, flow);
   EXPECT_GE(tangent.events.size(), 3u);
-  const auto end_of = [&](Eigen::Index i, double step) {
-    State moved = start;
-    (i < 3 ? moved.q[i] : moved.v[i - 3]) += step;
-    const State end = simulate(system, moved, {.duration = 12.0, .flow = flow}).final_state;
-    Eigen::VectorXd x(6);
-    x << end.q, end.v;
-    return x;
+  const auto end_of = [&](const State& from) {
+    return stacked(simulate(system, from, {.duration = 12.0, .flow = flow}).final_state);
   };
-  const double h = 3e-4;  // fourth order: truncation far below 1e-7
-  for (Eigen::Index i = 0; i < 6; ++i) {
-    const Eigen::VectorXd expected =
-        (8.0 * (end_of(i, h) - end_of(i, -h)) - (end_of(i, 2 * h) - end_of(i, -2 * h))) / (12.0 * h);
-    EXPECT_LT((tangent.monodromy.col(i) - expected).cwiseAbs().maxCoeff(), 1e-7);
-  }
+  const Eigen::MatrixXd expected = slopes(start, end_of, 3e-4);  // truncation far below 1e-7
+  EXPECT_LT((tangent.monodromy - expected).cwiseAbs().maxCoeff(), 1e-7);
 }
 
 }  // namespace

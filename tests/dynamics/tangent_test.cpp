@@ -1,6 +1,7 @@
 // The tangent flow against closed forms, central differences and the identity M(T) f(x₀) = f(x(T)) of autonomous flows.
 #include "fixtures/belt_oscillator.hpp"
 #include "fixtures/contact_forces.hpp"
+#include "fixtures/differences.hpp"
 #include "fixtures/scenes.hpp"
 #include "fixtures/uniform_chain.hpp"
 
@@ -17,36 +18,16 @@ using friction::Stribeck;
 
 FlowOptions flow_of(FlowMethod method) { return {.method = method, .tolerance = 1e-13}; }
 
-Eigen::VectorXd coordinates_of(const State& s) {
-  Eigen::VectorXd x(2 * s.q.size());
-  x << s.q, s.v;
-  return x;
-}
-
-/// Central differences of the end state, fourth order, so that a step of 3e-4 leaves truncation far below 1e-7.
-Eigen::MatrixXd by_differences(const HybridSystem& system, const State& start, double duration, FlowMethod method) {
-  const Eigen::Index n = system.size();
-  const double h = 3e-4;
-  Eigen::MatrixXd result(2 * n, 2 * n);
-  const auto end_of = [&](Eigen::Index i, double step) {
-    State moved = start;
-    (i < n ? moved.q[i] : moved.v[i - n]) += step;
-    return coordinates_of(simulate(system, moved, {.duration = duration, .flow = flow_of(method)}).final_state);
-  };
-  for (Eigen::Index i = 0; i < 2 * n; ++i) {
-    result.col(i) = (8.0 * (end_of(i, h) - end_of(i, -h)) - (end_of(i, 2 * h) - end_of(i, -2 * h))) / (12.0 * h);
-  }
-  return result;
-}
-
 void expect_differences(const HybridSystem& system, const State& start, double duration, FlowMethod method,
                         std::size_t least_events) {
   const TangentResult tangent = tangent_flow(system, start, duration, flow_of(method));
   EXPECT_GE(tangent.events.size(), least_events);
-  const Eigen::MatrixXd expected = by_differences(system, start, duration, method);
+  const auto end_of = [&](const State& from) {
+    return stacked(simulate(system, from, {.duration = duration, .flow = flow_of(method)}).final_state);
+  };
+  const Eigen::MatrixXd expected = slopes(start, end_of, 3e-4);  // truncation far below 1e-7
   EXPECT_LT((tangent.monodromy - expected).cwiseAbs().maxCoeff(), 1e-7 * expected.cwiseAbs().maxCoeff());
-  const Trajectory run = simulate(system, start, {.duration = duration, .flow = flow_of(method)});
-  EXPECT_LT((coordinates_of(tangent.end) - coordinates_of(run.final_state)).cwiseAbs().maxCoeff(), 1e-10);
+  EXPECT_LT((stacked(tangent.end) - end_of(start)).cwiseAbs().maxCoeff(), 1e-10);
 }
 
 TEST(Tangent, WithoutFrictionItIsTheLinearFlow) {

@@ -2,6 +2,7 @@
 
 #include <slipmode/friction/places.hpp>
 #include <slipmode/orbits/balance/balance.hpp>
+#include "fixtures/differences.hpp"
 
 #include <gtest/gtest.h>
 #include <random>
@@ -21,7 +22,7 @@ inline void expect_exact_jacobian(const dynamics::HybridSystem& system, const Ba
     Eigen::VectorXd direction(J.cols());
     for (double& entry : direction) entry = normal(random);
     direction.tail(at.rigid.size()).setZero();  // set by the means
-    const auto moved = [&](double share) {
+    const auto moved = [&](double share) -> Eigen::VectorXd {
       Balance there = at;
       for (std::size_t p = 0; p < places.size(); ++p)
         for (const std::size_t c : places[p]) {
@@ -31,7 +32,7 @@ inline void expect_exact_jacobian(const dynamics::HybridSystem& system, const Ba
         }
       return balance_equations(system, there).residual;
     };
-    const Eigen::VectorXd rate = (8.0 * (moved(h) - moved(-h)) - (moved(2.0 * h) - moved(-2.0 * h))) / (12.0 * h);
+    const Eigen::VectorXd rate = fixtures::slope(moved, h);
     EXPECT_LT((rate - J * direction).norm(), tolerance * (J * direction).norm());
   }
 }

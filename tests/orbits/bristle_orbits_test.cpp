@@ -2,6 +2,7 @@
 // small perturbations; a special point found without tangents.
 #include <slipmode/orbits/continuation.hpp>
 #include <slipmode/orbits/floquet.hpp>
+#include "fixtures/differences.hpp"
 #include "fixtures/scenes.hpp"
 
 #include <gtest/gtest.h>
@@ -34,18 +35,11 @@ PeriodicOrbit belt_orbit(double speed) {
 
 /// d x(T)/d x(0) by central differences of order 4 of simulated motions, no tangents. The flow's 1e-12 leaves 1e-7.
 Eigen::MatrixXd map_by_differences(const HybridSystem& system, const PeriodicOrbit& orbit) {
-  const double h = 1e-5;
-  const Eigen::VectorXd x = stacked(orbit.start);
-  Eigen::MatrixXd out(x.size(), x.size());
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    const auto end = [&](double step) {
-      State from = with_coordinates(orbit.start, x + step * Eigen::VectorXd::Unit(x.size(), i));
-      from.modes.clear();
-      return stacked(advanced(system, from, orbit.period));
-    };
-    out.col(i) = (8.0 * (end(h) - end(-h)) - (end(2.0 * h) - end(-2.0 * h))) / (12.0 * h);
-  }
-  return out;
+  const auto end_of = [&](State from) {
+    from.modes.clear();
+    return stacked(advanced(system, from, orbit.period));
+  };
+  return fixtures::slopes(orbit.start, end_of, 1e-5);
 }
 
 void expect_multipliers_by_differences(const HybridSystem& system, const PeriodicOrbit& orbit) {

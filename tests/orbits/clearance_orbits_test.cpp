@@ -3,6 +3,7 @@
 #include <slipmode/orbits/floquet.hpp>
 #include "backlash_reference.hpp"
 #include "clearance_systems.hpp"
+#include "fixtures/differences.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -95,16 +96,10 @@ TEST(ClearanceOrbits, PlayWithoutDampingIsBoundedAtItsOwnFrequency) {
   const Eigen::Vector2cd mu = (half * half).eigenvalues();
   expect_multipliers(orbit, {mu(0), mu(1)}, 1e-9);
   EXPECT_NEAR(orbit.monodromy.determinant(), 1.0, 1e-11);
-  const auto end_of = [&](const Eigen::Vector2d& shift) {
-    const State start = with_coordinates(orbit.start, stacked(orbit.start) + shift);
-    return stacked(dynamics::simulate(system, start, {.duration = orbit.period}).final_state);
+  const auto end_of = [&](const State& from) {
+    return stacked(dynamics::simulate(system, from, {.duration = orbit.period}).final_state);
   };
-  const double h = 1e-4;
-  for (Eigen::Index i = 0; i < 2; ++i) {
-    const Eigen::Vector2d e = h * Eigen::Vector2d::Unit(i);
-    const Eigen::Vector2d slope = (8.0 * (end_of(e) - end_of(-e)) - (end_of(2.0 * e) - end_of(-2.0 * e))) / (12.0 * h);
-    EXPECT_LT((slope - orbit.monodromy.col(i)).norm(), 1e-9 * orbit.monodromy.norm());
-  }
+  EXPECT_LT((fixtures::slopes(orbit.start, end_of, 1e-4) - orbit.monodromy).norm(), 1e-9 * orbit.monodromy.norm());
 }
 
 TEST(ClearanceOrbits, FloatingInTheGapIsAFamily) {
@@ -181,21 +176,16 @@ TEST(ClearanceOrbits, AgreeWithAnIndependentIntegrator) {
     const PeriodicOrbit orbit = orbit_after_settling(Backlash{.omega = omega}.system(), start);
     const BacklashReference reference{.omega = omega};
     const dynamics::ContactMode mode = orbit.start.modes[0];
-    const auto end_of = [&](const Eigen::Vector2d& shift) {
-      BacklashReference::Point from{.t = orbit.start.time, .x = stacked(orbit.start) + shift};
+    const auto end_of = [&](const State& at) -> Eigen::Vector2d {
+      BacklashReference::Point from{.t = at.time, .x = stacked(at)};
       if (mode == dynamics::ContactMode::kLeftStop) from.mode = BacklashReference::kLeft;
       if (mode == dynamics::ContactMode::kRightStop) from.mode = BacklashReference::kRight;
       from.flying = from.mode == BacklashReference::kFree && std::abs(from.x[0]) > 1.0;
       return reference.run(from, orbit.period, 4000).x;
     };
-    EXPECT_LT((end_of(Eigen::Vector2d::Zero()) - stacked(orbit.start)).norm(), 1e-9);
-    const double h = 1e-5;
-    Eigen::Matrix2d differences;
-    for (Eigen::Index i = 0; i < 2; ++i) {
-      const Eigen::Vector2d e = h * Eigen::Vector2d::Unit(i);
-      differences.col(i) = (end_of(e) - end_of(-e)) / (2 * h);
-    }
-    EXPECT_LT((differences - orbit.monodromy).norm(), 1e-7 * std::max(1.0, orbit.monodromy.norm()));
+    EXPECT_LT((end_of(orbit.start) - stacked(orbit.start)).norm(), 1e-9);
+    EXPECT_LT((fixtures::slopes(orbit.start, end_of, 1e-5, 2) - orbit.monodromy).norm(),
+              1e-7 * std::max(1.0, orbit.monodromy.norm()));
   }
 }
 

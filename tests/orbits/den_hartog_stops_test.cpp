@@ -1,6 +1,7 @@
 // Den Hartog's oscillator with stops: m ẍ + k x + F sign ẋ = P cos ωt, one stop or several each half cycle, against its
 // sliding arcs in closed form. (Without stops: friction_orbits_test.cpp.)
 #include <slipmode/orbits/shooting.hpp>
+#include "fixtures/differences.hpp"
 #include "fixtures/stopping_oscillator.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +24,7 @@ void expect_slides(const StoppingOscillator& o, std::size_t stops) {
   const PeriodicOrbit orbit = find_orbit(system, settle_guess(system, system.rest(), 20.0));
   // What stops forgets its velocity and keeps its place: multipliers 0 and the square of d(last place)/d(first place).
   const auto last = [&](double step) { return o.half_cycle(expected.front().from + step).back().to; };
-  const double h = 1e-4, half = (8.0 * (last(h) - last(-h)) - (last(2.0 * h) - last(-2.0 * h))) / (12.0 * h);
+  const double half = fixtures::slope(last, 1e-4);
   EXPECT_NEAR(orbit.leading_modulus, half * half, 1e-8);
   EXPECT_EQ(orbit.zero_multipliers, 1);
   ASSERT_EQ(orbit.events.size(), 4 * stops);

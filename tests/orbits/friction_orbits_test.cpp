@@ -4,6 +4,7 @@
 #include <slipmode/orbits/shooting.hpp>
 #include "fixtures/belt_oscillator.hpp"
 #include "fixtures/den_hartog.hpp"
+#include "fixtures/differences.hpp"
 #include "fixtures/scenes.hpp"
 
 #include <gmock/gmock.h>
@@ -264,18 +265,11 @@ TEST(FrictionOrbits, ShakenWithStopsKeepsOneMultiplier) {
   const PeriodicOrbit orbit = find_orbit(system, settle_guess(system, system.rest(), 30.0));
   EXPECT_THAT(orbit.word, testing::HasSubstr("0"));
   EXPECT_GE(orbit.zero_multipliers, 1);
-  const double step = 1e-5;
-  Eigen::Matrix2d differences;
-  for (Eigen::Index i = 0; i < 2; ++i) {
-    const Eigen::VectorXd x = stacked(orbit.start);
-    const auto end_of = [&](double h) {
-      State moved = with_coordinates(orbit.start, x + h * Eigen::VectorXd::Unit(2, i));
-      moved.modes.clear();
-      return stacked(advanced(system, moved, orbit.period));
-    };
-    differences.col(i) = (end_of(step) - end_of(-step)) / (2.0 * step);
-  }
-  EXPECT_LT((differences - orbit.monodromy).cwiseAbs().maxCoeff(), 1e-6);
+  const auto end_of = [&](State from) {
+    from.modes.clear();
+    return stacked(advanced(system, from, orbit.period));
+  };
+  EXPECT_LT((fixtures::slopes(orbit.start, end_of, 1e-5, 2) - orbit.monodromy).cwiseAbs().maxCoeff(), 1e-6);
 }
 
 TEST(FrictionOrbits, BadInputIsNamed) {

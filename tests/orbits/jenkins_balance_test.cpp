@@ -5,6 +5,7 @@
 #include <slipmode/fem/masses.hpp>
 #include <slipmode/orbits/balance/balance_branch.hpp>
 #include <slipmode/orbits/balance/hill.hpp>
+#include "fixtures/differences.hpp"
 #include "orbits/balance/internal/balanced_law.hpp"
 
 #include <gmock/gmock.h>
@@ -134,8 +135,7 @@ TEST(JenkinsForce, WithMinorLoopsIsThatOfAMarchedStopOperator) {
 }
 
 TEST(JenkinsForce, JacobianIsExactWithSlidesWithoutAndWithMinorLoops) {
-  // Central differences of fourth order, each coefficient by itself.
-  constexpr double h = 1e-4;
+  // Central differences, each coefficient by itself.
   for (unsigned seed = 1; seed <= 6; ++seed)
     for (const BalancedJenkins& law : kElements) {
       const Eigen::Index H = 2 * static_cast<Eigen::Index>(seed);
@@ -153,7 +153,7 @@ TEST(JenkinsForce, JacobianIsExactWithSlidesWithoutAndWithMinorLoops) {
       };
       Eigen::MatrixXd rate(2 * H + 1, 2 * H + 1);
       for (Eigen::Index i = 0; i <= 2 * H; ++i)
-        rate.col(i) = (8.0 * (moved(i, h) - moved(i, -h)) - (moved(i, 2.0 * h) - moved(i, -2.0 * h))) / (12.0 * h);
+        rate.col(i) = fixtures::slope([&](double step) { return moved(i, step); }, 1e-4);
       EXPECT_LT((law.force(y, 1.0, kExact, H).jacobian - rate).norm(), 1e-8 * rate.norm()) << "seed " << seed;
     }
 }

@@ -2,6 +2,7 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/orbits/floquet.hpp>
 #include "clearance_systems.hpp"
+#include "fixtures/differences.hpp"
 #include "fixtures/scenes.hpp"
 #include "orbits/internal/branch_tests.hpp"
 
@@ -129,15 +130,8 @@ TEST(Guesses, NameWhatTheyLack) {
 
 /// Fourth-order differences of the flow in all coordinates, the contacts' own included.
 Eigen::MatrixXd by_differences(const HybridSystem& system, const PeriodicOrbit& orbit, double h) {
-  const Eigen::VectorXd x = stacked(orbit.start);
-  const auto end_of = [&](Eigen::Index i, double step) {
-    const State moved = with_coordinates(orbit.start, x + step * Eigen::VectorXd::Unit(x.size(), i));
-    return stacked(advanced(system, moved, orbit.period));
-  };
-  Eigen::MatrixXd result(x.size(), x.size());
-  for (Eigen::Index i = 0; i < x.size(); ++i)
-    result.col(i) = (8 * (end_of(i, h) - end_of(i, -h)) - (end_of(i, 2 * h) - end_of(i, -2 * h))) / (12 * h);
-  return result;
+  return fixtures::slopes(
+      orbit.start, [&](const State& from) { return stacked(advanced(system, from, orbit.period)); }, h);
 }
 
 TEST(ContactStates, AShakenContactSpringHasAnOrbit) {
