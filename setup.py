@@ -34,11 +34,13 @@ class ByCMake(build_ext):
              "-DCMAKE_UNITY_BUILD_BATCH_SIZE=12", "-DSLIPMODE_TESTS=OFF", "-DSLIPMODE_MPI=OFF", "-DSLIPMODE_PYTHON=ON",
              f"-DPython_EXECUTABLE={sys.executable}", *pybind11_option(),
              *shlex.split(os.environ.get("CMAKE_ARGS", ""))], check=True)
-        subprocess.run(["cmake", "--build", build, "--target", "slipmode_python"], check=True)
+        subprocess.run(["cmake", "--build", build, "--target", "slipmode_python_stub"], check=True)
         built, = (build / "python/slipmode").glob("_slipmode.*")
         target = pathlib.Path(self.get_ext_fullpath(extension.name))
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(built, target)
+        for typed in ("__init__.pyi", "py.typed"):
+            shutil.copy(build / "python/slipmode" / typed, target.parent)
 
 
 setup(

@@ -71,10 +71,13 @@ void end_watch(int own) {
 
 }  // namespace
 
-py::object Keywords::take(const char* name) {
+std::string python_name(const std::string& name) { return name == "from" ? "from_" : name; }
+
+py::object Keywords::take(const std::string& own_name) {
+  const std::string name = python_name(own_name);
   if (!given_.contains(name)) return {};
-  py::object value = given_[name];
-  PyDict_DelItemString(given_.ptr(), name);
+  py::object value = given_[name.c_str()];
+  PyDict_DelItemString(given_.ptr(), name.c_str());
   return value.is_none() ? py::object() : value;
 }
 
@@ -167,8 +170,10 @@ void Call::raise_progress_error() const {
 }
 
 std::string call_text() {
-  return "    threads: 0: as many as the machine runs at once\n"
-         "    progress: a function of (part, done, total); False: none; default: tqdm where it is installed\n";
+  return "    threads (int): 0: as many as the machine runs at once (default 0)\n"
+         "    progress (Callable[[str, int, int], object] | bool): called with part, done, total; False: none; else "
+         "tqdm\n"
+         "        where it is installed\n";
 }
 
 }  // namespace slipmode::python

@@ -25,6 +25,9 @@ namespace slipmode::python {
 
 namespace py = pybind11;
 
+/// A name as a keyword of Python: one that is a word of its grammar ends in an underscore.
+[[nodiscard]] std::string python_name(const std::string& name);
+
 /// What a call was given beyond its own arguments: options by the names of their field lists. Each is taken once; what
 /// nobody took is refused.
 class Keywords {
@@ -35,14 +38,14 @@ class Keywords {
   template <class S>
   void read(S& own) {
     for_each_field<S>([&](const auto& field) {
-      known_.emplace_back(field.name);
+      known_.push_back(python_name(field.name));
       const py::object value = take(field.name);
       if (value) own.*field.member = checked(field, value);
     });
   }
 
   /// Null when it was not given, or is None.
-  [[nodiscard]] py::object take(const char* name);
+  [[nodiscard]] py::object take(const std::string& name);
   /// Text, or what stands where it was not given.
   [[nodiscard]] std::string text(const char* name, std::string otherwise = {});
   /// `output`, the file that a long study writes; empty: none. @throws InvalidInput  where no file can be made
@@ -86,20 +89,31 @@ class Keywords {
   std::vector<std::string> known_;
 };
 
-/// A field as the beginning of a docstring's line: "    name: meaning [unit]".
+/// A field's meaning and unit for a docstring.
 template <class S, class T>
-[[nodiscard]] std::string field_text(const Field<S, T>& field) {
-  const std::string unit = *field.unit == '\0' ? "" : fmt::format(" [{}]", field.unit);
-  return fmt::format("    {}: {}{}", field.name, field.meaning, unit);
+[[nodiscard]] std::string meaning_text(const Field<S, T>& field) {
+  return *field.unit == '\0' ? field.meaning : fmt::format("{} [{}]", field.meaning, field.unit);
 }
 
-/// The fields of an options struct as lines of a docstring, with their defaults.
+/// What Python calls the type of an option.
+template <class T>
+[[nodiscard]] constexpr const char* type_text() {
+  if constexpr (std::is_same_v<T, bool>) return "bool";
+  if constexpr (std::is_integral_v<T> || std::is_same_v<T, std::optional<int>>) return "int";
+  if constexpr (std::is_same_v<T, std::optional<std::string>>) return "str | float";
+  return "float";
+}
+
+/// The fields of an options struct as lines of a docstring, "    name (type): meaning (default x)". The package makes
+/// signatures of them; one without a default is None where it is not given.
 template <class S>
 [[nodiscard]] std::string options_text() {
   const S own;
   std::string text;
-  for_each_field<S>([&](const auto& field) {
-    text += fmt::format("{} (default {})\n", field_text(field), std::string(py::str(py::cast(own.*field.member))));
+  for_each_field<S>([&]<class T>(const Field<S, T>& field) {
+    const py::object value = py::cast(own.*field.member);
+    text += fmt::format("    {} ({}): {}{}\n", python_name(field.name), type_text<T>(), meaning_text(field),
+                        value.is_none() ? "" : fmt::format(" (default {})", std::string(py::str(value))));
   });
   return text;
 }

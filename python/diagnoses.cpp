@@ -15,15 +15,20 @@ namespace {
 
 using scene::Scene;
 
+/// What is asked of the reduced models, and of all.
+struct Beside {
+  Eigen::Index modes = 0;
+  bool verdict = false;
+  static constexpr auto fields() {
+    return std::tuple{
+        optional("modes", &Beside::modes, "", "of the bases given; 0: as [reduction] chooses", kFromZero),
+        optional("verdict", &Beside::verdict, "", "dimensions, delay, embedding, spectrum and stick side by side too")};
+  }
+};
+
 Result exponents(const Scene& scene, const py::args& bases, const py::kwargs& given) {
   Keywords keywords("exponents", given);
-  struct Own {
-    bool verdict = false;
-    Eigen::Index modes = 0;
-    static constexpr auto fields() {
-      return std::tuple{optional("verdict", &Own::verdict, "", ""), optional("modes", &Own::modes, "", "", kCount)};
-    }
-  } own;
+  Beside own;
   studies::ExponentRequest request;
   keywords.read(own);
   keywords.read(request);
@@ -96,22 +101,22 @@ void add_diagnoses(py::module_& module) {
   module.def("exponents", &exponents, py::arg("scene"),
              ("Lyapunov exponents of the full model, and of reduced models beside it (results of `pod`, `ensemble` or\n"
               "`reduce`).\n\n"
-              "    modes: of the bases given; by default as [reduction] chooses\n"
-              "    verdict: dimensions, delay, embedding, spectrum and stick side by side too\n" +
-              options_text<studies::ExponentRequest>() + call_text())
+              "    *bases (Result): of those models\n" +
+              options_text<Beside>() + options_text<studies::ExponentRequest>() + call_text())
                  .c_str());
   module.def(
       "diagnose", &diagnose, py::arg("record"),
       ("What a record is: periodic, quasi-periodic, chaotic; exponents, dimensions, and every curve behind them.\n\n"
        "    record: a result (by default the velocity farthest from the contacts), a file's path, or an array of\n"
        "        samples, `interval` apart\n"
-       "    series: which record of a result or a file, e.g. \"v/3\"; of samples their name\n"
-       "    time: column or dataset with the instants, when not called time\n" +
+       "    series (str): which record of a result or a file, e.g. \"v/3\"; of samples their name\n"
+       "    time (str): column or dataset with the instants, when not called time\n" +
        options_text<results::SeriesRequest>() +
-       "    tools: only these, e.g. [\"information\", \"wolf\"]; by default all that mean something for it\n"
-       "    unit: of exponents and information: \"bits\" or \"nats\"\n"
-       "    bins: of equal width for mutual information, e.g. [5, 10, 20]\n"
-       "    seed: of the surrogates (default 1)\n" +
+       "    tools (list[str]): only these, e.g. [\"information\", \"wolf\"]; by default all that mean something for "
+       "it\n"
+       "    unit (str): of exponents and information: \"bits\" or \"nats\" (default \"bits\")\n"
+       "    bins (list[int]): of equal width for mutual information, e.g. [5, 10, 20]\n"
+       "    seed (int): of the surrogates (default 1)\n" +
        options_text<diagnostics::StudyOptions>() + call_text())
           .c_str());
   module.def(

@@ -23,7 +23,8 @@ std::optional<pod::NamedBasis> ModelChoice::basis(const scene::Scene& scene, con
 }
 
 std::string model_text() {
-  return "    model: \"full\", a result of `reduce`, or under a shaker \"BASIS:L\", e.g. \"pomf:3\"\n";
+  return "    model (str | Result): \"full\", a result of `reduce`, or under a shaker \"BASIS:L\", e.g. \"pomf:3\"\n"
+         "        (default \"full\")\n";
 }
 
 }  // namespace slipmode::python

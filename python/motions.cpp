@@ -118,7 +118,7 @@ void add_motions(py::module_& module) {
   module.def("validate", &validate, py::arg("scene"), py::arg("basis"),
              ("Reduced models on a basis compared with the full one, as [validation] says.\n\n"
               "    basis: of `pod`, of a reduced model, or a motion\n"
-              "    output: result file; an interrupted call goes on from there\n" +
+              "    output (str): result file; an interrupted call goes on from there\n" +
               options_text<studies::ValidationRequest>() + call_text())
                  .c_str());
 }

@@ -361,28 +361,34 @@ Result skeleton(const Scene& scene, const py::kwargs& given) {
 
 void add_orbits(py::module_& module) {
   const std::string search =
-      "    start: \"settle\" (a run from [initial]), \"initial\", or displacements and velocities\n" + model_text() +
-      options_text<studies::OrbitSearch>() +
-      "    by: \"shooting\" (exact), \"balance\": truncated Fourier series of the contacts, or \"mixed\" "
+      "    start (str | npt.ArrayLike): \"settle\" (a run from [initial]), \"initial\", or displacements and "
+      "velocities; of "
+      "a\n"
+      "        balance \"contact\" (all stops pressing) or \"gap\"\n" +
+      model_text() + options_text<studies::OrbitSearch>() +
+      "    by (str): \"shooting\" (exact), \"balance\": truncated Fourier series of the contacts, or \"mixed\" "
       "(find_orbit):\n"
-      "        contacts in the time domain, the rest in series, and the exact orbit behind: with certify or error\n" +
-      options_text<studies::BalanceWords>() + "    start of a balance: \"contact\" (all stops pressing), or \"gap\"\n";
+      "        contacts in the time domain, the rest in series, and the exact orbit behind: with certify or error\n"
+      "        (default \"shooting\")\n" +
+      options_text<studies::BalanceWords>();
   module.def("find_orbit", &find_orbit, py::arg("scene"),
              ("A periodic orbit, its multipliers and one period of it; a balance; or a mixed orbit.\n\n" + search +
               call_text())
                  .c_str());
-  module.def("continue_orbit", &continue_orbit, py::arg("scene"), py::arg("over"), py::arg("to"),
-             py::arg("from_") = py::none(),
-             ("Branches of periodic orbits over a key. They begin at the scene's own value of the key where the range\n"
-              "holds it, and go both ways; else at `from_`.\n\n"
-              "    over: key of the scene, e.g. \"drive.omega\"\n    to: end of the range\n"
-              "    from_: its beginning; by default the scene's own value\n"
-              "    point, along: a kind of special point, or \"kind:value\" for the one nearest to a value of `over`,\n"
-              "        and (key, from, to) to follow it over a second key too: curves in the plane of both. Kinds:\n"
-              "        " +
-              fmt::format("{}", fmt::join(studies::followed_words(), ", ")) + "\n" + search +
-              options_text<BranchCertificates>() + options_text<studies::ContinuationRequest>() + call_text())
-                 .c_str());
+  module.def(
+      "continue_orbit", &continue_orbit, py::arg("scene"), py::arg("over"), py::arg("to"),
+      py::arg("from_") = py::none(),
+      ("Branches of periodic orbits over a key. They begin at the scene's own value of the key where the range\n"
+       "holds it, and go both ways; else at `from_`.\n\n"
+       "    over: key of the scene, e.g. \"drive.omega\"\n    to: end of the range\n"
+       "    from_: its beginning; by default the scene's own value\n"
+       "    point (str): a kind of special point, or \"kind:value\" for the one nearest to a value of `over`, to be\n"
+       "        followed over a second key too: curves in the plane of both. Kinds:\n"
+       "        " +
+       fmt::format("{}", fmt::join(studies::followed_words(), ", ")) +
+       "\n    along (tuple[str, float, float]): that key, from, to\n" + search + options_text<BranchCertificates>() +
+       options_text<studies::ContinuationRequest>() + call_text())
+          .c_str());
   module.def("spectrum", &spectrum, py::arg("orbit"), py::arg("dofs") = std::vector<int>{},
              ("Fourier coefficients of an exact orbit: displacement, velocity and force of each contact.\n\n"
               "    orbit: of find_orbit\n    dofs: degrees of freedom, from 1, whose motion is given too\n" +

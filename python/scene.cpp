@@ -22,8 +22,9 @@ namespace {
 template <class S>
 std::string table_text(const std::string& heading) {
   std::string text = fmt::format("\n{}\n", heading);
-  for_each_field<S>(
-      [&](const auto& field) { text += field_text(field) + (field.is_required ? ", required\n" : "\n"); });
+  for_each_field<S>([&](const auto& field) {
+    text += fmt::format("    {}: {}{}\n", field.name, meaning_text(field), field.is_required ? ", required" : "");
+  });
   return text;
 }
 

@@ -108,7 +108,7 @@ void add_sweeps(py::module_& module) {
       "values", &diagnostics::sweep_values, py::arg("start"), py::arg("stop"), py::arg("step"),
       "Values of a range, both ends included: to the last bit those of the executable's START:STOP:STEP, so that\n"
       "a study begun by one goes on in the other.");
-  const std::string output = "    output: result file; an interrupted call goes on from there\n";
+  const std::string output = "    output (str): result file; an interrupted call goes on from there\n";
   module.def("sweep", &sweep, py::arg("scene"), py::arg("over"), py::arg("values"),
              ("Settled motion over values of a key.\n\n    over: key of the scene, e.g. \"drive.speed\"\n" +
               model_text() + output + options_text<studies::SweepOptions>() + call_text())

@@ -55,7 +55,7 @@ Result advise(const Scene& given_scene, const py::kwargs& given) {
 
 void add_trades(py::module_& module) {
   const std::string output =
-      "    output: result file; an interrupted call goes on from there, one without from the user's cache\n";
+      "    output (str): result file; an interrupted call goes on from there, one without from the user's cache\n";
   module.def("trade", &trade_off, py::arg("scene"),
              ("Speed against accuracy: what is how wrong, and how costly. rows are the configurations, the reference\n"
               "first; chosen is the scene of what error or budget picked.\n\n" +

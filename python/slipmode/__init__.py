@@ -10,9 +10,13 @@ which has what its file would have, under the same names; `result.save(path)` wr
 Errors are InvalidInput (a ValueError) and NumericalFailure (a RuntimeError); Ctrl-C ends a study.
 """
 
+from __future__ import annotations
+
+import ast
 import contextlib
 import functools
 import html
+import inspect
 import os
 import re
 import reprlib
@@ -58,7 +62,7 @@ def _document(tables):
     return "\n".join(lines) + "\n"
 
 
-def _load(source, set=None):
+def _load(source: Scene | str | os.PathLike | dict, set: dict | None = None) -> Scene:
     """A scene from a file's path, a dict of its tables (arrays of tables as lists of dicts), or another scene.
 
     set: keys to change, for example {"drive.speed": 0.25, "contact.0.mu_s": 0.5}
@@ -78,7 +82,7 @@ def _load(source, set=None):
 Scene.load = staticmethod(_load)
 
 
-def _set(self, changes=None, /, **named):
+def _set(self, changes: dict | None = None, /, **named: object) -> Scene:
     """The same scene with keys changed: scene.set({"drive.speed": 0.25}), or scene.set(drive__speed=0.25)."""
     return _load(self, dict(changes or {}) | {key.replace("__", "."): value for key, value in named.items()})
 
@@ -89,7 +93,7 @@ Scene.set = _set
 class Tables(dict):
     """Tables of a scene; `+` joins them: structure(M, C, K) + contact(...) + {"drive": {...}, "time": {...}}."""
 
-    def __add__(self, other):
+    def __add__(self, other: dict) -> Tables:
         joined = Tables(self)
         for name, table in other.items():
             joined[name] = joined[name] + table if name == "contact" and name in joined else table
@@ -99,12 +103,12 @@ class Tables(dict):
         return Tables(other) + self
 
 
-def structure(M, C, K):
+def structure(M: npt.ArrayLike, C: npt.ArrayLike, K: npt.ArrayLike) -> Tables:
     """A structure of matrices, n x n, NumPy's or SciPy's sparse ones."""
     return Tables(structure={"kind": "matrices", "mass": M, "damping": C, "stiffness": K})
 
 
-def contact(at, law, **numbers):
+def contact(at: int | list[int], law: str, **numbers: object) -> Tables:
     """A contact: `at` the number of a degree of freedom from 1 (or a pair of them), its law's word and its numbers, as in
     [[contact]] of a scene file."""
     return Tables(contact=[{"at": at, "law": law, **numbers}])
@@ -157,20 +161,20 @@ class _Branch:
         group = _Branch(self._store, f"{self._prefix}{name}/")
         return group if group._columns is None else group._table()
 
-    def __getattr__(self, name):
+    def __getattr__(self, name: str) -> Any:
         if name.startswith("_"):  # also what __init__ has not set yet, which the message below needs
             raise AttributeError(name)
         if name in self._children:
             return self._child(name)
         raise AttributeError(f"no {name!r} here; there are: {', '.join(self._children)}")
 
-    def __getitem__(self, name):
+    def __getitem__(self, name: str) -> Any:
         """By its name in the file, for example result["trajectory/q"]."""
         if name in self._names or any(other.startswith(f"{name}/") for other in self._names):
             return self._child(name)
         raise KeyError(name)
 
-    def __contains__(self, name):
+    def __contains__(self, name: str) -> bool:
         return name in self._names or name in self._children
 
     def __dir__(self):
@@ -190,11 +194,11 @@ class _Branch:
             table[name] = column
         return table
 
-    def unit(self, name):
+    def unit(self, name: str) -> str:
         """Unit of a dataset: "1" of a pure number, "" of what has none."""
         return self._store.meaning(self._prefix + name)[0]
 
-    def meaning(self, name):
+    def meaning(self, name: str) -> str:
         """What a dataset or group is."""
         return self._store.meaning(self._prefix + name)[1]
 
@@ -248,16 +252,16 @@ class Result(_Branch):
         super().__init__(store, "")
 
     @property
-    def kind(self):
+    def kind(self) -> str:
         """What it is: "trajectory", "pod", "branches", ..."""
         return self._store.kind
 
     @property
-    def scene(self):
+    def scene(self) -> Scene:
         """The scene it was made from."""
         return self._store.scene()
 
-    def save(self, path):
+    def save(self, path: str | os.PathLike) -> None:
         """Writes the file the executable would have written. Appears whole or not at all."""
         self._store.save(os.fspath(path))
 
@@ -281,7 +285,7 @@ class Result(_Branch):
                 branches = inner
         return places
 
-    def __getattr__(self, name):
+    def __getattr__(self, name: str) -> Any:
         if name.startswith("_"):
             raise AttributeError(name)
         if name in self._places:
@@ -297,7 +301,7 @@ class Result(_Branch):
     def __repr__(self):
         return f"<slipmode {self.kind}>\n{super().__repr__()}"
 
-    def to_xarray(self):
+    def to_xarray(self) -> Any:
         """All arrays as an xarray.Dataset (needs xarray) with their units and meanings. Dimensions are named as meanings
         name them ("time x dof"), columns of a table by their group, others by number."""
         import xarray
@@ -322,7 +326,7 @@ class Result(_Branch):
             variables[name] = ([name], *variables[name][1:])  # instants of what goes over them
         return xarray.Dataset(variables, attrs={"kind": self.kind})
 
-    def plot(self, x=None, y=None, axes=None, **style):
+    def plot(self, x: str | None = None, y: str | None = None, axes: Any = None, **style: object) -> Any:
         """One dataset over another (needs matplotlib); gives the axes back. By default what the result is about."""
         import matplotlib.pyplot as plt
 
@@ -346,12 +350,12 @@ class Run(Result):
     statistics, final_state."""
 
     @property
-    def t(self):
+    def t(self) -> np.ndarray:
         """Sampling instants [s]."""
         return self.time
 
     @property
-    def lambda_(self):
+    def lambda_(self) -> np.ndarray:
         """Contact forces, time x contact [N]."""
         return self["trajectory/lambda"]
 
@@ -367,18 +371,18 @@ class Trade(Result):
     _shown = ("name", "dX", "dE", "points", "spread", "energy", "stick", "time", "failure")
 
     @property
-    def rows(self):
+    def rows(self) -> np.ndarray:
         """A row each."""
         return self[self._table_name]
 
     @property
-    def sentences(self):
+    def sentences(self) -> str:
         """What follows, a line each."""
         said = list(self["trade/recommendations"])
         return "\n".join([*said, self["trade/choice/sentence"]] if "trade/choice/sentence" in self else said)
 
     @property
-    def chosen(self):
+    def chosen(self) -> Scene:
         """The scene of the configuration that error or budget picked."""
         if "trade/choice/scene" not in self:
             raise InvalidInput("trade: nothing was to be chosen; give error or budget")
@@ -421,11 +425,11 @@ class Advice(Trade):
     _shown = ("effect", "verdict", "measure", "error", "noise")
 
     @property
-    def sentences(self):
+    def sentences(self) -> str:
         return self["advice/sentences"].rstrip()
 
     @property
-    def lean(self):
+    def lean(self) -> Scene:
         """The scene with only what it requires."""
         return _slipmode.parse_scene(self["advice/scene"], [], "<lean>")
 
@@ -439,7 +443,7 @@ def _kind_of(store):
     return Run if store.kind in ("trajectory", "orbit") else Result
 
 
-def read(path):
+def read(path: str | os.PathLike) -> Result:
     """A result file, all of it in memory. Kinds, names and units are those the file gives itself."""
     store = _slipmode.read(os.fspath(path))
     return _kind_of(store)(store)
@@ -523,9 +527,53 @@ def _asked(study, *arguments, **options):
         raise InvalidInput(f"{study.__name__}({', '.join(given)}): expected {study.__name__}{taken}") from None
 
 
-def _named(function, name):
+class _Type(str):
+    """An annotation, shown as it is written."""
+
+    __repr__ = str.__str__
+
+
+_PYBIND = {  # what pybind11 calls a type, and what is taken for it
+    "slipmode._slipmode.Scene": "Scene | str | os.PathLike | dict",
+    "slipmode._slipmode.Store": "Result | str | os.PathLike",
+    "List[float]": "npt.ArrayLike",
+    "numpy.ndarray[numpy.float64[m, n]]": "npt.ArrayLike",
+}
+_OPTION = re.compile(r"^    ([*]?)(\w+) \((.+?)\): (.*(?:\n {8}.*)*)", re.MULTILINE)
+
+
+def _signature(doc, returns):
+    """A call's signature: its arguments from pybind11's line of the documentation, its options from those that name a
+    type, "name (type): meaning (default x)"."""
+    line, text = doc.split("\n", 1)
+    own = ast.parse(f"def {line}: ...").body[0].args
+    parameter = inspect.Parameter
+    defaults = [parameter.empty] * (len(own.args) - len(own.defaults)) + list(map(ast.literal_eval, own.defaults))
+    parameters = []
+    for argument, default in zip(own.args, defaults):
+        words = ast.unparse(argument.annotation)
+        for theirs, ours in _PYBIND.items():
+            words = words.replace(theirs, ours)
+        parameters.append(parameter(argument.arg, parameter.POSITIONAL_OR_KEYWORD, default=default, annotation=_Type(words)))
+    for star, name, words, said in _OPTION.findall(text):
+        if star:
+            parameters.append(parameter(name, parameter.VAR_POSITIONAL, annotation=_Type(words)))
+            continue
+        default = re.search(r"\(default (.*)\)$", said)
+        parameters.append(parameter(name, parameter.KEYWORD_ONLY, default=ast.literal_eval(default[1]) if default else None,
+                                    annotation=_Type(words if default else f"{words} | None")))
+    return inspect.Signature(parameters, return_annotation=_Type(returns))
+
+
+def _named(function, name, returns, **taken):
+    """@param taken: options that are also taken by their place, with their types"""
     function.__name__ = function.__qualname__ = name
-    function.__doc__ = getattr(_slipmode, name).__doc__.split("\n", 1)[1].strip()  # without pybind11's signature
+    doc = getattr(_slipmode, name).__doc__
+    function.__doc__ = doc.split("\n", 1)[1].strip()
+    signature = _signature(doc, returns)
+    own = [one.replace(kind=one.POSITIONAL_OR_KEYWORD, annotation=_Type(taken[one.name])) if one.name in taken else one
+           for one in signature.parameters.values()]
+    function.__signature__ = signature.replace(parameters=sorted(own, key=lambda one: one.kind))
     return function
 
 
@@ -552,7 +600,7 @@ def _study(name, kind=Result, subject=None):
                 failure.result = kind(failure.result)
             raise
 
-    return _named(call, name)
+    return _named(call, name, "list[str]" if kind is list else kind.__name__)
 
 
 simulate = _study("simulate", Run)
@@ -609,5 +657,7 @@ def trade(scene, axes=None, **options):
     return _trade(scene, axes=",".join(axes) if isinstance(axes, (list, tuple)) else axes, **options)
 
 
-for _function in (values, modes, pod, reduce, spectrum, diagnose, trade):
-    _named(_function, _function.__name__)
+_named(values, "values", "list[float]")
+_named(trade, "trade", "Trade", axes="str | list[str] | None")
+for _function in (modes, pod, reduce, spectrum, diagnose):
+    _named(_function, _function.__name__, "Result")
