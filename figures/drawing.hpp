@@ -1,6 +1,9 @@
 #pragma once
 
+#include <slipmode/core/fields.hpp>
+
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -28,7 +31,7 @@ struct ColourField {
   std::string missing = {};             ///< what "no value" means
 };
 
-/// What a figure shows, apart from how gnuplot draws it: the interactive report draws from it.
+/// What a figure shows, apart from how gnuplot draws it: the interactive report and the Python package draw from it.
 /// Titles are plain text, labels as axis_label gives them.
 struct Drawing {
   struct Axes {
@@ -46,3 +49,12 @@ struct Drawing {
 };
 
 }  // namespace slipmode::figures
+
+namespace slipmode {
+
+template <>
+inline constexpr std::array kWords<figures::Series::Look> = {"line", "dashed", "dots", "marked", "points"};
+template <>
+inline constexpr std::array kWords<figures::Drawing::Shared> = {"none", "all", "row", "column"};
+
+}  // namespace slipmode

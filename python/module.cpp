@@ -17,4 +17,5 @@ PYBIND11_MODULE(_slipmode, module) {
   slipmode::python::add_sweeps(module);
   slipmode::python::add_trades(module);
   slipmode::python::add_diagnoses(module);
+  slipmode::python::add_figures(module);
 }

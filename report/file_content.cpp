@@ -27,12 +27,11 @@ figures::Series sorted(const figures::Series& points) {
 }
 
 Json series_json(const figures::Series& own, const figures::Drawing::Axes& axes) {
-  constexpr const char* kLooks[] = {"line", "dashed", "dots", "marked", "points"};
   const bool dots = own.look == figures::Series::Look::kDots;
   const figures::Series drawn = dots ? sorted(own) : own;
   const Grain grain = dots ? Grain::kCoarse : Grain::kFine;
   Json out = {{"title", own.title},
-              {"look", kLooks[static_cast<std::size_t>(own.look)]},
+              {"look", kWords<figures::Series::Look>.at(static_cast<std::size_t>(own.look))},
               {"colour", own.colour},
               {"x", list_json(drawn.x, grain, axes.log_x)},
               {"y", list_json(drawn.y, grain, axes.log_y)}};
@@ -61,10 +60,10 @@ Json drawing_json(const figures::Drawing& drawing) {
     if (axes.field) panel["field"] = field_json(*axes.field);
     panels.push_back(std::move(panel));
   }
-  constexpr const char* kShared[] = {"none", "all", "row", "column"};
+  constexpr auto& kShared = kWords<figures::Drawing::Shared>;
   return {{"columns", drawing.columns},
-          {"shared_x", kShared[static_cast<std::size_t>(drawing.x)]},
-          {"shared_y", kShared[static_cast<std::size_t>(drawing.y)]},
+          {"shared_x", kShared.at(static_cast<std::size_t>(drawing.x))},
+          {"shared_y", kShared.at(static_cast<std::size_t>(drawing.y))},
           {"panels", std::move(panels)}};
 }
 

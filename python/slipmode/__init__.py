@@ -2,7 +2,7 @@
 
     import slipmode as sm
     scene = sm.Scene.load("scene.toml", set={"drive.speed": 0.25})
-    run = sm.simulate(scene)              # run.t, run.q, run.events, run.audit; run.plot()
+    run = sm.simulate(scene)              # run.t, run.q, run.events, run.audit; run.plot(), run.figures()
     rom = sm.reduce(scene, sm.pod(run), modes=6)
 
 A scene may be given as a Scene, as a file's path, or as a dict of the tables of a scene file. Every study gives a Result,
@@ -25,7 +25,7 @@ import warnings
 
 import numpy as np
 
-from . import _slipmode
+from . import _figures, _slipmode
 from ._slipmode import InvalidInput, NumericalFailure, Scene, __version__
 
 # ---------------------------------------------------------------- scenes
@@ -241,6 +241,9 @@ class _Branch:
         return _html_table(("name", "value", "unit", "meaning"), self._shown())
 
 
+_MOST_FIGURES = 3  # in a notebook, below the table
+
+
 class Result(_Branch):
     """What a study gives, or a result file holds: datasets under the names of the file.
 
@@ -300,6 +303,18 @@ class Result(_Branch):
 
     def __repr__(self):
         return f"<slipmode {self.kind}>\n{super().__repr__()}"
+
+    def figures(self) -> dict[str, Any]:
+        """What it shows, as matplotlib's figures by their names, the most telling first: those that the executable draws
+        of its file. result.figures()["bifurcation"].savefig("bifurcation.pdf")
+        """
+        return {drawing["name"]: _figures.draw(drawing) for drawing in _slipmode.figures(self._store)}
+
+    def _repr_html_(self):
+        return super()._repr_html_() + self._figures_html()
+
+    def _figures_html(self):
+        return _figures.as_html(_slipmode.figures(self._store)[:_MOST_FIGURES])
 
     def to_xarray(self) -> Any:
         """All arrays as an xarray.Dataset (needs xarray) with their units and meanings. Dimensions are named as meanings
@@ -415,7 +430,7 @@ class Trade(Result):
     def _repr_html_(self):
         said = html.escape(self.sentences).replace("\n", "<br>")
         tables = (self._cells(*table) for table in self._tables)
-        return f"<p>{said}</p>" + "".join(_html_table(header, rows) for header, *rows in tables)
+        return f"<p>{said}</p>" + "".join(_html_table(header, rows) for header, *rows in tables) + self._figures_html()
 
 
 class Advice(Trade):
