@@ -6,6 +6,8 @@
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
+#include <cstddef>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -49,13 +51,14 @@ py::dict figure_of(const figures::FileFigure& figure, const Drawing& own) {
                   "shade"_a = std::string(figures::kStickShade));
 }
 
-/// What each figure that tells shows, the most telling first.
-py::list figures_of(const Result& result) {
+/// What each figure that tells shows, the most telling first. @param most  so many at most
+py::list figures_of(const Result& result, std::size_t most) {
   std::vector<std::pair<figures::FileFigure, Drawing>> drawn;
   {
     const py::gil_scoped_release unlocked;
     const results::StoreReader reader = result.reader();
     for (const figures::FileFigure& figure : figures::figures_of(reader)) {
+      if (drawn.size() == most) break;
       Drawing drawing = figure.draw(reader).drawing();
       if (!drawing.panels.empty()) drawn.emplace_back(figure, std::move(drawing));
     }
@@ -67,6 +70,8 @@ py::list figures_of(const Result& result) {
 
 }  // namespace
 
-void add_figures(py::module_& module) { module.def("figures", &figures_of, py::arg("result")); }
+void add_figures(py::module_& module) {
+  module.def("figures", &figures_of, py::arg("result"), py::arg("most") = std::numeric_limits<std::size_t>::max());
+}
 
 }  // namespace slipmode::python

@@ -314,7 +314,7 @@ class Result(_Branch):
         return super()._repr_html_() + self._figures_html()
 
     def _figures_html(self):
-        return _figures.as_html(_slipmode.figures(self._store)[:_MOST_FIGURES])
+        return _figures.as_html(self._store, _MOST_FIGURES)
 
     def to_xarray(self) -> Any:
         """All arrays as an xarray.Dataset (needs xarray) with their units and meanings. Dimensions are named as meanings

@@ -2,11 +2,14 @@
 
 import base64
 import html
+import importlib.util
 import io
 import math
 import re
 
 import numpy as np
+
+from . import _slipmode
 
 _GREEK = str.maketrans("abgdelmnoprstwxzD", "αβγδελμνοπρστωξζΔ")
 _SHARED = {"none": False, "all": True, "row": "row", "column": "col"}
@@ -19,9 +22,14 @@ _LOOKS = {
 }
 
 
+def _plain(text):
+    """Text in which a dollar is a dollar."""
+    return text.replace("$", r"\$")
+
+
 def _label(text):
     """A label as gnuplot takes it, "x_{10} [m]", as matplotlib does."""
-    text = re.sub(r"\{/Symbol (\w)\}", lambda found: found[1].translate(_GREEK), text.replace("$", r"\$"))
+    text = re.sub(r"\{/Symbol (\w)\}", lambda found: found[1].translate(_GREEK), _plain(text))
     text = re.sub(r"(?<!\\)([_^])\{([^}]*)\}", r"$\1{\\mathregular{\2}}$", text)
     return re.sub(r"\\+([_^{}@&~])", r"\1", text)
 
@@ -65,7 +73,7 @@ def draw(drawing):
                 axes.errorbar(series["x"], series["y"], series["error"], fmt="none", ecolor=curve.get_color())
             if series["title"]:
                 named.setdefault(series["title"], curve)
-        axes.set_title(panel["title"].replace("$", r"\$"))
+        axes.set_title(_plain(panel["title"]))
         if not one_x or k + columns >= len(panels):
             axes.set_xlabel(_label(panel["x_label"]))
         if not one_y or k % columns == 0:
@@ -75,20 +83,19 @@ def draw(drawing):
         if panel["log_y"]:
             axes.set_yscale("log")
         if named and tuple(named) not in legends:
-            axes.legend(named.values(), [title.replace("$", r"\$") for title in named], fontsize="small")
+            axes.legend(named.values(), [*map(_plain, named)], fontsize="small")
             legends.add(tuple(named))
     return figure
 
 
-def as_html(drawings):
-    """Figures as images in a page; nothing where there is no matplotlib."""
+def as_html(store, most):
+    """So many figures of a result as images in a page; nothing where there is no matplotlib."""
+    if importlib.util.find_spec("matplotlib") is None:
+        return ""
     text = ""
-    for drawing in drawings:
-        try:
-            picture = io.BytesIO()
-            draw(drawing).savefig(picture, format="png", dpi=80)
-        except ImportError:
-            return ""
+    for drawing in _slipmode.figures(store, most):
+        picture = io.BytesIO()
+        draw(drawing).savefig(picture, format="png", dpi=80)
         data = base64.b64encode(picture.getvalue()).decode()
         text += f'<p><img alt="{html.escape(drawing["what"])}" src="data:image/png;base64,{data}"></p>'
     return text
