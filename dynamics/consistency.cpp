@@ -13,6 +13,9 @@ namespace {
 /// Forces are compared with their limits, and accelerations with zero, to this relative accuracy.
 constexpr double kForceTolerance = 1e-10;
 constexpr double kReleaseTolerance = 1e-6;
+/// A stick force further from its limit than this share is none that let go; accelerations are trusted to this many
+/// times what it is off by.
+constexpr double kLargestRelease = 1e-3, kReleasesRoundBy = 2.0;
 /// Below this share of the largest friction acceleration, sliding is taken to start with zero acceleration.
 constexpr double kSimpleTouch = 1e-7;
 /// Up to this many undecided contacts every combination can be tried.
@@ -37,6 +40,24 @@ Eigen::VectorXd acceleration_rounding(const Instant& now, const Eigen::VectorXd&
   Eigen::VectorXd size = Eigen::VectorXd::Constant(force.size(), force.lpNorm<Eigen::Infinity>());
   if (now.limit_size.size() > 0) size += now.limit_size;
   return kRoundsBy * (motion + now.model.mobility.diagonal().cwiseProduct(size).array());
+}
+
+/// What wᵀq̈ of contacts that let go may be off by: their stick forces have reached their limits in the regime that
+/// ends, whose stiffest modes can be 1e8 times as large as what is left here. Where another contact comes to rest at
+/// the same instant, forces are others, and nothing is known.
+Eigen::VectorXd release_rounding(const Instant& now, const std::vector<ContactMode>& modes,
+                                 const std::vector<bool>& at_rest, const std::vector<bool>& released,
+                                 const Eigen::VectorXd& stick) {
+  Eigen::VectorXd rounding = Eigen::VectorXd::Zero(stick.size());
+  for (std::size_t c = 0; c < modes.size(); ++c)
+    if (at_rest[c] && modes[c] != ContactMode::kStick) return rounding;
+  for (std::size_t c = 0; c < modes.size(); ++c) {
+    if (!released[c]) continue;
+    const auto i = static_cast<Eigen::Index>(c);
+    const double limit = now.laws[c].limit(stick(i)), off = std::abs(std::abs(stick(i)) - limit);
+    if (off <= kLargestRelease * limit) rounding(i) = kReleasesRoundBy * now.model.mobility(i, i) * off;
+  }
+  return rounding;
 }
 
 struct Trial {
@@ -160,6 +181,7 @@ Resolution resolve(const Instant& now, const std::vector<ContactMode>& modes, co
     trial.force(i) = sign_of(trial.modes[c]) * now.laws[c].onset(sign_of(trial.modes[c]));
   };
   refresh();
+  const Eigen::VectorXd stick = trial.force;
   bool any_released = false;
   for (std::size_t c = 0; c < nc; ++c)
     if (released[c]) {
@@ -188,9 +210,9 @@ Resolution resolve(const Instant& now, const std::vector<ContactMode>& modes, co
     return evaluate(now, at_rest, released, checked) || enumerate(now, at_rest, released, checked);
   };
   bool consistent = find();
-  if (!consistent) {  // forces at a limit that vanishes are told to their rounding
+  if (!consistent) {  // forces at a limit that vanishes are told to their rounding, as are those of fast modes
     checked = trial;
-    checked.rounding = acceleration_rounding(now, trial.force);
+    checked.rounding = acceleration_rounding(now, trial.force) + release_rounding(now, modes, at_rest, released, stick);
     consistent = find();
   }
   if (!consistent)

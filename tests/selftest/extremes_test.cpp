@@ -122,7 +122,8 @@ TEST(RandomScenes, OfTenSeedsThatOnceFailedHold) {
   // (166_6314); a flight beside sliding that grows, scaled by 1e-308 (190_5856: a stop passed); a contact point that
   // slides or not by an acceleration without the drive's force (194_226: Zeno); a stop without a gap that pressed by
   // what nearly cancelling modes round by (198_825: refused); a mass dying out before one, to 1e-320 (202_9231: no
-  // end); and, the judge's, speeds of a beam all but at rest (152_7026).
+  // end); a release 8e-8 s into a stick, told to 2e-6 of its force in the modes of the free beam (208_8725: no
+  // combination of stick and slip); and, the judge's, speeds of a beam all but at rest (152_7026).
   std::vector<std::pair<std::uint64_t, std::uint64_t>> scenes;
   for (const auto& file : std::filesystem::directory_iterator(SLIPMODE_SOURCE_DIR "/tests/selftest/scenes")) {
     const std::string name = file.path().stem();
