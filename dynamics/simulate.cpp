@@ -18,12 +18,23 @@ void require(bool condition, const std::string& message) {
   if (!condition) throw InvalidInput(message);
 }
 
-/// Energy from the modal coordinates where they decouple it, else from the state.
-double modal_energy(const HybridSystem& system, const ModalModel& m, const HybridPoint& point) {
-  if (!m.proportional) return system.energy(physical(m, point));
-  const Eigen::VectorXd& x = point.x;
-  const auto eta = x.head(m.np), rate = x.tail(m.np);
-  return 0.5 * rate.squaredNorm() + 0.5 * m.omega.cwiseProduct(eta).squaredNorm() - m.load.tail(m.np).dot(eta);
+/// Energy, constant loads' included, and the largest of what it is a sum of.
+struct Energy {
+  double value = 0.0, size = 0.0;
+};
+
+/// From the modal coordinates where they decouple it, else from the state.
+Energy modal_energy(const HybridSystem& system, const ModalModel& m, const HybridPoint& point) {
+  const auto sum = [](double stored, double by_load) {
+    return Energy{stored - by_load, std::max(stored, std::abs(stored - by_load))};
+  };
+  if (!m.proportional) {
+    const State state = physical(m, point);
+    return sum(system.structure().energy(state.q, state.v),
+               system.load().size() > 0 ? system.load().dot(state.q) : 0.0);
+  }
+  const auto eta = point.x.head(m.np), rate = point.x.tail(m.np);
+  return sum(0.5 * rate.squaredNorm() + 0.5 * m.omega.cwiseProduct(eta).squaredNorm(), m.load.tail(m.np).dot(eta));
 }
 
 /// Keeps what the options ask for, sample by sample in blocks so that lifting to the degrees of freedom is one product.
@@ -106,11 +117,12 @@ void run(AnyFlow& flow, const HybridSystem& system, const ModalModel& m, const S
          const SimulateOptions& options, Trajectory& out) {
   const double end = start.time + options.duration, keep_from = start.time + options.transient;
   Recorder recorder(options, m, start.time, out);
-  out.audit.energy_start = modal_energy(system, m, flow.point());
+  const Energy first = modal_energy(system, m, flow.point());
+  out.audit.energy_start = first.value;
   const auto balance = [&](const WorkSums& work) {
     return out.audit.energy_start + work.contact_work + work.force_work - work.viscous_loss;
   };
-  double largest_energy = std::abs(out.audit.energy_start);
+  double largest_energy = first.size;
   Eigen::VectorXd x(2 * m.np), force(m.contacts);
   std::vector<Eigen::VectorXd> event_q, event_v;
   bool going = true;
@@ -149,13 +161,14 @@ void run(AnyFlow& flow, const HybridSystem& system, const ModalModel& m, const S
     }
   }
   out.final_state = end_state(system, m, flow.point());
-  out.audit.energy_end = modal_energy(system, m, flow.point());
+  const Energy last = modal_energy(system, m, flow.point());
+  out.audit.energy_end = last.value;
   out.audit.contact_work = flow.work().contact_work;
   out.audit.drive_work = flow.work().drive_work;
   out.audit.friction_loss = flow.work().drive_work - flow.work().contact_work;
   out.audit.force_work = flow.work().force_work;
   out.audit.viscous_loss = flow.work().viscous_loss;
-  out.audit.exchanged = flow.work().exchanged + std::max(largest_energy, std::abs(out.audit.energy_end));
+  out.audit.exchanged = flow.work().exchanged + std::max(largest_energy, last.size);
   out.statistics = flow.statistics();
 }
 
