@@ -13,19 +13,21 @@
 namespace slipmode::dynamics {
 namespace {
 
-/// A clearance this close to a guard, as a share of the sizes at play, is on it.
+/// A clearance this close to a guard, as a share of the sizes at play, is on it; a flow locates guards to that share of
+/// them.
 constexpr double kOnGuard = 1e-12;
 /// The same where the state says its mode: it may come from a run that ended at an event, whose time was rounded.
 constexpr double kOnGuardAsGiven = 1e-9;
 constexpr double kModalRounding = 64.0 * std::numeric_limits<double>::epsilon();
 
-/// What a contact's displacement, or speed, is uncertain by: states come from a projection or from modal coordinates,
-/// which round by all of the motion, not by what is at the contact, and by more where modes nearly cancel each other.
+/// What the rounding of a contact's displacement, or speed, is a share of: states come from a projection or from modal
+/// coordinates, which round by all of the motion, not by what is at the contact, and by more where modes nearly cancel
+/// each other.
 /// @param values  of all degrees of freedom @param x  the start in modal coordinates @param rows  its readings there
-double rounding(const friction::Contact& contact, const Eigen::VectorXd& values, const Eigen::VectorXd& x,
-                const Eigen::MatrixXd& rows, std::size_t c) {
-  return kModalRounding * (contact.direction.lpNorm<1>() * values.lpNorm<Eigen::Infinity>() +
-                           rows.col(static_cast<Eigen::Index>(c)).cwiseAbs().dot(x.cwiseAbs()));
+double motion_size(const friction::Contact& contact, const Eigen::VectorXd& values, const Eigen::VectorXd& x,
+                   const Eigen::MatrixXd& rows, std::size_t c) {
+  return contact.direction.lpNorm<1>() * values.lpNorm<Eigen::Infinity>() +
+         rows.col(static_cast<Eigen::Index>(c)).cwiseAbs().dot(x.cwiseAbs());
 }
 
 /// @param message  called only when the condition fails: runs are too short to compose it each time
@@ -61,9 +63,9 @@ struct AtStop {
   double size, press_size;    ///< which rounding is measured by
   double on_guard, on_press;  ///< what may be off where the state says its mode
 
-  /// @param rounding, rate_rounding  see rounding()
-  AtStop(const friction::Stop& own, double side, const friction::Contact& contact, const State& start, double rounding,
-         double rate_rounding)
+  /// @param motion, speeds  see motion_size()
+  AtStop(const friction::Stop& own, double side, const friction::Contact& contact, const State& start, double motion,
+         double speeds)
       : stop(own) {
     const double y = contact.direction.dot(start.q) + contact.offset;
     rate = side * contact.direction.dot(start.v);
@@ -73,8 +75,8 @@ struct AtStop {
     size = contact.direction.cwiseAbs().dot(start.q.cwiseAbs() + std::abs(start.time) * start.v.cwiseAbs()) +
            std::abs(contact.offset) + std::abs(stop.gap);
     press_size = stop.stiffness * size + stop.damping * contact.direction.cwiseAbs().dot(start.v.cwiseAbs());
-    on_guard = kOnGuardAsGiven * size + rounding;
-    on_press = kOnGuardAsGiven * press_size + stop.stiffness * rounding + stop.damping * rate_rounding;
+    on_guard = kOnGuardAsGiven * size + kOnGuard * motion;
+    on_press = kOnGuardAsGiven * press_size + kOnGuard * (stop.stiffness * motion + stop.damping * speeds);
   }
 };
 
@@ -107,11 +109,11 @@ bool agrees(const friction::Clearance& law, ContactMode mode, const std::optiona
 /// Where a clearance is at the start: as given, or by position and force; on a guard to rounding by the velocity.
 ContactMode start_mode(const friction::Clearance& law, const friction::Contact& contact, const State& start,
                        std::size_t c, const ModalModel& m, const Eigen::VectorXd& x) {
-  const double of_place = rounding(contact, start.q, x, m.displacement_row, c);
-  const double of_rate = rounding(contact, start.v, x, m.velocity_row, c);
+  const double motion = motion_size(contact, start.q, x, m.displacement_row, c);
+  const double speeds = motion_size(contact, start.v, x, m.velocity_row, c);
   std::optional<AtStop> left, right;
-  if (law.left) left.emplace(*law.left, -1.0, contact, start, of_place, of_rate);
-  if (law.right) right.emplace(*law.right, 1.0, contact, start, of_place, of_rate);
+  if (law.left) left.emplace(*law.left, -1.0, contact, start, motion, speeds);
+  if (law.right) right.emplace(*law.right, 1.0, contact, start, motion, speeds);
   if (!start.modes.empty()) {
     const ContactMode given = start.modes[c];
     require_or_say(agrees(law, given, left, right), [&] {
@@ -151,7 +153,7 @@ std::vector<ContactMode> start_modes(const HybridSystem& system, const ModalMode
     const double sliding = V - contact.direction.dot(start.v);
     const double scale =
         system.drive().velocity_scale(start.time) + contact.direction.cwiseAbs().dot(start.v.cwiseAbs());
-    const double at_rest = 1e-12 * scale + rounding(contact, start.v, x, m.velocity_row, c);
+    const double at_rest = 1e-12 * scale + kModalRounding * motion_size(contact, start.v, x, m.velocity_row, c);
     const ContactMode by_sign = std::abs(sliding) <= at_rest ? ContactMode::kStick
                                 : sliding > 0                ? ContactMode::kSlipPositive
                                                              : ContactMode::kSlipNegative;
