@@ -145,6 +145,14 @@ void separate_rigid_modes(const Eigen::VectorXd& omega, Eigen::MatrixXd& shapes,
   for (Eigen::Index i = 0; i < omega.size(); ++i)
     if (omega(i) == 0.0) rigid.push_back(i);
   if (rigid.empty()) return;
+  // A solver turns a rigid-body shape towards the others by rounding of the largest ω² over theirs, most to the
+  // softest.
+  constexpr double kTurns = 16.0 * std::numeric_limits<double>::epsilon(), kMostTurned = 1e-9;
+  double softest = omega.maxCoeff();
+  for (const double w : omega)
+    if (w > 0.0) softest = std::min(softest, w);
+  const double turned = softest > 0.0 ? kTurns * std::pow(omega.maxCoeff() / softest, 2) : 0.0;
+  const double rounding = std::clamp(turned, kProportionalTolerance, kMostTurned);
   Eigen::MatrixXd own = damping(rigid, rigid);
   own = (own + own.transpose()).eval() / 2.0;
   const auto m = own.rows();
@@ -155,7 +163,7 @@ void separate_rigid_modes(const Eigen::VectorXd& omega, Eigen::MatrixXd& shapes,
     const Eigen::VectorXd size = coupled->colwise().norm().transpose().cwiseMax(1e-300);
     const Eigen::JacobiSVD<Eigen::MatrixXd> svd((*coupled)(rigid, Eigen::all) * size.cwiseInverse().asDiagonal(),
                                                 Eigen::ComputeFullU);
-    reached = (svd.singularValues().array() > kProportionalTolerance).count();
+    reached = (svd.singularValues().array() > rounding).count();
     Q = svd.matrixU();
   }
   for (const auto& [begin, count] : {std::pair{Eigen::Index{0}, reached}, std::pair{reached, m - reached}}) {
@@ -167,14 +175,7 @@ void separate_rigid_modes(const Eigen::VectorXd& omega, Eigen::MatrixXd& shapes,
   shapes(Eigen::all, rigid) = (shapes(Eigen::all, rigid) * Q).eval();
   damping(rigid, Eigen::all) = (Q.transpose() * damping(rigid, Eigen::all)).eval();
   damping(Eigen::all, rigid) = (damping(Eigen::all, rigid) * Q).eval();
-  // A solver turns a rigid-body shape towards the others by rounding of the largest ω² over theirs, most to the
-  // softest.
-  constexpr double kTurns = 16.0 * std::numeric_limits<double>::epsilon(), kMostTurned = 1e-9;
-  double softest = omega.maxCoeff();
-  for (const double w : omega)
-    if (w > 0.0) softest = std::min(softest, w);
-  const double turned = softest > 0.0 ? kTurns * std::pow(omega.maxCoeff() / softest, 2) : 0.0;
-  const double nothing = std::clamp(turned, kProportionalTolerance, kMostTurned) * damping_size;
+  const double nothing = rounding * damping_size;
   for (const Eigen::Index i : rigid)
     if (damping.row(i).norm() <= nothing && damping.col(i).norm() <= nothing) {
       damping.row(i).setZero();
@@ -184,7 +185,7 @@ void separate_rigid_modes(const Eigen::VectorXd& omega, Eigen::MatrixXd& shapes,
   (*coupled)(rigid, Eigen::all) = (Q.transpose() * (*coupled)(rigid, Eigen::all)).eval();
   for (auto w : coupled->colwise())
     for (const Eigen::Index i : rigid)
-      if (std::abs(w(i)) <= kProportionalTolerance * w.norm()) w(i) = 0.0;
+      if (std::abs(w(i)) <= rounding * w.norm()) w(i) = 0.0;
 }
 
 void ModalModel::measure_rates() {
