@@ -125,6 +125,7 @@ void ClosedFormFlow::enter_regime() {
     vector.product(r.particular.data(), x_.size(), inputs_.size(), inputs_.data(), resting_.data());
   }
   measure_amplitudes();
+  free_entered_ = free_;
   const StayPlace entered{point_.time, x_, free_, point_.x};
   if (regime_->forms) stay_.begin(*regime_->forms, entered, inputs_);
   if (regime_->belt) regime_->belt->begin(entered, inputs_);

@@ -216,6 +216,7 @@ class ClosedFormFlow {
   Eigen::VectorXd x_, inputs_, x_begin_, inputs_begin_;
   Eigen::VectorXd free_, amplitude_;  ///< at the step's begin: x less what follows the inputs, and its pairs' sizes
   Eigen::VectorXd free_begin_;        ///< that of x_begin_
+  Eigen::VectorXd free_entered_;      ///< that of the state in which the regime was entered
   Eigen::VectorXd resting_;           ///< what follows the inputs, where those are constant: under a periodic drive
   bool measured_ = false;             ///< these two belong to x_
   double begin_ = 0.0;

@@ -20,6 +20,8 @@ constexpr double kRising = 1e-13, kSimpleStart = 1e-9;
 /// A root is located to this phase of the fastest pair.
 constexpr double kClock = 1e-15;
 constexpr int kNewtonSteps = 20;
+/// A root is found in a window to better than this share of it.
+constexpr double kRootLeaves = 1e-5;
 /// Newton steps of less than this phase of the fastest pair go on from where the last one led.
 constexpr double kClose = 0.25;
 constexpr int kHalvings = 3;
@@ -84,8 +86,10 @@ double ClosedFormFlow::scale(const Guard& guard) const {
   const RegimeOutput& output = r.outputs[static_cast<std::size_t>(guard.output)];
   const ContactForces& law = resolver_.laws()[static_cast<std::size_t>(guard.contact)];
   if (output.kind == RegimeOutput::Kind::kForce) return law.static_limit;
-  // By the terms that are summed, not by amplitudes: a slow drift has a large one, however little it has moved.
-  double size = std::abs(guard.constant) + r.row.col(guard.output).cwiseAbs().dot(x_.cwiseAbs()) +
+  // By the terms that are summed, not by amplitudes: a slow drift has a large one, however little it has moved. What has
+  // moved may be a small difference of free motion and what the inputs have moved.
+  const auto row = r.row.col(guard.output).cwiseAbs();
+  double size = std::abs(guard.constant) + row.dot(x_.cwiseAbs()) + row.dot((free_ - free_entered_).cwiseAbs()) +
                 r.coefficient.col(guard.output).cwiseAbs().dot(inputs_.cwiseAbs());
   if (regime_->overlay) size += regime_->overlay->outputs[0].size(guard.output);
   if (guard.kind == GuardKind::kStop) return size;
@@ -139,13 +143,15 @@ ClosedFormFlow::GuardStart ClosedFormFlow::start_of(const Guard& guard) const {
   const double harmonic3 = overlay ? overlay->outputs[3].size(guard.output) : 0.0;
   const double third = std::abs(r.polynomial3.col(guard.output).dot(inputs_));
   const auto [value, rate] = evaluate(guard, point_.time);
+  const double size = scale(guard);
   return {.value = value,
           .rate = rate,
           .second = second_derivative(guard, point_.time),
           .most_second = room * most(r.weight2.col(guard.output), 1.0 / r.rate) +
                          std::abs(r.polynomial2.col(guard.output).dot(inputs_)) + third / r.rate + harmonic2,
           .most_third = room * most(r.weight3.col(guard.output), 1.0 / r.rate) + third + harmonic3,
-          .size = scale(guard),
+          // Of what rests where the guard is zero, what moves from now on is the size.
+          .size = size > 0.0 ? size : most(r.weight.col(guard.output), 0.0),
           .lasting = r.growth == 0.0 && third == 0.0 && !swells()};
 }
 
@@ -204,7 +210,10 @@ void ClosedFormFlow::foresee_starts() {
     double clear = 0.0;
     if (simple && g1 > 0) clear = g1 / start.most_second;
     if (flat && g2 > 0) clear = std::max(clear, 1.5 * g2 / start.most_third);
-    if (!rigid_speed && clear == 0.0) continue;  // falling through zero: an event at once
+    // A guard that falls through zero is an event at once; one of which neither slope nor curvature can be told may
+    // rise.
+    const bool told = !flat || std::abs(g2) > kSimpleStart * r.rate * r.rate * size;
+    if (!rigid_speed && clear == 0.0 && told) continue;
     clear = std::min(std::max(clear, near), 1.0 / r.rate);
     blind_start_ |= clear < tiny;
     clear = std::max(clear, tiny);
@@ -312,28 +321,40 @@ ClosedFormFlow::Search ClosedFormFlow::search(int level) const {
 
 bool ClosedFormFlow::approach(const Guard& guard, double from, double& tau) {
   // Newton on the exact guard.
-  const double rate = tables_->regime().rate, bend = curvature(guard.output);
-  const double rounding = std::numeric_limits<double>::epsilon() / 2.0 * scale(guard);
+  const double rate = tables_->regime().rate, bend = curvature(guard.output), size = scale(guard), start = tau;
+  const double rounding = std::numeric_limits<double>::epsilon() / 2.0 * size;
+  const auto move_to = [&](double t) {
+    x_ = x_begin_;
+    inputs_ = inputs_begin_;
+    move(t);
+  };
+  const auto give_up = [&] {
+    tau = start;
+    move_to(tau);
+    return false;
+  };
   double slope = 0.0;
   move(tau);
   for (int k = 0; k < kNewtonSteps; ++k) {
     const GuardValue now = evaluate(guard, begin_ + tau);
     slope = now.rate;
     const double shift = -now.value / slope;
-    if (!(slope < 0.0) || !(std::abs(shift) * rate < 2.0) || tau + shift < 0.0) return false;
+    if (!(slope < 0.0) || !(std::abs(shift) * rate < 2.0) || tau + shift < 0.0) return give_up();
     tau += shift;
-    if (!tables_->regime().motion.available() && !swells() && std::abs(shift) * rate < kClose) {
+    if (!tables_->regime().motion.available() && !swells() && std::abs(shift) * rate < kClose)
       advance(*tables_, shift, x_, inputs_);
-    } else {
-      x_ = x_begin_;
-      inputs_ = inputs_begin_;
-      move(tau);
-    }
+    else
+      move_to(tau);
     // Newton squares its error, with a factor of about the guard's curvature by its slope. It is done where that is
     // beyond the clock, or leaves of the guard no more than its rounding.
     if (std::abs(shift) * rate < kClock || shift * shift * bend < std::max(kClock / rate * std::abs(slope), rounding))
       break;
   }
+  // A root that the window has is no other one: of a guard that is all but flat there, Newton's may be.
+  const double shifted = std::abs(tau - start);
+  if (start == from && shifted > kRootLeaves * tables_->length(level_) &&
+      std::abs(slope) * shifted > 8.0 * kTouching * size)
+    return give_up();
   // The guard falls all the way from `from`: it vanishes here for the first time.
   return tau <= from || (tau - from) * bend < std::abs(slope);
 }

@@ -13,6 +13,8 @@ namespace {
 /// other one; its slope there is zero below the last share of what its terms are
 /// and would become in a radian of the fastest mode: at a turning point all of them may vanish.
 constexpr double kTouching = 1e-12, kStarting = 1e-11, kFlat = 1e-9;
+/// A time rounds by this share of itself, and of the step it was found in.
+constexpr double kOfTime = 1e-15;
 /// After a grazing the guard is as near to zero as the grazing was located.
 constexpr double kGrazed = 1e-6;
 
@@ -90,15 +92,60 @@ BernsteinPolynomial CollocationFlow::interpolant(double start, const RadauTables
   return p;
 }
 
+RadauTables::Vector8 CollocationFlow::at_nodes(const OwnGuard& guard, int c) const {
+  const double y = resolver_.contact_displacement(c, x_begin_.data());
+  const auto own = [&](const Eigen::VectorXd& of) { return of.segment<kNodes>(kNodes * c).array(); };
+  return (guard.constant + guard.y * (y + own(moved_)) + guard.v * own(velocity_) + guard.force * own(forces_) +
+          guard.drive * own(drive_nodes_))
+      .matrix();
+}
+
 BernsteinPolynomial CollocationFlow::form_of(const OwnGuard& guard, int c) const {
   const double y = resolver_.contact_displacement(c, x_begin_.data()),
                v = resolver_.contact_velocity(c, x_begin_.data()), V = drive_velocity(begin_, 0.0);
-  const auto at_nodes = [&](const Eigen::VectorXd& of) { return of.segment<kNodes>(kNodes * c).array(); };
-  const RadauTables::Vector8 values =
-      (guard.constant + guard.y * (y + at_nodes(moved_)) + guard.v * at_nodes(velocity_) +
-       guard.force * at_nodes(forces_) + guard.drive * at_nodes(drive_nodes_))
-          .matrix();
-  return interpolant(guard.value(y, v, point_.force(c), V), values);
+  return interpolant(guard.value(y, v, point_.force(c), V), at_nodes(guard, c));
+}
+
+double CollocationFlow::size_ahead(const OwnGuard& guard, int c) const {
+  Eigen::VectorXd end(x_begin_.size()), pushed = Eigen::VectorXd::Zero(x_begin_.size());
+  kernels_.propagate(tables_.propagator(step_level_).arrays(tables_.loaded()), x_begin_.data(), forces_.data(),
+                     end.data());
+  end = end.cwiseAbs();
+  // Forces in balance move by rounding, what they act on and all that hangs on it.
+  const auto most = [&](int d) { return forces_.segment<kNodes>(kNodes * d).cwiseAbs().maxCoeff(); };
+  for (int d = 0; d < nc_; ++d) pushed += most(d) * model_.input.col(d).cwiseAbs();
+  for (int k = 0; k < given_; ++k) pushed += most(nc_ + k) * model_.force_input.col(k).cwiseAbs();
+  const double h = tables_.step(step_level_), speeds = h * model_.velocity_row.col(c).cwiseAbs().dot(pushed);
+  return std::abs(guard.constant) +
+         std::abs(guard.y) * (model_.displacement_row.col(c).cwiseAbs().dot(end) + h * speeds) +
+         std::abs(guard.v) * (model_.velocity_row.col(c).cwiseAbs().dot(end) + speeds);
+}
+
+void CollocationFlow::search_from_rest(const OwnGuard& guard, int c, const GuardValue& now, double size,
+                                       const BernsteinPolynomial& form, Guarded& first) const {
+  // The leading term may be of any order, where the force that begins to act does so elsewhere, and of a higher one the
+  // form's first coefficients are errors of interpolation. The values at the nodes are none; nor is the curvature,
+  // which has to show in the first of them or be rounding there.
+  const RadauTables::Vector8 values = at_nodes(guard, c);
+  size = std::max(size, size_ahead(guard, c));
+  const double rounding = kTouching * size, t = nodes_.node(0) * tables_.step(step_level_);
+  if (!(values.cwiseAbs().maxCoeff() > kStarting * size)) return;  // nor does anything show by the end of the step
+  Guarded found{0.0, c, false, guard, 2};                          // too early for it: to be halved
+  if (std::abs(now.second) * t * t / 2.0 <= rounding) {
+    const auto told = std::find_if(values.begin(), values.end(), [&](double v) { return std::abs(v) > rounding; });
+    if (*told < 0.0) {
+      found.order = 1;  // falls through zero where the step begins
+    } else if (std::all_of(told, values.end(), [&](double v) { return v >= -rounding; })) {
+      return;
+    } else {
+      const double from = nodes_.node(told - values.begin());
+      const auto root = first_root(part(form, from, 1.0));
+      if (!root) return;
+      found.theta = from + root->at * (1.0 - from);
+      found.touching = root->touching;
+    }
+  }
+  if (found.theta < first.theta) first = found;
 }
 
 void CollocationFlow::search_own_guards(int c, Guarded& first) const {
@@ -118,7 +165,12 @@ void CollocationFlow::search_own_guards(int c, Guarded& first) const {
     // to.
     const double h = tables_.step(step_level_), most = std::max(std::abs(start), form.cwiseAbs().maxCoeff());
     const double pushed = (std::abs(guard.y) * h + std::abs(guard.v)) * h * balanced(c);
-    if (most <= (order == 2 && !known ? kStarting : kTouching) * std::max(now.size, pushed)) continue;
+    const double size = std::max(now.size, pushed);
+    if (most <= (order == 2 && !known ? kStarting : kTouching) * size) continue;
+    if (order == 2 && touched_ != c && guard.kind == GuardKind::kStop && !curvature_leads(guard, c, now)) {
+      search_from_rest(guard, c, now, size, p, first);
+      continue;
+    }
     const bool rises = order == 1 ? now.rate > 0.0 : known && now.second > 0.0;
     if (rises && (std::abs(now.rate) + std::abs(now.second) * h) * h <= kStarting * now.size)
       continue;  // by less than its form rounds by
@@ -137,12 +189,21 @@ void CollocationFlow::search_own_guards(int c, Guarded& first) const {
   }
 }
 
+bool CollocationFlow::curvature_leads(const OwnGuard& guard, int c, const GuardValue& now) const {
+  const double t = nodes_.node(0) * tables_.step(step_level_), by_second = now.second * t * t / 2.0,
+               value = at_nodes(guard, c)(0);
+  return by_second * value > 0.0 && std::abs(value) < 2.0 * std::abs(by_second) &&
+         std::abs(by_second) < 2.0 * std::abs(value);
+}
+
 int CollocationFlow::start_order(const OwnGuard& guard, int c, const GuardValue& now) const {
   const auto i = static_cast<std::size_t>(c);
   if (guard.drive != 0.0 && laws()[i].kind == LawKind::kConstant && point_.multiplicity[i] > 0)
     return point_.multiplicity[i];
   const bool touched = touched_ == c && std::abs(now.value) <= kGrazed * now.size;
-  if (!touched && std::abs(now.value) > kStarting * now.size) return 0;
+  // An event's time is rounded, and what changes fast is that far from zero.
+  const double clock = kOfTime * (std::abs(begin_) + tables_.step(step_level_));
+  if (!touched && std::abs(now.value) > std::max(kStarting * now.size, clock * std::abs(now.rate))) return 0;
   return touched || std::abs(now.rate) <= kFlat * now.rate_size ? 2 : 1;
 }
 
@@ -152,7 +213,8 @@ CollocationFlow::GuardValue CollocationFlow::evaluate(const OwnGuard& guard, int
   const double h = tables_.step(step_level_), V = drive_velocity(begin_, tau), a = drive_acceleration(begin_, tau),
                y = resolver_.contact_displacement(c, x.data()), v = resolver_.contact_velocity(c, x.data());
   const RadauTables::Vector8 basis = nodes_.lagrange(tau / h);
-  const double acceleration = contact_acceleration(c, x, tau, basis);
+  // Where a step begins forces are known; their polynomial is as good as its degree.
+  const double acceleration = tau == 0.0 ? acceleration_at_start(c) : contact_acceleration(c, x, tau, basis);
   const auto row_size = [&](const Eigen::MatrixXd& rows) { return rows.col(c).cwiseAbs().dot(x.cwiseAbs()); };
   // A stop is the ground's: what the drive does is no measure of it.
   const bool driven = laws()[static_cast<std::size_t>(c)].kind != LawKind::kClearance;

@@ -162,9 +162,12 @@ class CollocationFlow {
   [[nodiscard]] double deepest_overshoot() const;
   void refine_event(const Guarded& guard, double& tau, Eigen::VectorXd& x);
   [[nodiscard]] double stick_force(int c, const Eigen::VectorXd& x, double tau) const;
+  /// wᵀq̈ at `begin_ + tau` but for what contacts' forces add.
+  [[nodiscard]] double acceleration_without_contacts(int c, const Eigen::VectorXd& x, double tau) const;
   /// wᵀq̈ at `begin_ + tau`. @param basis  Lagrange's there
   [[nodiscard]] double contact_acceleration(int c, const Eigen::VectorXd& x, double tau,
                                             const RadauTables::Vector8& basis) const;
+  [[nodiscard]] double acceleration_at_start(int c) const;
   void account(int level, double tau);
   /// ∫ Σ λ v_drive dt over [0, tau] of the step.
   [[nodiscard]] double driven_work(double h, double tau) const;
@@ -199,16 +202,26 @@ class CollocationFlow {
   void set_own_forces();
   [[nodiscard]] double own_force(int c, double tau, const double* x) const;
   [[nodiscard]] std::vector<OwnGuard> own_guards(int c, ContactMode mode) const;
-  void search_own_guards(int c, Guarded& first) const;
-  /// Of degree 8 through a start and the nodes.
-  [[nodiscard]] BernsteinPolynomial interpolant(double start, const RadauTables::Vector8& at_nodes) const;
-  /// A guard over the step.
-  [[nodiscard]] BernsteinPolynomial form_of(const OwnGuard& guard, int c) const;
   struct GuardValue {
     double value = 0.0, rate = 0.0;
     double second = 0.0;  ///< of a guard of place or stretch alone, where it is told from rounding; else 0
     double size = 0.0, rate_size = 0.0;  ///< of the terms that are summed
   };
+  void search_own_guards(int c, Guarded& first) const;
+  /// The same of a stop's guard that starts at zero, of whose motion the curvature there is not all.
+  /// @param size  of the terms that the guard sums
+  /// @param form  its form over the step
+  void search_from_rest(const OwnGuard& guard, int c, const GuardValue& now, double size,
+                        const BernsteinPolynomial& form, Guarded& first) const;
+  /// Of degree 8 through a start and the nodes.
+  [[nodiscard]] BernsteinPolynomial interpolant(double start, const RadauTables::Vector8& at_nodes) const;
+  [[nodiscard]] RadauTables::Vector8 at_nodes(const OwnGuard& guard, int c) const;
+  /// A guard over the step.
+  [[nodiscard]] BernsteinPolynomial form_of(const OwnGuard& guard, int c) const;
+  /// Of the terms that a guard sums where the step ends.
+  [[nodiscard]] double size_ahead(const OwnGuard& guard, int c) const;
+  /// The first node has what the curvature at the start makes of a guard that starts at zero.
+  [[nodiscard]] bool curvature_leads(const OwnGuard& guard, int c, const GuardValue& now) const;
   /// Of the zero with which a guard starts, 0 if with none. @param now  of the guard at the step's start
   [[nodiscard]] int start_order(const OwnGuard& guard, int c, const GuardValue& now) const;
   [[nodiscard]] GuardValue evaluate(const OwnGuard& guard, int c, double tau, const Eigen::VectorXd& x) const;

@@ -177,19 +177,25 @@ void CollocationFlow::refine_event(const Guarded& guard, double& tau, Eigen::Vec
   }
 }
 
+double CollocationFlow::acceleration_without_contacts(int c, const Eigen::VectorXd& x, double tau) const {
+  return kernels_.dot(model_.acceleration_row.col(c).data(), x.data(), 2 * model_.np) + model_.load_acceleration(c) +
+         given_acceleration(c, tau);
+}
+
 double CollocationFlow::contact_acceleration(int c, const Eigen::VectorXd& x, double tau,
                                              const RadauTables::Vector8& basis) const {
-  double acceleration = kernels_.dot(model_.acceleration_row.col(c).data(), x.data(), 2 * model_.np) +
-                        model_.load_acceleration(c) + given_acceleration(c, tau);
+  double acceleration = acceleration_without_contacts(c, x, tau);
   for (int d = 0; d < nc_; ++d) acceleration += model_.mobility(c, d) * forces_.segment<kNodes>(kNodes * d).dot(basis);
   return acceleration;
 }
 
+double CollocationFlow::acceleration_at_start(int c) const {
+  return acceleration_without_contacts(c, x_begin_, 0.0) + model_.mobility.row(c).dot(point_.force);
+}
+
 double CollocationFlow::stick_force(int c, const Eigen::VectorXd& x, double tau) const {
   if (nc_ == 1)
-    return (drive_acceleration(begin_, tau) - kernels_.dot(model_.acceleration_row.data(), x.data(), 2 * model_.np) -
-            model_.load_acceleration(0) - given_acceleration(0, tau)) /
-           model_.mobility(0, 0);
+    return (drive_acceleration(begin_, tau) - acceleration_without_contacts(0, x, tau)) / model_.mobility(0, 0);
   return forces_within(tau, x)(c);
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <utility>
 #include <vector>
 
 namespace slipmode::dynamics {
@@ -31,25 +32,28 @@ Complex oscillator_gain(const friction::LoadForm& load, double omega) {
   return Complex(load.lift, omega * load.lift_rate) / Complex(load.stiffness - omega * omega, omega * load.damping);
 }
 
-/// A contact whose displacement is that of a held one.
+/// A direction along that of a held contact.
 struct Carried {
   Eigen::Index by = -1;  ///< the held one; -1: none
   double share = 0.0;    ///< its displacement over that of the held one
 };
 
-std::vector<Carried> carried_contacts(const Regime& r, const ModalModel& slipping) {
+/// @param direction  as a column, with those of the contacts in `of_contacts`
+Carried carried(const Regime& r, const Eigen::MatrixXd& of_contacts, const Eigen::VectorXd& direction) {
   constexpr double kSame = 1e-13;
-  const Eigen::MatrixXd& rows = slipping.displacement_row;
-  std::vector<Carried> out(static_cast<std::size_t>(r.speed_input()));
-  for (Eigen::Index c = 0; c < r.speed_input(); ++c) {
-    for (Eigen::Index d = 0; d < r.speed_input() && !r.held(static_cast<int>(c)); ++d) {
-      if (!r.held(static_cast<int>(d))) continue;
-      const double share = rows.col(d).dot(rows.col(c)) / rows.col(d).squaredNorm();
-      if (!((rows.col(c) - share * rows.col(d)).norm() <= kSame * rows.col(c).norm())) continue;
-      out[static_cast<std::size_t>(c)] = {d, share};
-      break;
-    }
+  for (Eigen::Index d = 0; d < r.speed_input(); ++d) {
+    if (!r.held(static_cast<int>(d))) continue;
+    const double share = of_contacts.col(d).dot(direction) / of_contacts.col(d).squaredNorm();
+    if ((direction - share * of_contacts.col(d)).norm() <= kSame * direction.norm()) return {d, share};
   }
+  return {};
+}
+
+std::vector<Carried> carried_contacts(const Regime& r, const ModalModel& slipping) {
+  std::vector<Carried> out(static_cast<std::size_t>(r.speed_input()));
+  for (Eigen::Index c = 0; c < r.speed_input(); ++c)
+    if (!r.held(static_cast<int>(c)))
+      out[static_cast<std::size_t>(c)] = carried(r, slipping.displacement_row, slipping.displacement_row.col(c));
   return out;
 }
 
@@ -71,9 +75,13 @@ bool any_oscillator_resonates(const Regime& r, double omega, double share) {
 HarmonicResponse harmonic_response(const Regime& r, const ModalModel& slipping, double omega, Complex way,
                                    const Eigen::VectorXcd& forces) {
   const Eigen::Index nc = r.speed_input(), np = slipping.np;
-  const Eigen::VectorXcd forced = slipping.force_input * forces;
   // What presses on a held contact moves nothing, and its force may be far larger than what does: the unknown there is
   // the sum of both.
+  Eigen::VectorXcd on_held = Eigen::VectorXcd::Zero(nc), moving = forces;
+  for (Eigen::Index k = 0; k < forces.size(); ++k)
+    if (const Carried at = carried(r, slipping.input, slipping.force_input.col(k)); at.by >= 0)
+      on_held(at.by) += at.share * std::exchange(moving(k), 0.0);
+  const Eigen::VectorXcd forced = slipping.force_input * moving;
   const std::vector<Carried> carried = carried_contacts(r, slipping);
   Eigen::MatrixXd input = slipping.input;
   for (Eigen::Index c = 0; c < nc; ++c)
@@ -139,6 +147,7 @@ HarmonicResponse harmonic_response(const Regime& r, const ModalModel& slipping, 
   for (Eigen::Index c = 0; c < nc; ++c)
     if (const Carried& at = carried[static_cast<std::size_t>(c)]; at.by >= 0)
       out.force(at.by) -= at.share * out.force(c);
+  out.force -= on_held;
   out.oscillators.resize(r.from_oscillators.cols());
   Eigen::Index j = 0;
   for (Eigen::Index c = 0; c < nc; ++c) {

@@ -13,9 +13,6 @@ namespace {
 
 /// Natural frequencies below this share of the fastest are rigid-body motion.
 constexpr double kRigid = 1e-8;
-/// Rounding: damping counts as diagonal in the regime's modes when the rest is below this share of it, and a direction
-/// as projected out when no more than this share of it is left.
-constexpr double kRounding = 1e-12;
 
 /// Rows of a [2m x k] matrix spread to padded pairs [2np x k].
 Eigen::MatrixXd spread(const Eigen::MatrixXd& rows, Eigen::Index np) {

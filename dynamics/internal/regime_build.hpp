@@ -23,6 +23,10 @@ class RegimeBuilder {
   void fill(Regime& out);
 
  private:
+  /// Rounding: damping counts as diagonal in the regime's modes when the rest is below this share of it, and a
+  /// direction as projected out when no more than this share of it is left.
+  static constexpr double kRounding = 1e-12;
+
   /// y (what is left of η), ẏ, ζ, ζ̇ from x, and back.
   struct Coordinates {
     Eigen::MatrixXd to_y, to_rate, to_zeta, to_zeta_rate;
