@@ -1,6 +1,6 @@
 #include "bench/machine.hpp"
 
-#include <slipmode/dynamics/kernels/kernels.hpp>
+#include <slipmode/core/kernels/kernels.hpp>
 #include <slipmode/results/provenance.hpp>
 #include "bench/clock.hpp"
 
@@ -52,7 +52,7 @@ void calibration_loop() {
 }  // namespace
 
 int kernel_lanes() {
-  const std::string_view name = dynamics::kernels::kernels().name;
+  const std::string_view name = kernels::kernels().name;
   return name == "avx512" ? 8 : name == "avx2" ? 4 : 2;
 }
 
@@ -61,7 +61,7 @@ Machine this_machine() {
   return {.processor = processor_name(),
           .threads = static_cast<int>(std::thread::hardware_concurrency()),
           .vectors = vector_widths(),
-          .kernels = dynamics::kernels::kernels().name,
+          .kernels = kernels::kernels().name,
           .compiler = results::compiler(),
           .flags = SLIPMODE_BENCH_FLAGS,
           .arch = arch.empty() ? "compiler's default" : arch,

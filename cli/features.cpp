@@ -1,6 +1,6 @@
 #include "cli/features.hpp"
 
-#include <slipmode/dynamics/kernels/kernels.hpp>
+#include <slipmode/core/kernels/kernels.hpp>
 #include <slipmode/report/report.hpp>
 #include <slipmode/results/provenance.hpp>
 
@@ -20,8 +20,8 @@ std::string processor() { return kArch.empty() ? "the compiler's default" : std:
 
 std::string kernel_sets() {
   std::string names;
-  for (const auto* set : dynamics::kernels::available()) names += (names.empty() ? "" : ", ") + std::string(set->name);
-  return fmt::format("{} in use; this processor runs {}", dynamics::kernels::kernels().name, names);
+  for (const auto* set : kernels::available()) names += (names.empty() ? "" : ", ") + std::string(set->name);
+  return fmt::format("{} in use; this processor runs {}", kernels::kernels().name, names);
 }
 
 }  // namespace
@@ -39,7 +39,7 @@ std::vector<Feature> features() {
 
 std::string version_text() {
   std::string text = fmt::format("slipmode {} ({}, {}; kernels {})", results::version(), results::git_commit(),
-                                 results::compiler(), dynamics::kernels::kernels().name);
+                                 results::compiler(), kernels::kernels().name);
   for (const Feature& feature : features()) text += fmt::format("\n{:<10} {}", feature.name, feature.value);
   return text;
 }

@@ -1,4 +1,4 @@
-#include <slipmode/dynamics/kernels/kernels.hpp>
+#include <slipmode/core/kernels/kernels.hpp>
 
 #include "cli/json_values.hpp"
 #include "cli/text_table.hpp"
@@ -106,7 +106,7 @@ int add_scenes(const Session& session, const Request& request, Report& out) {
 }
 
 Report selftest(const Session& session, Request request) {
-  static_cast<void>(dynamics::kernels::kernels());  // one that is refused is no violation of each scene
+  static_cast<void>(kernels::kernels());  // one that is refused is no violation of each scene
   if (!request.extremes && request.scenes == 0) request.scenes = kDefaultScenes;
   Report report;
   int failed = 0;

@@ -2,7 +2,7 @@
 
 #include <slipmode/core/decompositions.hpp>
 #include <slipmode/core/errors.hpp>
-#include <slipmode/dynamics/kernels/kernels.hpp>
+#include <slipmode/core/kernels/kernels.hpp>
 #include <slipmode/friction/places.hpp>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include <slipmode/core/errors.hpp>
+#include <slipmode/core/kernels/kernels.hpp>
 #include <slipmode/dynamics/event_resolver.hpp>
-#include <slipmode/dynamics/kernels/kernels.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>

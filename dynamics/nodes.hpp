@@ -1,6 +1,6 @@
 #pragma once
 
-#include <slipmode/dynamics/kernels/kernels.hpp>
+#include <slipmode/core/kernels/kernels.hpp>
 
 #include <Eigen/Core>
 #include <array>

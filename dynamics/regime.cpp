@@ -1,7 +1,7 @@
 #include <slipmode/dynamics/regime.hpp>
 
 #include <slipmode/core/decompositions.hpp>
-#include <slipmode/dynamics/kernels/kernels.hpp>
+#include <slipmode/core/kernels/kernels.hpp>
 #include "dynamics/internal/regime_build.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 #include <slipmode/core/decompositions.hpp>
-#include <slipmode/dynamics/kernels/kernels.hpp>
+#include <slipmode/core/kernels/kernels.hpp>
 #include <slipmode/dynamics/regime.hpp>
 #include "dynamics/internal/lobatto.hpp"
 

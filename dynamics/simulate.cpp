@@ -1,8 +1,8 @@
 #include <slipmode/dynamics/simulate.hpp>
 
 #include <slipmode/core/errors.hpp>
+#include <slipmode/core/kernels/kernels.hpp>
 #include <slipmode/dynamics/cache.hpp>
-#include <slipmode/dynamics/kernels/kernels.hpp>
 #include <slipmode/dynamics/prepare.hpp>
 #include "dynamics/internal/closed_form_flow.hpp"
 #include "dynamics/internal/collocation_flow.hpp"

@@ -1,6 +1,6 @@
 #include "python/module.hpp"
 
-#include <slipmode/dynamics/kernels/kernels.hpp>
+#include <slipmode/core/kernels/kernels.hpp>
 #include <slipmode/results/provenance.hpp>
 
 PYBIND11_MODULE(_slipmode, module) {
@@ -8,7 +8,7 @@ PYBIND11_MODULE(_slipmode, module) {
   module.attr("__version__") = slipmode::results::version();
   module.attr("git_commit") = slipmode::results::git_commit();
   module.attr("compiler") = slipmode::results::compiler();
-  module.attr("kernels") = slipmode::dynamics::kernels::kernels().name;
+  module.attr("kernels") = slipmode::kernels::kernels().name;
   slipmode::python::add_errors(module);
   slipmode::python::add_scene(module);
   slipmode::python::add_result(module);

@@ -1,8 +1,8 @@
 #include <slipmode/results/part.hpp>
 
 #include <slipmode/core/errors.hpp>
+#include <slipmode/core/kernels/kernels.hpp>
 #include <slipmode/core/numbers.hpp>
-#include <slipmode/dynamics/kernels/kernels.hpp>
 #include <slipmode/results/provenance.hpp>
 
 #include <fmt/format.h>
@@ -68,7 +68,7 @@ std::string difference(const Part& first, const Part& part) {
 
 }  // namespace
 
-std::string rounding() { return std::string(dynamics::kernels::kernels().name) == "generic" ? "generic" : "fused"; }
+std::string rounding() { return std::string(kernels::kernels().name) == "generic" ? "generic" : "fused"; }
 
 Shard parse_shard(const std::string& text) {
   const std::size_t slash = std::min(text.find('/'), text.size());

@@ -1,6 +1,6 @@
 #include "dynamics/internal/audit_forms.hpp"
 
-#include <slipmode/dynamics/kernels/kernels.hpp>
+#include <slipmode/core/kernels/kernels.hpp>
 #include "dynamics/internal/quadratic_forms.hpp"
 
 #include <Eigen/Dense>

@@ -1,7 +1,7 @@
 #include "dynamics/internal/closed_form_flow.hpp"
 
 #include <slipmode/core/errors.hpp>
-#include <slipmode/dynamics/kernels/kernels.hpp>
+#include <slipmode/core/kernels/kernels.hpp>
 
 #include <Eigen/Dense>
 #include <algorithm>

@@ -146,8 +146,8 @@ class ClosedFormFlow {
   /// @throws NumericalFailure  at the finest one
   [[nodiscard]] Search unknown(int guard, int level) const;
   void judge(const BernsteinPolynomial& polynomial, double remainder, double tolerance, int guard, Search& found) const;
-  /// Takes the state on to where the guard vanishes, near tau, which follows. True if that is proved to be the first
-  /// time after `from`.
+  /// Takes the state on to where the guard vanishes, near tau, which follows; where that is no root, or that of a
+  /// window which has one at tau is another, tau stays. True if the root is proved to be the first after `from`.
   [[nodiscard]] bool approach(const Guard& guard, double from, double& tau);
   /// A harmonic drives a pair at its own frequency, or next to it.
   [[nodiscard]] bool swells() const { return regime_->overlay && !regime_->overlay->resonances.empty(); }

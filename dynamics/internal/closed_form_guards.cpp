@@ -1,5 +1,5 @@
 #include <slipmode/core/errors.hpp>
-#include <slipmode/dynamics/kernels/kernels.hpp>
+#include <slipmode/core/kernels/kernels.hpp>
 #include "dynamics/internal/closed_form_flow.hpp"
 
 #include <Eigen/Dense>
@@ -86,8 +86,8 @@ double ClosedFormFlow::scale(const Guard& guard) const {
   const RegimeOutput& output = r.outputs[static_cast<std::size_t>(guard.output)];
   const ContactForces& law = resolver_.laws()[static_cast<std::size_t>(guard.contact)];
   if (output.kind == RegimeOutput::Kind::kForce) return law.static_limit;
-  // By the terms that are summed, not by amplitudes: a slow drift has a large one, however little it has moved. What has
-  // moved may be a small difference of free motion and what the inputs have moved.
+  // By the terms that are summed, not by amplitudes: a slow drift has a large one, however little it has moved. What
+  // has moved may be a small difference of free motion and what the inputs have moved.
   const auto row = r.row.col(guard.output).cwiseAbs();
   double size = std::abs(guard.constant) + row.dot(x_.cwiseAbs()) + row.dot((free_ - free_entered_).cwiseAbs()) +
                 r.coefficient.col(guard.output).cwiseAbs().dot(inputs_.cwiseAbs());

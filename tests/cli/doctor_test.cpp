@@ -1,6 +1,6 @@
 // What a build has, and what a machine lacks.
 
-#include <slipmode/dynamics/kernels/kernels.hpp>
+#include <slipmode/core/kernels/kernels.hpp>
 #include <slipmode/report/report.hpp>
 #include "cli/slipmode_process.hpp"
 
@@ -40,7 +40,7 @@ nlohmann::json check_of(const nlohmann::json& said, const std::string& name) {
 TEST(Version, TellsWhatIsBuiltIn) {
   const TemporaryFolder folder;
   const std::string said = slipmode_in(folder, {"--version"}).out;
-  for (const auto* set : slipmode::dynamics::kernels::available()) EXPECT_THAT(said, HasSubstr(set->name));
+  for (const auto* set : slipmode::kernels::available()) EXPECT_THAT(said, HasSubstr(set->name));
   EXPECT_THAT(said, HasSubstr(slipmode::report::is_available() ? "report     D3" : "report     none"));
   EXPECT_THAT(said, HasSubstr("processor  "));
   EXPECT_THAT(said, HasSubstr("fourier    "));

@@ -1,7 +1,7 @@
 // The same scene, version and seed give the same bytes on every vector width and for any number of threads: the
 // executable under each kernel set that has fused multiply-add.
 
-#include <slipmode/dynamics/kernels/kernels.hpp>
+#include <slipmode/core/kernels/kernels.hpp>
 #include "cli/slipmode_process.hpp"
 #include "cli/small_scenes.hpp"
 
@@ -33,7 +33,7 @@ class WithKernels {
 
 std::vector<std::string> fused_sets() {
   std::vector<std::string> names;
-  for (const auto* set : slipmode::dynamics::kernels::available())
+  for (const auto* set : slipmode::kernels::available())
     if (std::string(set->name) != "generic") names.emplace_back(set->name);
   return names;
 }
@@ -147,7 +147,7 @@ TEST(KernelChoice, NamesTheSetsThereAreWhenAskedForAnother) {
 
 TEST(KernelChoice, VersionNamesTheSetInUse) {
   slipmode::tests::TemporaryFolder folder;
-  for (const auto* set : slipmode::dynamics::kernels::available()) {
+  for (const auto* set : slipmode::kernels::available()) {
     const WithKernels forced(set->name);
     EXPECT_THAT(slipmode_in(folder, {"--version"}).out, HasSubstr(std::string("kernels ") + set->name));
   }

@@ -1,8 +1,8 @@
 // The kernel sets beside one another and beside plain arithmetic; whole runs under each set, byte by byte.
 
-#include <slipmode/dynamics/kernels/kernels.hpp>
+#include <slipmode/core/kernels/kernels.hpp>
 #include <slipmode/dynamics/nodes.hpp>
-#include "dynamics/kernels/internal/processor.hpp"
+#include "core/kernels/internal/processor.hpp"
 #include "fixtures/scenes.hpp"
 
 #include <gtest/gtest.h>
@@ -11,9 +11,11 @@
 #include <cstring>
 #include <vector>
 
-namespace slipmode::dynamics::kernels {
+namespace slipmode::kernels {
 namespace {
 
+using dynamics::radau;
+using dynamics::RadauTables;
 using Vector8 = RadauTables::Vector8;
 using Matrix8 = RadauTables::Matrix8;
 
@@ -300,4 +302,4 @@ TEST(Processor, HasWhatThisBuildNeedsAndAnOlderOneIsToldWhatItLacks) {
 }
 
 }  // namespace
-}  // namespace slipmode::dynamics::kernels
+}  // namespace slipmode::kernels

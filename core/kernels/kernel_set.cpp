@@ -1,11 +1,11 @@
 // Built once for every width: see CMakeLists.txt beside it.
 
-#include "dynamics/kernels/internal/kernel_set.hpp"
+#include "core/kernels/internal/kernel_set.hpp"
 
 #define SLIPMODE_TEXT_OF(name) #name
 #define SLIPMODE_TEXT(name) SLIPMODE_TEXT_OF(name)
 
-namespace slipmode::dynamics::kernels::SLIPMODE_KERNEL_SET {
+namespace slipmode::kernels::SLIPMODE_KERNEL_SET {
 
 const Kernels kSet{
     .name = SLIPMODE_TEXT(SLIPMODE_KERNEL_SET),
@@ -34,4 +34,4 @@ const Kernels kSet{
     .pass = pass,
 };
 
-}  // namespace slipmode::dynamics::kernels::SLIPMODE_KERNEL_SET
+}  // namespace slipmode::kernels::SLIPMODE_KERNEL_SET

@@ -1,9 +1,9 @@
 // Built once for every width: see CMakeLists.txt beside it.
 
-#include "dynamics/kernels/internal/kernel_set.hpp"
-#include "dynamics/kernels/internal/lanes.hpp"
+#include "core/kernels/internal/kernel_set.hpp"
+#include "core/kernels/internal/lanes.hpp"
 
-namespace slipmode::dynamics::kernels::SLIPMODE_KERNEL_SET {
+namespace slipmode::kernels::SLIPMODE_KERNEL_SET {
 namespace {
 
 /// e to this power is nothing beside 1, and its square no subnormal number.
@@ -170,4 +170,4 @@ void pass(const ChangeArrays& m, double* x, double* free, double* out_size) {
   }
 }
 
-}  // namespace slipmode::dynamics::kernels::SLIPMODE_KERNEL_SET
+}  // namespace slipmode::kernels::SLIPMODE_KERNEL_SET

@@ -1,11 +1,11 @@
 // Compiled for the plainest processor: it runs before anything else does.
 
-#include "dynamics/kernels/internal/processor.hpp"
+#include "core/kernels/internal/processor.hpp"
 
 #include <unistd.h>
 #include <cstring>
 
-namespace slipmode::dynamics::kernels {
+namespace slipmode::kernels {
 namespace {
 
 struct Name {
@@ -60,4 +60,4 @@ const char* missing(std::uint32_t needed, std::uint32_t present) {
   return nullptr;
 }
 
-}  // namespace slipmode::dynamics::kernels
+}  // namespace slipmode::kernels

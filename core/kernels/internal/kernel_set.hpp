@@ -1,11 +1,11 @@
 #pragma once
 
-#include <slipmode/dynamics/kernels/kernels.hpp>
+#include <slipmode/core/kernels/kernels.hpp>
 
 // The kernels of one width, in a namespace of its name: what every source here defines, and what kernel_set.cpp
 // gathers.
 
-namespace slipmode::dynamics::kernels {
+namespace slipmode::kernels {
 
 namespace SLIPMODE_KERNEL_SET {
 
@@ -43,4 +43,4 @@ void pass(const ChangeArrays& change, double* x, double* free, double* out_size)
 extern const Kernels kSet;
 
 }  // namespace SLIPMODE_KERNEL_SET
-}  // namespace slipmode::dynamics::kernels
+}  // namespace slipmode::kernels

@@ -5,7 +5,7 @@
 /// What a processor can do, as far as builds differ by it. The whole library but the kernels is compiled for one level
 /// (SLIPMODE_ARCH); on a processor below it a program says so when it starts, instead of ending at its first
 /// instruction from beyond.
-namespace slipmode::dynamics::kernels {
+namespace slipmode::kernels {
 
 enum Feature : std::uint32_t {
   kSse42 = 1u << 0,
@@ -26,4 +26,4 @@ extern const std::uint32_t kBuiltFor;
 /// The first feature that is needed and missing, as a word; null when there is none.
 [[nodiscard]] const char* missing(std::uint32_t needed, std::uint32_t present);
 
-}  // namespace slipmode::dynamics::kernels
+}  // namespace slipmode::kernels

@@ -9,7 +9,7 @@
 ///
 /// Arrays are faster aligned to 64 bytes, and need not be. `np` is the number of pairs padded to a multiple of eight; a
 /// state is [x₁; x₂], 2np. A table of eight nodes by columns is stored column by column.
-namespace slipmode::dynamics::kernels {
+namespace slipmode::kernels {
 
 using Index = std::ptrdiff_t;
 
@@ -167,4 +167,4 @@ struct Kernels {
 /// @throws InvalidInput  for another name, or a set this processor does not run
 [[nodiscard]] const Kernels& kernels();
 
-}  // namespace slipmode::dynamics::kernels
+}  // namespace slipmode::kernels

@@ -1,9 +1,9 @@
 // Built once for every width: see CMakeLists.txt beside it.
 
-#include "dynamics/kernels/internal/kernel_set.hpp"
-#include "dynamics/kernels/internal/lanes.hpp"
+#include "core/kernels/internal/kernel_set.hpp"
+#include "core/kernels/internal/lanes.hpp"
 
-namespace slipmode::dynamics::kernels::SLIPMODE_KERNEL_SET {
+namespace slipmode::kernels::SLIPMODE_KERNEL_SET {
 namespace {
 
 constexpr int kNodes = 8;
@@ -427,4 +427,4 @@ Work taylor_work(const PairArrays& m, const double* velocity_row, const double* 
   return series_work<false>(m, velocity_row, damping, x, coefficient, tau, terms, rule, out_moments, out_x);
 }
 
-}  // namespace slipmode::dynamics::kernels::SLIPMODE_KERNEL_SET
+}  // namespace slipmode::kernels::SLIPMODE_KERNEL_SET

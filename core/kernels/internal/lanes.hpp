@@ -14,7 +14,7 @@
 #include <immintrin.h>
 #endif
 
-namespace slipmode::dynamics::kernels {
+namespace slipmode::kernels {
 namespace {
 
 #define SLIPMODE_LANES_INLINE [[gnu::always_inline]] static inline
@@ -210,4 +210,4 @@ SLIPMODE_LANES_INLINE V8 exp8(V8 a) {
 }
 
 }  // namespace
-}  // namespace slipmode::dynamics::kernels
+}  // namespace slipmode::kernels

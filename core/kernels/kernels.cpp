@@ -1,13 +1,13 @@
-#include <slipmode/dynamics/kernels/kernels.hpp>
+#include <slipmode/core/kernels/kernels.hpp>
 
 #include <slipmode/core/errors.hpp>
-#include "dynamics/kernels/internal/processor.hpp"
+#include "core/kernels/internal/processor.hpp"
 
 #include <cstdlib>
 #include <string>
 #include <string_view>
 
-namespace slipmode::dynamics::kernels {
+namespace slipmode::kernels {
 
 #ifdef SLIPMODE_KERNELS_X86
 namespace avx512 {
@@ -61,4 +61,4 @@ const Kernels& kernels() {
   return chosen;
 }
 
-}  // namespace slipmode::dynamics::kernels
+}  // namespace slipmode::kernels

@@ -1,8 +1,8 @@
 // Compiled as the library is, and data alone: it may be read on any processor.
 
-#include "dynamics/kernels/internal/processor.hpp"
+#include "core/kernels/internal/processor.hpp"
 
-namespace slipmode::dynamics::kernels {
+namespace slipmode::kernels {
 
 const std::uint32_t kBuiltFor = 0
 #ifdef __SSE4_2__
@@ -34,4 +34,4 @@ const std::uint32_t kBuiltFor = 0
 #endif
     ;
 
-}  // namespace slipmode::dynamics::kernels
+}  // namespace slipmode::kernels

@@ -1,9 +1,9 @@
 // Built once for every width: see CMakeLists.txt beside it.
 
-#include "dynamics/kernels/internal/kernel_set.hpp"
-#include "dynamics/kernels/internal/lanes.hpp"
+#include "core/kernels/internal/kernel_set.hpp"
+#include "core/kernels/internal/lanes.hpp"
 
-namespace slipmode::dynamics::kernels::SLIPMODE_KERNEL_SET {
+namespace slipmode::kernels::SLIPMODE_KERNEL_SET {
 namespace {
 
 /// Rows of eight that are summed at once: enough sums in flight, and no more than there are registers for. Each sum
@@ -67,4 +67,4 @@ void two_products(const double* A, Index rows, Index columns, const double* x, c
   products<2>(A, rows, columns, from, to);
 }
 
-}  // namespace slipmode::dynamics::kernels::SLIPMODE_KERNEL_SET
+}  // namespace slipmode::kernels::SLIPMODE_KERNEL_SET
