@@ -5,7 +5,7 @@ set(SLIPMODE_LEFT_OUT
   *GivesTheSameForAnyNumberOfThreads* *SameRunForAnyThreads* *GivesTheSameNumbersInText* Manual*
   *CertifiedSteps.*1em1* *CertifiedSteps.*1em3* *CertifiedSteps.*1em6* *CertifiedSteps.*Contacts2* *MissNoEventAndKeep*
   *DifferencedMap* *ForcedTangent.EqualsCentral* *TakesTheVelocityFarthest* *OfTenSeedsThatOnceFailed* *AThousandScenes*
-  *Extremes.HoldTheirLaws*
+  *Extremes.HoldTheirLaws* *StopsOnSeveralMassesAreLeft*
   *JointOrbits* *OrderIsChosen* *OfABeamWithRigid* *WaysToThePeriodic* *RandomChainsConverge* *ToTheHopfPoint*
   *SpecialCurve.Folds* *SpecialCurve.Grazing* *SpecialCurve.LossOf* *SpecialCurve.AFoldBeside* *BalanceCurve.Folds*
   *BalanceCurve.Tends* *BalanceCurve.Period* *BalanceCurve.Neimark* *FollowedOverASecondKey* *MixedWithItsTrueError*

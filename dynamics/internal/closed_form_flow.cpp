@@ -39,6 +39,7 @@ ClosedFormFlow::ClosedFormFlow(const HybridSystem& system, HybridPoint start, co
       nc_(slipping_.contacts),
       point_(std::move(start)) {
   statistics_.stick_time.assign(static_cast<std::size_t>(nc_), 0.0);
+  recall_.resize(static_cast<std::size_t>(nc_));
   for (int c = 0; c < nc_; ++c) {
     const friction::Contact& contact = system.contacts()[static_cast<std::size_t>(c)];
     if (resolver_.laws()[static_cast<std::size_t>(c)].stiffness > 0.0) compliant_.push_back(c);
@@ -60,6 +61,7 @@ void ClosedFormFlow::restart(HybridPoint start) {
   work_ = {};
   statistics_ = {};
   statistics_.stick_time.assign(static_cast<std::size_t>(nc_), 0.0);
+  recall_.assign(static_cast<std::size_t>(nc_), {});
   level_ = 0;
   resolver_.start(point_);
   enter_regime();
@@ -296,6 +298,7 @@ bool ClosedFormFlow::settle(int guard, bool touching) {
   const Guard* reached = guard >= 0 ? &guards_[static_cast<std::size_t>(guard)] : nullptr;
   const bool salts = carries_ && !touching;
   if (salts) leave_tangents(reached);
+  if (!touching) recall_sizes();
   resolver_.settle(point_, reached ? Reached{reached->contact, touching, reached->kind, reached->next} : Reached{});
   statistics_.events += static_cast<std::int64_t>(resolver_.events().size());
   if (touching)

@@ -139,6 +139,17 @@ class ClosedFormFlow {
   [[nodiscard]] double near_zero(const GuardStart& guard) const;
   /// The size of an output's values, which its rounding error is measured by.
   [[nodiscard]] double scale(const Guard& guard) const;
+  /// That of a stop's guard, as it was where an earlier stay ended, for as long as the fastest pair takes: the state
+  /// still has the rounding of what moved then.
+  struct Recall {
+    double time = -std::numeric_limits<double>::infinity();
+    double size = 0.0;  ///< of the contact's place [m]
+  };
+  [[nodiscard]] double recalled(const Guard& guard) const;
+  /// A guard's value over the contact's place: 1, or the stop's stiffness.
+  [[nodiscard]] double per_place(const Guard& guard) const;
+  /// At the end of a stay.
+  void recall_sizes();
   [[nodiscard]] GuardValue evaluate(const Guard& guard, double t) const;
   [[nodiscard]] double second_derivative(const Guard& guard, double t) const;
   [[nodiscard]] Search search(int level) const;
@@ -216,6 +227,7 @@ class ClosedFormFlow {
   Eigen::VectorXd x_, inputs_, x_begin_, inputs_begin_;
   Eigen::VectorXd free_, amplitude_;  ///< at the step's begin: x less what follows the inputs, and its pairs' sizes
   Eigen::VectorXd free_begin_;        ///< that of x_begin_
+  std::vector<Recall> recall_;        ///< of each contact
   Eigen::VectorXd free_entered_;      ///< that of the state in which the regime was entered
   Eigen::VectorXd resting_;           ///< what follows the inputs, where those are constant: under a periodic drive
   bool measured_ = false;             ///< these two belong to x_

@@ -13,6 +13,8 @@ namespace {
 
 /// A guard that cannot be told from zero beyond this share of its scale touches it.
 constexpr double kTouching = 1e-12;
+/// Terms that cancel count by what they round by, 1e-14 of them.
+constexpr double kCancels = 1e-2;
 /// A guard below this share of its scale when a regime begins starts at zero …
 constexpr double kStarting = 1e-9;
 /// … its slope is known to rise above this share of its scale times the fastest rate, and may be zero below that one.
@@ -92,11 +94,36 @@ double ClosedFormFlow::scale(const Guard& guard) const {
   double size = std::abs(guard.constant) + row.dot(x_.cwiseAbs()) + row.dot((free_ - free_entered_).cwiseAbs()) +
                 r.coefficient.col(guard.output).cwiseAbs().dot(inputs_.cwiseAbs());
   if (regime_->overlay) size += regime_->overlay->outputs[0].size(guard.output);
-  if (guard.kind == GuardKind::kStop) return size;
+  if (guard.kind == GuardKind::kStop) {
+    if (regime_->overlay) size += kCancels * regime_->overlay->place_size(guard.contact) * per_place(guard);
+    return std::max(size, recalled(guard));
+  }
   if (output.kind == RegimeOutput::Kind::kSpeed)
     return size + std::abs(inputs_(r.speed_input())) +
            slipping_.mobility(guard.contact, guard.contact) * law.static_limit / r.rate;
   return size + (guard.kind == GuardKind::kLoad ? law.load : law.static_limit);
+}
+
+double ClosedFormFlow::per_place(const Guard& guard) const {
+  if (tables_->regime().outputs[static_cast<std::size_t>(guard.output)].kind != RegimeOutput::Kind::kPress) return 1.0;
+  const auto i = static_cast<std::size_t>(guard.contact);
+  const friction::Clearance& stops = resolver_.laws()[i].clearance;
+  return (side_of(point_.modes[i]) < 0.0 ? stops.left : stops.right)->stiffness;
+}
+
+double ClosedFormFlow::recalled(const Guard& guard) const {
+  const Recall& last = recall_[static_cast<std::size_t>(guard.contact)];
+  return point_.time - last.time < 1.0 / tables_->regime().rate ? last.size * per_place(guard) : 0.0;
+}
+
+void ClosedFormFlow::recall_sizes() {
+  for (const Guard& guard : guards_) {
+    if (guard.kind != GuardKind::kStop) continue;
+    if (!measured_) measure_amplitudes();
+    Recall& last = recall_[static_cast<std::size_t>(guard.contact)];
+    const double size = scale(guard);
+    if (size > recalled(guard)) last = {point_.time, size / per_place(guard)};
+  }
 }
 
 ClosedFormFlow::GuardValue ClosedFormFlow::evaluate(const Guard& guard, double t) const {

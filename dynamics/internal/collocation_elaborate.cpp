@@ -13,6 +13,8 @@ namespace {
 /// other one; its slope there is zero below the last share of what its terms are
 /// and would become in a radian of the fastest mode: at a turning point all of them may vanish.
 constexpr double kTouching = 1e-12, kStarting = 1e-11, kFlat = 1e-9;
+/// A guard that starts at zero shows where it goes once it is this many times what it may be off by.
+constexpr double kShows = 10.0;
 /// A time rounds by this share of itself, and of the step it was found in.
 constexpr double kOfTime = 1e-15;
 /// After a grazing the guard is as near to zero as the grazing was located.
@@ -106,6 +108,11 @@ BernsteinPolynomial CollocationFlow::form_of(const OwnGuard& guard, int c) const
   return interpolant(guard.value(y, v, point_.force(c), V), at_nodes(guard, c));
 }
 
+double CollocationFlow::moved_by(const OwnGuard& guard, int c, const Eigen::VectorXd& impulse) const {
+  const double h = tables_.step(step_level_), speed = model_.velocity_row.col(c).cwiseAbs().dot(impulse);
+  return (std::abs(guard.y) * h + std::abs(guard.v)) * speed;
+}
+
 double CollocationFlow::size_ahead(const OwnGuard& guard, int c) const {
   Eigen::VectorXd end(x_begin_.size()), pushed = Eigen::VectorXd::Zero(x_begin_.size());
   kernels_.propagate(tables_.propagator(step_level_).arrays(tables_.loaded()), x_begin_.data(), forces_.data(),
@@ -115,37 +122,44 @@ double CollocationFlow::size_ahead(const OwnGuard& guard, int c) const {
   const auto most = [&](int d) { return forces_.segment<kNodes>(kNodes * d).cwiseAbs().maxCoeff(); };
   for (int d = 0; d < nc_; ++d) pushed += most(d) * model_.input.col(d).cwiseAbs();
   for (int k = 0; k < given_; ++k) pushed += most(nc_ + k) * model_.force_input.col(k).cwiseAbs();
-  const double h = tables_.step(step_level_), speeds = h * model_.velocity_row.col(c).cwiseAbs().dot(pushed);
-  return std::abs(guard.constant) +
-         std::abs(guard.y) * (model_.displacement_row.col(c).cwiseAbs().dot(end) + h * speeds) +
-         std::abs(guard.v) * (model_.velocity_row.col(c).cwiseAbs().dot(end) + speeds);
+  return std::abs(guard.constant) + std::abs(guard.y) * model_.displacement_row.col(c).cwiseAbs().dot(end) +
+         std::abs(guard.v) * model_.velocity_row.col(c).cwiseAbs().dot(end) +
+         moved_by(guard, c, tables_.step(step_level_) * pushed);
 }
 
-void CollocationFlow::search_from_rest(const OwnGuard& guard, int c, const GuardValue& now, double size,
-                                       const BernsteinPolynomial& form, Guarded& first) const {
-  // The leading term may be of any order, where the force that begins to act does so elsewhere, and of a higher one the
-  // form's first coefficients are errors of interpolation. The values at the nodes are none; nor is the curvature,
-  // which has to show in the first of them or be rounding there.
+double CollocationFlow::tolerated(const OwnGuard& guard, int c) const {
+  Eigen::VectorXd impulse = Eigen::VectorXd::Zero(x_begin_.size());
+  for (int d = 0; d < nc_; ++d)
+    impulse += laws()[static_cast<std::size_t>(d)].static_limit * model_.input.col(d).cwiseAbs();
+  return moved_by(guard, c, options_.tolerance * tables_.step(0) * impulse);
+}
+
+bool CollocationFlow::searched_from_rest(const OwnGuard& guard, int c, const GuardValue& now, int order,
+                                         const BernsteinPolynomial& form, Guarded& first) const {
   const RadauTables::Vector8 values = at_nodes(guard, c);
-  size = std::max(size, size_ahead(guard, c));
-  const double rounding = kTouching * size, t = nodes_.node(0) * tables_.step(step_level_);
-  if (!(values.cwiseAbs().maxCoeff() > kStarting * size)) return;  // nor does anything show by the end of the step
-  Guarded found{0.0, c, false, guard, 2};                          // too early for it: to be halved
-  if (std::abs(now.second) * t * t / 2.0 <= rounding) {
-    const auto told = std::find_if(values.begin(), values.end(), [&](double v) { return std::abs(v) > rounding; });
-    if (*told < 0.0) {
+  const double t = nodes_.node(0) * tables_.step(step_level_), value = values(0),
+               leading = order == 1 ? now.rate * t : now.second * t * t / 2.0;
+  const double told = kTouching * std::max(now.size, size_ahead(guard, c)),
+               shows = kShows * std::max(told, tolerated(guard, c));
+  if (std::abs(leading) > told && (order == 1 || (leading / value > 0.5 && leading / value < 2.0))) return false;
+  if (!(values.cwiseAbs().maxCoeff() > shows)) return true;
+  Guarded found{0.0, c, false, guard, 2};  // too early for it: to be halved
+  if (std::abs(leading) <= shows) {
+    const auto showing = std::find_if(values.begin(), values.end(), [&](double v) { return std::abs(v) > shows; });
+    if (*showing < 0.0) {
       found.order = 1;  // falls through zero where the step begins
-    } else if (std::all_of(told, values.end(), [&](double v) { return v >= -rounding; })) {
-      return;
+    } else if (std::all_of(showing, values.end(), [&](double v) { return v >= -shows; })) {
+      return true;
     } else {
-      const double from = nodes_.node(told - values.begin());
+      const double from = nodes_.node(showing - values.begin());
       const auto root = first_root(part(form, from, 1.0));
-      if (!root) return;
+      if (!root) return true;
       found.theta = from + root->at * (1.0 - from);
       found.touching = root->touching;
     }
   }
   if (found.theta < first.theta) first = found;
+  return true;
 }
 
 void CollocationFlow::search_own_guards(int c, Guarded& first) const {
@@ -165,12 +179,10 @@ void CollocationFlow::search_own_guards(int c, Guarded& first) const {
     // to.
     const double h = tables_.step(step_level_), most = std::max(std::abs(start), form.cwiseAbs().maxCoeff());
     const double pushed = (std::abs(guard.y) * h + std::abs(guard.v)) * h * balanced(c);
-    const double size = std::max(now.size, pushed);
-    if (most <= (order == 2 && !known ? kStarting : kTouching) * size) continue;
-    if (order == 2 && touched_ != c && guard.kind == GuardKind::kStop && !curvature_leads(guard, c, now)) {
-      search_from_rest(guard, c, now, size, p, first);
+    if (most <= (order == 2 && !known ? kStarting : kTouching) * std::max(now.size, pushed)) continue;
+    if (order > 0 && touched_ != c && guard.kind == GuardKind::kStop &&
+        searched_from_rest(guard, c, now, order, p, first))
       continue;
-    }
     const bool rises = order == 1 ? now.rate > 0.0 : known && now.second > 0.0;
     if (rises && (std::abs(now.rate) + std::abs(now.second) * h) * h <= kStarting * now.size)
       continue;  // by less than its form rounds by
@@ -187,13 +199,6 @@ void CollocationFlow::search_own_guards(int c, Guarded& first) const {
     else if (const auto root = first_root(p))
       reached(root->at, root->touching);
   }
-}
-
-bool CollocationFlow::curvature_leads(const OwnGuard& guard, int c, const GuardValue& now) const {
-  const double t = nodes_.node(0) * tables_.step(step_level_), by_second = now.second * t * t / 2.0,
-               value = at_nodes(guard, c)(0);
-  return by_second * value > 0.0 && std::abs(value) < 2.0 * std::abs(by_second) &&
-         std::abs(by_second) < 2.0 * std::abs(value);
 }
 
 int CollocationFlow::start_order(const OwnGuard& guard, int c, const GuardValue& now) const {

@@ -208,20 +208,23 @@ class CollocationFlow {
     double size = 0.0, rate_size = 0.0;  ///< of the terms that are summed
   };
   void search_own_guards(int c, Guarded& first) const;
-  /// The same of a stop's guard that starts at zero, of whose motion the curvature there is not all.
-  /// @param size  of the terms that the guard sums
-  /// @param form  its form over the step
-  void search_from_rest(const OwnGuard& guard, int c, const GuardValue& now, double size,
-                        const BernsteinPolynomial& form, Guarded& first) const;
+  /// The same of a stop's guard that starts at zero, where the order of that zero does not lead: the leading term may
+  /// be of any order, where the force that begins to act does so elsewhere, and of a higher one the form's first
+  /// coefficients are errors of interpolation. The values at the nodes are none. False where the order leads.
+  /// @param now  at the step's start @param order  of the zero there, 1 or 2 @param form  over the step
+  [[nodiscard]] bool searched_from_rest(const OwnGuard& guard, int c, const GuardValue& now, int order,
+                                        const BernsteinPolynomial& form, Guarded& first) const;
   /// Of degree 8 through a start and the nodes.
   [[nodiscard]] BernsteinPolynomial interpolant(double start, const RadauTables::Vector8& at_nodes) const;
   [[nodiscard]] RadauTables::Vector8 at_nodes(const OwnGuard& guard, int c) const;
   /// A guard over the step.
   [[nodiscard]] BernsteinPolynomial form_of(const OwnGuard& guard, int c) const;
+  /// A bound on what impulses into the modes, given by their sizes, make of a guard in the step.
+  [[nodiscard]] double moved_by(const OwnGuard& guard, int c, const Eigen::VectorXd& impulse) const;
   /// Of the terms that a guard sums where the step ends.
   [[nodiscard]] double size_ahead(const OwnGuard& guard, int c) const;
-  /// The first node has what the curvature at the start makes of a guard that starts at zero.
-  [[nodiscard]] bool curvature_leads(const OwnGuard& guard, int c, const GuardValue& now) const;
+  /// What the step's tolerance lets a guard be off by.
+  [[nodiscard]] double tolerated(const OwnGuard& guard, int c) const;
   /// Of the zero with which a guard starts, 0 if with none. @param now  of the guard at the step's start
   [[nodiscard]] int start_order(const OwnGuard& guard, int c, const GuardValue& now) const;
   [[nodiscard]] GuardValue evaluate(const OwnGuard& guard, int c, double tau, const Eigen::VectorXd& x) const;

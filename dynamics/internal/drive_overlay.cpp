@@ -115,7 +115,9 @@ void Amplitudes::add(DrivePhase first, double factor, Eigen::VectorXd& out) cons
 }
 
 DriveOverlay::DriveOverlay(const Regime& r, const ModalModel& slipping_model, const friction::Drive& drive)
-    : inputs(driven_inputs(r, drive)), swell(Eigen::VectorXd::Zero(r.pairs.np)) {
+    : inputs(driven_inputs(r, drive)),
+      place_size(Eigen::VectorXd::Zero(r.speed_input())),
+      swell(Eigen::VectorXd::Zero(r.pairs.np)) {
   omega_ = drive.omega();
   phase_ = drive.shaker() ? drive.shaker()->phase : 0.0;
   const Complex way = drive.shaker() ? Complex(0.0, -drive.shaker()->amplitude) : 0.0;
@@ -136,6 +138,7 @@ DriveOverlay::DriveOverlay(const Regime& r, const ModalModel& slipping_model, co
     own.col(j) = r.from_slipping * response.slipping + r.from_oscillators * response.oscillators;
     lifted.col(j) = response.slipping;
     forces.col(j) = response.force;
+    place_size += response.place_size;
   }
   state = amplitudes(own);
   slipping = amplitudes(lifted);

@@ -144,6 +144,7 @@ HarmonicResponse harmonic_response(const Regime& r, const ModalModel& slipping, 
   out.force = solved.head(nc);
   out.slipping = by_contacts * out.force + by_forces;
   out.slipping(own) = solved.tail(unknowns - nc);
+  out.place_size = H.cwiseAbs() * out.force.cwiseAbs() + moved.cwiseAbs();
   for (Eigen::Index c = 0; c < nc; ++c)
     if (const Carried& at = carried[static_cast<std::size_t>(c)]; at.by >= 0)
       out.force(at.by) -= at.share * out.force(c);

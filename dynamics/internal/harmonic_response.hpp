@@ -19,6 +19,7 @@ struct HarmonicResponse {
   Eigen::VectorXcd slipping;     ///< state of the slipping model [2np_s]
   Eigen::VectorXcd force;        ///< λ of each contact [nc]
   Eigen::VectorXcd oscillators;  ///< ζ, ζ̇ of the normal oscillators, contact after contact [2k]
+  Eigen::VectorXd place_size;    ///< of the terms that add up to each contact's wᵀq: held ones can cancel [nc]
 };
 
 /// The steady response at one frequency, by the receptances of the slipping structure at its contacts,
