@@ -126,7 +126,8 @@ TEST(RandomScenes, OfTenSeedsThatOnceFailedHold) {
   // combination of stick and slip); a mass at rest on a stop that leaves it as t⁴ (216_5559: Zeno); a guard all but
   // flat where it falls through zero (235_435: 0.47 s late); an energy of zero, stored less a load's (223_7666); a
   // damper's mass whose eigenvalue was 4e-23 (225_7666, in coupled coordinates: Zeno); stops met to 1e-14 of the motion
-  // (218_1752, 229_7711: refused); and, the judge's, speeds of a beam all but at rest (152_7026) and a normal load that
+  // (218_1752, 229_7711: refused); a start on a stop whose modes nearly cancel, at 400 times its size (268_3562: met
+  // 1.4e-4 late); and, the judge's, speeds of a beam all but at rest (152_7026) and a normal load that
   // it carried along by 1e-7 (215_6172).
   std::vector<std::pair<std::uint64_t, std::uint64_t>> scenes;
   for (const auto& file : std::filesystem::directory_iterator(SLIPMODE_SOURCE_DIR "/tests/selftest/scenes")) {
