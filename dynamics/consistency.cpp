@@ -45,12 +45,14 @@ Eigen::VectorXd acceleration_rounding(const Instant& now, const Eigen::VectorXd&
 /// What wᵀq̈ of contacts that let go may be off by: their stick forces have reached their limits in the regime that
 /// ends, whose stiffest modes can be 1e8 times as large as what is left here. Where another contact comes to rest at
 /// the same instant, forces are others, and nothing is known.
+/// @param force  of the contacts that are not at rest; the others' entries are not read
 Eigen::VectorXd release_rounding(const Instant& now, const std::vector<ContactMode>& modes,
                                  const std::vector<bool>& at_rest, const std::vector<bool>& released,
-                                 const Eigen::VectorXd& stick) {
-  Eigen::VectorXd rounding = Eigen::VectorXd::Zero(stick.size());
+                                 const Eigen::VectorXd& force) {
+  Eigen::VectorXd rounding = Eigen::VectorXd::Zero(force.size()), stick = force;
   for (std::size_t c = 0; c < modes.size(); ++c)
     if (at_rest[c] && modes[c] != ContactMode::kStick) return rounding;
+  stick_forces(now, at_rest, stick);
   for (std::size_t c = 0; c < modes.size(); ++c) {
     if (!released[c]) continue;
     const auto i = static_cast<Eigen::Index>(c);
@@ -181,7 +183,6 @@ Resolution resolve(const Instant& now, const std::vector<ContactMode>& modes, co
     trial.force(i) = sign_of(trial.modes[c]) * now.laws[c].onset(sign_of(trial.modes[c]));
   };
   refresh();
-  const Eigen::VectorXd stick = trial.force;
   bool any_released = false;
   for (std::size_t c = 0; c < nc; ++c)
     if (released[c]) {
@@ -212,7 +213,8 @@ Resolution resolve(const Instant& now, const std::vector<ContactMode>& modes, co
   bool consistent = find();
   if (!consistent) {  // forces at a limit that vanishes are told to their rounding, as are those of fast modes
     checked = trial;
-    checked.rounding = acceleration_rounding(now, trial.force) + release_rounding(now, modes, at_rest, released, stick);
+    checked.rounding =
+        acceleration_rounding(now, trial.force) + release_rounding(now, modes, at_rest, released, trial.force);
     consistent = find();
   }
   if (!consistent)

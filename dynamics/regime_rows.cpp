@@ -33,10 +33,7 @@ void RegimeBuilder::make_inputs(Regime& out) const {
     lift(j, V_) += load(c).lift_rate * w.dot(P_all_);
     lift(j, one_) += load(c).lift * load(c).offset;
   }
-  Eigen::MatrixXd left = Z_.transpose() * force;
-  for (Eigen::Index k = 0; k < ni_; ++k)  // what acts on a held contact alone moves nothing
-    if (!(left.col(k).norm() > kRounding * force.col(k).norm())) left.col(k).setZero();
-  out.B = at_.from_rate * left + at_.from_zeta_rate * lift;
+  out.B = at_.from_rate * left_of(force) + at_.from_zeta_rate * lift;
   out.B_follows = Eigen::VectorXd::Zero(out.B.rows());
   for (Eigen::Index c = 0; c < nc_; ++c)
     if (out.follows[static_cast<std::size_t>(c)]) out.B_follows += out.B.col(c);

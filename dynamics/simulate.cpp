@@ -18,23 +18,22 @@ void require(bool condition, const std::string& message) {
   if (!condition) throw InvalidInput(message);
 }
 
-/// Energy, constant loads' included, and the largest of what it is a sum of.
+/// Energy, and the larger of it and of what is stored, without constant loads'.
 struct Energy {
-  double value = 0.0, size = 0.0;
+  Energy(double energy, double by_load) : value(energy), size(std::max(std::abs(energy), energy + by_load)) {}
+
+  double value, size;
 };
 
 /// From the modal coordinates where they decouple it, else from the state.
 Energy modal_energy(const HybridSystem& system, const ModalModel& m, const HybridPoint& point) {
-  const auto sum = [](double stored, double by_load) {
-    return Energy{stored - by_load, std::max(stored, std::abs(stored - by_load))};
-  };
   if (!m.proportional) {
     const State state = physical(m, point);
-    return sum(system.structure().energy(state.q, state.v),
-               system.load().size() > 0 ? system.load().dot(state.q) : 0.0);
+    return {system.energy(state), system.load().size() > 0 ? system.load().dot(state.q) : 0.0};
   }
   const auto eta = point.x.head(m.np), rate = point.x.tail(m.np);
-  return sum(0.5 * rate.squaredNorm() + 0.5 * m.omega.cwiseProduct(eta).squaredNorm(), m.load.tail(m.np).dot(eta));
+  const double by_load = m.load.tail(m.np).dot(eta);
+  return {0.5 * rate.squaredNorm() + 0.5 * m.omega.cwiseProduct(eta).squaredNorm() - by_load, by_load};
 }
 
 /// Keeps what the options ask for, sample by sample in blocks so that lifting to the degrees of freedom is one product.

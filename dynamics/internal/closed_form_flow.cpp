@@ -167,6 +167,12 @@ void ClosedFormFlow::move(double tau) {
   move(*regime_, tau, free_, x_, inputs_);
 }
 
+void ClosedFormFlow::move_from_begin(double tau) {
+  x_ = x_begin_;
+  inputs_ = inputs_begin_;
+  move(tau);
+}
+
 void ClosedFormFlow::move(const Visited& in, double tau, const Eigen::VectorXd& free, Eigen::VectorXd& x,
                           Eigen::VectorXd& inputs) const {
   const Regime& r = in.tables->regime();
@@ -243,9 +249,7 @@ bool ClosedFormFlow::step(double t_limit) {
       // A guard that is all rounding led past another's event: it is taken where the window has it.
       proved = false;
       root = found.at * h;
-      x_ = x_begin_;
-      inputs_ = inputs_begin_;
-      move(root);
+      move_from_begin(root);
     }
     const bool first = found.resolved || root <= found.others * h;
     // Where windows are finer than the clock, a root beyond the window is now, or the guard is clear until shortly
@@ -256,9 +260,7 @@ bool ClosedFormFlow::step(double t_limit) {
     if (proved ? now || (root <= std::min(h, remaining) && first) : found.resolved) {
       tau = root;
     } else {
-      x_ = x_begin_;
-      inputs_ = inputs_begin_;
-      move(tau);
+      move_from_begin(tau);
       if (proved && finest) guards_[static_cast<std::size_t>(found.guard)].exempt_until = clear;
       found.guard = -1;
       level_ = std::min(level_ + found.refinement, RegimeTables::kLevels - 1);

@@ -124,6 +124,8 @@ class ClosedFormFlow {
   void drop_idle_guards();
   /// Takes the state, which is that of the step's begin, on by tau.
   void move(double tau);
+  /// The same of a state that has been moved.
+  void move_from_begin(double tau);
   /// The same of the last step's begin, whose state, free part and inputs are given.
   void move(const Visited& in, double tau, const Eigen::VectorXd& free, Eigen::VectorXd& x,
             Eigen::VectorXd& inputs) const;
@@ -227,10 +229,10 @@ class ClosedFormFlow {
   Eigen::VectorXd x_, inputs_, x_begin_, inputs_begin_;
   Eigen::VectorXd free_, amplitude_;  ///< at the step's begin: x less what follows the inputs, and its pairs' sizes
   Eigen::VectorXd free_begin_;        ///< that of x_begin_
-  std::vector<Recall> recall_;        ///< of each contact
   Eigen::VectorXd free_entered_;      ///< that of the state in which the regime was entered
   Eigen::VectorXd resting_;           ///< what follows the inputs, where those are constant: under a periodic drive
-  bool measured_ = false;             ///< these two belong to x_
+  bool measured_ = false;             ///< free_ and amplitude_ belong to x_
+  std::vector<Recall> recall_;        ///< of each contact
   double begin_ = 0.0;
   DrivePhase phase_;                                    ///< at begin_, of a periodic drive
   mutable Eigen::VectorXd x_then_, inputs_then_, sum_;  ///< worked in: samples are asked for by the thousand

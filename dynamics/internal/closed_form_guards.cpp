@@ -22,8 +22,9 @@ constexpr double kRising = 1e-13, kSimpleStart = 1e-9;
 /// A root is located to this phase of the fastest pair.
 constexpr double kClock = 1e-15;
 constexpr int kNewtonSteps = 20;
-/// A root is found in a window to better than this share of it.
-constexpr double kRootLeaves = 1e-5;
+/// A root is found in a window to better than this share of it; from there to another root a guard changes by more than
+/// this many times what it is told from zero to.
+constexpr double kRootLeaves = 1e-5, kOtherRoot = 8.0;
 /// Newton steps of less than this phase of the fastest pair go on from where the last one led.
 constexpr double kClose = 0.25;
 constexpr int kHalvings = 3;
@@ -350,14 +351,9 @@ bool ClosedFormFlow::approach(const Guard& guard, double from, double& tau) {
   // Newton on the exact guard.
   const double rate = tables_->regime().rate, bend = curvature(guard.output), size = scale(guard), start = tau;
   const double rounding = std::numeric_limits<double>::epsilon() / 2.0 * size;
-  const auto move_to = [&](double t) {
-    x_ = x_begin_;
-    inputs_ = inputs_begin_;
-    move(t);
-  };
   const auto give_up = [&] {
     tau = start;
-    move_to(tau);
+    move_from_begin(tau);
     return false;
   };
   double slope = 0.0;
@@ -371,7 +367,7 @@ bool ClosedFormFlow::approach(const Guard& guard, double from, double& tau) {
     if (!tables_->regime().motion.available() && !swells() && std::abs(shift) * rate < kClose)
       advance(*tables_, shift, x_, inputs_);
     else
-      move_to(tau);
+      move_from_begin(tau);
     // Newton squares its error, with a factor of about the guard's curvature by its slope. It is done where that is
     // beyond the clock, or leaves of the guard no more than its rounding.
     if (std::abs(shift) * rate < kClock || shift * shift * bend < std::max(kClock / rate * std::abs(slope), rounding))
@@ -380,7 +376,7 @@ bool ClosedFormFlow::approach(const Guard& guard, double from, double& tau) {
   // A root that the window has is no other one: of a guard that is all but flat there, Newton's may be.
   const double shifted = std::abs(tau - start);
   if (start == from && shifted > kRootLeaves * tables_->length(level_) &&
-      std::abs(slope) * shifted > 8.0 * kTouching * size)
+      std::abs(slope) * shifted > kOtherRoot * kTouching * size)
     return give_up();
   // The guard falls all the way from `from`: it vanishes here for the first time.
   return tau <= from || (tau - from) * bend < std::abs(slope);

@@ -108,9 +108,8 @@ BernsteinPolynomial CollocationFlow::form_of(const OwnGuard& guard, int c) const
   return interpolant(guard.value(y, v, point_.force(c), V), at_nodes(guard, c));
 }
 
-double CollocationFlow::moved_by(const OwnGuard& guard, int c, const Eigen::VectorXd& impulse) const {
-  const double h = tables_.step(step_level_), speed = model_.velocity_row.col(c).cwiseAbs().dot(impulse);
-  return (std::abs(guard.y) * h + std::abs(guard.v)) * speed;
+double CollocationFlow::moved_by(const OwnGuard& guard, double speed) const {
+  return (std::abs(guard.y) * tables_.step(step_level_) + std::abs(guard.v)) * speed;
 }
 
 double CollocationFlow::size_ahead(const OwnGuard& guard, int c) const {
@@ -124,14 +123,14 @@ double CollocationFlow::size_ahead(const OwnGuard& guard, int c) const {
   for (int k = 0; k < given_; ++k) pushed += most(nc_ + k) * model_.force_input.col(k).cwiseAbs();
   return std::abs(guard.constant) + std::abs(guard.y) * model_.displacement_row.col(c).cwiseAbs().dot(end) +
          std::abs(guard.v) * model_.velocity_row.col(c).cwiseAbs().dot(end) +
-         moved_by(guard, c, tables_.step(step_level_) * pushed);
+         moved_by(guard, tables_.step(step_level_) * model_.velocity_row.col(c).cwiseAbs().dot(pushed));
 }
 
 double CollocationFlow::tolerated(const OwnGuard& guard, int c) const {
   Eigen::VectorXd impulse = Eigen::VectorXd::Zero(x_begin_.size());
   for (int d = 0; d < nc_; ++d)
     impulse += laws()[static_cast<std::size_t>(d)].static_limit * model_.input.col(d).cwiseAbs();
-  return moved_by(guard, c, options_.tolerance * tables_.step(0) * impulse);
+  return moved_by(guard, options_.tolerance * tables_.step(0) * model_.velocity_row.col(c).cwiseAbs().dot(impulse));
 }
 
 bool CollocationFlow::searched_from_rest(const OwnGuard& guard, int c, const GuardValue& now, int order,
@@ -178,7 +177,7 @@ void CollocationFlow::search_own_guards(int c, Guarded& first) const {
     // Where neither slope nor curvature can be told, for as long as it would start at zero: rounding would say where
     // to.
     const double h = tables_.step(step_level_), most = std::max(std::abs(start), form.cwiseAbs().maxCoeff());
-    const double pushed = (std::abs(guard.y) * h + std::abs(guard.v)) * h * balanced(c);
+    const double pushed = moved_by(guard, h * balanced(c));
     if (most <= (order == 2 && !known ? kStarting : kTouching) * std::max(now.size, pushed)) continue;
     if (order > 0 && touched_ != c && guard.kind == GuardKind::kStop &&
         searched_from_rest(guard, c, now, order, p, first))

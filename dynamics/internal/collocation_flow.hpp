@@ -219,8 +219,8 @@ class CollocationFlow {
   [[nodiscard]] RadauTables::Vector8 at_nodes(const OwnGuard& guard, int c) const;
   /// A guard over the step.
   [[nodiscard]] BernsteinPolynomial form_of(const OwnGuard& guard, int c) const;
-  /// A bound on what impulses into the modes, given by their sizes, make of a guard in the step.
-  [[nodiscard]] double moved_by(const OwnGuard& guard, int c, const Eigen::VectorXd& impulse) const;
+  /// What a speed of the contact makes of a guard in the step.
+  [[nodiscard]] double moved_by(const OwnGuard& guard, double speed) const;
   /// Of the terms that a guard sums where the step ends.
   [[nodiscard]] double size_ahead(const OwnGuard& guard, int c) const;
   /// What the step's tolerance lets a guard be off by.

@@ -82,10 +82,10 @@ HarmonicResponse harmonic_response(const Regime& r, const ModalModel& slipping, 
     if (const Carried at = carried(r, slipping.input, slipping.force_input.col(k)); at.by >= 0)
       on_held(at.by) += at.share * std::exchange(moving(k), 0.0);
   const Eigen::VectorXcd forced = slipping.force_input * moving;
-  const std::vector<Carried> carried = carried_contacts(r, slipping);
+  const std::vector<Carried> contacts = carried_contacts(r, slipping);
   Eigen::MatrixXd input = slipping.input;
   for (Eigen::Index c = 0; c < nc; ++c)
-    if (carried[static_cast<std::size_t>(c)].by >= 0) input.col(c).setZero();
+    if (contacts[static_cast<std::size_t>(c)].by >= 0) input.col(c).setZero();
   Eigen::MatrixXcd by_contacts = pair_receptances(slipping, omega, input.cast<Complex>());
   Eigen::MatrixXcd by_forces = pair_receptances(slipping, omega, forced);
   std::vector<Eigen::Index> own;  // states that are unknowns of their own
@@ -121,9 +121,9 @@ HarmonicResponse harmonic_response(const Regime& r, const ModalModel& slipping, 
     const friction::LoadForm& load = r.answers[i].load;
     if (load.oscillates())
       impedance -= r.answers[i].friction * Complex(load.z, omega * load.z_rate) * oscillator_gain(load, omega);
-    if (carried[i].by >= 0) {
+    if (contacts[i].by >= 0) {
       A(c, c) = 1.0;
-      b(c) = impedance * (own_way - carried[i].share * way);
+      b(c) = impedance * (own_way - contacts[i].share * way);
       continue;
     }
     const double size = std::max(1.0, std::abs(impedance) * reach);
@@ -146,7 +146,7 @@ HarmonicResponse harmonic_response(const Regime& r, const ModalModel& slipping, 
   out.slipping(own) = solved.tail(unknowns - nc);
   out.place_size = H.cwiseAbs() * out.force.cwiseAbs() + moved.cwiseAbs();
   for (Eigen::Index c = 0; c < nc; ++c)
-    if (const Carried& at = carried[static_cast<std::size_t>(c)]; at.by >= 0)
+    if (const Carried& at = contacts[static_cast<std::size_t>(c)]; at.by >= 0)
       out.force(at.by) -= at.share * out.force(c);
   out.force -= on_held;
   out.oscillators.resize(r.from_oscillators.cols());

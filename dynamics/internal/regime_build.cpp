@@ -13,6 +13,9 @@ namespace {
 
 /// Natural frequencies below this share of the fastest are rigid-body motion.
 constexpr double kRigid = 1e-8;
+/// Rounding: damping counts as diagonal in the regime's modes when the rest is below this share of it, and a direction
+/// as projected out when no more than this share of it is left.
+constexpr double kRounding = 1e-12;
 
 /// Rows of a [2m x k] matrix spread to padded pairs [2np x k].
 Eigen::MatrixXd spread(const Eigen::MatrixXd& rows, Eigen::Index np) {
@@ -55,11 +58,14 @@ RegimeBuilder::RegimeBuilder(const HybridSystem& system, const ModalModel& slipp
   }
   couple_contacts();
   eliminate_held();
-  // A held contact does not move. What the projection leaves of it is rounding, which scaled up would couple, or be the
-  // only stiffness of what floats.
-  moved_ = Z_.transpose() * modal_.directions;
-  for (Eigen::Index c = 0; c < nc_; ++c)
-    if (!(moved_.col(c).norm() > kRounding * modal_.directions.col(c).norm())) moved_.col(c).setZero();
+  moved_ = left_of(modal_.directions);
+}
+
+Eigen::MatrixXd RegimeBuilder::left_of(const Eigen::MatrixXd& directions) const {
+  Eigen::MatrixXd left = Z_.transpose() * directions;
+  for (Eigen::Index k = 0; k < left.cols(); ++k)
+    if (!(left.col(k).norm() > kRounding * directions.col(k).norm())) left.col(k).setZero();
+  return left;
 }
 
 void RegimeBuilder::couple_contacts() {

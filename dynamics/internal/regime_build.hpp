@@ -23,10 +23,6 @@ class RegimeBuilder {
   void fill(Regime& out);
 
  private:
-  /// Rounding: damping counts as diagonal in the regime's modes when the rest is below this share of it, and a
-  /// direction as projected out when no more than this share of it is left.
-  static constexpr double kRounding = 1e-12;
-
   /// y (what is left of η), ẏ, ζ, ζ̇ from x, and back.
   struct Coordinates {
     Eigen::MatrixXd to_y, to_rate, to_zeta, to_zeta_rate;
@@ -34,6 +30,9 @@ class RegimeBuilder {
   };
 
   void eliminate_held();
+  /// Zᵀ of columns. A held contact does not move: what the projection leaves of it, or of what acts on it alone, is
+  /// rounding, which scaled up would couple, or be the only stiffness of what floats.
+  [[nodiscard]] Eigen::MatrixXd left_of(const Eigen::MatrixXd& directions) const;
   void couple_contacts();
   /// Of y.
   [[nodiscard]] Eigen::MatrixXd left_damping() const;
