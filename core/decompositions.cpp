@@ -2,7 +2,6 @@
 
 namespace Eigen {
 template class JacobiSVD<MatrixXd>;
-template class BDCSVD<MatrixXd>;
 template class HouseholderQR<MatrixXd>;
 template class ColPivHouseholderQR<MatrixXd>;
 template class SelfAdjointEigenSolver<MatrixXd>;

@@ -8,7 +8,6 @@
 /// MatrixXd or VectorXd, not as expressions.
 namespace Eigen {
 extern template class JacobiSVD<MatrixXd>;
-extern template class BDCSVD<MatrixXd>;
 extern template class HouseholderQR<MatrixXd>;
 extern template class ColPivHouseholderQR<MatrixXd>;
 extern template class SelfAdjointEigenSolver<MatrixXd>;

@@ -1,5 +1,5 @@
 #include <slipmode/core/decompositions.hpp>
-#include "orbits/internal/dense_lapack.hpp"
+#include <slipmode/core/dense_lapack.hpp>
 #include "orbits/internal/shooting_problem.hpp"
 
 #include <cmath>

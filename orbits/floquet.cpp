@@ -1,6 +1,6 @@
 #include <slipmode/orbits/floquet.hpp>
 
-#include "orbits/internal/dense_lapack.hpp"
+#include <slipmode/core/dense_lapack.hpp>
 
 #include <algorithm>
 #include <cmath>

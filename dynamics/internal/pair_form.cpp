@@ -2,6 +2,7 @@
 
 #include <slipmode/core/coupled_parts.hpp>
 #include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/dense_lapack.hpp>
 #include <slipmode/core/errors.hpp>
 #include <slipmode/core/none.hpp>
 
@@ -94,7 +95,7 @@ PairForm coupled_pair_form(const Eigen::MatrixXd& A) {
   for (std::size_t k = 0; k + 1 < reals.size(); k += 2)
     put(reals[k].vector, reals[k + 1].vector, reals[k].value, 0.0, 0.0, reals[k + 1].value);
 
-  const Eigen::VectorXd singular = Eigen::BDCSVD<Eigen::MatrixXd>(form.T).singularValues();
+  const Eigen::VectorXd singular = singular_values(form.T, false).sigma;
   check_condition(singular(0) / singular(2 * n - 1));
   form.T_inverse = form.T.inverse();
   return form;

@@ -1,4 +1,5 @@
 #include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/dense_lapack.hpp>
 #include <slipmode/core/errors.hpp>
 #include "fem/internal/eigensolvers.hpp"
 
@@ -36,10 +37,9 @@ std::optional<EigenPairs> solve_by_factors(const Eigen::MatrixXd& M, const Eigen
   Eigen::MatrixXd root(springs.rows() + n, n);
   root << springs, Eigen::MatrixXd(stiffness.matrixU());
   mass.matrixU().solveInPlace<Eigen::OnTheRight>(root);
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(root, Eigen::ComputeThinV);
-  if (svd.info() != Eigen::Success) return std::nullopt;
-  const Eigen::MatrixXd shapes = mass.matrixU().solve(svd.matrixV().rowwise().reverse());
-  return EigenPairs{svd.singularValues().reverse().cwiseAbs2(), shapes};
+  const SingularValues found = singular_values(std::move(root));
+  const Eigen::MatrixXd shapes = mass.matrixU().solve(found.V.rowwise().reverse());
+  return EigenPairs{found.sigma.reverse().cwiseAbs2(), shapes};
 }
 
 EigenPairs solve_dense(const Structure& structure) {

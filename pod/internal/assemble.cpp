@@ -2,6 +2,7 @@
 
 #include <slipmode/core/errors.hpp>
 #include <slipmode/core/none.hpp>
+#include <slipmode/core/signs.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>

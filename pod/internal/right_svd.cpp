@@ -1,6 +1,7 @@
 #include "pod/internal/right_svd.hpp"
 
 #include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/dense_lapack.hpp>
 #include <slipmode/core/errors.hpp>
 
 #include <fmt/format.h>
@@ -83,12 +84,8 @@ RightSvd right_svd_jacobi(const Eigen::MatrixXd& A) {
 
 RightSvd right_svd(const Eigen::MatrixXd& A) {
   if (A.cols() <= kJacobiLimit) return right_svd_jacobi(A);
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(A, Eigen::ComputeThinV);
-  if (svd.info() != Eigen::Success) {
-    throw NumericalFailure(fmt::format("SVD of a {} x {} matrix did not converge", A.rows(), A.cols()),
-                           std::numeric_limits<double>::quiet_NaN(), {}, std::numeric_limits<double>::quiet_NaN());
-  }
-  return {svd.singularValues(), svd.matrixV()};
+  SingularValues found = singular_values(A);
+  return {std::move(found.sigma), std::move(found.V)};
 }
 
 }  // namespace slipmode::pod

@@ -18,7 +18,7 @@ struct RightSvd {
 /// Source: Drmač & Veselić, SIAM J. Matrix Anal. Appl. 29 (2008) 1322; Demmel & Veselić, same journal 13 (1992) 1204.
 [[nodiscard]] RightSvd right_svd_jacobi(const Eigen::MatrixXd& A);
 
-/// Jacobi for up to 256 columns, Eigen's divide-and-conquer above (absolute error ε sigma_1).
+/// Jacobi for up to 256 columns, LAPACK's divide and conquer above (absolute error ε sigma_1).
 /// @throws NumericalFailure  if the iteration does not converge
 [[nodiscard]] RightSvd right_svd(const Eigen::MatrixXd& A);
 

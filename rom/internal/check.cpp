@@ -1,6 +1,7 @@
 #include "rom/internal/check.hpp"
 
 #include <slipmode/core/decompositions.hpp>
+#include <slipmode/core/dense_lapack.hpp>
 #include <slipmode/core/errors.hpp>
 
 #include <fmt/format.h>
@@ -36,8 +37,7 @@ void check_basis(const pod::Basis& basis, Eigen::Index n, std::string_view where
     if (norms[j] == 0.0)
       throw InvalidInput(fmt::format("{}: basis vector {} (from 1) is zero; remove it", where, j + 1));
   }
-  const Eigen::VectorXd sigma =
-      Eigen::BDCSVD<Eigen::MatrixXd>(Phi * norms.cwiseInverse().asDiagonal()).singularValues();
+  const Eigen::VectorXd sigma = singular_values(Phi * norms.cwiseInverse().asDiagonal(), false).sigma;
   const double ratio = sigma[sigma.size() - 1] / sigma[0];
   if (!(ratio >= kIndependence)) {
     throw InvalidInput(

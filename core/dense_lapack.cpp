@@ -1,4 +1,4 @@
-#include "orbits/internal/dense_lapack.hpp"
+#include <slipmode/core/dense_lapack.hpp>
 
 #include <slipmode/core/errors.hpp>
 
@@ -17,13 +17,12 @@ void dgesdd_(const char* jobz, const int* m, const int* n, double* a, const int*
              std::size_t jobz_length);
 }
 
-namespace slipmode::orbits {
+namespace slipmode {
 namespace {
 
 void require(bool found, const char* what) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  if (!found)
-    throw NumericalFailure(std::string("the ") + what + " of a matrix of the orbit were not found", kNone, {}, kNone);
+  if (!found) throw NumericalFailure(std::string("the ") + what + " of a matrix were not found", kNone, {}, kNone);
 }
 
 }  // namespace
@@ -51,25 +50,27 @@ Eigenpairs eigenpairs(Eigen::MatrixXd matrix, bool with_vectors) {
   return out;
 }
 
-SingularValues singular_values(Eigen::MatrixXd matrix) {
+SingularValues singular_values(Eigen::MatrixXd matrix, bool with_vectors) {
   constexpr const char* kWhat = "singular values";
   require(matrix.allFinite(), kWhat);
   const int m = static_cast<int>(matrix.rows()), n = static_cast<int>(matrix.cols()), count = std::min(m, n);
-  SingularValues out{Eigen::MatrixXd(m, count), {}, Eigen::VectorXd(count)};
-  Eigen::MatrixXd Vt(count, n);
+  const int vectors = with_vectors ? count : 0, lead = std::max(1, vectors);  // LAPACK wants no leading dimension of 0
+  SingularValues out{Eigen::MatrixXd(m, vectors), {}, Eigen::VectorXd(count)};
+  if (count == 0) return out;
+  Eigen::MatrixXd Vt(lead, n);
   std::vector<int> iwork(static_cast<std::size_t>(8 * count));
   double wanted = 0.0;
   int info = 0;
   const auto call = [&](double* work, int work_size) {
-    dgesdd_("S", &m, &n, matrix.data(), &m, out.sigma.data(), out.U.data(), &m, Vt.data(), &count, work, &work_size,
-            iwork.data(), &info, 1);
+    dgesdd_(with_vectors ? "S" : "N", &m, &n, matrix.data(), &m, out.sigma.data(), out.U.data(), &m, Vt.data(), &lead,
+            work, &work_size, iwork.data(), &info, 1);
     require(info == 0, kWhat);
   };
   call(&wanted, -1);
   Eigen::VectorXd work(static_cast<Eigen::Index>(wanted));
   call(work.data(), static_cast<int>(work.size()));
-  out.V = Vt.transpose();
+  out.V = Vt.topRows(vectors).transpose();
   return out;
 }
 
-}  // namespace slipmode::orbits
+}  // namespace slipmode

@@ -1,5 +1,5 @@
 // Decompositions of matrices like the fundamental ones of many contacts at one place: ones, zeros, and a few others.
-#include "orbits/internal/dense_lapack.hpp"
+#include <slipmode/core/dense_lapack.hpp>
 #include <slipmode/core/errors.hpp>
 #include <slipmode/orbits/floquet.hpp>
 
@@ -9,8 +9,11 @@
 #include <limits>
 #include <random>
 
-namespace slipmode::orbits {
+namespace slipmode {
 namespace {
+
+using orbits::sorted_by_modulus;
+using orbits::sorted_eigenvalues;
 
 /// So many zero columns, so many ones that the first rows feed on, and a random rest that is scaled unequally.
 Eigen::MatrixXd of_a_joint(unsigned seed, int rest, int zeros, int ones) {
@@ -64,4 +67,4 @@ TEST(DenseLapack, WhatIsNotFiniteIsAFailure) {
 }
 
 }  // namespace
-}  // namespace slipmode::orbits
+}  // namespace slipmode
