@@ -45,8 +45,9 @@ set(SLIPMODE_LIGHT_MODULES scene trade results figures studies report)
 set(SLIPMODE_COLD_MODULES fem pod rom orbits)
 
 # Eigen's alignment, of what is on the heap and of arrays of fixed size, must be the same in the library and in whoever
-# links it, whatever -march each uses.
-set(SLIPMODE_PUBLIC_DEFINITIONS EIGEN_MAX_ALIGN_BYTES=64 EIGEN_MAX_STATIC_ALIGN_BYTES=16)
+# links it, whatever -march each uses. Blocks of its products must not follow the processor's caches: sums would round
+# otherwise on each.
+set(SLIPMODE_PUBLIC_DEFINITIONS EIGEN_MAX_ALIGN_BYTES=64 EIGEN_MAX_STATIC_ALIGN_BYTES=16 EIGEN_NO_CPUID)
 
 # Headers are included as they are installed, <slipmode/fem/structure.hpp>; those in internal/ folders, which are not,
 # as "fem/internal/eigensolvers.hpp".

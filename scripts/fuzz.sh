@@ -16,7 +16,7 @@ mkdir -p "$out"
 
 compiler=(clang++)
 command -v ccache >/dev/null && compiler=(ccache clang++)
-flags=(-std=c++20 -O1 -g1 -DEIGEN_MAX_ALIGN_BYTES=64 -DEIGEN_MAX_STATIC_ALIGN_BYTES=16 -I. -I"$release/include" -Ifuzz -isystem /usr/include/eigen3
+flags=(-std=c++20 -O1 -g1 -DEIGEN_MAX_ALIGN_BYTES=64 -DEIGEN_MAX_STATIC_ALIGN_BYTES=16 -DEIGEN_NO_CPUID -I. -I"$release/include" -Ifuzz -isystem /usr/include/eigen3
   -isystem /usr/include/hdf5/serial -DFMT_SHARED -DTOML_HEADER_ONLY=0 -DTOML_SHARED_LIB=1
   -fsanitize=address,undefined -fno-sanitize-recover=undefined)
 libraries=("$release/libslipmode.a" -lfmt -ltomlplusplus -llapack -lblas -lfftw3 -lhdf5_serial -lz -lpthread)
