@@ -87,7 +87,7 @@ void EventResolver::settle_stop(HybridPoint& point, const Reached& reached) {
 
 void EventResolver::settle_spring(HybridPoint& point, const Reached& reached) {
   const ContactMode before = point.modes[0];
-  if (reached.kind == GuardKind::kLoad)
+  if (reached.kind == GuardKind::kLoad || lets_go(point, 0))
     turn_load(point, 0);
   else
     turn_compliant(point, 0);
@@ -155,8 +155,7 @@ void EventResolver::turn_load(HybridPoint& point, int c) const {
 
 bool EventResolver::lets_go(const HybridPoint& point, int contact) const {
   const auto i = static_cast<std::size_t>(contact);
-  return contact >= 0 && point.modes[i] == ContactMode::kStick && laws_[i].varies &&
-         decides_by_acceleration(point, i) &&
+  return contact >= 0 && point.modes[i] == ContactMode::kStick && laws_[i].varies && laws_[i].sticks() &&
          law_at(point, contact).static_limit <= kTogether * limit_sizes(point)(contact);
 }
 
