@@ -2,7 +2,7 @@
 
 #include <slipmode/fem/chain.hpp>
 #include <slipmode/fem/masses.hpp>
-#include <slipmode/orbits/certificate.hpp>
+#include <slipmode/orbits/mixed/certificate.hpp>
 #include "bench/balance_peer.hpp"
 #include "bench/clock.hpp"
 

@@ -1,6 +1,6 @@
 #include "bench/chain_system.hpp"
 
-#include <slipmode/diagnostics/attractors/model.hpp>
+#include <slipmode/diagnostics/model.hpp>
 #include <slipmode/fem/chain.hpp>
 
 #include <cmath>

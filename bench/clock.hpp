@@ -1,6 +1,7 @@
 #pragma once
 
-#include <algorithm>
+#include <slipmode/core/median.hpp>
+
 #include <chrono>
 #include <ctime>
 #include <vector>
@@ -32,13 +33,6 @@ template <class Work>
   const double begin = thread_seconds();
   work();
   return thread_seconds() - begin;
-}
-
-/// @param values  at least one
-[[nodiscard]] inline double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
 /// Median CPU time of a call [s].

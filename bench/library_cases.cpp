@@ -1,7 +1,7 @@
 #include "bench/library_cases.hpp"
 
-#include <slipmode/diagnostics/attractors/model.hpp>
 #include <slipmode/diagnostics/attractors/sweep.hpp>
+#include <slipmode/diagnostics/model.hpp>
 #include <slipmode/pod/pod.hpp>
 #include "bench/chain_system.hpp"
 #include "bench/clock.hpp"

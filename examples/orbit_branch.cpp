@@ -1,7 +1,7 @@
 // A mass between two stops under a harmonic force: a periodic orbit, its multipliers, and its branch over the
 // frequency.
 #include <slipmode/fem/masses.hpp>
-#include <slipmode/orbits/continuation.hpp>
+#include <slipmode/orbits/branches/continuation.hpp>
 
 #include <cmath>
 #include <cstdio>

@@ -1,6 +1,6 @@
 #include <slipmode/figures/motion_figures.hpp>
 
-#include <slipmode/diagnostics/attractors/model.hpp>
+#include <slipmode/diagnostics/model.hpp>
 #include <slipmode/diagnostics/series/spectrum.hpp>
 #include <slipmode/dynamics/simulate.hpp>
 #include <slipmode/figures/panels.hpp>

@@ -3,6 +3,7 @@
 #include <slipmode/core/decompositions.hpp>
 #include <slipmode/core/errors.hpp>
 #include <slipmode/core/none.hpp>
+#include "orbits/internal/motion_scale.hpp"
 
 #include <fmt/format.h>
 
@@ -22,20 +23,13 @@ constexpr int kEdgeStay = 16;
 /// Orbits whose points are nearer than this, relative to the motion, are one.
 constexpr double kSameOrbit = 1e-6;
 
-/// How far each coordinate goes to either side of its middle; those that hardly move count by the largest of their
-/// kind.
+/// Half the reach of each coordinate, by its kind: displacements, velocities, contacts' own states. 1 where none of a
+/// kind moves.
 Eigen::VectorXd scale_of(const Eigen::MatrixXd& samples, Eigen::Index n) {
-  Eigen::VectorXd scale = 0.5 * (samples.rowwise().maxCoeff() - samples.rowwise().minCoeff());
-  const auto lift = [&scale](Eigen::Index begin, Eigen::Index count) {
-    if (count == 0) return;
-    auto part = scale.segment(begin, count);
-    const double largest = part.maxCoeff();
-    part = part.cwiseMax(largest > 0.0 ? 1e-3 * largest : 1.0);
-  };
-  lift(0, n);
-  lift(n, n);
-  lift(2 * n, scale.size() - 2 * n);
-  return scale;
+  Eigen::VectorXd scale(samples.rows());
+  for (const auto& [begin, count] : {std::pair(Eigen::Index{0}, n), {n, n}, {2 * n, samples.rows() - 2 * n}})
+    if (count > 0) scale.segment(begin, count) = detail::half_reaches(samples.middleRows(begin, count));
+  return (scale.array() > 0.0).select(scale, 1.0);
 }
 
 Eigen::MatrixXd columns_of(const std::vector<dynamics::State>& states) {

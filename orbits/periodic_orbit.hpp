@@ -87,15 +87,15 @@ struct PeriodicOrbit {
 /// beyond it), l r at a stop.
 [[nodiscard]] char regime_symbol(dynamics::ContactMode mode);
 
-/// True when the event changes what force acts: not a grazing, a drive's corner, or a flight that is back in the gap.
-[[nodiscard]] bool changes_force_law(const dynamics::Event& event);
-
 /// The regimes passed from a start with these modes. @param events  in time order
 [[nodiscard]] std::vector<RegimeSpan> regime_sequence(double start_time, std::vector<dynamics::ContactMode> modes,
                                                       std::span<const dynamics::Event> events);
 
 /// The word of a closed sequence of regimes: consecutive equal ones merged, also last with first, then rotated.
 [[nodiscard]] std::string word_of(std::span<const RegimeSpan> regimes);
+/// How often what force acts changes in it, over all contacts: as the word has it, stays too short to be told left out;
+/// not where a flight is back in the gap.
+[[nodiscard]] int crossings_of(std::span<const RegimeSpan> regimes);
 /// A word for a line of text: its end is left out where it is long.
 [[nodiscard]] std::string abridged(const std::string& word);
 

@@ -51,10 +51,6 @@ char regime_symbol(ContactMode mode) {
   return '?';
 }
 
-bool changes_force_law(const dynamics::Event& event) {
-  return event.contact >= 0 && event.before != event.after && !(is_free(event.before) && is_free(event.after));
-}
-
 std::vector<RegimeSpan> regime_sequence(double start_time, std::vector<ContactMode> modes,
                                         std::span<const dynamics::Event> events) {
   std::vector<RegimeSpan> result{{start_time, std::move(modes)}};
@@ -89,6 +85,17 @@ std::string word_of(std::span<const RegimeSpan> regimes) {
   std::string word;
   for (const std::string& letter : smallest) word += (word.empty() ? "" : " ") + letter;
   return word;
+}
+
+int crossings_of(std::span<const RegimeSpan> regimes) {
+  int crossings = 0;
+  for (std::size_t k = 0; k < regimes.size(); ++k) {
+    const std::vector<ContactMode>& before = regimes[k].modes;
+    const std::vector<ContactMode>& after = regimes[(k + 1) % regimes.size()].modes;
+    for (std::size_t c = 0; c < before.size(); ++c)
+      crossings += before[c] != after[c] && !(is_free(before[c]) && is_free(after[c])) ? 1 : 0;
+  }
+  return crossings;
 }
 
 std::string abridged(const std::string& word) {

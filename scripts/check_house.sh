@@ -1,61 +1,106 @@
 #!/usr/bin/env bash
-# The walls of the house, from the #include lines of all sources: scripts/check_house.sh [ROOT]
-# A room uses those before it in SLIPMODE_MODULES of CMakeLists.txt, then python, selftest, cli; tests, bench, fuzz and
-# examples use all. Headers in internal/ serve their own room (and tests, bench, fuzz) and no installed header. No circles
-# among headers.
-# Prints each breach as FILE: what; exit code 1 if there is one.
+# The walls of the house, from names and #include lines of all sources: scripts/check_house.sh [ROOT]
+# A room is a folder at the top. Those of SLIPMODE_MODULES in CMakeLists.txt are installed, python, selftest and cli come
+# after them; each uses itself and those before it, and so do the folders of orbits and of diagnostics. tests, bench and
+# fuzz use all, examples what is installed. Headers in internal/ serve their own room (and tests, bench, fuzz) and no
+# installed header.
+# A header is named in one way, from the root, and a library in its room alone. No circles among headers.
+# Prints each breach as FILE:LINE: what; remedy. Exit code 1 if there is one.
 set -euo pipefail
+shopt -s nullglob
 cd "${1:-$(dirname "${BASH_SOURCE[0]}")/..}"
 
-modules=$(sed -nE 's/^set\(SLIPMODE_MODULES (.*)\)$/\1/p' CMakeLists.txt)
-[[ -n $modules ]] || { echo "check_house.sh: no set(SLIPMODE_MODULES ...) in CMakeLists.txt" >&2; exit 2; }
-folders=()
-for folder in $modules python selftest cli tests bench fuzz examples; do
-  [[ ! -d $folder ]] || folders+=("$folder")
-done
-mapfile -t files < <(find "${folders[@]}" -name '*.hpp' -o -name '*.cpp' | LC_ALL=C sort)
+installed=$(sed -nE 's/^set\(SLIPMODE_MODULES (.*)\)$/\1/p' CMakeLists.txt)
+[[ -n $installed ]] || { echo "check_house.sh: no set(SLIPMODE_MODULES ...) in CMakeLists.txt" >&2; exit 2; }
+order=" $installed python selftest cli "
+floors="diagnostics/series diagnostics diagnostics/exponents diagnostics/attractors diagnostics/validation"
+order=${order/ diagnostics / $floors }
+floors="orbits orbits/balance orbits/mixed orbits/branches"
+order=${order/ orbits / $floors }
+libraries="hdf5 results H5 results toml++ scene pybind11 python"  # how a header's name begins, its room
 
-edges=$(mktemp)
-trap 'rm -f "$edges"' EXIT
+skipped=(-path './.?*' -o -path ./build -o -path ./out -o -path ./debian)
+for cache in */CMakeCache.txt; do skipped+=(-o -path "./${cache%/*}"); done
+mapfile -t files < <(find . \( "${skipped[@]}" \) -prune -o -type f -regextype posix-extended \
+  -regex '.*\.(h|hh|hxx|inl|ipp|tpp|c|cc|cxx|[ch]pp|hpp\.in)' -printf '%P\n' | LC_ALL=C sort)
+
+pairs=$(mktemp)
+trap 'rm -f "$pairs"' EXIT
 failed=0
 
-# One line for each include of a header of the project: FILE HEADER, both from the root.
-awk -v list="${files[*]}" '
-  BEGIN { n = split(list, names, " "); for (i = 1; i <= n; ++i) known[names[i]] = 1 }
-  match($0, /^[ \t]*#[ \t]*include[ \t]*[<"][^>"]+[>"]/) {
-    header = substr($0, RSTART, RLENGTH)
-    gsub(/^[^<"]*[<"]|[>"]$/, "", header)
+awk -v order="$order" -v installed="$installed" -v libraries="$libraries" -v pairs="$pairs" '
+  function say(where, what, remedy) { print where ": " what "; " remedy; bad = 1 }
+  function breach(what, remedy) { say(FILENAME ":" FNR, what, remedy) }
+  function room(path) { sub(/\/.*/, "", path); return path }
+  # The nearest folder of a file that has a place in the order; empty where none has.
+  function place(path) { do sub(/\/?[^\/]*$/, "", path); while (path != "" && !(path in rank)); return path }
+  function plain(path) {
+    while (sub(/\/\.\//, "/", path) || sub(/[^\/]+\/\.\.\//, "", path)) {}
+    return path
+  }
+  # The file of the project that an include names, from the root; empty where it names none.
+  function target(name,   beside) {
+    if (sub(/^slipmode\//, "", name)) return plain(name)
     beside = FILENAME
-    sub(/[^\/]*$/, header, beside)
-    public = sub(/^slipmode\//, "", header)
-    if (header in known || public) print FILENAME, header
-    else if (beside in known) print FILENAME, beside
-    else if ("tests/" header in known) print FILENAME, "tests/" header
-  }' "${files[@]}" >"$edges"
-
-awk -v order="$modules python selftest cli" -v installed="$modules" -v list="${files[*]}" '
-  function breach(what) { print $1 ": " what; bad = 1 }
+    sub(/[^\/]*$/, name, beside)
+    if (plain(name) in known) return plain(name)
+    if (plain(beside) in known) return plain(beside)
+    return "tests/" name in known ? "tests/" name : ""
+  }
   BEGIN {
-    n = split(list, names, " "); for (i = 1; i <= n; ++i) known[names[i]] = 1
-    n = split(order, rooms, " "); for (i = 1; i <= n; ++i) rank[rooms[i]] = i
-    n = split(installed, rooms, " "); for (i = 1; i <= n; ++i) ships[rooms[i]] = 1
+    n = split(order, names, " "); for (i = 1; i <= n; ++i) rank[names[i]] = i
+    n = split(installed, names, " "); for (i = 1; i <= n; ++i) ships[names[i]] = 1
+    n = split("tests bench fuzz", names, " "); for (i = 1; i <= n; ++i) uses_all[names[i]] = 1
+    n = split(libraries, names, " "); for (i = 1; i < n; i += 2) home[names[i]] = names[i + 1]
+    for (i = 1; i < ARGC; ++i) {
+      known[ARGV[i]] = 1
+      folder = room(ARGV[i])
+      if (!(folder in rank || folder in uses_all || folder == "examples") && !said[folder]++)
+        say(ARGV[i], folder " is no room",
+            "move it to one, or name its folder in SLIPMODE_MODULES of CMakeLists.txt or in scripts/check_house.sh")
+      if (ARGV[i] !~ /\.([ch]pp|hpp\.in)$/) say(ARGV[i], "is neither .hpp nor .cpp", "rename it")
+    }
   }
-  {
-    split($1, from, "/"); split($2, to, "/")
-    if (!($2 in known)) breach("includes " $2 ", which is not there")
-    inside = $2 ~ /\/internal\//
-    if (from[1] in rank && !(to[1] in rank && rank[to[1]] <= rank[from[1]]))
-      breach("includes " $2 ", but " from[1] " may not use " to[1])
-    if (inside && from[1] != to[1] && from[1] !~ /^(tests|bench|fuzz)$/)
-      breach("includes " $2 ", which is internal to " to[1])
-    if (inside && from[1] in ships && $1 ~ /\.hpp$/ && $1 !~ /\/internal\//)
-      breach("is installed and includes " $2 ", which is not")
-    if ($1 ~ /^diagnostics\/series\// && $2 !~ /^(core|diagnostics\/series)\//)
-      breach("includes " $2 ", but diagnostics/series uses core only")
-  }
-  END { exit bad }' "$edges" || failed=1
+  match($0, /^[ \t]*#[ \t]*include[ \t]*[<"][^>"]+[>"]/) {
+    written = substr($0, RSTART, RLENGTH)
+    sub(/^[^<"]*/, "", written)
+    name = substr(written, 2, length(written) - 2)
+    from = room(FILENAME)
+    file = target(name)
+    if (file == "") {
+      for (library in home)
+        if (index(name, library) == 1 && from != home[library] && !(from in uses_all))
+          breach("includes " written, "only " home[library] " uses it: call " home[library] " instead")
+      if (written !~ /^"/ || (name ".in") in known) next
+    }
+    if (!(file in known)) {
+      breach("includes " written ", which is not there", "mend the path")
+      next
+    }
+    to = room(file)
+    inside = file ~ /\/internal\//
+    right = to in ships && !inside ? "<slipmode/" file ">" : "\"" file "\""
+    if (to == "tests") sub(/tests\//, "", right)
+    if (written ~ /\.\.\// || (written != right && to !~ /^(tests|fuzz)$/)) breach("includes " written, "write " right)
 
-awk '$1 ~ /\.hpp$/' "$edges" | tsort 2>&1 >/dev/null | sed 's/^tsort: //; s/^-: input contains a loop:$/a circle of headers:/' |
-  awk '{ print; bad = 1 } END { exit bad }' || failed=1
+    user = place(FILENAME)
+    used = place(file)
+    if (user != "" && !(used in rank && rank[used] <= rank[user]))
+      breach("includes " file ", but " user " may not use " (used == "" ? to : used),
+             "move what both need to a room before " user)
+    if (FILENAME ~ /^diagnostics\/series\// && file !~ /^(core|diagnostics\/series)\//)
+      breach("includes " file, "diagnostics/series uses core only")
+    if (from == "examples" && to != from && !(to in ships)) breach("includes " file, "examples use what is installed only")
+    if (inside && from != to && !(from in uses_all))
+      breach("includes " file ", which is internal to " to, "use a header that " to " offers")
+    if (inside && from in ships && FILENAME ~ /\.hpp$/ && FILENAME !~ /\/internal\//)
+      breach("is installed and includes " file ", which is not", "include it in the source")
+    if (FILENAME ~ /\.hpp$/) print FILENAME, file >pairs
+  }
+  END { exit bad }' "${files[@]}" || failed=1
+
+tsort "$pairs" 2>&1 >/dev/null | sed -nE 's/^tsort: ([^:]*)$/\1/p' | LC_ALL=C sort -u | paste -sd ' ' |
+  awk 'NF { print $1 ": these include each other: " $0 "; move what both need to a header of its own"; bad = 1 }
+       END { exit bad }' || failed=1
 
 exit "$failed"

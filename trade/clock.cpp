@@ -1,7 +1,7 @@
 #include <slipmode/trade/clock.hpp>
 
 #include <slipmode/core/errors.hpp>
-#include <slipmode/diagnostics/validation/timing.hpp>
+#include <slipmode/core/timing.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -10,10 +10,6 @@
 namespace slipmode::trade {
 
 namespace {
-
-using diagnostics::detail::median;
-using diagnostics::detail::timed;
-using diagnostics::detail::Times;
 
 /// One configuration on its way.
 struct Runner {
@@ -47,7 +43,7 @@ struct Runner {
   [[nodiscard]] RunCost cost(double simulated) const {
     RunCost out{.simulated = simulated, .failure = failure};
     if (!failure.empty() || repeats.empty()) return out;
-    const Times middle = median(repeats);
+    const Times middle = median_times(repeats);
     const auto [low, high] = std::ranges::minmax_element(repeats, {}, &Times::cpu);
     out.wall = middle.wall;
     out.cpu = middle.cpu;

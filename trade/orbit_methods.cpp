@@ -1,8 +1,9 @@
 #include <slipmode/trade/orbit_methods.hpp>
 
 #include <slipmode/core/errors.hpp>
-#include <slipmode/diagnostics/validation/timing.hpp>
-#include <slipmode/orbits/certificate.hpp>
+#include <slipmode/core/median.hpp>
+#include <slipmode/core/timing.hpp>
+#include <slipmode/orbits/mixed/certificate.hpp>
 #include <slipmode/trade/advice.hpp>
 #include <slipmode/trade/variants.hpp>
 
@@ -99,7 +100,7 @@ class OrbitWork {
   void guarded(OrbitRow& out_row, const Solve& solve) {
     step();
     try {
-      times_[out_.rows.size()].push_back(diagnostics::detail::timed(solve).cpu);
+      times_[out_.rows.size()].push_back(timed(solve).cpu);
     } catch (const NumericalFailure& failure) {
       out_row.failure = failure.what();
     } catch (const InvalidInput& refusal) {
@@ -112,7 +113,7 @@ class OrbitWork {
     constexpr double kLong = 0.1;  // [s]
     step();
     if (!row.failure.empty() || times_[place].front() > kLong) return;
-    times_[place].push_back(diagnostics::detail::timed(solve).cpu);
+    times_[place].push_back(timed(solve).cpu);
   }
 
   void step() {
@@ -145,7 +146,7 @@ class OrbitWork {
 
   void put_times(OrbitRow& out_row, std::size_t place) const {
     if (times_[place].empty()) return;
-    out_row.cpu = diagnostics::detail::median(times_[place]);
+    out_row.cpu = median(times_[place]);
     const auto [low, high] = std::ranges::minmax(times_[place]);
     out_row.cpu_low = low;
     out_row.cpu_high = high;

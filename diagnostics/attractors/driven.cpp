@@ -1,8 +1,8 @@
 #include <slipmode/diagnostics/attractors/driven.hpp>
 
 #include <slipmode/core/errors.hpp>
-#include <slipmode/diagnostics/attractors/model.hpp>
 #include <slipmode/diagnostics/attractors/periodicity.hpp>
+#include <slipmode/diagnostics/model.hpp>
 
 #include <fmt/format.h>
 

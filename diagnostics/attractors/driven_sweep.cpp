@@ -1,6 +1,6 @@
 #include <slipmode/diagnostics/attractors/driven_sweep.hpp>
 
-#include <slipmode/diagnostics/attractors/model.hpp>
+#include <slipmode/diagnostics/model.hpp>
 #include <slipmode/rom/reduce.hpp>
 
 #include <utility>

@@ -2,7 +2,7 @@
 
 #include <slipmode/core/parallel.hpp>
 #include <slipmode/core/sweep_runner.hpp>
-#include <slipmode/diagnostics/attractors/model.hpp>
+#include <slipmode/diagnostics/model.hpp>
 #include <slipmode/pod/ensemble.hpp>
 
 #include <cstdint>

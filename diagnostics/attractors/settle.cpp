@@ -1,7 +1,7 @@
 #include <slipmode/diagnostics/attractors/settle.hpp>
 
 #include <slipmode/core/errors.hpp>
-#include <slipmode/diagnostics/attractors/model.hpp>
+#include <slipmode/diagnostics/model.hpp>
 
 #include <fmt/format.h>
 

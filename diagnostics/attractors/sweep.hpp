@@ -1,8 +1,8 @@
 #pragma once
 
 #include <slipmode/core/sweep_runner.hpp>
-#include <slipmode/diagnostics/attractors/model.hpp>
 #include <slipmode/diagnostics/attractors/settle.hpp>
+#include <slipmode/diagnostics/model.hpp>
 
 #include <cstddef>
 #include <string>

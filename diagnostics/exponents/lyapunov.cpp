@@ -5,7 +5,7 @@
 #include <slipmode/core/none.hpp>
 #include <slipmode/core/random.hpp>
 #include <slipmode/core/to_vector.hpp>
-#include <slipmode/diagnostics/attractors/model.hpp>
+#include <slipmode/diagnostics/model.hpp>
 #include "diagnostics/series/internal/stretches.hpp"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include <slipmode/diagnostics/exponents/lyapunov_spectrum.hpp>
 
 #include <slipmode/core/errors.hpp>
-#include <slipmode/diagnostics/attractors/model.hpp>
+#include <slipmode/diagnostics/model.hpp>
 #include "diagnostics/exponents/internal/spectrum_statistics.hpp"
 #include "diagnostics/exponents/internal/tangent_frame.hpp"
 #include "diagnostics/exponents/internal/tangent_walk.hpp"

@@ -50,14 +50,17 @@ bool PhaseVolume::applies(const dynamics::HybridSystem& system) {
          });
 }
 
-Eigen::MatrixXd PhaseVolume::mobility_of(const std::vector<ContactMode>& modes) const {
-  std::vector<Eigen::Index> stuck;
+Eigen::MatrixXd PhaseVolume::held(const std::vector<ContactMode>& modes) const {
+  Eigen::MatrixXd W(system_.size(), std::ranges::count(modes, ContactMode::kStick));
+  Eigen::Index k = 0;
   for (std::size_t c = 0; c < modes.size(); ++c)
-    if (modes[c] == ContactMode::kStick) stuck.push_back(static_cast<Eigen::Index>(c));
-  if (stuck.empty()) return inverse_mass_;
-  Eigen::MatrixXd W(system_.size(), static_cast<Eigen::Index>(stuck.size()));
-  for (Eigen::Index k = 0; k < W.cols(); ++k)
-    W.col(k) = system_.contacts()[static_cast<std::size_t>(stuck[static_cast<std::size_t>(k)])].direction;
+    if (modes[c] == ContactMode::kStick) W.col(k++) = system_.contacts()[c].direction;
+  return W;
+}
+
+Eigen::MatrixXd PhaseVolume::mobility_of(const std::vector<ContactMode>& modes) const {
+  const Eigen::MatrixXd W = held(modes);
+  if (W.cols() == 0) return inverse_mass_;
   const Eigen::MatrixXd MW = inverse_mass_ * W;
   const Eigen::MatrixXd gram = W.transpose() * MW;
   return inverse_mass_ - MW * gram.ldlt().solve(MW.transpose());
@@ -141,13 +144,7 @@ double PhaseVolume::relative_acceleration(const dynamics::State& at, const std::
   // Stuck contacts hold their own acceleration at the drive's; what that costs this contact is part of the answer.
   const Eigen::MatrixXd mobility = mobility_of(modes);
   double acceleration = w.dot(mobility * force);
-  std::vector<Eigen::Index> stuck;
-  for (std::size_t c = 0; c < modes.size(); ++c)
-    if (modes[c] == ContactMode::kStick) stuck.push_back(static_cast<Eigen::Index>(c));
-  if (!stuck.empty()) {
-    Eigen::MatrixXd W(system_.size(), static_cast<Eigen::Index>(stuck.size()));
-    for (Eigen::Index k = 0; k < W.cols(); ++k)
-      W.col(k) = system_.contacts()[static_cast<std::size_t>(stuck[static_cast<std::size_t>(k)])].direction;
+  if (const Eigen::MatrixXd W = held(modes); W.cols() > 0) {
     const Eigen::MatrixXd MW = inverse_mass_ * W;
     const Eigen::MatrixXd gram = W.transpose() * MW;
     acceleration +=

@@ -46,6 +46,8 @@ class PhaseVolume {
   [[nodiscard]] double reversal(const dynamics::State& at, int contact, dynamics::ContactMode before) const;
 
  private:
+  /// Directions of the contacts that stick, as columns.
+  [[nodiscard]] Eigen::MatrixXd held(const std::vector<dynamics::ContactMode>& modes) const;
   /// M⁻¹ on T_S [n x n].
   [[nodiscard]] Eigen::MatrixXd mobility_of(const std::vector<dynamics::ContactMode>& modes) const;
   [[nodiscard]] double slope(int contact, double relative_velocity) const;

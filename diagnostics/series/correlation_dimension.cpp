@@ -93,9 +93,9 @@ CorrelationDimension correlation_dimension(const Series& series, const Correlati
     throw NumericalFailure(
         fmt::format(
             "correlation dimension of {}: expected at least {} radii over {} decades with {} pairs or more and a "
-            "share of pairs of at most {}, found {}; use a longer record, a lower dimension or more radii",
+            "share of pairs of at most {}, found {} over {:.2g}; use a longer record, a lower dimension or more radii",
             series.name, region.least_points, settings.least_decades, settings.least_pairs, settings.most_share,
-            end - begin),
+            end - begin, end > begin ? (log_radius(end - 1) - log_radius(begin)) / std::numbers::ln10 : 0.0),
         std::numeric_limits<double>::quiet_NaN(), {}, std::numeric_limits<double>::quiet_NaN());
   }
   const LinearFit local =

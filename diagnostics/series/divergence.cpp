@@ -1,6 +1,7 @@
 #include <slipmode/diagnostics/series/divergence.hpp>
 
 #include <slipmode/core/errors.hpp>
+#include <slipmode/core/median.hpp>
 #include <slipmode/core/none.hpp>
 #include <slipmode/diagnostics/series/neighbours.hpp>
 
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace slipmode::diagnostics {
@@ -52,8 +54,7 @@ class Followed {
     for (Eigen::Index p = 0; p < kProbes; ++p) {
       tenth.push_back(tree_.nearest(p * allowed_.limit / kProbes, 10, allowed_).back().distance);
     }
-    std::nth_element(tenth.begin(), tenth.begin() + kProbes / 2, tenth.end());
-    return 2.0 * tenth[kProbes / 2];
+    return 2.0 * median(std::move(tenth));
   }
 
   /// Logarithms of distance over time of reference r, NaN where it has none [steps + 1].

@@ -1,6 +1,7 @@
 #include <slipmode/diagnostics/series/series.hpp>
 
 #include <slipmode/core/errors.hpp>
+#include <slipmode/core/median.hpp>
 #include "diagnostics/series/internal/fourier.hpp"
 
 #include <fmt/format.h>
@@ -28,10 +29,8 @@ Series uniform_series(const Eigen::VectorXd& times, const Eigen::VectorXd& value
   if (const Eigen::Index bad = first_not_finite(times); bad < times.size()) {
     throw InvalidInput(fmt::format("{}: expected finite instants, found {} at sample {}", name, times(bad), bad));
   }
-  Eigen::VectorXd steps = times.tail(times.size() - 1) - times.head(times.size() - 1);
-  Eigen::VectorXd sorted = steps;
-  std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
-  const double usual = sorted(sorted.size() / 2);
+  const Eigen::VectorXd steps = times.tail(times.size() - 1) - times.head(times.size() - 1);
+  const double usual = median({steps.begin(), steps.end()});
   if (!(usual > 0.0)) throw InvalidInput(fmt::format("{}: expected instants that increase", name));
   // Printed instants carry rounding of their own, which grows with the instant and not with the step.
   const double tolerance = 1e-6 * usual + 4e-16 * times.cwiseAbs().maxCoeff();

@@ -1,6 +1,7 @@
 #include <slipmode/diagnostics/series/smoothness.hpp>
 
-#include <algorithm>
+#include <slipmode/core/median.hpp>
+
 #include <cmath>
 
 namespace slipmode::diagnostics {
@@ -26,9 +27,7 @@ double flat_share(const Eigen::ArrayXd& x, double sigma) {
 int kinks(const Eigen::ArrayXd& x) {
   const Eigen::Index n = x.size() - 2;
   const Eigen::ArrayXd bend = (x.tail(n) - 2.0 * x.segment(1, n) + x.head(n)).abs();
-  Eigen::ArrayXd sorted = bend;
-  std::nth_element(sorted.begin(), sorted.begin() + n / 2, sorted.end());
-  const double usual = sorted(n / 2);
+  const double usual = median({bend.begin(), bend.end()});
   int count = 0;
   bool inside = false;
   for (const double b : bend) {

@@ -1,6 +1,7 @@
 #include <slipmode/diagnostics/validation/compare.hpp>
 
 #include <slipmode/core/errors.hpp>
+#include <slipmode/core/median.hpp>
 #include <slipmode/core/none.hpp>
 #include <slipmode/diagnostics/series/point_sets.hpp>
 
@@ -45,13 +46,6 @@ std::vector<double> displacements_of(const Settled& settled, int contact) {
 double mean(const std::vector<double>& values) {
   if (values.empty()) return kNone;
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return kNone;
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
 }  // namespace

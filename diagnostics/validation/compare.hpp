@@ -1,8 +1,8 @@
 #pragma once
 
-#include <slipmode/diagnostics/attractors/model.hpp>
 #include <slipmode/diagnostics/attractors/settle.hpp>
 #include <slipmode/diagnostics/attractors/sweep.hpp>
+#include <slipmode/diagnostics/model.hpp>
 
 #include <Eigen/Core>
 #include <vector>

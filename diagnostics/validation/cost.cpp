@@ -1,8 +1,8 @@
 #include <slipmode/diagnostics/validation/cost.hpp>
 
 #include <slipmode/core/errors.hpp>
-#include <slipmode/diagnostics/attractors/model.hpp>
-#include <slipmode/diagnostics/validation/timing.hpp>
+#include <slipmode/core/timing.hpp>
+#include <slipmode/diagnostics/model.hpp>
 #include <slipmode/rom/reduce.hpp>
 
 #include <fmt/format.h>
@@ -13,10 +13,6 @@
 #include <vector>
 
 namespace slipmode::diagnostics {
-
-using detail::median;
-using detail::timed;
-using detail::Times;
 
 double Cost::break_even(double basis_wall) const {
   const double saved = full_wall - reduced_wall;
@@ -48,8 +44,8 @@ Cost measure_cost(const dynamics::HybridSystem& full, const pod::Basis& basis, c
     full_times.push_back(simulate(full, full_start));
     reduced_times.push_back(simulate(*reduced, reduced_start));
   }
-  const Times full_median = median(full_times);
-  const Times reduced_median = median(reduced_times);
+  const Times full_median = median_times(full_times);
+  const Times reduced_median = median_times(reduced_times);
   return {.duration = duration,
           .full_wall = full_median.wall,
           .full_cpu = full_median.cpu,

@@ -1,9 +1,9 @@
 #include <slipmode/diagnostics/validation/driven_compare.hpp>
 
 #include <slipmode/core/errors.hpp>
+#include <slipmode/core/median.hpp>
 #include <slipmode/core/none.hpp>
 #include <slipmode/diagnostics/series/point_sets.hpp>
-#include <slipmode/diagnostics/validation/timing.hpp>
 
 #include <fmt/format.h>
 
@@ -79,7 +79,7 @@ DrivenAgreement compare_driven(const std::vector<DrivenPoint>& full, const std::
   if (out.values > 0) out.same_label = same_labels / static_cast<double>(out.values);
   if (decided > 0.0) out.same_period = same_periods / decided;
   out.mean_wasserstein = mean_of(found);
-  out.median_wasserstein = found.empty() ? kNone : detail::median(found);
+  out.median_wasserstein = median(found);
   out.mean_hausdorff = mean_of(hausdorffs);
   return out;
 }

@@ -2,7 +2,7 @@
 
 #include <slipmode/core/errors.hpp>
 #include <slipmode/core/none.hpp>
-#include <slipmode/diagnostics/validation/timing.hpp>
+#include <slipmode/core/timing.hpp>
 #include <slipmode/diagnostics/validation/validate.hpp>
 #include <slipmode/rom/reduce.hpp>
 
@@ -88,7 +88,7 @@ class DrivenValidationRun {
         total_(driven_validation_sweeps(candidates, options)) {}
 
   DrivenValidationReport run(const dynamics::State& other) {
-    const detail::Times times = detail::timed([&] {
+    const Times times = timed([&] {
       out_.full = sweep(full_, start_);
       out_.again = sweep(full_, other);
       for (const pod::NamedBasis& candidate : candidates_) try_candidate(candidate);
@@ -163,13 +163,13 @@ class DrivenValidationRun {
                                         .keep_events = false,
                                         .output = dynamics::SimulateOptions::Output::kContacts,
                                         .flow = options_.driven.flow};
-    const auto once = [&] { return detail::timed([&] { (void)dynamics::simulate(system, begin, run); }); };
-    const detail::Times first = once();
-    std::vector<detail::Times> repeats;
+    const auto once = [&] { return timed([&] { (void)dynamics::simulate(system, begin, run); }); };
+    const Times first = once();
+    std::vector<Times> repeats;
     repeats.reserve(static_cast<std::size_t>(options_.cost_repeats));
     for (int k = 0; k < options_.cost_repeats; ++k) repeats.push_back(once());
-    const detail::Times median = detail::median(repeats);
-    return {.wall = median.wall, .cpu = median.cpu, .setup = projection + std::max(0.0, first.wall - median.wall)};
+    const Times middle = median_times(repeats);
+    return {.wall = middle.wall, .cpu = middle.cpu, .setup = projection + std::max(0.0, first.wall - middle.wall)};
   }
 
   /// Systems of their own, so that set-up is seen.
@@ -183,7 +183,7 @@ class DrivenValidationRun {
         if (!row.failure.empty()) continue;
         const pod::Basis basis = candidates_[c].basis.truncated(row.modes);
         std::optional<dynamics::HybridSystem> reduced;
-        const detail::Times projection = detail::timed([&] { reduced = rom::reduce(full, basis); });
+        const Times projection = timed([&] { reduced = rom::reduce(full, basis); });
         row.cost = clock(*reduced, rom::restrict_state(full.structure(), basis, start_), projection.wall);
       }
     }

@@ -48,7 +48,8 @@ class Validation {
     run_flow_.audit = false;
     options_.lyapunov.stop = options.parallel.stop;
     report_.speed = options.speed;
-    report_.chosen = options.chosen > 0 ? options.chosen : modes_for_share(candidates.front().captured, 0.99);
+    report_.chosen = options.chosen > 0 ? options.chosen
+                                        : pod::modes_for_share(candidates.front().captured, pod::ModeChoice{}.energy);
     prepare_reductions();
     total_ = 3 + full_orbits_.size() + reductions_.size() * (1 + full_orbits_.size()) +
              2 * options.sweep_values.size() + (options.verdict ? candidates.size() + 1 : 0) +

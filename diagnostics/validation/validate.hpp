@@ -123,7 +123,4 @@ struct ValidationReport {
 /// a period longer than those looked for, or too short a record.
 [[nodiscard]] std::string attractor_word(const Settled& settled, const std::optional<LyapunovExponent>& exponent);
 
-/// The smallest L whose cumulative share reaches `share`, else the number of shares.
-[[nodiscard]] Eigen::Index modes_for_share(const Eigen::VectorXd& captured, double share);
-
 }  // namespace slipmode::diagnostics

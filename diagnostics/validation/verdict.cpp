@@ -2,7 +2,7 @@
 
 #include <slipmode/core/errors.hpp>
 #include <slipmode/diagnostics/attractors/farthest_dof.hpp>
-#include <slipmode/diagnostics/attractors/model.hpp>
+#include <slipmode/diagnostics/model.hpp>
 #include <slipmode/diagnostics/series/correlation_dimension.hpp>
 #include <slipmode/diagnostics/series/false_neighbours.hpp>
 #include <slipmode/diagnostics/series/kaplan_yorke.hpp>

@@ -183,8 +183,8 @@ PeriodicOrbit describe_orbit(ShootingProblem& problem, const ShootingEvaluation&
   orbit.has_grazing = orbit.grazing < 1e-4 || std::any_of(orbit.events.begin(), orbit.events.end(), [](const Event& e) {
                         return e.kind == dynamics::EventKind::kGrazing;
                       });
-  orbit.crossings = static_cast<int>(std::count_if(orbit.events.begin(), orbit.events.end(), changes_force_law));
   orbit.regimes = regime_sequence(orbit.start.time, orbit.start.modes, orbit.events);
+  orbit.crossings = crossings_of(orbit.regimes);
   orbit.word = word_of(orbit.regimes);
   return orbit;
 }

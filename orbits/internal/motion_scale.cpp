@@ -4,17 +4,11 @@
 
 namespace slipmode::orbits::detail {
 
-namespace {
-
-/// (max − min)/2 of each row. What moves less than a thousandth of the farthest counts as that far: its own motion may
-/// be the error of the flow, which is relative to the larger ones.
 Eigen::VectorXd half_reaches(const Eigen::MatrixXd& samples) {
   constexpr double kLeast = 1e-3;
   const Eigen::VectorXd reach = 0.5 * (samples.rowwise().maxCoeff() - samples.rowwise().minCoeff());
   return reach.cwiseMax(kLeast * reach.maxCoeff());
 }
-
-}  // namespace
 
 MotionScale::MotionScale(const Eigen::MatrixXd& q, const Eigen::MatrixXd& v) : scale_(q.rows() + v.rows()) {
   scale_ << half_reaches(q), half_reaches(v);

@@ -2,8 +2,12 @@
 
 #include <Eigen/Core>
 
-/// Inside of strobe_map.cpp and orbit_map.cpp.
+/// Inside of strobe_map.cpp, orbit_map.cpp and basin_finder.cpp.
 namespace slipmode::orbits::detail {
+
+/// (max − min)/2 of each row. What moves less than a thousandth of the farthest counts as that far: its own motion may
+/// be the error of the flow, which is relative to the larger ones.
+[[nodiscard]] Eigen::VectorXd half_reaches(const Eigen::MatrixXd& samples);
 
 /// What distances of states are measured against: how far each displacement and each velocity goes to either side of
 /// its own middle, so that neither a mean nor a larger motion elsewhere hides that a state does not repeat.

@@ -419,6 +419,18 @@ TEST(DrivenCompare, PeriodsAreTheSameWhereBothAreDecided) {
   EXPECT_TRUE(std::isnan(compare_driven({unknown}, {unknown}).same_period));
 }
 
+// Distances 0 and 0.2 of full motions whose root mean square is 1: 0.1, as in compare_sweeps.
+TEST(DrivenCompare, TheMedianOfTwoDistancesIsTheirMean) {
+  const auto point = [](std::size_t index, double reading) {
+    DrivenPoint out{.index = index, .parameter = static_cast<double>(index)};
+    out.settled.readings = Eigen::MatrixXd::Constant(1, 3, reading);
+    out.settled.rms = Eigen::VectorXd::Ones(1);
+    return out;
+  };
+  const DrivenAgreement found = compare_driven({point(0, 0.5), point(1, 0.5)}, {point(0, 0.5), point(1, 0.7)});
+  EXPECT_NEAR(found.median_wasserstein, 0.1, 1e-15);
+}
+
 TEST(DrivenCompare, PeaksAreThoseThatRiseAboveTheirGround) {
   std::vector<DrivenPoint> points;
   const std::vector<double> rms = {1.0, 3.0, 2.0, 2.05, 1.9, 6.0, 1.0};

@@ -1,4 +1,4 @@
-#include <slipmode/diagnostics/attractors/model.hpp>
+#include <slipmode/diagnostics/model.hpp>
 
 #include <slipmode/core/errors.hpp>
 #include <slipmode/diagnostics/attractors/ensemble_run.hpp>

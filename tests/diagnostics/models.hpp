@@ -1,6 +1,6 @@
 #pragma once
 
-#include <slipmode/diagnostics/attractors/model.hpp>
+#include <slipmode/diagnostics/model.hpp>
 #include "fixtures/belt_oscillator.hpp"
 #include "fixtures/scenes.hpp"
 

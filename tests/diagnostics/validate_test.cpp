@@ -292,10 +292,10 @@ TEST(Validate, RefusesWhatItCannotTryAndReportsAnInterrupt) {
 
 TEST(ModesForShare, IsTheSmallestNumberThatReachesIt) {
   const Eigen::Vector3d captured(0.6, 0.9, 1.0);
-  EXPECT_EQ(modes_for_share(captured, 0.5), 1);
-  EXPECT_EQ(modes_for_share(captured, 0.9), 2);
-  EXPECT_EQ(modes_for_share(captured, 0.91), 3);
-  EXPECT_EQ(modes_for_share(captured, 1.1), 3);
+  EXPECT_EQ(pod::modes_for_share(captured, 0.5), 1);
+  EXPECT_EQ(pod::modes_for_share(captured, 0.9), 2);
+  EXPECT_EQ(pod::modes_for_share(captured, 0.91), 3);
+  EXPECT_EQ(pod::modes_for_share(captured, 1.1), 3);
 }
 
 }  // namespace

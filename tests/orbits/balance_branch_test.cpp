@@ -1,8 +1,8 @@
 // Hill's multipliers against saltated ones, and branches of balances against branches of orbits.
 #include <slipmode/core/errors.hpp>
 #include <slipmode/core/parallel.hpp>
-#include <slipmode/orbits/balance/balance_branch.hpp>
 #include <slipmode/orbits/balance/hill.hpp>
+#include <slipmode/orbits/branches/balance_branch.hpp>
 #include <slipmode/orbits/floquet.hpp>
 #include "clearance_systems.hpp"
 #include "play_table.hpp"
@@ -95,10 +95,7 @@ TEST(Hill, PairsOnTheStripsEdgeAreNegativeMultipliers) {
 
 TEST(BalanceBranch, FollowsTheResonanceCurveOfALinearOscillator) {
   const double c = 0.1, k = 2.0;
-  const friction::Stop far{.stiffness = 1.0, .gap = 500.0};
-  const HybridSystem base(fem::masses({.links = {{.stiffness = k, .damping = c}}}),
-                          {{Eigen::VectorXd::Ones(1), friction::Clearance{far, far}}}, Backlash::drive(1.0, 0.8), {},
-                          Eigen::MatrixXd::Ones(1, 1));
+  const HybridSystem base = far_from_stops(c, k, 0.8);
   const Branch branch =
       continue_balance(over_frequency(base), balance(base, {.harmonics = 3}), 0.8, {.from = 0.5, .to = 2.5});
   ASSERT_EQ(branch.end, BranchEnd::kRange) << branch.reason;

@@ -1,6 +1,6 @@
 // Harmonic balance: its equations, its solutions against exact orbits, and what certifies them.
 #include <slipmode/core/errors.hpp>
-#include <slipmode/orbits/certificate.hpp>
+#include <slipmode/orbits/mixed/certificate.hpp>
 #include "balance_checks.hpp"
 #include "clearance_systems.hpp"
 #include "orbits/balance/internal/balanced_law.hpp"

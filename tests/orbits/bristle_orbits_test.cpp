@@ -1,6 +1,6 @@
 // Orbits on Dahl's and the LuGre law: multipliers against differences of the simulated map and against the growth of
 // small perturbations; a special point found without tangents.
-#include <slipmode/orbits/continuation.hpp>
+#include <slipmode/orbits/branches/continuation.hpp>
 #include <slipmode/orbits/floquet.hpp>
 #include "fixtures/differences.hpp"
 #include "fixtures/scenes.hpp"

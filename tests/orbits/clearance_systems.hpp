@@ -2,7 +2,7 @@
 
 #include <slipmode/dynamics/simulate.hpp>
 #include <slipmode/fem/masses.hpp>
-#include <slipmode/orbits/continuation.hpp>
+#include <slipmode/orbits/branches/continuation.hpp>
 
 #include <Eigen/Core>
 #include <numbers>
@@ -72,6 +72,16 @@ struct Backlash {
           Backlash::drive(0.1, omega),
           {},
           Eigen::Vector2d(0.0, 1.0)};
+}
+
+/// A linear oscillator under sin ωt: its stops are too far away to be reached.
+[[nodiscard]] inline dynamics::HybridSystem far_from_stops(double c, double k, double omega) {
+  const friction::Stop far{.stiffness = 1.0, .gap = 500.0};
+  return {fem::masses({.links = {{.stiffness = k, .damping = c}}}),
+          {{Eigen::VectorXd::Ones(1), friction::Clearance{far, far}}},
+          Backlash::drive(1.0, omega),
+          {},
+          Eigen::MatrixXd::Ones(1, 1)};
 }
 
 /// The same system under A sin ωt at other frequencies: regimes are shared.

@@ -2,7 +2,7 @@
 #include <slipmode/dynamics/simulate.hpp>
 #include <slipmode/fem/chain.hpp>
 #include <slipmode/friction/iwan.hpp>
-#include <slipmode/orbits/continuation.hpp>
+#include <slipmode/orbits/branches/continuation.hpp>
 
 #include <gtest/gtest.h>
 #include <algorithm>

@@ -33,10 +33,7 @@ Branch backlash_branch(int direction, double to, friction::ContactLoss loss = fr
 
 TEST(Continuation, FollowsTheResonanceCurveOfALinearOscillator) {
   const double c = 0.1, k = 2.0;
-  const friction::Stop far{.stiffness = 1.0, .gap = 500.0};
-  const HybridSystem base(fem::masses({.links = {{.stiffness = k, .damping = c}}}),
-                          {{Eigen::VectorXd::Ones(1), friction::Clearance{far, far}}}, Backlash::drive(1.0, 0.8), {},
-                          Eigen::MatrixXd::Ones(1, 1));
+  const HybridSystem base = far_from_stops(c, k, 0.8);
   for (const bool arclength : {true, false}) {
     const Branch branch = continue_orbit(over_frequency(base), find_orbit(base, base.rest()), 0.8,
                                          {.from = 0.5, .to = 2.5, .arclength = arclength});

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <slipmode/core/errors.hpp>
-#include <slipmode/orbits/balance/balance_branch.hpp>
-#include <slipmode/orbits/special_curve.hpp>
+#include <slipmode/orbits/branches/balance_branch.hpp>
+#include <slipmode/orbits/branches/special_curve.hpp>
 #include "special_points.hpp"
 
 #include <gmock/gmock.h>

@@ -1,7 +1,7 @@
 // Demonstrations of programs for hybrid systems, whose modes, events and resets are written by hand: the same orbits
 // from a law. The models of datasets/impact_oscillator and datasets/friction_oscillator.
 #include <slipmode/fem/masses.hpp>
-#include <slipmode/orbits/continuation.hpp>
+#include <slipmode/orbits/branches/continuation.hpp>
 #include <slipmode/orbits/shooting.hpp>
 
 #include <gtest/gtest.h>

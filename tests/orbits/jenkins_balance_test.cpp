@@ -3,8 +3,8 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/fem/chain.hpp>
 #include <slipmode/fem/masses.hpp>
-#include <slipmode/orbits/balance/balance_branch.hpp>
 #include <slipmode/orbits/balance/hill.hpp>
+#include <slipmode/orbits/branches/balance_branch.hpp>
 #include "fixtures/differences.hpp"
 #include "orbits/balance/internal/balanced_law.hpp"
 

@@ -3,7 +3,7 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/fem/beam.hpp>
 #include <slipmode/fem/chain.hpp>
-#include <slipmode/orbits/certificate.hpp>
+#include <slipmode/orbits/mixed/certificate.hpp>
 #include <slipmode/orbits/shooting.hpp>
 #include <slipmode/scene/scene.hpp>
 #include "fixtures/cantilever_beam.hpp"

@@ -4,7 +4,7 @@
 #include "clearance_systems.hpp"
 #include "fixtures/differences.hpp"
 #include "fixtures/scenes.hpp"
-#include "orbits/internal/branch_tests.hpp"
+#include "orbits/branches/internal/branch_tests.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -61,11 +61,27 @@ TEST(Words, WhatAChangeIsGoesByEachContactAlone) {
 }
 
 TEST(Words, CrossingsAreChangesOfForce) {
-  EXPECT_TRUE(changes_force_law(change(1.0, 0, ContactMode::kGap, ContactMode::kRightStop)));
-  EXPECT_TRUE(changes_force_law(change(1.0, 0, ContactMode::kRightFlight, ContactMode::kRightStop)));
-  EXPECT_FALSE(changes_force_law(change(1.0, 0, ContactMode::kRightFlight, ContactMode::kGap)));
-  EXPECT_FALSE(changes_force_law({.time = 1.0, .contact = 0, .kind = EventKind::kGrazing}));
-  EXPECT_FALSE(changes_force_law({.time = 1.0, .contact = -1, .kind = EventKind::kDriveCorner}));
+  const auto crossings = [](ContactMode first, const std::vector<Event>& events) {
+    return crossings_of(regime_sequence(0.0, {first}, events));
+  };
+  EXPECT_EQ(crossings(ContactMode::kGap, {change(1.0, 0, ContactMode::kGap, ContactMode::kRightStop),
+                                          change(2.0, 0, ContactMode::kRightStop, ContactMode::kRightFlight),
+                                          change(3.0, 0, ContactMode::kRightFlight, ContactMode::kGap)}),
+            2);
+  EXPECT_EQ(crossings(ContactMode::kStick, {{.time = 1.0, .contact = 0, .kind = EventKind::kGrazing},
+                                            {.time = 1.0, .contact = -1, .kind = EventKind::kDriveCorner}}),
+            0);
+}
+
+TEST(Words, CrossingsAreThoseOfTheWord) {
+  // At the point where sticking is gained it lasts no time: said was "+ -" with four crossings.
+  const std::vector<Event> events = {change(1.0, 0, ContactMode::kSlipPositive, ContactMode::kStick),
+                                     change(1.0 + 1e-12, 0, ContactMode::kStick, ContactMode::kSlipNegative),
+                                     change(2.0, 0, ContactMode::kSlipNegative, ContactMode::kStick),
+                                     change(2.0 + 1e-12, 0, ContactMode::kStick, ContactMode::kSlipPositive)};
+  const auto regimes = regime_sequence(0.0, {ContactMode::kSlipPositive}, events);
+  EXPECT_EQ(word_of(regimes), "+ -");
+  EXPECT_EQ(crossings_of(regimes), 2);
 }
 
 TEST(Floquet, ModesAreEigenvectorsByDescendingModulus) {

@@ -2,7 +2,7 @@
 // and closed forms.
 #include <slipmode/core/errors.hpp>
 #include <slipmode/fem/masses.hpp>
-#include <slipmode/orbits/balance/balance_branch.hpp>
+#include <slipmode/orbits/branches/balance_branch.hpp>
 #include "balance_checks.hpp"
 
 #include <gmock/gmock.h>

@@ -1,7 +1,7 @@
 // Harmonic balance with the smooth law: closed forms, exact orbits and their multipliers, derivatives by differences.
 #include <slipmode/core/errors.hpp>
-#include <slipmode/orbits/balance/balance_branch.hpp>
 #include <slipmode/orbits/balance/hill.hpp>
+#include <slipmode/orbits/branches/balance_branch.hpp>
 #include <slipmode/orbits/floquet.hpp>
 #include "balance_checks.hpp"
 #include "special_points.hpp"

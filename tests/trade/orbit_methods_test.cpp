@@ -1,7 +1,7 @@
 // Ways to a periodic orbit: their errors against certificates of their own, and what there is for which scene.
 
 #include <slipmode/core/errors.hpp>
-#include <slipmode/orbits/certificate.hpp>
+#include <slipmode/orbits/mixed/certificate.hpp>
 #include <slipmode/trade/orbit_methods.hpp>
 #include <slipmode/trade/variants.hpp>
 

@@ -1,6 +1,6 @@
 #include "trade/internal/horizon.hpp"
 
-#include <slipmode/diagnostics/attractors/model.hpp>
+#include <slipmode/diagnostics/model.hpp>
 
 #include <cmath>
 

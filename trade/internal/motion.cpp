@@ -3,7 +3,7 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/core/none.hpp>
 #include <slipmode/core/to_vector.hpp>
-#include <slipmode/diagnostics/attractors/model.hpp>
+#include <slipmode/diagnostics/model.hpp>
 #include <slipmode/diagnostics/series/point_sets.hpp>
 
 #include <fmt/format.h>

@@ -1,20 +1,13 @@
 #include "diagnostics/exponents/internal/energy_metric.hpp"
 
 #include <slipmode/core/decompositions.hpp>
+#include <slipmode/friction/engaged.hpp>
 
 #include <algorithm>
 #include <cmath>
 
 namespace slipmode::diagnostics {
 namespace {
-
-/// Stiffness that a contact adds while it is engaged.
-double contact_stiffness(const friction::Law& law) {
-  double stiffness = friction::spring_stiffness(law);
-  if (const auto* clearance = friction::clearance(law))
-    for (const friction::Stop& stop : clearance->stops()) stiffness = std::max(stiffness, stop.stiffness);
-  return stiffness;
-}
 
 /// ω² of K against M = L Lᵀ, ascending.
 Eigen::VectorXd squared_frequencies(const Eigen::MatrixXd& K, const Eigen::LLT<Eigen::MatrixXd>& mass) {
@@ -57,7 +50,7 @@ EnergyMetric::EnergyMetric(const dynamics::HybridSystem& system) : n_(system.siz
   Eigen::MatrixXd K = fem::to_dense(system.structure().K());
   Eigen::MatrixXd engaged = K;
   for (const friction::Contact& contact : system.contacts())
-    engaged += contact_stiffness(contact.law) * contact.direction * contact.direction.transpose();
+    engaged += friction::engaged_stiffness(contact.law) * contact.direction * contact.direction.transpose();
   const Eigen::VectorXd squares = squared_frequencies(K, mass), all = squared_frequencies(engaged, mass);
   const double zero = kSingular * std::max(all[n_ - 1], 0.0);
   fastest_ = std::sqrt(std::max(all[n_ - 1], lowest(system, all, zero)));

@@ -1,6 +1,6 @@
 #include "diagnostics/exponents/internal/tangent_walk.hpp"
 
-#include <slipmode/diagnostics/attractors/model.hpp>
+#include <slipmode/diagnostics/model.hpp>
 #include "diagnostics/exponents/internal/tangent_frame.hpp"
 
 #include <algorithm>

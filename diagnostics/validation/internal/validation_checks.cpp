@@ -46,11 +46,4 @@ void check_validation(const dynamics::HybridSystem& full, const std::vector<pod:
   }
 }
 
-Eigen::Index modes_for_share(const Eigen::VectorXd& captured, double share) {
-  for (Eigen::Index L = 1; L <= captured.size(); ++L) {
-    if (captured(L - 1) >= share) return L;
-  }
-  return captured.size();
-}
-
 }  // namespace slipmode::diagnostics

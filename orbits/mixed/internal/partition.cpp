@@ -1,6 +1,7 @@
 #include "orbits/mixed/internal/partition.hpp"
 
 #include <slipmode/core/errors.hpp>
+#include <slipmode/friction/simplified.hpp>
 #include "orbits/balance/internal/balance_problem.hpp"
 
 #include <fmt/format.h>
@@ -10,8 +11,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <type_traits>
-#include <variant>
 
 namespace slipmode::orbits {
 namespace {
@@ -32,27 +31,6 @@ Eigen::SparseMatrix<Complex> part_of(const Eigen::SparseMatrix<Complex>& A, cons
   Eigen::SparseMatrix<Complex> out(std::ssize(rows), std::ssize(columns));
   out.setFromTriplets(entries.begin(), entries.end());
   return out;
-}
-
-/// The law with its forces in this share.
-friction::Law weakened(friction::Law law, double share) {
-  std::visit(
-      [share](auto& own) {
-        using Own = std::remove_cvref_t<decltype(own)>;
-        if constexpr (std::is_same_v<Own, friction::Coulomb> || std::is_same_v<Own, friction::CompliantCoulomb> ||
-                      std::is_same_v<Own, friction::Stribeck>) {
-          own.mu_s *= share;
-          own.mu_k *= share;
-        } else if constexpr (std::is_same_v<Own, friction::Clearance>) {
-          for (std::optional<friction::Stop>* stop : {&own.left, &own.right})
-            if (*stop) {
-              (*stop)->stiffness *= share;
-              (*stop)->damping *= share;
-            }
-        }
-      },
-      law);
-  return law;
 }
 
 [[noreturn]] void fail_at(int k, double omega) {
@@ -209,7 +187,7 @@ HybridSystem Partition::system_under(const Eigen::VectorXd& coupling, double sha
   }
   std::vector<friction::Contact> contacts = contacts_;
   if (share < 1.0)
-    for (friction::Contact& contact : contacts) contact.law = weakened(contact.law, share);
+    for (friction::Contact& contact : contacts) contact.law = friction::weakened(contact.law, share);
   std::vector<std::string> names;
   for (const Eigen::Index i : parts_.near)
     names.push_back(system_.structure().dof_names()[static_cast<std::size_t>(i)]);

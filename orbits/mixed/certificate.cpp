@@ -1,4 +1,4 @@
-#include <slipmode/orbits/certificate.hpp>
+#include <slipmode/orbits/mixed/certificate.hpp>
 
 #include <slipmode/core/errors.hpp>
 #include "orbits/balance/internal/trigonometric.hpp"

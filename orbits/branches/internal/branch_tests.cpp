@@ -1,10 +1,10 @@
-#include "orbits/internal/branch_tests.hpp"
+#include "orbits/branches/internal/branch_tests.hpp"
 
 #include <slipmode/core/errors.hpp>
 #include <slipmode/orbits/floquet.hpp>
-#include "orbits/balance/internal/balance_branch_solver.hpp"
-#include "orbits/internal/branch_solver.hpp"
-#include "orbits/internal/secant.hpp"
+#include "orbits/branches/internal/balance_branch_solver.hpp"
+#include "orbits/branches/internal/branch_solver.hpp"
+#include "orbits/branches/internal/secant.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/LU>

@@ -1,5 +1,5 @@
 // What BranchSolver does on curves of special points.
-#include "orbits/internal/branch_solver.hpp"
+#include "orbits/branches/internal/branch_solver.hpp"
 
 #include <slipmode/core/decompositions.hpp>
 

@@ -1,10 +1,10 @@
-#include <slipmode/orbits/balance/balance_branch.hpp>
+#include <slipmode/orbits/branches/balance_branch.hpp>
 
 #include <slipmode/core/errors.hpp>
 #include <slipmode/core/parallel.hpp>
-#include "orbits/balance/internal/balance_branch_solver.hpp"
 #include "orbits/balance/internal/balance_orbit.hpp"
-#include "orbits/internal/branch_walk.hpp"
+#include "orbits/branches/internal/balance_branch_solver.hpp"
+#include "orbits/branches/internal/branch_walk.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "orbits/internal/curve_condition.hpp"
+#include "orbits/branches/internal/curve_condition.hpp"
 
 #include <slipmode/core/decompositions.hpp>
 #include <slipmode/core/errors.hpp>

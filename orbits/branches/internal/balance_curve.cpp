@@ -1,9 +1,9 @@
 // What BalanceBranchSolver does on curves of special points.
 #include <slipmode/core/errors.hpp>
 #include <slipmode/orbits/balance/hill.hpp>
-#include "orbits/balance/internal/balance_branch_solver.hpp"
-#include "orbits/balance/internal/balance_touch.hpp"
 #include "orbits/balance/internal/trigonometric.hpp"
+#include "orbits/branches/internal/balance_branch_solver.hpp"
+#include "orbits/branches/internal/balance_touch.hpp"
 
 #include <algorithm>
 #include <cmath>

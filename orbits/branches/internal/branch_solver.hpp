@@ -1,7 +1,7 @@
 #pragma once
 
-#include <slipmode/orbits/continuation.hpp>
-#include "orbits/internal/curve_condition.hpp"
+#include <slipmode/orbits/branches/continuation.hpp>
+#include "orbits/branches/internal/curve_condition.hpp"
 #include "orbits/internal/shooting_problem.hpp"
 
 #include <Eigen/Core>

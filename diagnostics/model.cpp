@@ -1,4 +1,4 @@
-#include <slipmode/diagnostics/attractors/model.hpp>
+#include <slipmode/diagnostics/model.hpp>
 
 #include <slipmode/core/decompositions.hpp>
 #include <slipmode/core/errors.hpp>

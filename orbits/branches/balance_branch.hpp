@@ -1,7 +1,7 @@
 #pragma once
 
-#include <slipmode/orbits/certificate.hpp>
-#include <slipmode/orbits/continuation.hpp>
+#include <slipmode/orbits/branches/continuation.hpp>
+#include <slipmode/orbits/mixed/certificate.hpp>
 
 namespace slipmode::orbits {
 

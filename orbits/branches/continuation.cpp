@@ -1,8 +1,8 @@
-#include <slipmode/orbits/continuation.hpp>
+#include <slipmode/orbits/branches/continuation.hpp>
 
 #include <slipmode/core/errors.hpp>
-#include "orbits/internal/branch_solver.hpp"
-#include "orbits/internal/branch_walk.hpp"
+#include "orbits/branches/internal/branch_solver.hpp"
+#include "orbits/branches/internal/branch_walk.hpp"
 
 namespace slipmode::orbits {
 

@@ -1,10 +1,10 @@
-#include "orbits/internal/branch_walk.hpp"
+#include "orbits/branches/internal/branch_walk.hpp"
 
 #include <slipmode/core/errors.hpp>
 #include <slipmode/core/parallel.hpp>
-#include "orbits/balance/internal/balance_branch_solver.hpp"
-#include "orbits/internal/branch_solver.hpp"
-#include "orbits/internal/branch_tests.hpp"
+#include "orbits/branches/internal/balance_branch_solver.hpp"
+#include "orbits/branches/internal/branch_solver.hpp"
+#include "orbits/branches/internal/branch_tests.hpp"
 #include "orbits/internal/describe_orbit.hpp"
 
 #include <fmt/format.h>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <slipmode/orbits/continuation.hpp>
+#include <slipmode/orbits/branches/continuation.hpp>
 #include "orbits/balance/internal/balance_problem.hpp"
-#include "orbits/internal/branch_solver.hpp"
+#include "orbits/branches/internal/branch_solver.hpp"
 
 #include <Eigen/Core>
 #include <functional>

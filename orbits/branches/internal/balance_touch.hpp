@@ -1,7 +1,7 @@
 #pragma once
 
 #include <slipmode/orbits/balance/balance.hpp>
-#include "orbits/internal/curve_condition.hpp"
+#include "orbits/branches/internal/curve_condition.hpp"
 
 namespace slipmode::orbits {
 

@@ -1,4 +1,4 @@
-#include "orbits/internal/branch_solver.hpp"
+#include "orbits/branches/internal/branch_solver.hpp"
 
 #include <slipmode/core/decompositions.hpp>
 #include <slipmode/core/errors.hpp>

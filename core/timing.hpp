@@ -1,12 +1,13 @@
 #pragma once
 
-#include <algorithm>
+#include <slipmode/core/median.hpp>
+
 #include <chrono>
 #include <ctime>
+#include <utility>
 #include <vector>
 
-/// Inside of cost.hpp and driven_validation.hpp, not for use elsewhere.
-namespace slipmode::diagnostics::detail {
+namespace slipmode {
 
 /// Clock and processor time of a piece of work [s].
 struct Times {
@@ -14,15 +15,16 @@ struct Times {
   double cpu = 0.0;
 };
 
-/// CPU time of the calling thread: other threads of a parallel validation do not count.
-inline double thread_cpu() {
+/// Processor time of the calling thread so far [s]: what other threads do meanwhile does not count.
+[[nodiscard]] inline double thread_cpu() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
+/// What one call of `work` takes, which runs in the calling thread.
 template <class Work>
-Times timed(const Work& work) {
+[[nodiscard]] Times timed(const Work& work) {
   const auto wall = std::chrono::steady_clock::now();
   const double cpu = thread_cpu();
   work();
@@ -30,14 +32,8 @@ Times timed(const Work& work) {
           .cpu = thread_cpu() - cpu};
 }
 
-/// The upper one of two middle values. @param values  not empty
-inline double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-inline Times median(const std::vector<Times>& times) {
+/// The median of each of the two.
+[[nodiscard]] inline Times median_times(const std::vector<Times>& times) {
   std::vector<double> wall;
   std::vector<double> cpu;
   for (const Times& t : times) {
@@ -47,4 +43,4 @@ inline Times median(const std::vector<Times>& times) {
   return {.wall = median(std::move(wall)), .cpu = median(std::move(cpu))};
 }
 
-}  // namespace slipmode::diagnostics::detail
+}  // namespace slipmode

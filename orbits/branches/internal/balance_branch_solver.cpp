@@ -1,8 +1,8 @@
-#include "orbits/balance/internal/balance_branch_solver.hpp"
+#include "orbits/branches/internal/balance_branch_solver.hpp"
 
 #include <slipmode/core/errors.hpp>
 #include "orbits/balance/internal/balance_orbit.hpp"
-#include "orbits/balance/internal/balance_touch.hpp"
+#include "orbits/branches/internal/balance_touch.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

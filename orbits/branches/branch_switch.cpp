@@ -1,6 +1,6 @@
 #include <slipmode/core/errors.hpp>
-#include <slipmode/orbits/continuation.hpp>
-#include "orbits/internal/branch_solver.hpp"
+#include <slipmode/orbits/branches/continuation.hpp>
+#include "orbits/branches/internal/branch_solver.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,9 +1,9 @@
-#include <slipmode/orbits/special_curve.hpp>
+#include <slipmode/orbits/branches/special_curve.hpp>
 
 #include <slipmode/core/errors.hpp>
-#include "orbits/balance/internal/balance_branch_solver.hpp"
-#include "orbits/internal/branch_solver.hpp"
-#include "orbits/internal/branch_walk.hpp"
+#include "orbits/branches/internal/balance_branch_solver.hpp"
+#include "orbits/branches/internal/branch_solver.hpp"
+#include "orbits/branches/internal/branch_walk.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,7 +1,7 @@
 // Where self-excited orbits begin: a state of rest of which a complex pair of rates crosses the imaginary axis.
 #include <slipmode/core/errors.hpp>
-#include "orbits/internal/branch_solver.hpp"
-#include "orbits/internal/secant.hpp"
+#include "orbits/branches/internal/branch_solver.hpp"
+#include "orbits/branches/internal/secant.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
