@@ -149,10 +149,7 @@ Report run(const Session& session, const AdviseArguments& arguments) {
 
   Report report = report_of(advice, scene);
   tell_resumed(session, file.resumed(), "configurations", report);
-  if (!arguments.output.empty()) {
-    report.data["file"] = arguments.output;
-    report.text += fmt::format("Result: {}\n", arguments.output);
-  }
+  tell_file("Result", arguments.output, report);
   if (arguments.write.empty()) return report;
   const trade::Variant lean = studies::lean_variant(scene, advice);
   write_renamed(arguments.write, trade::scene_text(lean));

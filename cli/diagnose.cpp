@@ -1,7 +1,5 @@
 #include "cli/diagnose.hpp"
 
-#include <slipmode/figures/file_figures.hpp>
-#include <slipmode/figures/gnuplot.hpp>
 #include <slipmode/results/series_input.hpp>
 #include <slipmode/results/series_store.hpp>
 #include "cli/diagnose_model.hpp"
@@ -16,8 +14,6 @@
 
 namespace slipmode::cli {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct DiagnoseArguments {
   DiagnoseRequest request;
@@ -38,12 +34,6 @@ std::vector<std::string> warnings_of(const diagnostics::SeriesStudy& study, cons
   text += input.smoother.empty() ? " Take a channel far from the contacts, a velocity rather than a force"
                                  : fmt::format(" Take the channel farthest from the contacts: {}", input.smoother);
   return {text};
-}
-
-/// The file figures are drawn from: the one asked for, or one in their folder.
-std::string diagnosis_file(const DiagnoseRequest& request) {
-  if (!request.output.empty() || request.figures.empty()) return request.output;
-  return (fs::path(request.figures) / "diagnosis.h5").string();
 }
 
 Report diagnosis_report(const std::shared_ptr<const diagnostics::SeriesStudy>& kept, const results::SeriesInput& input,
@@ -73,23 +63,14 @@ Report diagnosis_report(const std::shared_ptr<const diagnostics::SeriesStudy>& k
   const std::string file = diagnosis_file(arguments.request);
   if (file.empty()) return report;
   results::content_of(kept, input, arguments.request.bits).save(file);
-  report.data["file"] = file;
-  report.text += fmt::format("Numbers and curves: {}\n", file);
-  if (arguments.request.figures.empty()) return report;
-  const results::StoreReader store(file);
-  report.data["figures"] = figures::save_all(store, figures::figures_of(store), arguments.request.figures);
-  report.text += fmt::format("Figures: {}\n", arguments.request.figures);
+  tell_file("Numbers and curves", file, report);
+  draw_diagnosis(arguments.request, file, report);
   return report;
 }
 
 Report diagnose_series(const Session& session, DiagnoseArguments arguments) {
   arguments.study.tools = diagnostics::series_tools(arguments.tools);
-  if (!arguments.request.output.empty()) require_writable(arguments.request.output);
-  if (!arguments.request.figures.empty()) {
-    figures::require_gnuplot();
-    fs::create_directories(arguments.request.figures);
-    require_writable(fs::path(arguments.request.figures) / "diagnosis.h5");
-  }
+  check_diagnosis_outputs(arguments.request);
   const results::SeriesInput input = results::read_series(arguments.request.input, arguments.series);
   if (!arguments.study.strobe) arguments.study.strobe = input.drive_period;
   if (session.seed) arguments.study.seed = *session.seed;
@@ -159,7 +140,7 @@ Verb add_diagnose(CLI::App& app) {
   const ModelOptions of_models{begin, command->get_options().size()};
   const auto run = [command, arguments, of_models, diagnose_model](const Session& session) {
     arguments->request.bits = arguments->unit == "bits";
-    if (fs::path(arguments->request.input).extension() == ".toml") {
+    if (std::filesystem::path(arguments->request.input).extension() == ".toml") {
       return diagnose_model(session, arguments->request);
     }
     refuse_model_options(*command, of_models);

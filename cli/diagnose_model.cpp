@@ -2,7 +2,6 @@
 #include "cli/exponents_report.hpp"
 #include "cli/field_options.hpp"
 
-#include <slipmode/figures/file_figures.hpp>
 #include <slipmode/scene/own_times.hpp>
 #include "cli/diagnose_sweep.hpp"
 
@@ -12,36 +11,13 @@
 namespace slipmode::cli {
 namespace {
 
-namespace fs = std::filesystem;
-
-/// The file figures are drawn from: the one asked for, or one in their folder.
-std::string model_file(const DiagnoseRequest& request) {
-  if (!request.output.empty() || request.figures.empty()) return request.output;
-  return (fs::path(request.figures) / "diagnosis.h5").string();
-}
-
-void check_diagnosis_outputs(const DiagnoseRequest& request) {
-  if (!request.output.empty()) require_writable(request.output);
-  if (request.figures.empty()) return;
-  figures::require_gnuplot();
-  fs::create_directories(request.figures);
-  require_writable(fs::path(request.figures) / "diagnosis.h5");
-}
-
-void draw_diagnosis(const DiagnoseRequest& request, const std::string& file, Report& report) {
-  if (request.figures.empty()) return;
-  const results::StoreReader store(file);
-  report.data["figures"] = figures::save_all(store, figures::figures_of(store), request.figures);
-  report.text += fmt::format("Figures: {}\n", request.figures);
-}
-
 Report diagnose_scene(const Session& session, const DiagnoseRequest& request, const ModelRequest& models) {
   const scene::Scene scene = scene::with_own_times(session.load(request.input));
   check_diagnosis_outputs(request);
   if (!models.over.empty()) {
     if (models.verdict) throw InvalidInput("--verdict and --over: expected one of them");
     DiagnoseRequest with_file = request;
-    with_file.output = model_file(request);
+    with_file.output = diagnosis_file(request);
     Report report = diagnose_over(session, scene, with_file, models);
     if (!session.shard) draw_diagnosis(request, with_file.output, report);
     return report;
@@ -61,11 +37,10 @@ Report diagnose_scene(const Session& session, const DiagnoseRequest& request, co
     report.data["verdict"] = verdict_json(*verdict);
     report.text += verdict_text(*verdict, request.bits);
   }
-  const std::string file = model_file(request);
+  const std::string file = diagnosis_file(request);
   if (file.empty()) return report;
   studies::content_of(scene, found).save(file);
-  report.data["file"] = file;
-  report.text += fmt::format("Numbers and histories: {}\n", file);
+  tell_file("Numbers and histories", file, report);
   draw_diagnosis(request, file, report);
   return report;
 }

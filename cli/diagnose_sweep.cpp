@@ -9,36 +9,9 @@
 #include <algorithm>
 #include <limits>
 #include <numbers>
-#include <utility>
 
 namespace slipmode::cli {
 namespace {
-
-constexpr Eigen::Index kSweptExponents = 4;
-/// Time measured at each value, of that of a single spectrum.
-constexpr double kSweptShare = 0.25;
-
-/// One model over the key.
-struct SweptModel {
-  std::string title, role;  ///< role: "full" or "reduced"
-  studies::Family family;
-};
-
-std::vector<SweptModel> swept_models(const scene::Scene& scene, const std::string& key, const ModelRequest& request) {
-  if (request.files.size() > 1)
-    throw InvalidInput(fmt::format("--over: expected one file of MODELS at most beside the full model, found {}",
-                                   request.files.size()));
-  const studies::Family full(scene, {key});
-  std::vector<SweptModel> models = {{.title = full.title(), .role = "full", .family = full}};
-  // Of a POD, which gives POMs and LNMs, the kind that [reduction] names: it comes first.
-  const studies::Subjects subjects = studies::subjects_of(scene, request.stores(), request.modes);
-  if (subjects.bases.empty()) return models;
-  const pod::NamedBasis& basis = subjects.bases.front();
-  models.push_back({.title = fmt::format("reduced model, {}", basis.name),
-                    .role = "reduced",
-                    .family = studies::Family(scene, {key}, basis)});
-  return models;
-}
 
 /// A line of the summary: at how many values the motion is chaotic, and hyperchaotic.
 std::string exponent_summary(const std::string& title, const std::vector<results::ExponentPoint>& points,
@@ -51,7 +24,7 @@ std::string exponent_summary(const std::string& title, const std::vector<results
       ++failed;
       continue;
     }
-    const auto positive = (nats.array() > 4.0 * error.array()).count();
+    const auto positive = (nats.array() > diagnostics::kErrorsOfPositive * error.array()).count();
     chaotic += positive > 0 ? 1 : 0;
     hyper += positive > 1 ? 1 : 0;
     largest = std::max(largest, nats[0]);
@@ -68,48 +41,27 @@ Report diagnose_over(const Session& session, const scene::Scene& scene, const Di
                      const ModelRequest& models) {
   if (request.output.empty()) throw InvalidInput("--over: expected a result file for the sweep; give one with -o");
   const studies::Over over = parse_over(models.over);
-  studies::check_values(scene, over.key, over.values);
-  const std::vector<SweptModel> swept = swept_models(scene, over.key, models);
-  diagnostics::TangentOptions tangent =
-      studies::tangent_options(scene, swept.front().family.own(), models.exponents, session.run_options());
-  if (models.exponents.exponents == 0) tangent.exponents = kSweptExponents;
-  if (!models.exponents.duration) tangent.duration *= kSweptShare;
-
-  std::string identity;
-  for (const std::string& file : models.files) identity += studies::identity_of(std::filesystem::path(file));
-  studies::ExponentSweepOptions options{.tangent = tangent, .follow = models.follow};
-  studies::ResultFile file(
-      request.output, scene, results::FileKind::kExponentSweep,
-      fmt::format("slipmode diagnose --over {}{} --exponents {} --transient {} --duration {} --renormalise {} {}",
-                  studies::over_text(over), models.follow ? " --follow" : "", tangent.exponents, tangent.transient,
-                  tangent.duration, tangent.interval, swept.back().title),
-      identity, session.division(), studies::pieces(over.values, options));
+  const std::vector<studies::SweptModel> swept = studies::swept_models(scene, over, models.stores(), models.modes);
+  studies::ExponentSweepOptions options =
+      studies::exponent_sweep_options(scene, swept, models.exponents, models.follow, session.run_options());
+  studies::ResultFile file(request.output, scene, results::FileKind::kExponentSweep,
+                           studies::command_of(over, swept, options), studies::identity_of(swept), session.division(),
+                           studies::pieces(over.values, options));
   options.journal = file.journal();
-  std::vector<studies::Family> families;
-  families.reserve(swept.size());
-  for (const SweptModel& model : swept) families.push_back(model.family);
   const std::vector<studies::ExponentSweep> sweeps =
-      studies::exponent_sweeps(families, over.values, options, session.run_options());
-
-  Report report;
-  report.data = {{"verb", "diagnose"}, {"file", request.output}, {"key", over.key}};
-  const results::Units units = results::Units::of(scene.units);
-  file.finish([&](results::StoreWriter& writer) {
-    for (std::size_t m = 0; m < swept.size(); ++m) {
-      const auto& [title, role, family] = swept[m];
-      if (!sweeps[m].diagram.empty())
-        results::store_sweep(writer, "sweep/" + role, title, family.axis(), units, sweeps[m].diagram);
-      results::store_exponent_sweep(writer, "exponents/" + role, title, family.axis(), units, sweeps[m].points);
-    }
-  });
+      studies::exponent_sweeps(swept, over.values, options, session.run_options());
+  file.finish([&](results::StoreWriter& writer) { studies::store(writer, swept, sweeps); });
   if (session.has_a_share()) return part_made(session, file.progress(), request.output, "values");
+  Report report;
+  report.data = {{"verb", "diagnose"}, {"key", over.key}};
+  const results::Units units = results::Units::of(scene.units);
   for (std::size_t m = 0; m < swept.size(); ++m) {
     Json summary;
     report.text += exponent_summary(swept[m].title, sweeps[m].points, units, summary);
     report.data["models"].push_back(std::move(summary));
   }
   tell_resumed(session, file.resumed(), "values", report);
-  report.text += fmt::format("Exponents: {}\n", request.output);
+  tell_file("Exponents", request.output, report);
   return report;
 }
 

@@ -125,8 +125,7 @@ Report run(const Session& session, const ModesArguments& arguments) {
   }
   if (!arguments.output.empty()) {
     studies::content_of(scene, found).save(arguments.output);
-    report.data["file"] = arguments.output;
-    report.text += fmt::format("Frequencies and shapes: {}\n", arguments.output);
+    tell_file("Frequencies and shapes", arguments.output, report);
   }
   return report;
 }

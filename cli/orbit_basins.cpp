@@ -141,9 +141,8 @@ Report run(const Session& session, const OrbitBasinsArguments& arguments) {
   file.finish([&](results::StoreWriter& writer) { studies::store(writer, family, request, study); });
   if (session.has_a_share()) return part_made(session, file.progress(), arguments.output, "rows");
   Report report = summary(family, request, study);
-  report.data["file"] = arguments.output;
   tell_resumed(session, file.resumed(), "rows", report);
-  report.text += fmt::format("Basins: {}\n", arguments.output);
+  tell_file("Basins", arguments.output, report);
   return report;
 }
 

@@ -106,8 +106,7 @@ Report curves_report(const studies::Family& model, const std::shared_ptr<const s
     return report;
   }
   studies::content_of(model, found, command).save(output);
-  report.data["file"] = output;
-  report.text += fmt::format("Curves: {}\n", output);
+  tell_file("Curves", output, report);
   const auto lost = [](const results::NamedBranch& one) { return one.branch.end == orbits::BranchEnd::kLost; };
   if (found->interrupted)
     incomplete(report, kInterrupted, "interrupted; what was found is kept");

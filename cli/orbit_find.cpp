@@ -30,8 +30,7 @@ Report run_balance(const OrbitFindArguments& arguments, const studies::Family& m
   if (!found->balance.converged) return report;
   if (arguments.output.empty()) return with_nothing_kept(report);
   studies::content_of(model, found).save(arguments.output);
-  report.data["file"] = arguments.output;
-  report.text += fmt::format("Balance: {}\n", arguments.output);
+  tell_file("Balance", arguments.output, report);
   return report;
 }
 
@@ -51,8 +50,7 @@ Report run_mixed(const OrbitFindArguments& arguments, const studies::Family& mod
     return report;
   }
   studies::content_of(model, found).save(arguments.output);
-  report.data["file"] = arguments.output;
-  report.text += fmt::format("Exact orbit: {}\n", arguments.output);
+  tell_file("Exact orbit", arguments.output, report);
   return report;
 }
 
@@ -65,7 +63,7 @@ Report run(const Session& session, const OrbitFindArguments& arguments) {
   require_no_balance_options(arguments.balance);
   const dynamics::HybridSystem& system = model.own();
   const studies::OrbitSearch search = search_of(arguments.search, scene);
-  session.check_interrupt();
+  session.run_options().check_interrupt();
   const orbits::ShootingResult result = studies::find_orbit(model, search);
   if (!result.converged()) return not_found("orbit find", result);
 
@@ -76,8 +74,7 @@ Report run(const Session& session, const OrbitFindArguments& arguments) {
   report.text = fmt::format("{}, {}: {}", scene.name(), model.title(), orbit_text(system, result.orbit, amplitudes));
   if (arguments.output.empty()) return with_nothing_kept(report);
   studies::content_of(model, std::make_shared<const orbits::PeriodicOrbit>(result.orbit)).save(arguments.output);
-  report.data["file"] = arguments.output;
-  report.text += fmt::format("Orbit: {}\n", arguments.output);
+  tell_file("Orbit", arguments.output, report);
   return report;
 }
 

@@ -108,9 +108,8 @@ Report run(const Session& session, const OrbitMapArguments& arguments) {
   file.finish([&](results::StoreWriter& writer) { studies::store(writer, family, study); });
   if (session.has_a_share()) return part_made(session, file.progress(), arguments.output, "rows");
   Report report = summary(family, study, over, arguments.options);
-  report.data["file"] = arguments.output;
   tell_resumed(session, file.resumed(), "rows", report);
-  report.text += fmt::format("Map: {}\n", arguments.output);
+  tell_file("Map", arguments.output, report);
   return report;
 }
 

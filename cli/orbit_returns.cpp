@@ -136,10 +136,7 @@ Report run(const OrbitReturnsArguments& arguments) {
   report.text = fmt::format("{} points in {} delay coordinates, closer than {:.3g}\n{}", points.cols(),
                             arguments.dimension, search.threshold, table.str());
   if (groups.empty()) report.text += "No close return; raise --threshold, or record longer\n";
-  if (!arguments.output.empty()) {
-    report.data["file"] = arguments.output;
-    report.text += fmt::format("Returns: {}\n", arguments.output);
-  }
+  tell_file("Returns", arguments.output, report);
   return report;
 }
 

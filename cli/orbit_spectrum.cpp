@@ -25,7 +25,7 @@ Report run(const Session& session, const OrbitSpectrumArguments& arguments) {
   require_kind(store, std::array{results::FileKind::kOrbit});
   const scene::Scene scene = results::load_scene_of(store);
   const studies::Family model(scene, {}, studies::model_basis(scene, arguments.model, session.run_options()));
-  session.check_interrupt();
+  session.run_options().check_interrupt();
   const auto found = studies::orbit_spectrum(model, store, arguments.request);
   const orbits::Spectrum& spectrum = found->spectrum;
   Report report;
@@ -55,8 +55,7 @@ Report run(const Session& session, const OrbitSpectrumArguments& arguments) {
     report.text += fmt::format("{} of {} quantities; the others are in --json and in the file of -o\n", kShown, all);
   if (!arguments.output.empty()) {
     studies::content_of(model, found, arguments.request).save(arguments.output);
-    report.data["file"] = arguments.output;
-    report.text += fmt::format("Spectrum: {}\n", arguments.output);
+    tell_file("Spectrum", arguments.output, report);
   }
   return report;
 }

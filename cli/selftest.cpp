@@ -39,7 +39,7 @@ int add_extremes(const Session& session, const Request& request, Report& out) {
   Json rows = Json::array();
   int failed = 0;
   for (std::size_t i = 0; i < cases.size(); ++i) {
-    session.check_interrupt();
+    session.run_options().check_interrupt();
     line.update(i, cases.size());
     if (cases[i].is_long && !request.with_long) continue;
     const selftest::ExtremeResult result = selftest::run_case(cases[i]);

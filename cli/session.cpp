@@ -63,15 +63,17 @@ void Session::refuse_overrides(const std::string& verb, const std::string& why) 
   if (!overrides.empty()) throw InvalidInput(fmt::format("{}: --set has no use here, {}", verb, why));
 }
 
-void Session::check_interrupt() const {
-  if (stop != nullptr && stop->load()) throw Interrupted();
-}
-
 bool is_among(const std::string& output, const std::vector<std::string>& inputs) {
   return std::ranges::any_of(inputs, [&output](const std::string& input) {
     std::error_code none;
     return std::filesystem::equivalent(input, output, none);
   });
+}
+
+void tell_file(const std::string& what, const std::string& file, Report& out_report) {
+  if (file.empty()) return;
+  out_report.data["file"] = file;
+  out_report.text += fmt::format("{}: {}\n", what, file);
 }
 
 void tell_resumed(const Session& session, std::size_t resumed, const std::string& what, Report& out_report) {

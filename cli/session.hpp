@@ -66,8 +66,6 @@ struct Session {
   [[nodiscard]] scene::Scene load(const std::filesystem::path& path) const;
   /// @throws InvalidInput  when there is a --set, for a verb that reads no scene
   void refuse_overrides(const std::string& verb, const std::string& why) const;
-  /// Throws Interrupted when Ctrl-C was pressed.
-  void check_interrupt() const;
 };
 
 /// What a verb has to say: the same content as text and as JSON, and how it ended.
@@ -82,6 +80,8 @@ using results::require_writable;
 /// True when a result would replace one of the files, or folders, it is made from.
 [[nodiscard]] bool is_among(const std::string& output, const std::vector<std::string>& inputs);
 
+/// Says where a result is, if it is in a file. @param what  "Map", "Orbit"
+void tell_file(const std::string& what, const std::string& file, Report& out_report);
 /// Says what an interrupted run, or the parts, had finished. @param what  is counted: "values", "rows"
 void tell_resumed(const Session& session, std::size_t resumed, const std::string& what, Report& out_report);
 

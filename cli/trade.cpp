@@ -46,10 +46,7 @@ Report run(const Session& session, const TradeArguments& arguments) {
   }
   for (const std::string& sentence : advice) report.text += sentence + '\n';
   tell_resumed(session, file.resumed(), "configurations", report);
-  if (!arguments.output.empty()) {
-    report.data["file"] = arguments.output;
-    report.text += fmt::format("Result: {}\n", arguments.output);
-  }
+  tell_file("Result", arguments.output, report);
   if (!arguments.figures.empty()) {
     report.data["figures"] = figures::save_trade_figures(done, scene, arguments.figures);
     report.text += fmt::format("Figures: {}\n", arguments.figures);

@@ -1,5 +1,6 @@
 #include <slipmode/results/series_store.hpp>
 #include <slipmode/scene/own_times.hpp>
+#include <slipmode/studies/exponent_sweep.hpp>
 #include <slipmode/studies/exponents.hpp>
 #include <slipmode/studies/pipeline.hpp>
 #include "python/call.hpp"
@@ -26,23 +27,64 @@ struct Beside {
   }
 };
 
+std::vector<results::StoreReader> readers_of(const Keywords& keywords, const py::args& bases) {
+  std::vector<results::StoreReader> stores;
+  for (const py::handle basis : bases) {
+    if (!py::isinstance<Result>(basis)) keywords.refuse("models", basis, "results of pod, ensemble or reduce");
+    stores.push_back(basis.cast<const Result&>().reader());
+  }
+  return stores;
+}
+
 Result exponents(const Scene& scene, const py::args& bases, const py::kwargs& given) {
   Keywords keywords("exponents", given);
   Beside own;
   studies::ExponentRequest request;
   keywords.read(own);
   keywords.read(request);
-  std::vector<results::StoreReader> stores;
-  for (const py::handle basis : bases) {
-    if (!py::isinstance<Result>(basis)) keywords.refuse("models", basis, "results of pod, ensemble or reduce");
-    stores.push_back(basis.cast<const Result&>().reader());
-  }
+  const std::vector<results::StoreReader> stores = readers_of(keywords, bases);
   Call call(keywords);
   return call([&] {
     const Scene timed = scene::with_own_times(scene);
     const studies::Subjects subjects = studies::subjects_of(timed, stores, own.modes);
     return Result(studies::content_of(timed, std::make_shared<const studies::ModelDiagnosis>(studies::diagnose_models(
                                                  timed, subjects, request, own.verdict, call.options()))));
+  });
+}
+
+/// How values of a key follow each other, and the modes of what stands beside the full model there.
+struct AlongKey {
+  Eigen::Index modes = 0;
+  bool follow = false;
+  static constexpr auto fields() {
+    return std::tuple{
+        optional("modes", &AlongKey::modes, "", "of the basis given; 0: as [reduction] chooses", kFromZero),
+        optional("follow", &AlongKey::follow, "", "start each value where the one before it ended")};
+  }
+};
+
+Result exponent_sweep(const Scene& scene, const std::string& over, const std::vector<double>& values,
+                      const py::args& bases, const py::kwargs& given) {
+  Keywords keywords("exponent_sweep", given);
+  AlongKey own;
+  studies::ExponentRequest request;
+  keywords.read(own);
+  keywords.read(request);
+  const std::string output = keywords.output();
+  const std::vector<results::StoreReader> stores = readers_of(keywords, bases);
+  Call call(keywords);
+  return call([&] {
+    const Scene timed = scene::with_own_times(scene);
+    const studies::Over key{over, values};
+    const auto models = studies::swept_models(timed, key, stores, own.modes);
+    studies::ExponentSweepOptions options =
+        studies::exponent_sweep_options(timed, models, request, own.follow, call.options());
+    studies::ResultFile file(output, timed, results::FileKind::kExponentSweep,
+                             studies::command_of(key, models, options), studies::identity_of(models));
+    options.journal = file.journal();
+    auto done = std::make_shared<const std::vector<studies::ExponentSweep>>(
+        studies::exponent_sweeps(models, values, options, call.options()));
+    return Result(file.finish([models, done](results::StoreWriter& writer) { studies::store(writer, models, *done); }));
   });
 }
 
@@ -103,6 +145,14 @@ void add_diagnoses(py::module_& module) {
               "`reduce`).\n\n"
               "    *bases (Result): of those models\n" +
               options_text<Beside>() + options_text<studies::ExponentRequest>() + call_text())
+                 .c_str());
+  module.def("exponent_sweep", &exponent_sweep, py::arg("scene"), py::arg("over"), py::arg("values"),
+             ("Leading Lyapunov exponents over values of a key, below the bifurcation diagram where a belt drives: of\n"
+              "the full model, and of a reduced one beside it (a result of `pod`, `ensemble` or `reduce`).\n\n"
+              "    over: key of the scene, e.g. \"drive.speed\"\n"
+              "    *bases (Result): at most one\n"
+              "    output (str): result file; an interrupted call goes on from there\n" +
+              options_text<AlongKey>() + options_text<studies::ExponentRequest>() + call_text())
                  .c_str());
   module.def(
       "diagnose", &diagnose, py::arg("record"),

@@ -22,9 +22,8 @@ using figures::Drawing;
 namespace {
 
 py::dict series_of(const figures::Series& own) {
-  return py::dict("title"_a = own.title,
-                  "look"_a = kWords<figures::Series::Look>.at(static_cast<std::size_t>(own.look)),
-                  "colour"_a = std::string(own.colour), "x"_a = own.x, "y"_a = own.y, "error"_a = own.error);
+  return py::dict("title"_a = own.title, "look"_a = word_of(own.look), "colour"_a = std::string(own.colour),
+                  "x"_a = own.x, "y"_a = own.y, "error"_a = own.error);
 }
 
 py::object field_of(const std::optional<figures::ColourField>& own) {
@@ -42,12 +41,10 @@ py::dict panel_of(const Drawing::Axes& own) {
 }
 
 py::dict figure_of(const figures::FileFigure& figure, const Drawing& own) {
-  constexpr auto& kShared = kWords<Drawing::Shared>;
   py::list panels;
   for (const Drawing::Axes& axes : own.panels) panels.append(panel_of(axes));
   return py::dict("name"_a = figure.name, "what"_a = figure.what, "panels"_a = panels, "columns"_a = own.columns,
-                  "shared_x"_a = kShared.at(static_cast<std::size_t>(own.x)),
-                  "shared_y"_a = kShared.at(static_cast<std::size_t>(own.y)),
+                  "shared_x"_a = word_of(own.x), "shared_y"_a = word_of(own.y),
                   "shade"_a = std::string(figures::kStickShade));
 }
 

@@ -1,4 +1,4 @@
-#include <slipmode/diagnostics/attractors/model.hpp>
+#include <slipmode/diagnostics/model.hpp>
 #include <slipmode/scene/scene.hpp>
 #include <slipmode/studies/bases.hpp>
 #include <slipmode/studies/ensemble.hpp>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <slipmode/orbits/certificate.hpp>
+#include <slipmode/orbits/mixed/certificate.hpp>
 #include <slipmode/results/table.hpp>
 #include <slipmode/results/units.hpp>
 

@@ -92,20 +92,14 @@ orbits::BasinSink basin_sink(Journal& journal, const std::string& part) {
   return detail::table_sink<orbits::BasinLine>(journal, part, list_line);
 }
 
+std::string attractor_text(const std::string& kind, double order, double crossings) {
+  return kind == "orbit" ? fmt::format("period {:g}, {:g} crossings", order, crossings) : kind;
+}
+
 std::string attractor_text(const std::vector<BasinAttractor>& attractors, int attractor) {
   if (attractor < 0) return "undecided";
   const BasinAttractor& one = attractors[static_cast<std::size_t>(attractor)];
-  switch (one.kind) {
-    case BasinAttractor::Kind::kGap:
-      return "gap";
-    case BasinAttractor::Kind::kEdge:
-      return "gap edge";
-    case BasinAttractor::Kind::kChaotic:
-      return "chaotic";
-    case BasinAttractor::Kind::kOrbit:
-      break;
-  }
-  return fmt::format("period {}, {} crossings", one.orbit.order, one.orbit.crossings);
+  return attractor_text(to_string(one.kind), one.orbit.order, one.orbit.crossings);
 }
 
 void store_basins(StoreWriter& writer, const SweepAxis& x, const SweepAxis& y, const orbits::MapGrid& grid,

@@ -17,7 +17,9 @@ inline constexpr const char* kBasinsGroup = "basins";
 /// @param part  which of several basins the rows belong to, without spaces
 [[nodiscard]] orbits::BasinSink basin_sink(Journal& journal, const std::string& part);
 
-/// "gap", "gap edge", "period 3, 5 crossings", "chaotic", "undecided": an attractor in a word or two.
+/// "gap", "gap-edge", "period 3, 5 crossings", "chaotic", "undecided": an attractor in a word or two.
+/// @param kind  as a file's table of attractors has it
+[[nodiscard]] std::string attractor_text(const std::string& kind, double order, double crossings);
 [[nodiscard]] std::string attractor_text(const std::vector<orbits::BasinAttractor>& attractors, int attractor);
 
 /// What is kept of basins at one value of a third key.

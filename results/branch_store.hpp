@@ -1,6 +1,6 @@
 #pragma once
 
-#include <slipmode/orbits/continuation.hpp>
+#include <slipmode/orbits/branches/continuation.hpp>
 #include <slipmode/results/table.hpp>
 
 #include <string>

@@ -128,7 +128,7 @@ std::vector<VerdictRow> verdict_rows(const VerdictTable& verdict, double unit, c
   out.push_back(verdict_row(verdict, "positive exponents", "", [](const ModelFindings& model) {
     const LyapunovSpectrum& spectrum = model.exponents;
     const auto count = [](const Eigen::ArrayXd& above) { return static_cast<double>((above > 0.0).count()); };
-    const Eigen::ArrayXd four = 4.0 * spectrum.error.array();
+    const Eigen::ArrayXd four = diagnostics::kErrorsOfPositive * spectrum.error.array();
     return Halved{
         .value = count(spectrum.nats.array() - four),
         .halves = {count(spectrum.halves.col(0).array() - four), count(spectrum.halves.col(1).array() - four)}};

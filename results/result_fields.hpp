@@ -9,8 +9,8 @@
 #include <slipmode/diagnostics/validation/driven_validation.hpp>
 #include <slipmode/diagnostics/validation/validate.hpp>
 #include <slipmode/dynamics/simulate.hpp>
-#include <slipmode/orbits/certificate.hpp>
-#include <slipmode/orbits/continuation.hpp>
+#include <slipmode/orbits/branches/continuation.hpp>
+#include <slipmode/orbits/mixed/certificate.hpp>
 #include <slipmode/orbits/skeleton_compare.hpp>
 #include <slipmode/orbits/spectrum.hpp>
 #include <slipmode/trade/clock.hpp>

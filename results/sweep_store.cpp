@@ -30,23 +30,23 @@ diagnostics::SweepSink journal_sink(Journal& journal) {
 }
 
 SweepAxis sweep_axis(const scene::Scene& scene, const std::string& key) {
-  const Units units = Units::of(scene.units);
-  if (key == "drive.speed") return {key, "belt speed V", units.velocity};
-  if (key == "drive.frequency") return {key, "frequency f", units.frequency};
-  if (key == "drive.omega") return {key, "frequency ω", units.angular};
-  if (key == "drive.amplitude" && scene.force) return {key, "amplitude of the force A", units.force};
-  if (key == "drive.amplitude") return {key, "amplitude of the shaker", units.length};
-  if (key.starts_with("contact.") && key.ends_with(".stiffness")) return {key, "contact stiffness", units.stiffness};
+  const std::string unit = scene::unit_of_key(scene, key);
+  if (key == "drive.speed") return {key, "belt speed V", unit};
+  if (key == "drive.frequency") return {key, "frequency f", unit};
+  if (key == "drive.omega") return {key, "frequency ω", unit};
+  if (key == "drive.amplitude")
+    return {key, scene.force ? "amplitude of the force A" : "amplitude of the shaker", unit};
+  if (key.starts_with("contact.") && key.ends_with(".stiffness")) return {key, "contact stiffness", unit};
   for (const std::string coordinate : {"displacement", "velocity"}) {
     const std::string start = "initial." + coordinate + ".";
     if (!key.starts_with(start)) continue;
     const auto dof = number_in<int>(key.substr(start.size()));
     if (!dof) continue;
     return {key, fmt::format("{} at the start, {}_{{{}}}", coordinate, coordinate.front() == 'd' ? "q" : "v", *dof + 1),
-            coordinate.front() == 'd' ? units.length : units.velocity};
+            unit};
   }
   const bool load = key.ends_with("normal_load") || key.ends_with("normal_load.constant");
-  return {key, load ? "normal load" : key, load ? units.force : "1"};
+  return {key, load ? "normal load" : key, unit};
 }
 
 void store_axis(StoreWriter& writer, const std::string& group, const SweepAxis& axis,

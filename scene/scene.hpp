@@ -84,6 +84,8 @@ struct Scene {
 [[nodiscard]] Scene set_key(const Scene& scene, const std::string& path, double value);
 /// Value of any numeric key, defaults included. @throws InvalidInput if there is none of that name or it is no number
 [[nodiscard]] double get_key(const Scene& scene, const std::string& path);
+/// Its unit, "N/m"; "1" for a pure number, and for all in a dimensionless scene.
+[[nodiscard]] std::string unit_of_key(const Scene& scene, const std::string& path);
 /// Value of a key that can be varied continuously: a real number of the structure, a contact or the drive.
 /// @throws InvalidInput  for a key that is not there, a word, a whole number (masses, elements), or one that is not
 /// part

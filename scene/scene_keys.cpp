@@ -1,9 +1,12 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/scene/scene.hpp>
+#include "scene/internal/field_schema.hpp"
 #include "scene/internal/scene_parts.hpp"
 #include "scene/internal/toml_reader.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
+#include <span>
 #include <sstream>
 
 namespace slipmode::scene {
@@ -45,19 +48,25 @@ Scene set_key(const Scene& scene, const std::string& path, double value) {
 
 namespace {
 
+std::vector<std::string> parts_of(const std::string& path) {
+  std::vector<std::string> parts;
+  std::istringstream in(path);
+  for (std::string part; std::getline(in, part, '.');) parts.push_back(part);
+  return parts;
+}
+
+/// What stands in a table or an array under this name or number; none where there is no such thing.
+const toml::node* below(const toml::node* node, const std::string& part) {
+  if (node == nullptr) return nullptr;
+  if (const toml::table* table = node->as_table()) return table->get(part);
+  const toml::array* array = node->as_array();
+  const bool digits = !part.empty() && part.size() < 9 && part.find_first_not_of("0123456789") == std::string::npos;
+  return array != nullptr && digits ? array->get(std::stoul(part)) : nullptr;
+}
+
 const toml::node* node_at(const TomlDocument& document, const std::string& path) {
   const toml::node* node = &document.root();
-  std::istringstream parts(path);
-  for (std::string part; node != nullptr && std::getline(parts, part, '.');) {
-    if (const toml::table* table = node->as_table()) {
-      node = table->get(part);
-    } else if (const toml::array* array = node->as_array()) {
-      const bool digits = !part.empty() && part.size() < 9 && part.find_first_not_of("0123456789") == std::string::npos;
-      node = digits ? array->get(std::stoul(part)) : nullptr;
-    } else {
-      node = nullptr;
-    }
-  }
+  for (const std::string& part : parts_of(path)) node = below(node, part);
   return node;
 }
 
@@ -89,6 +98,47 @@ const toml::node& number_at(const TomlDocument& document, const std::string& sce
 TomlDocument written_out(const Scene& scene) { return {scene_to_toml(scene), scene.source.path, {}}; }
 
 }  // namespace
+
+namespace {
+
+/// Whether a node may be what a schema describes, by its type and the words that tell tables in one place apart.
+bool is_of(const Json& schema, const toml::node& node) {
+  if (schema.contains("items")) return node.is_array();
+  if (!schema.contains("properties")) return node.is_value();
+  const toml::table* table = node.as_table();
+  if (table == nullptr) return false;
+  for (const auto& [key, own] : schema["properties"].items())
+    if (own.contains("const") && (*table)[key].value<std::string>() != own["const"].get<std::string>()) return false;
+  const Json required = schema.value("required", Json::array());
+  return std::ranges::all_of(required, [&](const Json& key) { return table->contains(key.get<std::string>()); });
+}
+
+/// What a schema says of the value that stands `parts` below a node. @param node  none: any of its kind
+std::optional<std::string> meaning_in(const Json& schema, const toml::node* node, std::span<const std::string> parts,
+                                      std::string meaning) {
+  meaning = schema.value("description", meaning);
+  if (schema.contains("anyOf")) {
+    for (const Json& one : schema["anyOf"]) {
+      if (node != nullptr && !is_of(one, *node)) continue;
+      if (auto found = meaning_in(one, node, parts, meaning)) return found;
+    }
+    return {};
+  }
+  if (parts.empty()) return meaning;
+  const bool is_array = schema.contains("items");
+  if (!is_array && !(schema.contains("properties") && schema["properties"].contains(parts.front()))) return {};
+  return meaning_in(is_array ? schema["items"] : schema["properties"][parts.front()], below(node, parts.front()),
+                    parts.subspan(1), std::move(meaning));
+}
+
+}  // namespace
+
+std::string unit_of_key(const Scene& scene, const std::string& path) {
+  if (scene.units != "SI") return "1";
+  const TomlDocument document = written_out(scene);
+  const std::string meaning = meaning_in(schema_json(), &document.root(), parts_of(path), "").value_or("");
+  return meaning.ends_with(']') ? meaning.substr(meaning.rfind('[') + 1, meaning.size() - meaning.rfind('[') - 2) : "1";
+}
 
 double get_key(const Scene& scene, const std::string& path) {
   return number_at(written_out(scene), scene.source.path, path).value<double>().value();

@@ -14,7 +14,7 @@ std::string to_string(const ContactPlace& place) {
   return "tip";
 }
 
-std::string to_string(BasisChoice basis) { return kWords<BasisChoice>.at(static_cast<std::size_t>(basis)); }
+std::string to_string(BasisChoice basis) { return word_of(basis); }
 
 std::vector<double> Range::values() const { return diagnostics::sweep_values(from, to, step); }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <slipmode/orbits/balance/balance_branch.hpp>
+#include <slipmode/orbits/branches/balance_branch.hpp>
 #include <slipmode/studies/orbit_search.hpp>
 
 #include <memory>

@@ -3,7 +3,7 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/core/none.hpp>
 #include <slipmode/core/numbers.hpp>
-#include <slipmode/diagnostics/attractors/model.hpp>
+#include <slipmode/diagnostics/model.hpp>
 #include <slipmode/fem/modes.hpp>
 #include <slipmode/pod/mode_shares.hpp>
 #include <slipmode/results/ensemble_store.hpp>
@@ -317,8 +317,7 @@ pod::NamedBasis load_basis(const scene::Scene& scene, const dynamics::HybridSyst
     if (scene.reduction.basis == scene::BasisChoice::kLnm) return plain_bases(scene, full, result).front();
     return {.name = "POM", .basis = result.basis, .captured = pod::cumulative(result.shares)};
   }
-  const pod::Basis basis = results::load_basis(store, basis_group(kind), n);
-  return {.name = std::string(pod::to_string(basis.kind)), .basis = basis, .captured = pod::cumulative(basis.energy)};
+  return kept_basis(store, basis_group(kind), n);
 }
 
 std::optional<pod::NamedBasis> model_basis(const scene::Scene& scene, const std::string& model, const RunOptions& run) {

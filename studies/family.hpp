@@ -1,8 +1,8 @@
 #pragma once
 
 #include <slipmode/diagnostics/attractors/driven_sweep.hpp>
-#include <slipmode/diagnostics/attractors/model.hpp>
-#include <slipmode/orbits/continuation.hpp>
+#include <slipmode/diagnostics/model.hpp>
+#include <slipmode/orbits/branches/continuation.hpp>
 #include <slipmode/pod/basis.hpp>
 #include <slipmode/results/sweep_store.hpp>
 #include <slipmode/scene/scene.hpp>

@@ -2,6 +2,7 @@
 
 #include <slipmode/core/decompositions.hpp>
 #include <slipmode/core/errors.hpp>
+#include <slipmode/friction/engaged.hpp>
 #include <slipmode/friction/places.hpp>
 #include <slipmode/results/provenance.hpp>
 #include <slipmode/results/units.hpp>
@@ -34,12 +35,6 @@ Eigen::MatrixXd independent(const Eigen::MatrixXd& directions) {
   return directions(Eigen::all, kept);
 }
 
-/// Stiffness that holds a stuck contact, or one at its stop; 0 for a law without a spring.
-double contact_stiffness(const friction::Law& law) {
-  const friction::Clearance* clearance = friction::clearance(law);
-  return clearance != nullptr ? clearance->stops().back().stiffness : friction::spring_stiffness(law);
-}
-
 }  // namespace
 
 fem::Modes sticking_modes(const dynamics::HybridSystem& system, Eigen::Index count) {
@@ -70,7 +65,7 @@ ModeSets natural_modes(const scene::Scene& scene, const dynamics::HybridSystem& 
                 .theory = {}};
   Eigen::VectorXd stiffness(w.cols());
   std::ranges::transform(system.contacts(), stiffness.begin(),
-                         [](const friction::Contact& contact) { return contact_stiffness(contact.law); });
+                         [](const friction::Contact& contact) { return friction::engaged_stiffness(contact.law); });
   if (w.cols() > 0 && (stiffness.array() > 0.0).all()) {
     sets.compliant = fem::compliant_modes(system.structure(), w, stiffness, count);
   }

@@ -2,7 +2,7 @@
 
 #include <slipmode/core/errors.hpp>
 #include <slipmode/core/parallel.hpp>
-#include <slipmode/orbits/continuation.hpp>
+#include <slipmode/orbits/branches/continuation.hpp>
 #include <slipmode/results/orbit_records.hpp>
 #include <slipmode/results/provenance.hpp>
 #include <slipmode/results/records.hpp>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <slipmode/orbits/special_curve.hpp>
+#include <slipmode/orbits/branches/special_curve.hpp>
 #include <slipmode/studies/balance_search.hpp>
 
 #include <memory>

@@ -74,7 +74,7 @@ template <class T>
   if constexpr (requires { value.has_value(); }) {
     return value ? value_json(*value) : Json();
   } else if constexpr (std::is_enum_v<T>) {
-    return kWords<T>.at(static_cast<std::size_t>(value));
+    return word_of(value);
   } else if constexpr (std::is_arithmetic_v<T>) {
     return value;
   } else if constexpr (requires { value.front(); }) {

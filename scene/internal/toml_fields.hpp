@@ -125,7 +125,7 @@ template <class S>
 template <class T>
 [[nodiscard]] std::string value_toml(const T& value) {
   if constexpr (std::is_enum_v<T>) {
-    return fmt::format("\"{}\"", kWords<T>.at(static_cast<std::size_t>(value)));
+    return fmt::format("\"{}\"", word_of(value));
   } else if constexpr (std::floating_point<T>) {
     return number_text(value);
   } else if constexpr (std::integral<T>) {

@@ -2,8 +2,7 @@
 
 #include <slipmode/results/store.hpp>
 #include <slipmode/results/table.hpp>
-#include "cli/slipmode_process.hpp"
-#include "cli/small_scenes.hpp"
+#include "cli/folder_tests.hpp"
 
 #include <gtest/gtest.h>
 #include <csignal>
@@ -15,28 +14,10 @@ namespace {
 using namespace slipmode;
 using namespace slipmode::tests;
 
-class DiagnoseModel : public testing::Test {
- protected:
-  void SetUp() override {
-    write_file(folder.path() / "free.toml", kFreeEnds);
-    write_file(folder.path() / "two.toml", kTwoContacts);
-  }
-  [[nodiscard]] Outcome call(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), "diagnose");
-    arguments.insert(arguments.end(), {"--json", "--quiet"});
-    return slipmode_in(folder, arguments);
-  }
-  void refused(const std::vector<std::string>& arguments, const std::string& words) const {
-    const Outcome outcome = call(arguments);
-    EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
-    EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
-  }
-
-  TemporaryFolder folder;
-};
+class DiagnoseModel : public QuietStudies {};
 
 TEST_F(DiagnoseModel, FileFiguresAndJsonSayTheSameExponents) {
-  const Outcome outcome = call({"two.toml", "--duration", "200", "-o", "two.h5", "--figures", "drawn"});
+  const Outcome outcome = call({"diagnose", "two.toml", "--duration", "200", "-o", "two.h5", "--figures", "drawn"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const auto model = outcome.json()["exponents"][0];
   EXPECT_EQ(model["directions"], 8);
@@ -59,7 +40,8 @@ TEST_F(DiagnoseModel, FileFiguresAndJsonSayTheSameExponents) {
 TEST_F(DiagnoseModel, VerdictPutsFullAndReducedSideBySide) {
   ASSERT_EQ(slipmode_in(folder, {"simulate", "free.toml", "-o", "run.h5", "--quiet"}).exit_code, 0);
   ASSERT_EQ(slipmode_in(folder, {"pod", "run.h5", "-o", "pod.h5", "--quiet"}).exit_code, 0);
-  const Outcome outcome = call({"free.toml", "pod.h5", "--modes", "2", "--verdict", "--duration", "300", "-o", "v.h5"});
+  const Outcome outcome =
+      call({"diagnose", "free.toml", "pod.h5", "--modes", "2", "--verdict", "--duration", "300", "-o", "v.h5"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const auto models = outcome.json()["verdict"]["models"];
   ASSERT_EQ(models.size(), 3U);
@@ -104,11 +86,12 @@ TEST_F(DiagnoseModel, OverAKeyIsTheSpectrumAtEveryValueAndGoesOnAfterAnInterrupt
 }
 
 TEST_F(DiagnoseModel, RefusesWhatMakesNoSense) {
-  refused({"two.toml", "--exponents", "9"}, "8 directions");
-  refused({"two.toml", "--over", "drive.speed=0.1:0.2:0.1"}, "-o");
-  refused({"two.toml", "--over", "drive.speed=0.1:0.2:0.1", "--verdict", "-o", "x.h5"}, "--verdict and --over");
-  refused({"two.toml", "missing.h5"}, "missing.h5");
-  refused({"two.toml", "--renormalise", "300", "--duration", "200"}, "duration >= interval");
+  refused({"diagnose", "two.toml", "--exponents", "9"}, "8 directions");
+  refused({"diagnose", "two.toml", "--over", "drive.speed=0.1:0.2:0.1"}, "-o");
+  refused({"diagnose", "two.toml", "--over", "drive.speed=0.1:0.2:0.1", "--verdict", "-o", "x.h5"},
+          "--verdict and --over");
+  refused({"diagnose", "two.toml", "missing.h5"}, "missing.h5");
+  refused({"diagnose", "two.toml", "--renormalise", "300", "--duration", "200"}, "duration >= interval");
 }
 
 }  // namespace

@@ -5,13 +5,11 @@
 // SLIPMODE_KILLS sets how often each verb is killed (4 by default; docs/limits.md says when it was many).
 
 #include <slipmode/core/random.hpp>
-#include "cli/slipmode_process.hpp"
-#include "cli/small_scenes.hpp"
+#include "cli/folder_tests.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
-#include <algorithm>
 #include <cstdlib>
 
 extern "C" void __asan_init() __attribute__((weak));  // NOLINT: its name; there where the library is instrumented
@@ -40,16 +38,6 @@ void PrintTo(const Killed& verb, std::ostream* out) { *out << verb.name; }
 
 class KilledAtAnyMoment : public testing::TestWithParam<Killed> {};
 
-/// Finished values in the journal: its lines but the first one, which names the task, a part's head, and a torn last
-/// one.
-std::ptrdiff_t journalled(const fs::path& journal) {
-  if (!fs::exists(journal)) return 0;
-  const std::string text = bytes_of(journal);
-  const std::size_t head = text.find(" #part ");
-  const bool has_head = head != std::string::npos && text.find('\n', head) != std::string::npos;
-  return std::max<std::ptrdiff_t>(0, std::ranges::count(text, '\n') - (has_head ? 2 : 1));
-}
-
 // Moments are drawn over the whole run and a little beyond. What is left is nothing, the whole file, or a journal from
 // which the same command takes every value that was finished. Temporary files of the killed are the only litter.
 TEST_P(KilledAtAnyMoment, GivesTheSameBytesWhenRepeated) {
@@ -66,7 +54,7 @@ TEST_P(KilledAtAnyMoment, GivesTheSameBytesWhenRepeated) {
     process.signal_when([&] { return std::chrono::steady_clock::now() >= moment; }, SIGKILL);
     process.wait();
     if (k % 3 == 1) continue;  // killed again before it could finish
-    const std::ptrdiff_t kept = journalled(folder.path() / "out.h5.journal");
+    const int kept = finished_in(folder.path() / "out.h5.journal");
     const bool done = fs::exists(folder.path() / "out.h5");
     const Outcome repeated = slipmode_in(folder, GetParam().arguments);
     ASSERT_EQ(repeated.exit_code, 0) << repeated.err;
@@ -127,7 +115,7 @@ class WithLimit {
   rlimit before_{};
 };
 
-class Faults : public testing::Test {
+class Faults : public InFolder {
  protected:
   void SetUp() override { write_file(folder.path() / "scene.toml", kTwoContacts); }
 
@@ -135,8 +123,6 @@ class Faults : public testing::Test {
   std::vector<std::string> sweep(const std::string& output) {
     return {"sweep", "scene.toml", "--over", "drive.speed=0.3:0.1:0.0005", "-o", output, "--json"};
   }
-
-  TemporaryFolder folder;
 };
 
 // A limit on file sizes fails writes as a full disc does, wherever in the file it is met: HDF5's first bytes, a
@@ -195,7 +181,7 @@ TEST_F(Faults, TooLittleMemoryIsAnErrorAndKeepsTheEarlierResult) {
 TEST_F(Faults, AFolderRemovedMeanwhileIsAnError) {
   fs::create_directory(folder.path() / "results");
   SlipmodeProcess process(sweep("results/out.h5"), folder.path());
-  ASSERT_TRUE(process.signal_when([&] { return journalled(folder.path() / "results/out.h5.journal") >= 2; }, SIGSTOP));
+  ASSERT_TRUE(process.signal_when([&] { return journalled("results/out.h5") >= 2; }, SIGSTOP));
   fs::remove_all(folder.path() / "results");
   ASSERT_TRUE(process.signal_when([] { return true; }, SIGCONT));
   const Outcome ended = process.wait();
@@ -205,7 +191,7 @@ TEST_F(Faults, AFolderRemovedMeanwhileIsAnError) {
 
 TEST_F(Faults, ASecondProcessOnTheSameOutputIsRefusedAndTheFirstGoesOn) {
   SlipmodeProcess first(sweep("out.h5"), folder.path());
-  ASSERT_TRUE(first.signal_when([&] { return journalled(folder.path() / "out.h5.journal") >= 1; }, SIGSTOP));
+  ASSERT_TRUE(first.signal_when([&] { return journalled("out.h5") >= 1; }, SIGSTOP));
   const Outcome second = slipmode_in(folder, sweep("out.h5"));
   EXPECT_EQ(second.exit_code, 2);
   EXPECT_THAT(second.json()["message"], HasSubstr("another process"));

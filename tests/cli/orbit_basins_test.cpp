@@ -1,6 +1,5 @@
 #include <slipmode/results/table.hpp>
-#include "cli/slipmode_process.hpp"
-#include "cli/small_scenes.hpp"
+#include "cli/folder_tests.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,7 +13,7 @@ namespace results = slipmode::results;
 
 const std::string kPlay = std::string(SLIPMODE_SOURCE_DIR) + "/datasets/play_oscillator/scene.toml";
 
-class OrbitBasins : public testing::Test {
+class OrbitBasins : public InFolder {
  protected:
   /// S2's Figure 10: ξ = 0.2, ω = 0.5005, a = 0.3.
   static std::vector<std::string> figure_10(const std::string& step, const std::string& file,
@@ -47,8 +46,6 @@ class OrbitBasins : public testing::Test {
     EXPECT_FALSE(fs::exists(folder.path() / "b.h5"));
     return outcome.err;
   }
-
-  TemporaryFolder folder;
 };
 
 // 18.1 ± 0.3 % as in tests/orbits/basins_test.cpp; the orbit beside the gap is Table 2's row 9(d): four crossings.
@@ -99,18 +96,13 @@ TEST_F(OrbitBasins, GoOnAfterAKillAsIfThereHadBeenNone) {
     return figure_10("0.02", file, {"--threads", threads, "--along", "drive.amplitude=0.25:0.3:0.05"});
   };
   ASSERT_EQ(slipmode_in(folder, words("whole.h5", "2")).exit_code, 0);
-  const fs::path journal = folder.path() / "stopped.h5.journal";
-  const auto lines = [&] {
-    const std::string text = fs::exists(journal) ? bytes_of(journal) : "";
-    return std::count(text.begin(), text.end(), '\n') - 1;
-  };
   SlipmodeProcess process(words("stopped.h5", "1"), folder.path());
-  ASSERT_TRUE(process.signal_when([&] { return lines() >= 20; }, SIGKILL));
+  ASSERT_TRUE(process.signal_when([&] { return journalled("stopped.h5") >= 20; }, SIGKILL));
   EXPECT_EQ(process.wait().signal, SIGKILL);
   const Outcome resumed = slipmode_in(folder, words("stopped.h5", "2"));
   ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
   EXPECT_GE(resumed.json()["resumed"], 20);
-  EXPECT_EQ(bytes_of(folder.path() / "stopped.h5"), bytes_of(folder.path() / "whole.h5"));
+  EXPECT_EQ(bytes("stopped.h5"), bytes("whole.h5"));
 }
 
 TEST_F(OrbitBasins, SayWhatIsWrong) {

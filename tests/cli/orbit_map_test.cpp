@@ -1,22 +1,21 @@
 #include <slipmode/results/table.hpp>
-#include "cli/slipmode_process.hpp"
-#include "cli/small_scenes.hpp"
+#include "cli/folder_tests.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <algorithm>
 #include <cmath>
 
 namespace {
 
 using namespace slipmode::tests;
 namespace fs = std::filesystem;
+namespace results = slipmode::results;
 namespace scene = slipmode::scene;
 using testing::HasSubstr;
 
 const std::string kThreeMasses = std::string(SLIPMODE_SOURCE_DIR) + "/datasets/clearance_3mass/scene.toml";
 
-class OrbitMap : public testing::Test {
+class OrbitMap : public InFolder {
  protected:
   static std::vector<std::string> plane(const std::string& file, const std::vector<std::string>& more = {}) {
     std::vector<std::string> arguments = {
@@ -25,15 +24,6 @@ class OrbitMap : public testing::Test {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }
-  int journalled(const std::string& file) const {
-    const fs::path journal = folder.path() / (file + ".journal");
-    if (!fs::exists(journal)) return 0;
-    const std::string text = bytes_of(journal);
-    return std::max(0, static_cast<int>(std::count(text.begin(), text.end(), '\n')) - 1);
-  }
-  std::string bytes(const std::string& name) const { return bytes_of(folder.path() / name); }
-
-  TemporaryFolder folder;
 };
 
 // S0 Table 4.1 and Figures 4.6, 4.8: D (ω = 0.65) crosses four times, E (ω = 0.4) eight times; moduli as printed.

@@ -1,7 +1,6 @@
 // Verbs on a small beam under a shaker, through the executable.
 #include <slipmode/results/table.hpp>
-#include "cli/slipmode_process.hpp"
-#include "cli/small_scenes.hpp"
+#include "cli/folder_tests.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -28,7 +27,7 @@ std::vector<std::string> small(std::vector<std::string> arguments, const std::ve
   return arguments;
 }
 
-class Shaken : public testing::Test {
+class Shaken : public InFolder {
  protected:
   Outcome run(const std::vector<std::string>& arguments, const std::vector<std::string>& more = {}) const {
     return slipmode_in(folder, small(arguments, more));
@@ -41,14 +40,6 @@ class Shaken : public testing::Test {
     return outcome.json();
   }
   fs::path path(const std::string& name) const { return folder.path() / name; }
-  int journalled(const std::string& file) const {
-    const fs::path journal = path(file + ".journal");
-    if (!fs::exists(journal)) return 0;
-    const std::string text = bytes_of(journal);
-    return std::max(0, static_cast<int>(std::count(text.begin(), text.end(), '\n')) - 1);
-  }
-
-  TemporaryFolder folder;
 };
 
 TEST_F(Shaken, AnEnsembleGivesModalFunctionsAndThoseAReducedModel) {

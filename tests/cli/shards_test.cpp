@@ -2,9 +2,8 @@
 // them, and what does not belong together is named.
 
 #include <slipmode/results/table.hpp>
+#include "cli/folder_tests.hpp"
 #include "cli/mpirun.hpp"
-#include "cli/slipmode_process.hpp"
-#include "cli/small_scenes.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -31,13 +30,8 @@ struct Divided {
 
 void PrintTo(const Divided& study, std::ostream* out) { *out << study.name; }
 
-class Shards : public testing::TestWithParam<Divided> {
+class Shards : public OnSmallScenes, public testing::WithParamInterface<Divided> {
  protected:
-  void SetUp() override {
-    write_file(folder.path() / "two.toml", kTwoContacts);
-    write_file(folder.path() / "free.toml", kFreeEnds);
-  }
-  std::string bytes(const std::string& file) const { return bytes_of(folder.path() / file); }
   void run(const Words& words) const {
     const Outcome outcome = slipmode_in(folder, words);
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -52,8 +46,6 @@ class Shards : public testing::TestWithParam<Divided> {
     }
     return names;
   }
-
-  TemporaryFolder folder;
 };
 
 TEST_P(Shards, OfAnyNumberGiveTheBytesOfOneProcess) {

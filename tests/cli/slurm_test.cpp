@@ -1,8 +1,7 @@
 // The scripts for Slurm, run by a stand-in for sbatch that starts tasks one after the other and sends one of them
 // Slurm's warning.
 
-#include "cli/slipmode_process.hpp"
-#include "cli/small_scenes.hpp"
+#include "cli/folder_tests.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -45,7 +44,7 @@ done
 echo 7
 )sh";
 
-class Slurm : public testing::Test {
+class Slurm : public InFolder {
  protected:
   void SetUp() override {
     write_file(folder.path() / "scene.toml", kTwoContacts);
@@ -57,7 +56,6 @@ class Slurm : public testing::Test {
     write_file(folder.path() / "bin" / name, text);
     fs::permissions(folder.path() / "bin" / name, fs::perms::owner_all);
   }
-  std::string bytes(const std::string& file) const { return bytes_of(folder.path() / file); }
   std::vector<std::string> sweep(const std::vector<std::string>& more) const {
     std::vector<std::string> words = {"sweep", "scene.toml",          "--over", "drive.speed=0.3:0.1:0.0005",
                                       "--set", "title=\"it's $HOME\""};
@@ -70,8 +68,6 @@ class Slurm : public testing::Test {
     EXPECT_THAT(outcome.err, HasSubstr(said));
     EXPECT_FALSE(fs::exists(folder.path() / "jobs/array.sh"));
   }
-
-  TemporaryFolder folder;
 };
 
 TEST_F(Slurm, TheScriptsGiveTheBytesOfOneProcessAlsoWhenATaskIsWarned) {

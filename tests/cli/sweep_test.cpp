@@ -1,10 +1,8 @@
 #include <slipmode/results/table.hpp>
-#include "cli/slipmode_process.hpp"
-#include "cli/small_scenes.hpp"
+#include "cli/folder_tests.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <algorithm>
 
 namespace {
 
@@ -15,7 +13,7 @@ using testing::HasSubstr;
 constexpr int kValues = 101;
 
 /// A sweep that can be stopped in the middle: each value takes milliseconds.
-class Sweep : public testing::Test {
+class Sweep : public InFolder {
  protected:
   void SetUp() override { write_file(folder.path() / "free.toml", kFreeEnds); }
 
@@ -25,14 +23,6 @@ class Sweep : public testing::Test {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }
-  /// Finished values in the journal: its lines but the first one, which names the task.
-  int journalled(const std::string& file) const {
-    const fs::path journal = folder.path() / (file + ".journal");
-    if (!fs::exists(journal)) return 0;
-    const std::string text = bytes_of(journal);
-    return std::max(0, static_cast<int>(std::count(text.begin(), text.end(), '\n')) - 1);
-  }
-  std::string bytes(const std::string& name) const { return bytes_of(folder.path() / name); }
 
   /// Stops a sweep by a signal after a few values, lets the same command finish it, and compares with one not stopped.
   void stop_and_resume(int signal, const std::vector<std::string>& manner, const std::vector<std::string>& threads) {
@@ -61,8 +51,6 @@ class Sweep : public testing::Test {
     EXPECT_EQ(bytes("stopped.h5"), bytes("whole.h5"));
     EXPECT_FALSE(fs::exists(folder.path() / "stopped.h5.journal"));
   }
-
-  TemporaryFolder folder;
 };
 
 TEST_F(Sweep, GoesOnAfterAnInterruptAsIfThereHadBeenNone) { stop_and_resume(SIGINT, {}, {"1", "2"}); }

@@ -3,8 +3,7 @@
 #include <slipmode/results/store.hpp>
 #include <slipmode/results/table.hpp>
 #include <slipmode/scene/scene.hpp>
-#include "cli/slipmode_process.hpp"
-#include "cli/small_scenes.hpp"
+#include "cli/folder_tests.hpp"
 
 #include <gtest/gtest.h>
 #include <algorithm>
@@ -16,25 +15,13 @@ namespace {
 
 using namespace slipmode::tests;
 
-class TradeVerbs : public testing::Test {
+class TradeVerbs : public QuietStudies {
  protected:
-  void SetUp() override {
-    write_file(folder.path() / "free.toml", kFreeEnds);
-    write_file(folder.path() / "two.toml", kTwoContacts);
-  }
-  [[nodiscard]] Outcome call(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.end(), {"--json", "--quiet"});
-    return slipmode_in(folder, arguments);
-  }
-  /// Exit code 2, a message that holds the words, and no file left behind.
-  void refused(const std::vector<std::string>& arguments, const std::string& words) const {
-    const Outcome outcome = call(arguments);
-    EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
-    EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
+  /// As elsewhere, and no file is left behind.
+  void refused(const Words& arguments, const std::string& words) const {
+    QuietStudies::refused(arguments, words);
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "picked.toml"));
   }
-
-  TemporaryFolder folder;
 };
 
 TEST_F(TradeVerbs, TableFileFiguresAndSceneSayTheSame) {

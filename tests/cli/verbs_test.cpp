@@ -1,5 +1,4 @@
-#include "cli/slipmode_process.hpp"
-#include "cli/small_scenes.hpp"
+#include "cli/folder_tests.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,13 +10,8 @@ namespace {
 using namespace slipmode::tests;
 using testing::HasSubstr;
 
-/// A folder with both scenes in it.
-class Verbs : public testing::Test {
+class Verbs : public OnSmallScenes {
  protected:
-  void SetUp() override {
-    write_file(folder.path() / "two.toml", kTwoContacts);
-    write_file(folder.path() / "free.toml", kFreeEnds);
-  }
   Outcome call(const std::vector<std::string>& arguments) const { return slipmode_in(folder, arguments); }
   /// The call must end well; its JSON.
   nlohmann::json json_of(std::vector<std::string> arguments) const {
@@ -26,9 +20,6 @@ class Verbs : public testing::Test {
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     return outcome.json();
   }
-  std::string bytes(const std::string& name) const { return bytes_of(folder.path() / name); }
-
-  TemporaryFolder folder;
 };
 
 TEST_F(Verbs, EachHasHelpWithAnExample) {

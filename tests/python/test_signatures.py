@@ -34,7 +34,8 @@ def studies():
     return [(sm.simulate, (BELT,), {}), (sm.ensemble, (BELT,), {}), (sm.validate, (BELT, sm.pod(run)), {}),
             (sm.find_orbit, (PUSHED,), {"by": "balance"}), (sm.continue_orbit, (PUSHED, "drive.omega", 0.8), {"by": "balance"}),
             (sm.skeleton, (BELT,), {}), (sm.sweep, (BELT, "drive.speed", [0.5, 0.6]), {}), (sm.orbit_map, (PUSHED, [key]), {}),
-            (sm.basins, (PUSHED, *plane), {}), (sm.exponents, (BELT,), {}), (sm.trade, (BELT,), {}), (sm.advise, (BELT,), {}),
+            (sm.basins, (PUSHED, *plane), {}), (sm.exponents, (BELT,), {}),
+            (sm.exponent_sweep, (BELT, "drive.speed", [0.5, 0.6]), {}), (sm.trade, (BELT,), {}), (sm.advise, (BELT,), {}),
             (sm.diagnose, (np.sin(np.arange(200.0)),), {"interval": 0.1}),
             (sm.spectrum, (sm.find_orbit(PUSHED, settle=50.0),), {}), (sm.run, (BELT, tempfile.gettempdir()), {})]
 

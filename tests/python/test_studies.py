@@ -259,6 +259,14 @@ class BesideTheExecutable(unittest.TestCase):
                                 set=QUICK)
                 self.assert_same(sm.exponents(scene, rom, **options), self.folder / "their.h5")
 
+    def test_exponents_over_a_key(self):
+        self.executable("diagnose", CHAIN, "--over", "drive.speed=0.1:0.2:0.1", "--exponents", 2, "-o",
+                        self.folder / "their.h5", set=QUICK)
+        ours = sm.exponent_sweep(sm.Scene.load(CHAIN, set=QUICK), "drive.speed", [0.1, 0.2], exponents=2,
+                                 output=self.folder / "ours.h5")
+        self.assert_same(ours, self.folder / "their.h5")
+        self.assertEqual(ours.exponents.full.values["parameter"].tolist(), [0.1, 0.2])
+
     def test_the_pipeline_leaves_its_files(self):
         scene = sm.Scene.load(CHAIN, set=QUICK)
         names = sm.run(scene, self.folder / "out")

@@ -192,6 +192,28 @@ TEST(BeamScene, EveryNumericKeyCanBeReadAndSet) {
   }
 }
 
+// Expected: SI units of what each key is, by hand; the shaker's amplitude is a way, a force's would be a force.
+TEST(BeamScene, KeysHaveTheUnitsOfTheirFields) {
+  const Scene scene = parse_scene(kBeamScene);
+  ASSERT_EQ(scene.units, "SI");
+  for (const auto& [key, unit] :
+       std::vector<std::pair<std::string, std::string>>{{"structure.length", "m"},
+                                                        {"structure.density", "kg/m^3"},
+                                                        {"structure.tip.mass", "kg"},
+                                                        {"structure.damping.modal_ratio", "1"},
+                                                        {"contact.0.mu_s", "1"},
+                                                        {"contact.0.stiffness", "N/m"},
+                                                        {"contact.0.normal_load", "N"},
+                                                        {"contact.0.normal_load.constant", "N"},
+                                                        {"contact.0.normal_load.slope", "N/m"},
+                                                        {"contact.0.tilt_deg", "degrees"},
+                                                        {"drive.frequency", "Hz"},
+                                                        {"drive.amplitude", "m"},
+                                                        {"drive.amplitude.exponential.decay", "Hz"}})
+    EXPECT_EQ(unit_of_key(scene, key), unit) << key;
+  EXPECT_EQ(unit_of_key(parse_scene(tests::kBeamOnBelt), "drive.speed"), "m/s");
+}
+
 TEST(BeamScene, KeysOfOtherLawsLoadsCurvesAndDampingsCanBeSet) {
   const auto sets = [](const std::string& text, const std::string& key, double value) {
     SCOPED_TRACE(key);

@@ -53,6 +53,11 @@ struct BadValue {
 /// Printed as what is put in: GoogleTest would show the bytes of the strings' pointers, others in every run.
 inline void PrintTo(const BadValue& bad, std::ostream* out) { *out << bad.to; }
 
+/// A scene with this change is refused, and the message has the parts.
+inline void expect_refused(const std::string& text, const BadValue& bad) {
+  expect_parts(error_of(replaced(text, bad.from, bad.to)), bad.parts);
+}
+
 inline std::string bad_value_name(const testing::TestParamInfo<BadValue>& info) {
   return fixtures::numbered_name(info.index, info.param.to.empty() ? "no " + info.param.from : info.param.to);
 }

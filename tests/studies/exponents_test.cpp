@@ -63,9 +63,11 @@ at = "static"
 
 // Expected: the exponents from the state in which the diagram's own value has settled, without a transient more.
 TEST(ExponentSweeps, StandBelowTheirDiagramAndStartWhereItSettled) {
-  const Family family(chain10(), {"drive.speed"});
+  const Over over{"drive.speed", {0.45, 0.5}};
+  const std::vector<SweptModel> models = swept_models(chain10(), over, {});
+  const Family& family = models.front().family;
   ExponentSweepOptions options{.tangent = tangent_options(chain10(), family.own(), kShort)};
-  const auto sweeps = exponent_sweeps({family}, {0.45, 0.5}, options, {});
+  const auto sweeps = exponent_sweeps(models, over.values, options, {});
   ASSERT_EQ(sweeps.size(), 1U);
   ASSERT_EQ(sweeps[0].diagram.size(), 2U);
   ASSERT_EQ(sweeps[0].points.size(), 2U);
