@@ -77,6 +77,12 @@ inline constexpr auto kFields = S::fields();
 template <class Enum>
 inline constexpr int kWords = 0;
 
+/// The word for a value of an enum that has words.
+template <class Enum>
+[[nodiscard]] constexpr const char* word_of(Enum value) {
+  return kWords<Enum>.at(static_cast<std::size_t>(value));
+}
+
 /// Calls visit(field) for each field of S.
 template <class S, class Visit>
 constexpr void for_each_field(const Visit& visit) {

@@ -1,5 +1,6 @@
 #include <slipmode/core/decompositions.hpp>
 #include <slipmode/core/errors.hpp>
+#include <slipmode/core/signs.hpp>
 #include <slipmode/fem/modes.hpp>
 #include "fem/internal/eigensolvers.hpp"
 #include "fem/internal/mode_conventions.hpp"
@@ -101,7 +102,7 @@ Modes modes_by_projection(const Structure& structure, const Eigen::MatrixXd& W, 
   Eigen::MatrixXd shapes = Eigen::MatrixXd::Zero(structure.size(), count);
   shapes.bottomRows(rest.size()) = modes.shapes;
   shapes.applyOnTheLeft(qr.householderQ());
-  detail::fix_signs(shapes);
+  fix_signs(shapes);
   modes.shapes = std::move(shapes);
   return modes;
 }

@@ -23,9 +23,8 @@ const std::string kRoot = results::kBasinsGroup;
 
 /// "gap", "period 1, 4 crossings", …: row by row of a table of attractors.
 std::string motion_of(const results::Table& table, std::size_t row) {
-  const std::string& kind = table.texts("kind")[row];
-  if (kind != "orbit") return kind;
-  return fmt::format("period {:g}, {:g} crossings", table.numbers("order")[row], table.numbers("crossings")[row]);
+  return results::attractor_text(table.texts("kind")[row], table.numbers("order")[row],
+                                 table.numbers("crossings")[row]);
 }
 
 /// Segments of the line on which a number over the grid is zero, by linear interpolation along the cells' sides.

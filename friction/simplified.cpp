@@ -94,4 +94,21 @@ std::optional<Law> without_stop_damping(const Law& law) {
   return any ? Other(other) : std::nullopt;
 }
 
+Law weakened(Law law, double share) {
+  std::visit(
+      [share](auto& own) {
+        if constexpr (requires { own.mu_s; }) own.mu_s *= share;
+        if constexpr (requires { own.mu_k; }) own.mu_k *= share;
+        if constexpr (requires { own.left; }) {
+          for (std::optional<Stop>* stop : {&own.left, &own.right}) {
+            if (!*stop) continue;
+            (*stop)->stiffness *= share;
+            (*stop)->damping *= share;
+          }
+        }
+      },
+      law);
+  return law;
+}
+
 }  // namespace slipmode::friction

@@ -22,4 +22,7 @@ namespace slipmode::friction {
 /// A clearance whose stops do not damp.
 [[nodiscard]] std::optional<Law> without_stop_damping(const Law& law);
 
+/// The law with its limit, or its stops' forces, in this share; as it is where it has neither as a number of its own.
+[[nodiscard]] Law weakened(Law law, double share);
+
 }  // namespace slipmode::friction

@@ -42,6 +42,11 @@ Eigen::VectorXd cumulative(const Eigen::VectorXd& shares) {
   return sum;
 }
 
+Eigen::Index modes_for_share(const Eigen::VectorXd& captured, double share) {
+  return std::min(captured.size(),
+                  std::ranges::find_if(captured, [&](double own) { return own >= share; }) - captured.begin() + 1);
+}
+
 Eigen::Index chosen_modes(const ModeChoice& choice, const Eigen::VectorXd& captured, Eigen::Index available,
                           const std::string& source) {
   if (choice.modes > available) {
@@ -49,10 +54,7 @@ Eigen::Index chosen_modes(const ModeChoice& choice, const Eigen::VectorXd& captu
                                    choice.modes, source, available, available));
   }
   if (choice.modes > 0) return choice.modes;
-  for (Eigen::Index i = 0; i < std::min(available, captured.size()); ++i) {
-    if (captured[i] >= choice.energy) return i + 1;
-  }
-  return available;
+  return captured.size() == 0 ? available : std::min(available, modes_for_share(captured, choice.energy));
 }
 
 }  // namespace slipmode::pod

@@ -55,6 +55,9 @@ struct ModeChoice {
   }
 };
 
+/// The smallest number of modes whose cumulative share reaches `share`; where none does, as many as there are shares.
+[[nodiscard]] Eigen::Index modes_for_share(const Eigen::VectorXd& captured, double share);
+
 /// The number of modes a choice asks for, given the shares of energy captured (NamedBasis::captured).
 /// @param source  what the modes come from, for the message
 /// @throws InvalidInput  when more modes are asked than there are

@@ -1,4 +1,5 @@
 #include <slipmode/core/errors.hpp>
+#include <slipmode/core/signs.hpp>
 #include <slipmode/pod/gram_schmidt.hpp>
 #include <slipmode/pod/pod.hpp>
 #include "pod/internal/centred.hpp"

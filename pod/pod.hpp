@@ -64,10 +64,6 @@ struct PodResult {
 /// right.
 [[nodiscard]] Eigen::VectorXd subspace_angles(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B, const fem::Matrix& W);
 
-/// Flips columns so that each one's largest component in magnitude is positive; among components that tie to 1e-9 the
-/// first one decides, so that rounding does not.
-void fix_signs(Eigen::MatrixXd& vectors);
-
 /// Share of the ensemble's (mean-removed) energy captured by the column space of each leading part of `basis`:
 /// element L−1 belongs to the first L vectors. Lets LNMs be compared with POMs. Cost 2 n T L.
 /// @throws InvalidInput  for a basis of other size, dependent columns, constant snapshots

@@ -31,7 +31,7 @@ Json series_json(const figures::Series& own, const figures::Drawing::Axes& axes)
   const figures::Series drawn = dots ? sorted(own) : own;
   const Grain grain = dots ? Grain::kCoarse : Grain::kFine;
   Json out = {{"title", own.title},
-              {"look", kWords<figures::Series::Look>.at(static_cast<std::size_t>(own.look))},
+              {"look", word_of(own.look)},
               {"colour", own.colour},
               {"x", list_json(drawn.x, grain, axes.log_x)},
               {"y", list_json(drawn.y, grain, axes.log_y)}};
@@ -60,10 +60,9 @@ Json drawing_json(const figures::Drawing& drawing) {
     if (axes.field) panel["field"] = field_json(*axes.field);
     panels.push_back(std::move(panel));
   }
-  constexpr auto& kShared = kWords<figures::Drawing::Shared>;
   return {{"columns", drawing.columns},
-          {"shared_x", kShared.at(static_cast<std::size_t>(drawing.x))},
-          {"shared_y", kShared.at(static_cast<std::size_t>(drawing.y))},
+          {"shared_x", word_of(drawing.x)},
+          {"shared_y", word_of(drawing.y)},
           {"panels", std::move(panels)}};
 }
 

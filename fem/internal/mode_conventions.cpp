@@ -1,6 +1,7 @@
 #include "fem/internal/mode_conventions.hpp"
 
 #include <slipmode/core/errors.hpp>
+#include <slipmode/core/signs.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -11,7 +12,6 @@ namespace slipmode::fem::detail {
 
 namespace {
 
-constexpr double kTie = 1e-9;
 // Relative to max K_ii/M_ii: larger eigenvalues need no second look.
 constexpr double kSuspiciouslySmall = 1e-8;
 // Relative to the same: a λ below minus that is no rounding.
@@ -54,17 +54,6 @@ double rounding_of_quotient(const Matrix& K, const Eigen::VectorXd& shape) {
   const Eigen::VectorXd squares = shape.cwiseAbs2();
   const double sum = std::visit([&squares](const auto& m) { return squares.dot(m.cwiseAbs2() * squares); }, K);
   return 16.0 * std::numeric_limits<double>::epsilon() * std::sqrt(sum);
-}
-
-void fix_signs(Eigen::MatrixXd& shapes) {
-  for (auto shape : shapes.colwise()) {
-    const double nearly_largest = (1.0 - kTie) * shape.cwiseAbs().maxCoeff();
-    for (const double component : shape) {
-      if (std::abs(component) < nearly_largest) continue;
-      if (component < 0.0) shape = -shape;
-      break;
-    }
-  }
 }
 
 Modes conventional_modes(const Structure& structure, EigenPairs pairs) {

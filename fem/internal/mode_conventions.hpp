@@ -5,10 +5,6 @@
 
 namespace slipmode::fem::detail {
 
-/// Flips columns so that each one's largest component in magnitude is positive. Among components equal to the largest
-/// within 1e-9 of it the first decides, so that rounding does not flip symmetric shapes.
-void fix_signs(Eigen::MatrixXd& shapes);
-
 /// Rounding error of φᵀKφ: 16 ε √(Σ_ij (φ_i K_ij φ_j)²). The terms' own errors add up like a random walk; their sum of
 /// magnitudes would be so large that the first mode of a beam of 2000 elements counted as zero.
 [[nodiscard]] double rounding_of_quotient(const Matrix& K, const Eigen::VectorXd& shape);

@@ -1,5 +1,6 @@
 // Force drives beside laws whose force depends on the sliding speed: an independent reference, closed forms, the
 // closed-form flow, tangents by differences, and the energy balance.
+#include "dynamics/end_differences.hpp"
 #include "fixtures/against_reference.hpp"
 #include "fixtures/bristle_scenes.hpp"
 #include "fixtures/differences.hpp"
@@ -38,13 +39,9 @@ HybridSystem forced(const RandomScene& scene, std::uint64_t seed) {
 TEST(ForcedLaws, AgreeWithTheTaylorReferenceOnRandomScenes) {
   std::size_t events = 0;
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE(::testing::Message() << "seed " << seed);
     const RandomScene scene = random_scene(seed, Laws::kAll, 8);
-    const HybridSystem system = forced(scene, 3000 + seed);
-    const ReferenceGap gap = gap_to_reference(system, scene.start, 15.0, kFlow);
-    EXPECT_EQ(gap.mismatch, "") << "seed " << seed;
-    EXPECT_LT(gap.event_time, 1e-9) << "seed " << seed;
-    EXPECT_LT(gap.state, 1e-9) << "seed " << seed;
-    events += gap.events;
+    events += expect_near_reference(forced(scene, 3000 + seed), scene.start, 15.0, kFlow);
   }
   EXPECT_GT(events, 300u);
 }
@@ -52,12 +49,10 @@ TEST(ForcedLaws, AgreeWithTheTaylorReferenceOnRandomScenes) {
 TEST(ForcedLaws, BristlesAgreeWithTheTaylorReference) {
   std::size_t events = 0;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    SCOPED_TRACE(::testing::Message() << "seed " << seed);
     const RandomScene scene = random_bristles(seed, false, 6, 0.7);
-    const HybridSystem system = forced(scene, 4000 + seed);
-    const ReferenceGap gap = gap_to_reference(system, scene.start, 10.0, kFlow);
-    EXPECT_EQ(gap.mismatch, "") << "seed " << seed;
-    EXPECT_LT(gap.state, 1e-8) << "seed " << seed;
-    events += gap.events;
+    events += expect_near_reference(forced(scene, 4000 + seed), scene.start, 10.0, kFlow,
+                                    {.event_time = HUGE_VAL, .state = 1e-8});
   }
   EXPECT_GT(events, 100u);
 }
@@ -120,11 +115,7 @@ TEST(ForcedLaws, TheTangentFlowAgreesWithDifferences) {
   const State start = swinging(3, 2, 1.5);
   const TangentResult tangent = tangent_flow(system, start, 12.0, flow);
   EXPECT_GE(tangent.events.size(), 3u);
-  const auto end_of = [&](const State& from) {
-    return stacked(simulate(system, from, {.duration = 12.0, .flow = flow}).final_state);
-  };
-  const Eigen::MatrixXd expected = slopes(start, end_of, 3e-4);  // truncation far below 1e-7
-  EXPECT_LT((tangent.monodromy - expected).cwiseAbs().maxCoeff(), 1e-7);
+  EXPECT_LT((tangent.monodromy - slopes_of_end(system, start, 12.0, flow)).cwiseAbs().maxCoeff(), 1e-7);
   // The rate at the end, by the motion a little later.
   const auto later = [&](double dt) {
     return stacked(simulate(system, start, {.duration = 12.0 + dt, .flow = flow}).final_state);

@@ -1,7 +1,7 @@
 // A shaken counterpart in the collocation flow.
+#include "dynamics/end_differences.hpp"
 #include "fixtures/against_reference.hpp"
 #include "fixtures/den_hartog.hpp"
-#include "fixtures/differences.hpp"
 #include "fixtures/scenes.hpp"
 
 #include <gtest/gtest.h>
@@ -112,14 +112,10 @@ Shaker random_shaker(Draws& random) {
 TEST(ShakerCollocation, AgreesWithTheTaylorReferenceOnRandomScenes) {
   std::size_t events = 0;
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE(::testing::Message() << "seed " << seed);
     const RandomScene scene = random_scene(seed, Laws::kAll, 8);
     Draws random(1000 + seed);
-    const HybridSystem system = scene.system.with_drive(random_shaker(random));
-    const ReferenceGap gap = gap_to_reference(system, scene.start, 15.0, kFlow);
-    EXPECT_EQ(gap.mismatch, "") << "seed " << seed;
-    EXPECT_LT(gap.event_time, 1e-9) << "seed " << seed;
-    EXPECT_LT(gap.state, 1e-9) << "seed " << seed;
-    events += gap.events;
+    events += expect_near_reference(scene.system.with_drive(random_shaker(random)), scene.start, 15.0, kFlow);
   }
   EXPECT_GT(events, 500u);
 }
@@ -144,11 +140,7 @@ TEST(ShakerCollocation, TheTangentFlowAgreesWithDifferences) {
   const State start = swinging(3, 2, 1.5);
   const TangentResult tangent = tangent_flow(system, start, 12.0, flow);
   EXPECT_GE(tangent.events.size(), 3u);
-  const auto end_of = [&](const State& from) {
-    return stacked(simulate(system, from, {.duration = 12.0, .flow = flow}).final_state);
-  };
-  const Eigen::MatrixXd expected = slopes(start, end_of, 3e-4);  // truncation far below 1e-7
-  EXPECT_LT((tangent.monodromy - expected).cwiseAbs().maxCoeff(), 1e-7);
+  EXPECT_LT((tangent.monodromy - slopes_of_end(system, start, 12.0, flow)).cwiseAbs().maxCoeff(), 1e-7);
 }
 
 }  // namespace

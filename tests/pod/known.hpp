@@ -3,19 +3,14 @@
 #include <slipmode/core/decompositions.hpp>
 #include <slipmode/core/random.hpp>
 #include <slipmode/pod/ensemble.hpp>
+#include "fixtures/normal_matrix.hpp"
 
 #include <cmath>
 #include <cstdint>
 
 namespace slipmode::tests {
 
-inline Eigen::MatrixXd normal_matrix(Random& random, Eigen::Index rows, Eigen::Index cols) {
-  Eigen::MatrixXd A(rows, cols);
-  for (Eigen::Index j = 0; j < cols; ++j) {
-    for (Eigen::Index i = 0; i < rows; ++i) A(i, j) = random.normal();
-  }
-  return A;
-}
+using fixtures::normal_matrix;
 
 inline Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& A) {
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(A);

@@ -2,6 +2,7 @@
 #include <slipmode/pod/pod.hpp>
 
 #include <slipmode/core/errors.hpp>
+#include <slipmode/core/signs.hpp>
 #include "known.hpp"
 
 #include <gtest/gtest.h>

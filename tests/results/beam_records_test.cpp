@@ -3,85 +3,22 @@
 #include <slipmode/results/records.hpp>
 #include <slipmode/rom/reduce.hpp>
 #include <slipmode/scene/scene.hpp>
+#include "results/stored_systems.hpp"
 #include "scene/beam_scene.hpp"
-#include "scene/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
-#include <bit>
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 namespace {
 
 using namespace slipmode;
 using namespace slipmode::results;
+using tests::expect_same_system;
+using tests::read_back;
 using tests::TemporaryFolder;
-
-/// Writes into a new file and hands out a reader of it.
-StoreReader stored(const TemporaryFolder& folder, const std::function<void(StoreWriter&)>& write) {
-  StoreWriter out(folder.path() / "record.h5", FileKind::kTrajectory);
-  write(out);
-  out.commit();
-  return StoreReader(folder.path() / "record.h5");
-}
-
-/// The numbers of a contact, law, load and all, as bits: equal also where they are NaN or −0.
-std::vector<std::uint64_t> bits_of(const friction::Contact& contact) {
-  std::vector<double> v(contact.direction.begin(), contact.direction.end());
-  const auto add = [&v](std::initializer_list<double> more) { v.insert(v.end(), more); };
-  add({contact.normal_load.constant, contact.normal_load.slope, contact.offset, contact.tilt});
-  if (const auto& own = contact.normal_load.oscillator) {
-    add({own->mass, own->support_stiffness, own->support_damping, own->spring_stiffness, own->spring_damping,
-         own->slope});
-  }
-  if (const auto* law = std::get_if<friction::Coulomb>(&contact.law)) add({law->mu_s, law->mu_k});
-  if (const auto* law = std::get_if<friction::CompliantCoulomb>(&contact.law)) {
-    add({law->mu_s, law->mu_k, law->stiffness});
-  }
-  if (const auto* law = std::get_if<friction::Dahl>(&contact.law)) add({law->mu, law->stiffness});
-  if (const auto* law = std::get_if<friction::LuGre>(&contact.law)) {
-    add({law->mu_s, law->mu_k, law->stribeck_speed, law->stiffness, law->damping, law->viscous});
-  }
-  if (const auto* law = std::get_if<friction::Measured>(&contact.law)) {
-    add({law->mu_s});
-    v.insert(v.end(), law->speeds.begin(), law->speeds.end());
-    v.insert(v.end(), law->coefficients.begin(), law->coefficients.end());
-  }
-  std::vector<std::uint64_t> bits;
-  for (const double value : v) bits.push_back(std::bit_cast<std::uint64_t>(value));
-  return bits;
-}
-
-void expect_same(const dynamics::HybridSystem& a, const dynamics::HybridSystem& b) {
-  EXPECT_EQ(fem::to_dense(a.structure().M()), fem::to_dense(b.structure().M()));
-  EXPECT_EQ(fem::to_dense(a.structure().C()), fem::to_dense(b.structure().C()));
-  EXPECT_EQ(fem::to_dense(a.structure().K()), fem::to_dense(b.structure().K()));
-  EXPECT_EQ(a.structure().M().index(), b.structure().M().index());
-  EXPECT_EQ(a.structure().C().index(), b.structure().C().index());
-  EXPECT_EQ(a.structure().rayleigh().has_value(), b.structure().rayleigh().has_value());
-  EXPECT_EQ(a.structure().dof_names(), b.structure().dof_names());
-  EXPECT_EQ(a.structure().units(), b.structure().units());
-  EXPECT_EQ(a.load(), b.load());
-  ASSERT_EQ(a.drive().shaker() != nullptr, b.drive().shaker() != nullptr);
-  if (const friction::Shaker* shaker = a.drive().shaker()) {
-    EXPECT_EQ(shaker->amplitude, b.drive().shaker()->amplitude);
-    EXPECT_EQ(shaker->frequency_hz, b.drive().shaker()->frequency_hz);
-    EXPECT_EQ(shaker->phase, b.drive().shaker()->phase);
-  }
-  ASSERT_EQ(a.contacts().size(), b.contacts().size());
-  for (std::size_t c = 0; c < a.contacts().size(); ++c) {
-    EXPECT_EQ(a.contacts()[c].law.index(), b.contacts()[c].law.index());
-    EXPECT_EQ(bits_of(a.contacts()[c]), bits_of(b.contacts()[c]));
-    EXPECT_EQ(a.contacts()[c].name, b.contacts()[c].name);
-  }
-}
-
-dynamics::HybridSystem back(const dynamics::HybridSystem& system) {
-  const TemporaryFolder folder;
-  return load_system(stored(folder, [&](StoreWriter& out) { save(out, "system", system); }));
-}
+using tests::written;
 
 TEST(BeamRecords, SystemReadsBackWithEveryDamping) {
   for (const char* damping : {"modal_ratio = 0.01", "coefficient = 1e-5\nmass_coefficient = 0.3",
@@ -89,7 +26,7 @@ TEST(BeamRecords, SystemReadsBackWithEveryDamping) {
     SCOPED_TRACE(damping);
     const auto system =
         scene::build_system(scene::parse_scene(tests::replaced(tests::kBeamScene, "modal_ratio = 0.01", damping)));
-    expect_same(system, back(system));
+    expect_same_system(system, read_back(system));
   }
 }
 
@@ -111,7 +48,7 @@ TEST(BeamRecords, SystemReadsBackWithEveryLawAndLoad) {
        .tilt = 0.1 / 3.0,
        .name = "compliant"}};
   const dynamics::HybridSystem system(beam.structure(), contacts, friction::Shaker{1e-3 / 3.0, 12.1, 0.7});
-  expect_same(system, back(system));
+  expect_same_system(system, read_back(system));
 }
 
 TEST(BeamRecords, ReducedBeamReadsBackToTheSameBits) {
@@ -119,8 +56,8 @@ TEST(BeamRecords, ReducedBeamReadsBackToTheSameBits) {
   const pod::Basis basis = rom::lnm_static_basis(full, 3);
   const ReducedModel model{rom::reduce(full, basis), basis};
   const TemporaryFolder folder;
-  const auto read = load_reduced(stored(folder, [&](StoreWriter& out) { save(out, "reduced", model); }));
-  expect_same(model.system, read.system);
+  const auto read = load_reduced(written(folder, [&](StoreWriter& out) { save(out, "reduced", model); }));
+  expect_same_system(model.system, read.system);
   EXPECT_EQ(read.basis.vectors, basis.vectors);
   EXPECT_EQ(read.basis.kind, pod::BasisKind::kLnmStatic);
 }
@@ -130,14 +67,14 @@ TEST(BeamRecords, ModalFunctionsKeepTheirKind) {
   basis.vectors = Eigen::MatrixXd::Identity(4, 2);
   basis.kind = pod::BasisKind::kPomf;
   const TemporaryFolder folder;
-  const auto in = stored(folder, [&](StoreWriter& out) { save(out, "basis", basis); });
+  const auto in = written(folder, [&](StoreWriter& out) { save(out, "basis", basis); });
   EXPECT_EQ(load_basis(in).kind, pod::BasisKind::kPomf);
 }
 
 // Files of earlier versions say lnm_static where scenes say lnm+static.
 TEST(BeamRecords, StaticModesOfEarlierFilesAreKnown) {
   const TemporaryFolder folder;
-  const auto in = stored(folder, [&](StoreWriter& out) {
+  const auto in = written(folder, [&](StoreWriter& out) {
     out.write("basis/vectors", Eigen::MatrixXd(Eigen::MatrixXd::Identity(4, 2)), {"1", ""});
     out.write("basis/kind", std::string("lnm_static"), {"", ""});
   });
@@ -151,7 +88,7 @@ TEST(BeamRecords, StateKeepsContactsOwnStates) {
                               {dynamics::ContactMode::kSeparated, dynamics::ContactMode::kStick},
                               Eigen::VectorXd{{1e-5, 2e-3, -0.1 / 3.0, 0.0}}};
   const TemporaryFolder folder;
-  const auto read = load_state(stored(folder, [&](StoreWriter& out) { save(out, "state", state); }), "state");
+  const auto read = load_state(written(folder, [&](StoreWriter& out) { save(out, "state", state); }), "state");
   EXPECT_EQ(read.internal, state.internal);
   EXPECT_EQ(read.modes, state.modes);
 }
@@ -160,7 +97,7 @@ TEST(BeamRecords, FilesOfEarlierVersionsAreStillRead) {
   // A rigid contact on a belt as the first version stored it: no stiffness, tilt, slope, oscillator, internal states.
   const TemporaryFolder folder;
   const Eigen::MatrixXd one = Eigen::MatrixXd::Ones(1, 1);
-  const auto in = stored(folder, [&](StoreWriter& out) {
+  const auto in = written(folder, [&](StoreWriter& out) {
     const auto number = [&out](const std::string& name, double value) {
       out.write("system/contacts/" + name, std::vector<double>{value}, {});
     };

@@ -1,12 +1,12 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/results/provenance.hpp>
 #include <slipmode/results/records.hpp>
+#include "results/stored_systems.hpp"
 #include "scene/messages.hpp"
 #include "scene/temporary_folder.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <functional>
 #include <limits>
 
 namespace {
@@ -14,18 +14,13 @@ namespace {
 using namespace slipmode;
 using namespace slipmode::results;
 using slipmode::tests::expect_parts;
+using slipmode::tests::expect_same_system;
 using slipmode::tests::message_of;
+using slipmode::tests::read_back;
 using slipmode::tests::TemporaryFolder;
+using slipmode::tests::written;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-/// Writes one thing into a new file and hands out a reader of it.
-StoreReader written(const TemporaryFolder& folder, const std::function<void(StoreWriter&)>& write) {
-  StoreWriter out(folder.path() / "record.h5", FileKind::kTrajectory);
-  write(out);
-  out.commit();
-  return StoreReader(folder.path() / "record.h5");
-}
 
 pod::Basis some_basis() {
   pod::Basis basis;
@@ -171,25 +166,6 @@ dynamics::HybridSystem chain_system(fem::ChainOptions options = {.masses = 5, .d
           Eigen::VectorXd::LinSpaced(n, -1.0, 1.0)};
 }
 
-void expect_same_chain(const dynamics::HybridSystem& a, const dynamics::HybridSystem& b) {
-  EXPECT_EQ(fem::to_dense(a.structure().M()), fem::to_dense(b.structure().M()));
-  EXPECT_EQ(fem::to_dense(a.structure().C()), fem::to_dense(b.structure().C()));
-  EXPECT_EQ(fem::to_dense(a.structure().K()), fem::to_dense(b.structure().K()));
-  EXPECT_EQ(a.structure().K().index(), b.structure().K().index());  // sparse stays sparse
-  EXPECT_EQ(a.structure().dof_names(), b.structure().dof_names());
-  EXPECT_EQ(a.structure().rayleigh().has_value(), b.structure().rayleigh().has_value());
-  EXPECT_EQ(a.load(), b.load());
-  EXPECT_EQ(a.drive().velocity(1.25), b.drive().velocity(1.25));
-  ASSERT_EQ(a.contacts().size(), b.contacts().size());
-  for (std::size_t c = 0; c < a.contacts().size(); ++c) {
-    EXPECT_EQ(a.contacts()[c].direction, b.contacts()[c].direction);
-    EXPECT_EQ(a.contacts()[c].law.index(), b.contacts()[c].law.index());
-    EXPECT_EQ(a.contacts()[c].normal_load.constant, b.contacts()[c].normal_load.constant);
-    EXPECT_EQ(a.contacts()[c].offset, b.contacts()[c].offset);
-    EXPECT_EQ(a.contacts()[c].name, b.contacts()[c].name);
-  }
-}
-
 TEST(Records, ALawMadeOfFunctionsIsRefused) {
   // A file that left it out, or put a description in its place, could not be read back as the system it is of.
   const TemporaryFolder folder;
@@ -203,15 +179,14 @@ TEST(Records, ALawMadeOfFunctionsIsRefused) {
 }
 
 TEST(Records, SystemReadsBackSparseAndDense) {
-  const TemporaryFolder folder;
   const auto sparse = chain_system();
-  expect_same_chain(sparse, load_system(written(folder, [&](StoreWriter& out) { save(out, "system", sparse); })));
+  expect_same_system(sparse, read_back(sparse));
 
   const fem::Structure& s = sparse.structure();
   const dynamics::HybridSystem dense({fem::to_dense(s.M()), fem::to_dense(s.C()), fem::to_dense(s.K())},
                                      sparse.contacts(), sparse.drive(), sparse.load());
-  const auto back = load_system(written(folder, [&](StoreWriter& out) { save(out, "system", dense); }));
-  expect_same_chain(dense, back);
+  const dynamics::HybridSystem back = read_back(dense);
+  expect_same_system(dense, back);
   EXPECT_EQ(std::get<friction::TanhRegularised>(back.contacts()[2].law).epsilon, 1e-4);
   EXPECT_EQ(std::get<friction::Stribeck>(back.contacts()[1].law).alpha, 8.0);
 }
@@ -238,7 +213,7 @@ TEST(Records, ReducedModelMustFitItsBasis) {
   const ReducedModel model{chain_system(), basis};
   const auto back = load_reduced(written(folder, [&](StoreWriter& out) { save(out, "reduced", model); }));
   EXPECT_EQ(back.basis.vectors, basis.vectors);
-  expect_same_chain(back.system, model.system);
+  expect_same_system(back.system, model.system);
   const auto bad = written(folder, [&](StoreWriter& out) {
     save(out, "reduced", ReducedModel{chain_system(), some_basis()});
   });

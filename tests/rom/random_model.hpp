@@ -4,16 +4,11 @@
 #include <slipmode/core/random.hpp>
 #include <slipmode/dynamics/system.hpp>
 #include <slipmode/pod/basis.hpp>
+#include "fixtures/normal_matrix.hpp"
 
 namespace slipmode::tests {
 
-inline Eigen::MatrixXd normal_matrix(Random& random, Eigen::Index rows, Eigen::Index cols) {
-  Eigen::MatrixXd A(rows, cols);
-  for (Eigen::Index j = 0; j < cols; ++j) {
-    for (Eigen::Index i = 0; i < rows; ++i) A(i, j) = random.normal();
-  }
-  return A;
-}
+using fixtures::normal_matrix;
 
 /// G Gᵀ of `rank` columns, plus `shift` on the diagonal.
 inline Eigen::MatrixXd random_definite(Random& random, Eigen::Index n, Eigen::Index rank, double shift) {
