@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # What builds and tests do not show: scripts/check_sources.sh [format] [alone] [everything-alone] [tidy]
 #   format  clang-format finds nothing to change in any tracked source
-#   alone   every source of library and executable that changed since the previous commit, or includes a header that did,
-#           compiles by itself, and so does every such header without a source of its name: the builds join two dozen
+#   alone   every source of library and executable that changed within four hours, or includes a header that did, compiles by
+#           itself, and so does every such header without a source of its name: the builds join two dozen
 #           sources, which hides an include that is missing. What is not reached after 90 seconds stays unread, changed
 #           sources come first. everything-alone: all of them, some ten minutes of processor
-#   tidy    clang-tidy on the sources that changed since the previous commit, 90 seconds too
+#   tidy    clang-tidy on the sources that changed within four hours, 90 seconds too
 # Both read with clang, which takes some 60 % of GCC's time.
 # By default format, alone and tidy.
 set -euo pipefail
@@ -29,10 +29,12 @@ commands() {
   ninja -C "$build" -t commands "${targets[@]}" | sed -nE 's/ -MD -MT .* -c / -fsyntax-only /p'
 }
 
-# What changed since the previous commit; nothing where that is not there.
+# What changed in the four hours before the last commit: what is pushed together. Nothing without a history.
 changed() {
-  git rev-parse -q --verify HEAD~1 >/dev/null || return 0
-  git diff --name-only --diff-filter=d HEAD~1 -- "$@" | { grep -vE '^(tests|bench|fuzz|examples)/|/kernels/' || true; }
+  local base
+  base=$(git rev-list -1 --before="$(($(git log -1 --format=%ct) - 14400))" HEAD)
+  [[ -n $base ]] || return 0
+  git diff --name-only --diff-filter=d "$base" -- "$@" | { grep -vE '^(tests|bench|fuzz|examples)/|/kernels/' || true; }
 }
 
 # Sources and headers on standard input, each compiled by itself, until one does not or the time given is over.
