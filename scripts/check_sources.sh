@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # What builds and tests do not show: scripts/check_sources.sh [format] [alone] [everything-alone] [tidy]
 #   format  clang-format finds nothing to change in any tracked source
-#   alone   every source of library and executable that changed within four hours, or includes a header that did, compiles by
-#           itself, and so does every such header without a source of its name: the builds join two dozen
-#           sources, which hides an include that is missing. What is not reached after 90 seconds stays unread, changed
-#           sources come first. everything-alone: all of them, some ten minutes of processor
-#   tidy    clang-tidy on the sources that changed within four hours, 90 seconds too
+#   alone   every source of library and executable that changed within four hours, or includes a header that did, compiles
+#           by itself, and so does every such header without a source of its name: the builds join two dozen sources,
+#           which hides an include that is missing. What is not reached after 60 seconds stays unread, changed sources
+#           come first. everything-alone: all of them, some ten minutes of processor
+#   tidy    clang-tidy on the sources that changed within four hours, 60 seconds too
 # Both read with clang, which takes some 60 % of GCC's time.
 # By default format, alone and tidy.
 set -euo pipefail
@@ -73,7 +73,7 @@ check_alone() {
     printf '%s\n' "${files[@]}"
     [[ ${#headers[@]} -eq 0 ]] || git grep -lF -f <(printf '%s\n' "${headers[@]}") -- '*.cpp' |
       { grep -vE '^(tests|bench|fuzz|examples)/|/kernels/' || true; }
-  } | awk 'NF && !seen[$0]++' | compile_alone 90
+  } | awk 'NF && !seen[$0]++' | compile_alone 60
 }
 
 check_tidy() {
@@ -83,7 +83,7 @@ check_tidy() {
   [[ ${#sources[@]} -eq 0 ]] && return
   # Time out or not, what was found by then counts.
   printf '%s\0' "${sources[@]}" |
-    { timeout 90 xargs -0 -P "$(nproc)" -n 1 clang-tidy -p "$build" --quiet --warnings-as-errors='*' || true; } |
+    { timeout 60 xargs -0 -P "$(nproc)" -n 1 clang-tidy -p "$build" --quiet --warnings-as-errors='*' || true; } |
     { ! grep -A 3 ': error: '; }
 }
 
