@@ -137,6 +137,42 @@ TEST(NaturalModes, OfRandomFreeChainsSolveTheirEquations) {
   }
 }
 
+TEST(NaturalModes, OfRandomMassesAndSpringsSolveTheirEquations) {
+  // 2 to 90 masses on a random tree of springs and a few more between any two, held or not, springs to 1e6 times one
+  // another. Expected: K φ = ω² M φ and φᵀMφ = 1 to rounding of the largest terms.
+  std::mt19937_64 random(7);
+  const auto uniform = [&random] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+  for (int trial = 0; trial < 300; ++trial) {
+    const auto n = static_cast<Eigen::Index>(2 + random() % 89);
+    const double spread = trial % 3 == 0 ? 1e6 : 10.0;
+    Eigen::MatrixXd M = Eigen::MatrixXd::Zero(n, n), K = M;
+    const auto join = [&](Eigen::Index i, Eigen::Index j) {
+      if (i == j) return;
+      const double k = std::pow(spread, uniform());
+      K(i, i) += k;
+      K(j, j) += k;
+      K(i, j) -= k;
+      K(j, i) -= k;
+    };
+    const auto any = [&](Eigen::Index below) {
+      return static_cast<Eigen::Index>(random() % static_cast<unsigned>(below));
+    };
+    for (Eigen::Index i = 0; i < n; ++i) {
+      M(i, i) = 0.3 + uniform();
+      if (i > 0) join(i, any(i));
+    }
+    for (int more = 0; more < 3; ++more) join(any(n), any(n));
+    if (trial % 2 == 0) K(0, 0) += uniform();
+    const Modes modes = natural_modes({Matrix(M), Rayleigh{}, Matrix(K)});
+    const double scale = K.cwiseAbs().rowwise().sum().maxCoeff() * modes.shapes.cwiseAbs().maxCoeff();
+    const Eigen::MatrixXd residual = K * modes.shapes - M * modes.shapes * modes.omega.cwiseAbs2().asDiagonal();
+    EXPECT_LT(residual.cwiseAbs().maxCoeff(), 1e-12 * scale) << "trial " << trial << ", " << n << " masses";
+    EXPECT_LT((modes.shapes.transpose() * M * modes.shapes - Eigen::MatrixXd::Identity(n, n)).cwiseAbs().maxCoeff(),
+              1e-12)
+        << "trial " << trial << ", " << n << " masses";
+  }
+}
+
 TEST(NaturalModes, OneFreeMassIsARigidMode) {
   const Modes modes = natural_modes(chain({.masses = 1, .mass = {4.0}, .left_fixed = false}));
   EXPECT_EQ(modes.omega(0), 0.0);
