@@ -214,8 +214,8 @@ std::string summary_text(const ValidationReport& report, const results::Units& u
   out += shares_text(report);
   if (report.left_out_above > 0) {
     out += fmt::format(
-        "  left out: more than {} modes, as the last two rows are within the scatter of two full runs; [validation]\n"
-        "  modes brings them\n",
+        "  left out: more than {} modes, as W of the last two rows is within three times that of two full runs;\n"
+        "  [validation] modes brings them\n",
         report.left_out_above);
   }
   if (!report.candidates.front().orbits.empty()) {
