@@ -97,7 +97,7 @@ double ClosedFormFlow::scale(const Guard& guard) const {
   if (regime_->overlay) size += regime_->overlay->outputs[0].size(guard.output);
   if (guard.kind == GuardKind::kStop) {
     if (regime_->overlay) size += kCancels * regime_->overlay->place_size(guard.contact) * per_place(guard);
-    return std::max(size, recalled(guard));
+    return std::max(size, std::abs(guard.constant) + recalled(guard));
   }
   if (output.kind == RegimeOutput::Kind::kSpeed)
     return size + std::abs(inputs_(r.speed_input())) +
@@ -122,8 +122,8 @@ void ClosedFormFlow::recall_sizes() {
     if (guard.kind != GuardKind::kStop) continue;
     if (!measured_) measure_amplitudes();
     Recall& last = recall_[static_cast<std::size_t>(guard.contact)];
-    const double size = scale(guard);
-    if (size > recalled(guard)) last = {point_.time, size / per_place(guard)};
+    const double moved = scale(guard) - std::abs(guard.constant);  // of the other stop's gap nothing is recalled
+    if (moved > recalled(guard)) last = {point_.time, moved / per_place(guard)};
   }
 }
 

@@ -110,6 +110,31 @@ TEST(Clearance, AStopIsMetOnceHoweverNearItsEndThePlaceIs) {
     }
 }
 
+TEST(Clearance, ABounceThatDiesOutKeepsItsTimesBesideAStopFarAway) {
+  // A stop without a gap, another one at 0.18. As long as that is not met the motion has no scale: expected the same
+  // times whatever the speed at the start, to the phase that roots are located to. From 1e-9 on the third was off by
+  // 8e-12, from 1e-11 on by 0.1: what a gap of 0.18 rounds by was held against it.
+  const Clearance stops{.left = Stop{.stiffness = 32.0, .damping = 0.4},
+                        .right = Stop{.stiffness = 1.5, .damping = 0.4, .gap = 0.18},
+                        .loss = ContactLoss::kZeroForce};
+  const HybridSystem system(plain_oscillator(900.0, 0.025), {{.direction = Eigen::VectorXd::Ones(1), .law = stops}},
+                            friction::Belt::constant(1.0));
+  const auto events = [&](double speed) {
+    const State start{.q = Eigen::VectorXd::Zero(1), .v = Eigen::VectorXd::Constant(1, -speed)};
+    return simulate(system, start, {.duration = 1.0}).events;
+  };
+  const std::vector<Event> expected = events(1e-2);
+  ASSERT_GE(expected.size(), 8U);
+  for (const double speed : {1e-6, 1e-9, 1e-11, 1e-13, 1e-20, 1e-60, 1e-120}) {
+    const std::vector<Event> found = events(speed);
+    ASSERT_EQ(found.size(), expected.size()) << speed;
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      EXPECT_NEAR(found[k].time, expected[k].time, 1e-14) << speed;
+      EXPECT_EQ(found[k].after, expected[k].after) << speed;
+    }
+  }
+}
+
 TEST(Clearance, AStopOnWhatFrictionHoldsMovesNothingElse) {
   // Of two free masses one rubs under a force and presses on a stop, the other drifts. In any other coordinates the
   // direction of the stop leaves 1e-17 where friction holds it, which is no spring of what drifts.
