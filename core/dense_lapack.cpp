@@ -1,10 +1,11 @@
 #include <slipmode/core/dense_lapack.hpp>
 
 #include <slipmode/core/errors.hpp>
+#include <slipmode/core/none.hpp>
 
 #include <algorithm>
 #include <complex>
-#include <limits>
+#include <string>
 #include <vector>
 
 // Lengths at the end belong to the character arguments.
@@ -21,7 +22,6 @@ namespace slipmode {
 namespace {
 
 void require(bool found, const char* what) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   if (!found) throw NumericalFailure(std::string("the ") + what + " of a matrix were not found", kNone, {}, kNone);
 }
 

@@ -75,7 +75,7 @@ class EventResolver {
   /// `settle`, takes the forces of contacts with bristles from the point.
   void start(HybridPoint& point) const;
   /// @throws NumericalFailure  Zeno, or no consistent modes
-  void settle(HybridPoint& point, const Reached& reached);
+  void settle(HybridPoint& point, Reached reached);
 
   /// What contacts in these modes are to a regime's linear equations.
   [[nodiscard]] std::vector<ContactRole> roles(const std::vector<ContactMode>& modes) const;

@@ -44,7 +44,8 @@ std::vector<bool> EventResolver::released_together(const HybridPoint& point, int
   return released;
 }
 
-void EventResolver::settle(HybridPoint& point, const Reached& reached) {
+void EventResolver::settle(HybridPoint& point, Reached reached) {
+  if (reached.kind == GuardKind::kFriction && lets_go(point, reached.contact)) reached.kind = GuardKind::kLoad;
   if (reached.contact >= 0 && reached.touching) {
     const auto i = static_cast<std::size_t>(reached.contact);
     record(point, reached.contact, EventKind::kGrazing, point.modes[i]);
@@ -87,7 +88,7 @@ void EventResolver::settle_stop(HybridPoint& point, const Reached& reached) {
 
 void EventResolver::settle_spring(HybridPoint& point, const Reached& reached) {
   const ContactMode before = point.modes[0];
-  if (reached.kind == GuardKind::kLoad || lets_go(point, 0))
+  if (reached.kind == GuardKind::kLoad)
     turn_load(point, 0);
   else
     turn_compliant(point, 0);
@@ -160,8 +161,7 @@ bool EventResolver::lets_go(const HybridPoint& point, int contact) const {
 }
 
 void EventResolver::settle_coupled(HybridPoint& point, const Reached& reached) {
-  const auto [contact, touching, found, next] = reached;
-  const GuardKind kind = found == GuardKind::kFriction && lets_go(point, contact) ? GuardKind::kLoad : found;
+  const auto [contact, touching, kind, next] = reached;
   const std::vector<ContactMode> before = point.modes;
   const std::vector<bool> released =
       kind == GuardKind::kFriction ? released_together(point, contact) : std::vector<bool>(point.modes.size());

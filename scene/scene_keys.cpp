@@ -97,10 +97,6 @@ const toml::node& number_at(const TomlDocument& document, const std::string& sce
 
 TomlDocument written_out(const Scene& scene) { return {scene_to_toml(scene), scene.source.path, {}}; }
 
-}  // namespace
-
-namespace {
-
 /// Whether a node may be what a schema describes, by its type and the words that tell tables in one place apart.
 bool is_of(const Json& schema, const toml::node& node) {
   if (schema.contains("items")) return node.is_array();

@@ -6,8 +6,6 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <utility>
 
 namespace slipmode::studies {
@@ -188,11 +186,6 @@ results::Content ResultFile::finish(std::function<void(results::StoreWriter&)> w
 Pieces chains(std::size_t count, const std::string& more) {
   return {.count = count,
           .what = fmt::format("chains of values, each of which starts where the one before it ended (more {})", more)};
-}
-
-std::string identity_of(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return results::fingerprint({std::istreambuf_iterator<char>(in), {}});
 }
 
 std::string identity_of(const pod::Basis& basis) {

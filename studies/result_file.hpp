@@ -117,8 +117,7 @@ class ResultFile {
 [[nodiscard]] std::string fingerprint_of(const scene::Scene& scene, const std::string& command,
                                          const std::string& identity = "");
 
-/// Short names of a file's bytes, and of a basis to the last bit.
-[[nodiscard]] std::string identity_of(const std::filesystem::path& file);
+/// Short name of a basis to the last bit.
 [[nodiscard]] std::string identity_of(const pod::Basis& basis);
 
 }  // namespace slipmode::studies

@@ -141,8 +141,11 @@ class ClosedFormFlow {
   [[nodiscard]] double near_zero(const GuardStart& guard) const;
   /// The size of an output's values, which its rounding error is measured by.
   [[nodiscard]] double scale(const Guard& guard) const;
-  /// That of a stop's guard, as it was where an earlier stay ended, for as long as the fastest pair takes: the state
-  /// still has the rounding of what moved then.
+  /// Of that what moves: by the terms that are summed, not by amplitudes, as a slow drift has a large one, however
+  /// little it has moved. What has moved may be a small difference of free motion and what the inputs have moved.
+  [[nodiscard]] double moving_size(const Guard& guard) const;
+  /// What moves of a stop's guard, as it was where an earlier stay ended, for as long as the fastest pair takes: the
+  /// state still has the rounding of what moved then.
   struct Recall {
     double time = -std::numeric_limits<double>::infinity();
     double size = 0.0;  ///< of the contact's place [m]

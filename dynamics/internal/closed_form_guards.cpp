@@ -84,21 +84,26 @@ void ClosedFormFlow::add_clearance_guards(const Guard& of_output, RegimeOutput::
   }
 }
 
+double ClosedFormFlow::moving_size(const Guard& guard) const {
+  const Regime& r = tables_->regime();
+  const auto row = r.row.col(guard.output).cwiseAbs();
+  double size = row.dot(x_.cwiseAbs()) + row.dot((free_ - free_entered_).cwiseAbs()) +
+                r.coefficient.col(guard.output).cwiseAbs().dot(inputs_.cwiseAbs());
+  if (const DriveOverlay* overlay = regime_->overlay) {
+    size += overlay->outputs[0].size(guard.output);
+    if (guard.kind == GuardKind::kStop) size += kCancels * overlay->place_size(guard.contact) * per_place(guard);
+  }
+  return size;
+}
+
 double ClosedFormFlow::scale(const Guard& guard) const {
   const Regime& r = tables_->regime();
   const RegimeOutput& output = r.outputs[static_cast<std::size_t>(guard.output)];
   const ContactForces& law = resolver_.laws()[static_cast<std::size_t>(guard.contact)];
   if (output.kind == RegimeOutput::Kind::kForce) return law.static_limit;
-  // By the terms that are summed, not by amplitudes: a slow drift has a large one, however little it has moved. What
-  // has moved may be a small difference of free motion and what the inputs have moved.
-  const auto row = r.row.col(guard.output).cwiseAbs();
-  double size = std::abs(guard.constant) + row.dot(x_.cwiseAbs()) + row.dot((free_ - free_entered_).cwiseAbs()) +
-                r.coefficient.col(guard.output).cwiseAbs().dot(inputs_.cwiseAbs());
-  if (regime_->overlay) size += regime_->overlay->outputs[0].size(guard.output);
-  if (guard.kind == GuardKind::kStop) {
-    if (regime_->overlay) size += kCancels * regime_->overlay->place_size(guard.contact) * per_place(guard);
-    return std::max(size, std::abs(guard.constant) + recalled(guard));
-  }
+  const double constant = std::abs(guard.constant), moving = moving_size(guard);
+  if (guard.kind == GuardKind::kStop) return constant + std::max(moving, recalled(guard));
+  const double size = constant + moving;
   if (output.kind == RegimeOutput::Kind::kSpeed)
     return size + std::abs(inputs_(r.speed_input())) +
            slipping_.mobility(guard.contact, guard.contact) * law.static_limit / r.rate;
@@ -122,8 +127,8 @@ void ClosedFormFlow::recall_sizes() {
     if (guard.kind != GuardKind::kStop) continue;
     if (!measured_) measure_amplitudes();
     Recall& last = recall_[static_cast<std::size_t>(guard.contact)];
-    const double moved = scale(guard) - std::abs(guard.constant);  // of the other stop's gap nothing is recalled
-    if (moved > recalled(guard)) last = {point_.time, moved / per_place(guard)};
+    const double size = moving_size(guard);
+    if (size > recalled(guard)) last = {point_.time, size / per_place(guard)};
   }
 }
 

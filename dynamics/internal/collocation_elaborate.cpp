@@ -140,9 +140,10 @@ bool CollocationFlow::searched_from_rest(const OwnGuard& guard, int c, const Gua
                leading = order == 1 ? now.rate * t : now.second * t * t / 2.0;
   const double told = kTouching * std::max(now.size, size_ahead(guard, c)),
                shows = kShows * std::max(told, tolerated(guard, c));
-  if (std::abs(leading) > told && (order == 1 || (leading / value > 0.5 && leading / value < 2.0))) return false;
-  // A speed that is told leads, too, where it turns before it shows at the nodes.
-  if (order == 1 && std::abs(now.rate) > std::max(model_.fastest, 1.0 / tables_.step(0)) * told) return false;
+  // A speed that is told leads, also where it turns before it shows at the nodes.
+  const bool leads = order == 1 ? std::abs(now.rate) > std::max(model_.fastest, over_top_) * told
+                                : std::abs(leading) > told && leading / value > 0.5 && leading / value < 2.0;
+  if (leads) return false;
   if (!(values.cwiseAbs().maxCoeff() > shows)) return true;
   Guarded found{0.0, c, false, guard, 2};  // too early for it: to be halved
   if (std::abs(leading) <= shows) {
