@@ -82,7 +82,7 @@ bool evaluate(const Instant& now, const std::vector<bool>& at_rest, const std::v
   for (std::size_t c = 0; c < nc; ++c) {
     if (!at_rest[c]) continue;
     const auto i = static_cast<Eigen::Index>(c);
-    const double limit = now.laws[c].static_limit;
+    const double limit = now.laws[c].most();
     if (stuck[c]) {
       const double slack = trial.rounding(i) / now.model.mobility(i, i);
       if (std::abs(trial.force(i)) > now.laws[c].limit(trial.force(i)) * (1 + kForceTolerance) + slack) return false;
@@ -137,7 +137,7 @@ SingleResolution resolve_single(const Instant& now, bool released, double releas
   if (!released && std::abs(stick) <= law.static_limit * (1 + kForceTolerance)) return {ContactMode::kStick, stick, 0};
   const double sign = released ? release_sign : (stick > 0 ? 1.0 : -1.0);
   const double excess = sign * stick - law.onset(sign);  // sliding starts with this, times the mobility
-  return {slip_mode(sign), sign * law.onset(sign), excess > kSimpleTouch * law.static_limit ? 1 : 2};
+  return {slip_mode(sign), sign * law.onset(sign), excess > kSimpleTouch * law.most() ? 1 : 2};
 }
 
 void stick_forces(const Instant& now, const std::vector<bool>& stuck, Eigen::VectorXd& force) {
@@ -238,7 +238,7 @@ double contact_acceleration(const Instant& now, int c, const Eigen::VectorXd& fo
 
 int start_multiplicity(const Instant& now, int c, ContactMode mode, const Eigen::VectorXd& force) {
   const double start = sign_of(mode) * (now.belt_acceleration - contact_acceleration(now, c, force));
-  const double threshold = kSimpleTouch * now.model.mobility(c, c) * now.laws[static_cast<std::size_t>(c)].static_limit;
+  const double threshold = kSimpleTouch * now.model.mobility(c, c) * now.laws[static_cast<std::size_t>(c)].most();
   return start > threshold ? 1 : start >= -threshold ? 2 : -1;
 }
 

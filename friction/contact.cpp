@@ -207,7 +207,9 @@ ContactForces contact_forces(const Contact& contact) {
     f.mu_k[static_cast<std::size_t>(k)] = effective_coefficient(mu_k, contact.tilt, 2.0 * k - 1.0);
   }
   f.static_limit = std::max(f.limit(-1.0), f.limit(1.0));
-  const bool idle = mu_s == 0.0 || (N == 0.0 && !f.varies);
+  // A characteristic may rise from nothing.
+  const bool may_rise = f.characteristic != nullptr && (!f.characteristic->bounds || f.characteristic->most > 0.0);
+  const bool idle = (mu_s == 0.0 && !may_rise) || (N == 0.0 && !f.varies);
   if (idle && f.kind != LawKind::kClearance) {
     f.kind = LawKind::kFree;
     f.varies = false;

@@ -15,6 +15,10 @@ ContactForces ContactForces::under(double normal_load) const {
   return now;
 }
 
+double ContactForces::most() const {
+  return characteristic == nullptr ? static_limit : std::max(static_limit, load * characteristic->most);
+}
+
 double ContactForces::smooth(double v, double& slope) const {
   if (kind != LawKind::kSmooth) return slope = 0.0;
   const double th = std::tanh(v / epsilon), dth = (1 - th * th) / epsilon;
@@ -42,6 +46,29 @@ double ContactForces::slope(double direction, double v) const {
   double slope;
   static_cast<void>(smooth(v, slope));
   return slope;
+}
+
+std::optional<LawBounds> ContactForces::bounds(double from, double to) const {
+  if (characteristic != nullptr) {
+    if (!characteristic->bounds) return std::nullopt;
+    const LawBounds mu = characteristic->bounds(from, to);
+    return LawBounds{load * mu.slope, load * mu.curve};
+  }
+  if (kind == LawKind::kSpeedDependent) {
+    const double steepest = alpha * drop * std::exp(-alpha * from);
+    return LawBounds{steepest, alpha * steepest};
+  }
+  if (kind == LawKind::kBristle) return std::nullopt;  // no function of the speed alone
+  if (kind != LawKind::kSmooth) return LawBounds{};
+  // (k + e) tanh x, x = v/ε, e = d e^{−αm}, m = v tanh x: what is largest at the slowest speed, at that.
+  constexpr double kMostOfM = 1.2, kMostOfTh = 0.77;  // m′; 2 tanh x sech²x
+  const double slowest = std::max({0.0, from, -to}), x = slowest / epsilon, th = std::tanh(x),
+               sech2 = 1.0 / std::pow(std::cosh(x), 2);
+  const double e = drop * std::exp(-alpha * slowest * th), rise = sech2 / epsilon,
+               bend = std::min(kMostOfTh, 2.0 * sech2) / (epsilon * epsilon),
+               m_bend = 2.0 / epsilon * std::min(1.0, (1.0 + x) * sech2);  // |m″| = (2/ε) sech²x |1 − x tanh x|
+  return LawBounds{(kinetic + e) * rise + kMostOfM * alpha * e,
+                   (kinetic + e) * bend + alpha * e * (kMostOfM * (2.0 * rise + kMostOfM * alpha) + m_bend)};
 }
 
 }  // namespace slipmode::friction

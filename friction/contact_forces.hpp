@@ -6,10 +6,17 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 
 namespace slipmode::friction {
 
 struct Characteristic;
+
+/// The largest |dλ/dv| and |d²λ/dv²| of a law between two speeds.
+struct LawBounds {
+  double slope = 0.0;  ///< [N s/m]
+  double curve = 0.0;  ///< [N s²/m²]
+};
 
 /// A contact's law in the numbers a flow needs, times the normal load: copied out of the law once, so that inner loops
 /// ask no variant.
@@ -40,6 +47,8 @@ struct ContactForces {
   }
   /// The law under another normal load ≥ 0. Coulomb laws only.
   [[nodiscard]] ContactForces under(double normal_load) const;
+  /// The largest |λ| there is, as far as it is known: a law's static limit, or what its characteristic rises to.
+  [[nodiscard]] double most() const;
   [[nodiscard]] bool sticks() const { return friction::sticks(kind); }
   /// Piecewise linear, and its force in slip constant: what the collocation flow takes without a law to solve.
   [[nodiscard]] bool is_constant() const { return kind == LawKind::kFree || kind == LawKind::kConstant; }
@@ -54,6 +63,9 @@ struct ContactForces {
   [[nodiscard]] double onset_slope() const;
   /// dλ/dv while sliding. Where v has passed zero against the direction, the law goes on as its formula does.
   [[nodiscard]] double slope(double direction, double v) const;
+  /// How λ depends on the speed in the direction of sliding, of the smooth law on v itself. None where nothing is known
+  /// between speeds.
+  [[nodiscard]] std::optional<LawBounds> bounds(double from, double to) const;
   /// λ of the smooth law (0 for a free contact, and for a bristle, whose force is not a function of v) at relative
   /// velocity v, and dλ/dv.
   [[nodiscard]] double smooth(double v, double& slope) const;

@@ -40,11 +40,18 @@ class Curve {
     return 6.0 * r * s * secant(k) + r * (1.0 - 3.0 * s) * slopes_[k] + s * (1.0 - 3.0 * r) * slopes_[k + 1];
   }
 
-  /// Largest |μ′|: a monotone cubic's is at most three times its secant's.
-  [[nodiscard]] double steepest() const {
-    double most = 0.0;
-    for (std::size_t k = 0; k + 1 < v_.size(); ++k) most = std::max(most, std::abs(secant(k)));
-    return 3.0 * most;
+  /// Over the points' intervals that have a share in [from, to].
+  [[nodiscard]] LawBounds bounds(double from, double to) const {
+    LawBounds most;
+    if (from < 0.0) most.slope = std::abs(slopes_.front());
+    for (std::size_t k = 0; k + 1 < v_.size(); ++k) {
+      if (v_[k] > to || v_[k + 1] < from) continue;
+      // The slope's Bernstein coefficients, and what is between them.
+      const double a = slopes_[k], c = slopes_[k + 1], b = 3.0 * secant(k) - a - c;
+      most.slope = std::max({most.slope, std::abs(a), std::abs(b), std::abs(c)});
+      most.curve = std::max(most.curve, 2.0 / (v_[k + 1] - v_[k]) * std::max(std::abs(b - a), std::abs(c - b)));
+    }
+    return most;
   }
 
  private:
@@ -62,7 +69,7 @@ double Measured::kinetic_coefficient(double speed) const { return Curve(*this).v
 
 double Measured::fastest_rate(const Pace& pace) const {
   const auto [least, most] = std::ranges::minmax(coefficients);
-  const double steepest = Curve(*this).steepest();
+  const double steepest = Curve(*this).bounds(0.0, speeds.back()).slope;
   return steepest * pace.load * pace.mobility + (most > least ? steepest / (most - least) : 0.0) * pace.acceleration;
 }
 
@@ -70,7 +77,9 @@ ContactForces Measured::forces(double normal_load) const {
   const auto curve = std::make_shared<const Curve>(*this);
   return Characteristic{.mu_s = mu_s,
                         .mu = [curve](double speed) { return curve->value(speed); },
-                        .slope = [curve](double speed) { return curve->slope(speed); }}
+                        .slope = [curve](double speed) { return curve->slope(speed); },
+                        .bounds = [curve](double from, double to) { return curve->bounds(from, to); },
+                        .most = std::ranges::max(coefficients)}
       .forces(normal_load);
 }
 

@@ -57,10 +57,10 @@ int coarsest_level(double omega, const StepTables& tables, double tolerance) {
   return level;
 }
 
-/// The static limit, of a load that varies under its constant part; 0 where there is none.
+/// The largest force, of a load that varies under its constant part; 0 where it is not known.
 double usual_limit(const EventResolver& resolver, int c) {
   const ContactForces& law = resolver.laws()[static_cast<std::size_t>(c)];
-  return (law.varies ? law.under(std::abs(resolver.load_form(c).constant)) : law).static_limit;
+  return (law.varies ? law.under(std::abs(resolver.load_form(c).constant)) : law).most();
 }
 
 /// Level of the largest step that follows the drive's velocity, or each harmonic of its force to a share of the least

@@ -113,6 +113,14 @@ class CollocationFlow {
   struct BristleDefect {
     double force = 0.0, growth = 0.0, room = 0.0;
   };
+  /// What a law of which bounds are known brings to it: a force off by `force` and by `growth` times a speed, as long
+  /// as that is no more than `room`; and its rate along the computed motion, times the step.
+  struct BoundedDefect {
+    double force = 0.0, growth = 0.0, room = 0.0, rate = 0.0;
+  };
+  /// A characteristic or a smooth law, of a contact that is not held.
+  [[nodiscard]] bool by_bounds(int c) const;
+  [[nodiscard]] BoundedDefect bounded_defect(int c) const;
   void prepare_proof();
   /// Whether no guard but the one found vanishes up to this share of the solved step, nor that one before, in the true
   /// motion.

@@ -44,7 +44,8 @@ CollocationFlow::Guarded CollocationFlow::first_guard() {
     if (point_.modes[i] == ContactMode::kStick) {
       const double most = kernels_.force_guard(t.bernstein7.data(), forces_.data() + kNodes * c, guard);
       const double below = law.static_limit * (1.0 - kAtLimit);
-      if (most < below || (tells_no_force(c) && std::abs(stick_force(c, x_begin_, 0.0)) < below)) continue;
+      // Without static friction what rests under no force rests on.
+      if (most <= below || (tells_no_force(c) && std::abs(stick_force(c, x_begin_, 0.0)) <= below)) continue;
       p.degree = kNodes - 1;
       for (const double sign : {1.0, -1.0}) {
         std::array<double, kNodes> margin;
@@ -129,7 +130,7 @@ double CollocationFlow::deepest_overshoot() const {
       if (own == nullptr)
         deepest = std::max(deepest, laws()[i].alpha * past);
       else if (past > 0.0)
-        deepest = std::max(deepest, std::abs(own->mu(-past) - own->mu(0.0)) / own->mu_s);
+        deepest = std::max(deepest, laws()[i].load * std::abs(own->mu(-past) - own->mu(0.0)) * over_scale(c));
     }
   }
   return deepest;
@@ -155,12 +156,12 @@ void CollocationFlow::refine_event(const Guarded& guard, double& tau, Eigen::Vec
       const double sign = forces_.segment<kNodes>(kNodes * c).dot(basis) > 0 ? 1.0 : -1.0;
       value = laws()[i].static_limit - sign * stick_force(c, x, tau);
       rate = -sign * forces_.segment<kNodes>(kNodes * c).dot(nodes_.lagrange_slope(tau / h)) / h;
-      usual_rate = laws()[i].static_limit / h;
+      usual_rate = laws()[i].most() / h;
     } else {
       const double sign = sign_of(point_.modes[i]);
       value = sign * (V - resolver_.contact_velocity(c, x.data()));
       rate = sign * (a - contact_acceleration(c, x, tau, basis));
-      usual_rate = model_.mobility(c, c) * laws()[i].static_limit;
+      usual_rate = model_.mobility(c, c) * laws()[i].most();
     }
     const double shift = -value / rate;
     if (!(std::abs(shift) < 1e-2 * h) || tau + shift <= 0.0) return;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 // That a step passes over no event: docs/theory/flow.md, section 4.
 
@@ -32,6 +33,8 @@ double most(const BernsteinPolynomial& p) {
   return *std::max_element(p.coefficient.begin(), p.coefficient.begin() + p.degree + 1);
 }
 
+double largest(const BernsteinPolynomial& p) { return std::max(most(p), -least(p)); }
+
 /// e^x or more, for x ≥ 0.
 double exponential_bound(double x) { return x < 0.25 ? 1.0 / (1.0 - x) : std::exp(x); }
 
@@ -39,8 +42,7 @@ double exponential_bound(double x) { return x < 0.25 ? 1.0 / (1.0 - x) : std::ex
 
 void CollocationFlow::prepare_proof() {
   const auto known = [](const ContactForces& law) {
-    return law.is_constant() || law.is_elaborate() || law.kind == LawKind::kBristle ||
-           (law.kind == LawKind::kSpeedDependent && law.characteristic == nullptr);
+    return law.is_elaborate() || law.kind == LawKind::kBristle || law.bounds(0.0, 0.0).has_value();
   };
   guarded_ = any_elaborate_ || std::ranges::any_of(laws(), has_guard);
   provable_ = halving_proves_ = options_.certify && (!guarded_ || std::ranges::all_of(laws(), known));
@@ -108,6 +110,13 @@ CollocationFlow::Deviation CollocationFlow::deviation(const StepBounds& bounds, 
       defect = std::max(defect, 2.0 * nodes_.lebesgue * own.left + own.start + nodes_.remainder[0] * own.force);
       slope = std::max(slope, own_forces_[i].lipschitz(h));
     }
+    if (by_bounds(c)) {
+      const BoundedDefect own = bounded_defect(c);
+      defect = std::max(defect, own.force);
+      slope = std::max(slope, own.growth);
+      out.room = std::min(out.room, own.room);
+      continue;
+    }
     if (law.kind != LawKind::kSpeedDependent) continue;
     const double sign = sign_of(point_.modes[i]);
     // What Newton left at the nodes, what the nodes leave between them, and what is between p and the computed speed.
@@ -149,6 +158,42 @@ CollocationFlow::Deviation CollocationFlow::deviation(const StepBounds& bounds, 
   return out;
 }
 
+bool CollocationFlow::by_bounds(int c) const {
+  const ContactForces& law = laws()[static_cast<std::size_t>(c)];
+  return law.kind == LawKind::kSmooth || (law.characteristic != nullptr && !held(point_.modes, c));
+}
+
+CollocationFlow::BoundedDefect CollocationFlow::bounded_defect(int c) const {
+  // Of a function whose second derivative is bounded, polynomials of degree 7 leave (π/2)²/(8·7) of it, on [−1, 1]
+  // (Jackson's theorem), and their interpolation 1 + Λ times that.
+  constexpr double kJackson = std::numbers::pi * std::numbers::pi / (4.0 * 8.0 * 7.0 * 4.0);
+  const auto i = static_cast<std::size_t>(c);
+  const ContactForces& law = laws()[i];
+  const double sign = law.sticks() ? sign_of(point_.modes[i]) : 1.0;
+  const RadauTables::Vector8 speed =
+      sign * (drive_nodes_.segment<kNodes>(kNodes * c) - velocity_.segment<kNodes>(kNodes * c));
+  const BernsteinPolynomial p =
+      interpolant(sign * (drive_velocity(begin_, 0.0) - resolver_.contact_velocity(c, x_begin_.data())), speed);
+  const BernsteinPolynomial rate = derivative(p), bend = derivative(rate);
+  double left = 0.0;
+  for (int j = 0; j < kNodes; ++j) {
+    double slope;
+    const double by_law = law.sticks() ? law.load * law.characteristic->mu(speed(j)) : law.smooth(speed(j), slope);
+    left = std::max(left, std::abs(sign * forces_(kNodes * c + j) - by_law));
+  }
+  const double between = nodes_.remainder[0] * ninth_(c), slowest = least(p), fastest = most(p),
+               fastest_rate = largest(rate);
+  BoundedDefect out{.room = std::max(0.5 * (slowest - between), fastest - slowest)};
+  const LawBounds along = *law.bounds(slowest, fastest),
+                  around = *law.bounds(slowest - between - out.room, fastest + between + out.room);
+  out.rate = around.slope * fastest_rate;
+  out.growth = around.slope;
+  out.force =
+      nodes_.lebesgue * left + around.slope * between +
+      (1.0 + nodes_.lebesgue) * kJackson * (along.curve * fastest_rate * fastest_rate + along.slope * largest(bend));
+  return out;
+}
+
 double CollocationFlow::largest_force_rate(int d, const Deviation& off, double h) const {
   const auto i = static_cast<std::size_t>(d);
   const ContactForces& law = laws()[i];
@@ -168,6 +213,10 @@ double CollocationFlow::largest_force_rate(int d, const Deviation& off, double h
            std::abs(own_forces_[i].damping) *
                ((kSteepest * series.spread() + nodes_.remainder[1] * ninth_(d) + off.speed_slope) / h + pulled);
   }
+  if (by_bounds(d)) {
+    const BoundedDefect own = bounded_defect(d);
+    return (own.rate + own.growth * (nodes_.remainder[1] * ninth_(d) + off.speed_slope)) / h;
+  }
   const auto form = guard_forms_.segment<kNodes>(kNodes * d);
   const double steps = (form.tail<kNodes - 1>() - form.head<kNodes - 1>()).cwiseAbs().maxCoeff();
   if (point_.modes[i] == ContactMode::kStick) return ((kNodes - 1) * steps + off.force_slope) / h;
@@ -183,6 +232,7 @@ double CollocationFlow::clear_after_release(const StepBounds& bounds, const Devi
   const double sign = sign_of(point_.modes[i]);
   const friction::Shaker* shaker = drive().shaker();
   const double omega = shaker != nullptr ? shaker->omega() : 0.0;
+  const double steepest = law.bounds(0.0, std::numeric_limits<double>::infinity())->slope;
   const Eigen::Index load = nc_ + given_;
   double now =
       -omega * omega * drive().velocity(begin_) - bounds.second_row.col(c).dot(x_begin_) - bounds.response1(c, load);
@@ -203,11 +253,11 @@ double CollocationFlow::clear_after_release(const StepBounds& bounds, const Devi
     now -= bounds.response1(c, d) * point_.force(d);
     const double most = elaborate(d)
                             ? nodes_.lebesgue * forces_.segment<kNodes>(kNodes * d).cwiseAbs().maxCoeff() + off.force
-                            : other.static_limit;
+                            : other.most();
     change += (h * bounds.third_by_force(c, d) + std::abs(bounds.response2(c, d))) * most;
     if (stays(d) && point_.modes[static_cast<std::size_t>(d)] != ContactMode::kStick) continue;
     if (d == c) {
-      by_rate = std::abs(bounds.response1(c, c)) * other.alpha * other.drop;
+      by_rate = std::abs(bounds.response1(c, c)) * steepest;
     } else if (model_.mobility(c, d) != 0.0 || bounds.response1(c, d) != 0.0) {
       const double rate = largest_force_rate(d, off, h);
       others += std::abs(model_.mobility(c, d)) * rate;
@@ -217,7 +267,7 @@ double CollocationFlow::clear_after_release(const StepBounds& bounds, const Devi
   now = sign * now - others;
   if (!(now > 0.0)) return 0.0;
   // Up to where B could have vanished, s′ ≤ 2 B(0) h e^{κh}, B(0) less and more what the others may add.
-  const double growth = law.alpha * law.drop * model_.mobility(c, c) * h;
+  const double growth = steepest * model_.mobility(c, c) * h;
   change += by_rate * 2.0 * (now + others) * h * std::exp(growth);
   return std::min(1.0, now / (change * h));
 }
@@ -281,7 +331,8 @@ bool CollocationFlow::proves(const Guarded& found, double end) {
   const double by_drive = drive_ninth(h);
   for (int c = 0; c < nc_; ++c)
     ninth_(c) = bounds.ninth_by_load(c) + by_drive + bounds.ninth_by_state.col(c).dot(x_begin_.cwiseAbs());
-  if (nc_ == 1 && given_ == 0 && !any_bristle_ && !any_elaborate_ && found.contact < 0 && far_from_guards(bounds, h))
+  if (nc_ == 1 && given_ == 0 && !any_bristle_ && !any_elaborate_ && !by_bounds(0) && found.contact < 0 &&
+      far_from_guards(bounds, h))
     return true;
   alignas(64) std::array<double, kNodes> series;
   for (int d = 0; d < nc_ + given_; ++d) {

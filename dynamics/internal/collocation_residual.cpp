@@ -75,7 +75,7 @@ double CollocationFlow::characteristic_error(int c) const {
     if (sign * speed(k) <= 0.0) continue;  // beyond the event that ends the step
     worst = std::max(worst, std::abs(force(k) - laws()[i].sliding(sign, speed(k))));
   }
-  return 0.5 * worst * over_limit_[i];
+  return 0.5 * worst * over_scale(c);
 }
 
 double CollocationFlow::reversal_error(const Guarded& guard) const {

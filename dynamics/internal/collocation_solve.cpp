@@ -269,7 +269,7 @@ bool CollocationFlow::solve_coupled(const Collocation& table, const AtNodes* dis
           squares += left * left;
         }
         if (!std::isfinite(squares)) return false;
-        curvature = std::max(curvature, std::sqrt(std::sqrt(squares) / law.static_limit));
+        curvature = std::max(curvature, std::sqrt(std::sqrt(squares) * over_scale(c)));
       } else if (law.kind == LawKind::kSpeedDependent || law.kind == LawKind::kSmooth) {
         const double rate = law.kind == LawKind::kSmooth ? 1.0 / law.epsilon : law.alpha;
         if (!stuck[static_cast<std::size_t>(c)])

@@ -55,6 +55,34 @@ TEST(Measured, FollowsRungeKuttaAtEveryTolerance) {
   }
 }
 
+// Without static friction, the points of a straight line are a dashpot, whose motion is known; a program's own line
+// too.
+TEST(Measured, AForceThatRisesFromNothingIsADashpots) {
+  constexpr double kDamping = 0.3, kDuration = 20.0;
+  const double decay = kDamping / 2.0, omega = std::sqrt(1.0 - decay * decay);
+  const double q =
+      std::exp(-decay * kDuration) * (std::cos(omega * kDuration) + decay / omega * std::sin(omega * kDuration));
+  const Measured points{.mu_s = 0.0, .speeds = {0.0, 0.4, 1.0, 2.0}, .coefficients = {0.0, 0.12, 0.3, 0.6}};
+  const Characteristic line{
+      .mu_s = 0.0, .mu = [](double v) { return kDamping * v; }, .slope = [](double) { return kDamping; }};
+  for (const friction::Law& law : {friction::Law(points), friction::Law(line)}) {
+    const dynamics::HybridSystem system = belt_chain(law, Belt::constant(0.0), 1, 0.0, 1.0);
+    const Trajectory run = simulate(system, {.q = Eigen::VectorXd::Ones(1), .v = Eigen::VectorXd::Zero(1)},
+                                    {.duration = kDuration, .flow = {.tolerance = 1e-11}});
+    EXPECT_NEAR(run.final_state.q(0), q, 1e-11);
+    EXPECT_EQ(run.events.size(), 6U);  // where the speed is zero: kπ/ω
+    EXPECT_LT(std::abs(run.audit.residual()), 1e-14);
+  }
+}
+
+TEST(Measured, WithoutStaticFrictionWhatRestsUnderNoForceRestsOn) {
+  const Measured points{.mu_s = 0.0, .speeds = {0.0, 0.4, 1.0}, .coefficients = {0.0, 0.12, 0.3}};
+  const dynamics::HybridSystem system = belt_chain(points, Belt::constant(0.0), 3);
+  const Trajectory run = simulate(system, system.rest(), {.duration = 20.0});
+  EXPECT_TRUE(run.events.empty());
+  EXPECT_EQ(run.final_state.q, Eigen::VectorXd::Zero(3));
+}
+
 // The curve through points of a smooth law is off by the order of h³, and so is the motion.
 TEST(Measured, ConvergesToTheLawItsPointsAreOf) {
   const Stribeck law{0.4, 0.2, 2.0};

@@ -2,12 +2,15 @@
 #include <slipmode/friction/contact.hpp>
 
 #include <slipmode/core/errors.hpp>
+#include <slipmode/core/random.hpp>
+#include <slipmode/friction/characteristic.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <math.h>  // Boost 1.74 asks for isnan by that name
 #include <boost/math/interpolators/pchip.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -61,6 +64,54 @@ TEST(Measured, TwoPointsAreEnough) {
   EXPECT_EQ(law.kind(), LawKind::kSpeedDependent);
   EXPECT_EQ(static_coefficient(law), 0.4);
   EXPECT_EQ(limit_coefficient(law), 0.2);
+}
+
+// Slopes and curvatures by differences of a thousand places between two speeds: none beyond the bounds, which are not
+// far above the largest of the points' intervals.
+TEST(LawBounds, HoldBetweenAnyTwoSpeeds) {
+  const Measured table = dipped();
+  const TanhRegularised smooth{.mu_s = 0.6, .mu_k = 0.3, .alpha = 8.0, .epsilon = 0.05};
+  const Stribeck stribeck{0.6, 0.3, 8.0};
+  Random random = Random::stream(5, 1);
+  for (const Law& law : {Law(table), Law(smooth), Law(stribeck)}) {
+    const ContactForces forces = forces_of(law);
+    const bool two_sided = !forces.sticks();
+    const auto slope = [&](double v) {
+      double out = 0.0;
+      if (!two_sided) return forces.slope(1.0, v);
+      static_cast<void>(forces.smooth(v, out));
+      return out;
+    };
+    for (int pair = 0; pair < 200; ++pair) {
+      const double from = random.uniform(two_sided ? -3.0 : -0.1, 2.5), to = from + std::pow(random.uniform(), 3) * 2.0;
+      const LawBounds bound = forces.bounds(from, to).value();
+      const double h = (to - from) / 1000.0;
+      double steepest = 0.0, most_curved = 0.0;
+      for (int k = 0; k < 1000; ++k) {
+        steepest = std::max(steepest, std::abs(slope(from + h * k)));
+        most_curved = std::max(most_curved, std::abs(slope(from + h * (k + 1)) - slope(from + h * k)) / h);
+      }
+      EXPECT_LE(steepest, bound.slope * (1.0 + 1e-12)) << law.index() << ": " << from << " to " << to;
+      // Differences of slopes, which round.
+      EXPECT_LE(most_curved, bound.curve + 1e-14 / h) << law.index() << ": " << from << " to " << to;
+      if (from < 0.0 && to > 0.1) {
+        EXPECT_LT(bound.curve, 3.0 * most_curved) << law.index();
+      }
+    }
+  }
+}
+
+TEST(LawBounds, AreNotKnownOfFunctions) {
+  const Characteristic law{.mu_s = 0.3, .mu = [](double) { return 0.3; }, .slope = [](double) { return 0.0; }};
+  EXPECT_FALSE(forces_of(law).bounds(0.0, 1.0).has_value());
+}
+
+TEST(Measured, MayRiseFromNothing) {
+  const Measured law{.mu_s = 0.0, .speeds = {0.0, 1.0}, .coefficients = {0.0, 0.2}};
+  EXPECT_EQ(forces_of(law).kind, LawKind::kSpeedDependent);
+  EXPECT_EQ(forces_of(law).most(), 0.4);
+  const Measured nothing{.mu_s = 0.0, .speeds = {0.0, 1.0}, .coefficients = {0.0, 0.0}};
+  EXPECT_EQ(forces_of(nothing).kind, LawKind::kFree);
 }
 
 TEST(Measured, NamesWhatIsNoTable) {
