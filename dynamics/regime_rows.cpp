@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace slipmode::dynamics {
@@ -111,9 +112,17 @@ void RegimeBuilder::refine_stick_rows(Regime& out) const {
   // A contact's stretch, or the stiffness of a fine mesh times its deformation, gives the force of a slow motion as a
   // small difference. The equations of the slipping pairs give it too, b λ = T G − G_s T less what the other contacts
   // exert, each with an error that its own rate and that of the motion make: least squares, weighted by these errors.
-  std::vector<Eigen::Index> open;
-  for (Eigen::Index c = 0; c < nc_; ++c)
-    if (out.follows[static_cast<std::size_t>(c)]) open.push_back(c);
+  // Springs that share a place are told apart by their stretches alone: what is refined is what they exert together.
+  std::vector<Eigen::Index> open;  // the first of each place
+  std::vector<std::vector<Eigen::Index>> together;
+  for (const std::vector<std::size_t>& place : places_) {
+    std::vector<Eigen::Index> follow;
+    for (const std::size_t c : place)
+      if (out.follows[c]) follow.push_back(static_cast<Eigen::Index>(c));
+    if (follow.empty()) continue;
+    open.push_back(follow.front());
+    together.push_back(std::move(follow));
+  }
   const ModalModel &own = out.pairs, &s = slipping_;
   if (open.empty() || own.n == 0) return;
   const Eigen::MatrixXd T = modal_.from_eta * (Z_ * at_.to_y) + modal_.from_eta_rate * (Z_ * at_.to_rate);
@@ -140,10 +149,16 @@ void RegimeBuilder::refine_stick_rows(Regime& out) const {
     for (std::size_t k = 0; k < open.size(); ++k) {
       // Both are exact but for rounding. Where they are not near, it is these equations that tell the contacts apart
       // badly.
-      auto row = out.force_row.col(open[k])(pair);
-      const Eigen::Vector2d better = refined.row(static_cast<Eigen::Index>(k)).transpose();
-      if ((better - Eigen::Vector2d(row)).norm() <= kNear * out.force_row.col(open[k]).cwiseAbs().maxCoeff())
-        row = better;
+      const Eigen::VectorXd all = out.force_row(Eigen::all, together[k]).rowwise().sum();
+      const Eigen::Vector2d better = refined.row(static_cast<Eigen::Index>(k)).transpose(), off = better - all(pair);
+      if (!(off.norm() <= kNear * all.cwiseAbs().maxCoeff())) continue;
+      if (together[k].size() == 1) {
+        out.force_row.col(open[k])(pair) = better;
+        continue;
+      }
+      double stiffness = 0.0;
+      for (const Eigen::Index c : together[k]) stiffness += law(c).stiffness;
+      for (const Eigen::Index c : together[k]) out.force_row.col(c)(pair) += law(c).stiffness / stiffness * off;
     }
   }
 }

@@ -100,7 +100,9 @@ double ClosedFormFlow::scale(const Guard& guard) const {
   const Regime& r = tables_->regime();
   const RegimeOutput& output = r.outputs[static_cast<std::size_t>(guard.output)];
   const ContactForces& law = resolver_.laws()[static_cast<std::size_t>(guard.contact)];
-  if (output.kind == RegimeOutput::Kind::kForce) return law.static_limit;
+  // A stretch is the small difference of two places.
+  if (output.kind == RegimeOutput::Kind::kForce)
+    return law.static_limit + (law.stiffness > 0.0 ? kCancels * moving_size(guard) : 0.0);
   const double constant = std::abs(guard.constant), moving = moving_size(guard);
   if (guard.kind == GuardKind::kStop) return constant + std::max(moving, recalled(guard));
   const double size = constant + moving;

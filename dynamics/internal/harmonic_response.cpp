@@ -102,6 +102,7 @@ HarmonicResponse harmonic_response(const Regime& r, const ModalModel& slipping, 
   const auto unknowns = nc + std::ssize(own);
   Eigen::MatrixXcd A = Eigen::MatrixXcd::Zero(unknowns, unknowns);
   Eigen::VectorXcd b(unknowns);
+  std::vector<Eigen::Index> silent;  // contacts that answer nothing: their rows say so, but for rounding
   // factor · y of contact c.
   const auto set_row = [&](Eigen::Index c, Complex factor, Complex target) {
     A.row(c).head(nc) = factor * H.row(c);
@@ -126,6 +127,7 @@ HarmonicResponse harmonic_response(const Regime& r, const ModalModel& slipping, 
       b(c) = impedance * (own_way - contacts[i].share * way);
       continue;
     }
+    if (impedance == 0.0) silent.push_back(c);
     const double size = std::max(1.0, std::abs(impedance) * reach);
     set_row(c, impedance / size, target);
     A(c, c) += 1.0 / size;
@@ -142,6 +144,7 @@ HarmonicResponse harmonic_response(const Regime& r, const ModalModel& slipping, 
   const Eigen::VectorXcd solved = own.empty() ? A.partialPivLu().solve(b).eval() : equilibrated_solve(A, b);
   HarmonicResponse out;
   out.force = solved.head(nc);
+  out.force(silent).setZero();
   out.slipping = by_contacts * out.force + by_forces;
   out.slipping(own) = solved.tail(unknowns - nc);
   out.place_size = H.cwiseAbs() * out.force.cwiseAbs() + moved.cwiseAbs();

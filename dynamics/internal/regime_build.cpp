@@ -3,6 +3,7 @@
 #include <slipmode/core/coupled_parts.hpp>
 #include <slipmode/core/decompositions.hpp>
 #include <slipmode/fem/modes.hpp>
+#include <slipmode/friction/places.hpp>
 #include "dynamics/internal/sprung_pairs.hpp"
 
 #include <algorithm>
@@ -38,6 +39,7 @@ RegimeBuilder::RegimeBuilder(const HybridSystem& system, const ModalModel& slipp
       modal_(slipping.modal),
       roles_(roles),
       rayleigh_(slipping.rayleigh),
+      places_(friction::by_place(system.contacts())),
       n_(slipping.n),
       nc_(static_cast<Eigen::Index>(roles.size())),
       nk_(modal_.forces.cols()),

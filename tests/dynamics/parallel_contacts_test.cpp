@@ -42,6 +42,26 @@ TEST(ParallelContacts, PartsOfAnElementMoveAsTheWhole) {
   }
 }
 
+TEST(ParallelContacts, PartsOfAnElementOnALongChainStretchAlike) {
+  // What each part exerts is told from the others by its stretch alone. Where 60 masses' modes were asked to tell them
+  // apart, parts drifted by 1e-8 from one another, until a limit was reached again and again at one time.
+  const auto chain = [](const std::vector<double>& shares) {
+    std::vector<friction::Contact> contacts;
+    for (const double share : shares)
+      contacts.push_back({Eigen::VectorXd::Unit(60, 29), friction::CompliantCoulomb{0.3, 0.3, 20.0 * share}, share});
+    return HybridSystem(fem::chain({.masses = 60, .damping = 0.01}), contacts, friction::Belt::constant(0.2));
+  };
+  const HybridSystem whole = chain({1.0}), parts = chain({0.1, 0.15, 0.2, 0.25, 0.3});
+  State start = whole.rest();
+  for (Eigen::Index i = 0; i < 60; ++i) start.v(i) = 0.5 * std::sin(0.7 * static_cast<double>(i * i));
+  const Trajectory one = simulate(whole, start, {.duration = 60.0}), two = simulate(parts, start, {.duration = 60.0});
+  EXPECT_GT(one.events.size(), 30U);
+  EXPECT_EQ(two.events.size(), 5 * one.events.size());
+  EXPECT_LT((one.final_state.q - two.final_state.q).cwiseAbs().maxCoeff(), 1e-12);
+  const Eigen::VectorXd stretch = two.final_state.internal;
+  EXPECT_LT((stretch.array() - one.final_state.internal(0)).abs().maxCoeff(), 1e-14);
+}
+
 TEST(ParallelContacts, AddUpAsAProgramOfFixedStepsAddsThem) {
   // Runge-Kutta's rule with stretches marched as stop operators: first order where a slope jumps, some 1e-8 with
   // 1,000,000 steps.
