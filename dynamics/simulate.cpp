@@ -4,6 +4,7 @@
 #include <slipmode/core/kernels/kernels.hpp>
 #include <slipmode/dynamics/cache.hpp>
 #include <slipmode/dynamics/prepare.hpp>
+#include <slipmode/friction/engaged.hpp>
 #include "dynamics/internal/closed_form_flow.hpp"
 #include "dynamics/internal/collocation_flow.hpp"
 
@@ -18,22 +19,36 @@ void require(bool condition, const std::string& message) {
   if (!condition) throw InvalidInput(message);
 }
 
-/// Energy, and the larger of it and of what is stored, without constant loads'.
+/// Energy, and the larger of it and of what is stored, without constant loads' but in springs and stops of contacts
+/// too: friction may do the work of a stop, and neither moves the structure.
 struct Energy {
-  Energy(double energy, double by_load) : value(energy), size(std::max(std::abs(energy), energy + by_load)) {}
+  Energy(double energy, double by_load, double in_contacts)
+      : value(energy), size(std::max(std::abs(energy), energy + by_load) + in_contacts) {}
 
   double value, size;
 };
 
+/// What springs and stops store, by their forces [J].
+double stored_in_contacts(const HybridSystem& system, const HybridPoint& point) {
+  double stored = 0.0;
+  for (std::size_t c = 0; c < system.contacts().size(); ++c) {
+    const double stiffness = friction::engaged_stiffness(system.contacts()[c].law),
+                 force = point.force(static_cast<Eigen::Index>(c));
+    if (stiffness > 0.0) stored += force * force / (2.0 * stiffness);
+  }
+  return stored;
+}
+
 /// From the modal coordinates where they decouple it, else from the state.
 Energy modal_energy(const HybridSystem& system, const ModalModel& m, const HybridPoint& point) {
+  const double in_contacts = stored_in_contacts(system, point);
   if (!m.proportional) {
     const State state = physical(m, point);
-    return {system.energy(state), system.load().size() > 0 ? system.load().dot(state.q) : 0.0};
+    return {system.energy(state), system.load().size() > 0 ? system.load().dot(state.q) : 0.0, in_contacts};
   }
   const auto eta = point.x.head(m.np), rate = point.x.tail(m.np);
   const double by_load = m.load.tail(m.np).dot(eta);
-  return {0.5 * rate.squaredNorm() + 0.5 * m.omega.cwiseProduct(eta).squaredNorm() - by_load, by_load};
+  return {0.5 * rate.squaredNorm() + 0.5 * m.omega.cwiseProduct(eta).squaredNorm() - by_load, by_load, in_contacts};
 }
 
 /// Keeps what the options ask for, sample by sample in blocks so that lifting to the degrees of freedom is one product.

@@ -54,7 +54,8 @@ struct EnergyAudit {
   /// ∫ Σ u_k d_kᵀq̇ dt, done by a force drive [J].
   double force_work = 0.0;
   double viscous_loss = 0.0;  ///< ∫ q̇ᵀC q̇ dt ≥ 0 [J]
-  /// Scale: |contact work| summed over steps + viscous loss + largest energy seen, stored or with constant loads' [J]
+  /// Scale: |contact work| summed over steps + viscous loss + largest energy seen, stored, in contacts too, or with
+  /// constant loads' [J]
   double exchanged = 0.0;
   /// (E_end − E_start − contact_work − force_work + viscous_loss) / exchanged
   [[nodiscard]] double residual() const;
