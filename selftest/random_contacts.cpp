@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <numbers>
+#include <string_view>
+#include <vector>
 
 namespace slipmode::selftest {
 namespace {
@@ -74,46 +76,88 @@ void clearance(SceneDraft& d, int own, bool of_mass) {
   if (sides != 2) meets(stop("right"));
 }
 
-void contact(SceneDraft& d, int own) {
-  d.line("\n[[contact]]");
-  const bool of_mass = place(d, own);
-  if (d.chance(0.1)) d.line("name = \"contact at {}\"", own);
-  // Of a piecewise-linear scene all are, of another one some.
-  const bool linear = d.linear || (!d.coulomb_alone && d.chance(0.3));
-  if (linear && d.chance(0.35)) return clearance(d, own, of_mass);
+/// What stands at a contact's place already, and so which laws may join it there.
+enum class Beside { kNothing, kSoft, kRigid };
+
+using Words = std::vector<std::string_view>;
+
+/// The laws to draw from, likely ones more than once.
+Words laws(const SceneDraft& d, bool linear, Beside beside) {
+  if (beside == Beside::kRigid) return linear ? Words{"clearance"} : Words{"clearance", "tanh"};
+  if (beside == Beside::kSoft)
+    return linear ? Words{"clearance", "compliant", "iwan"} : Words{"clearance", "compliant", "tanh", "dahl", "lugre"};
+  if (d.coulomb_alone) return {"coulomb"};
+  if (linear)
+    return {"clearance", "clearance", "clearance", "coulomb", "coulomb", "coulomb", "compliant", "compliant", "iwan"};
+  return {"coulomb", "stribeck", "tanh", "dahl", "lugre", "table"};
+}
+
+void friction(SceneDraft& d, std::string_view word, bool linear) {
   const double mu_k = d.chance(0.08) ? 0.0 : d.uniform(0.05, 0.5);
   const double mu_s = d.chance(0.2) ? mu_k : mu_k + (d.chance(0.1) ? d.uniform(1.0, 5.0) : d.uniform(0.0, 0.5));
-  const int kind = linear ? d.integer(0, 1) : d.coulomb_alone ? 0 : d.integer(0, 4);
-  if (kind == 0 || (linear && kind == 1)) {
-    if (kind == 1)
-      d.line("law = \"compliant\"\nstiffness = {}", SceneDraft::number(d.contact_spring(200.0, 1e6)));
-    else
-      d.line("law = \"coulomb\"");
-    d.key("mu_s", mu_s);
-    d.key("mu_k", mu_k);
-    if (linear && mu_k > 0.1 && d.chance(0.2)) d.key("tilt_deg", d.uniform(-5.0, 5.0));
-    return load(d, linear);
-  }
-  if (kind == 1) {
-    d.line("law = \"stribeck\"\nalpha = {}", SceneDraft::number(d.uniform(0.2, 15.0) / d.speed()));
-  } else if (kind == 2) {
-    d.fill("law = \"tanh\"\nalpha = #\nepsilon = #",
-           {d.uniform(0.2, 15.0) / d.speed(), d.uniform(0.02, 0.2) * d.speed()});
-  } else if (kind == 3) {
-    d.fill("law = \"dahl\"\nmu = #\nstiffness = #", {d.uniform(0.1, 0.6), d.contact_spring(200.0, 1e4)});
-    return load(d, false);
-  } else {
+  const auto coefficients = [&](double least) {
+    d.key("mu_s", std::max(mu_s, least));
+    d.key("mu_k", std::max(mu_k, least));
+  };
+  d.line("law = \"{}\"", word);
+  if (word == "compliant") {
+    d.key("stiffness", d.contact_spring(200.0, 1e6));
+    coefficients(0.0);
+  } else if (word == "stribeck") {
+    d.key("alpha", d.uniform(0.2, 15.0) / d.speed());
+    coefficients(0.0);
+  } else if (word == "tanh") {
+    d.fill("alpha = #\nepsilon = #", {d.uniform(0.2, 15.0) / d.speed(), d.uniform(0.02, 0.2) * d.speed()});
+    coefficients(0.0);
+  } else if (word == "dahl") {
+    d.fill("mu = #\nstiffness = #", {d.uniform(0.1, 0.6), d.contact_spring(200.0, 1e4)});
+  } else if (word == "lugre") {
     const double bristle = d.contact_spring(200.0, 1e4);
-    d.fill("law = \"lugre\"\nstribeck_speed = #\nstiffness = #", {d.uniform(0.02, 0.5) * d.speed(), bristle});
+    d.fill("stribeck_speed = #\nstiffness = #", {d.uniform(0.02, 0.5) * d.speed(), bristle});
     d.key("damping", d.chance(0.3) ? 0.0 : d.uniform(0.0, 0.5) * std::sqrt(bristle * d.stiffness) / d.rate);
     d.key("viscous", d.chance(0.5) ? 0.0 : d.uniform(0.0, 0.3) * d.stiffness / d.rate);
-    d.key("mu_s", std::max(mu_s, 0.1));
-    d.key("mu_k", std::clamp(mu_k, 0.1, std::max(mu_s, 0.1)));
-    return load(d, false);
+    coefficients(0.1);
+  } else if (word == "table") {
+    std::vector<double> speeds{0.0};
+    for (int further = d.integer(1, 7); further > 0; --further)
+      speeds.push_back(speeds.back() + d.speed() * d.uniform(0.05, 1.0));
+    std::vector<double> points = d.values(static_cast<int>(speeds.size()), 0.0, 0.5);
+    points.front() = mu_k;
+    d.key("mu_s", mu_s);
+    d.line("speeds = {}\ncoefficients = {}", SceneDraft::numbers(speeds), SceneDraft::numbers(points));
+  } else {
+    coefficients(0.0);
   }
-  d.key("mu_s", mu_s);
-  d.key("mu_k", mu_k);
-  load(d, false);
+  if (linear && mu_k > 0.1 && d.chance(0.2)) d.key("tilt_deg", d.uniform(-5.0, 5.0));
+  load(d, linear);
+}
+
+void joint(SceneDraft& d) {
+  d.line("law = \"iwan\"\nelements = {}", d.integer(2, 6));
+  d.fill("slip_force = #\nstiffness = #", {d.stiffness * d.size * d.uniform(0.05, 1.0), d.contact_spring(200.0, 1e6)});
+  d.fill("chi = #\nbeta = #", {d.uniform(-0.9, 2.0), d.chance(0.5) ? 0.0 : d.uniform(0.0, 2.0)});
+}
+
+/// @return what now stands at the place
+Beside contact(SceneDraft& d, int own, Beside beside) {
+  d.line("\n[[contact]]");
+  bool of_mass = true;
+  if (beside == Beside::kNothing)
+    of_mass = place(d, own);
+  else
+    d.line("at = {}", own);
+  if (d.chance(0.1)) d.line("name = \"contact {} at {}\"", beside == Beside::kNothing ? 1 : 2, own);
+  // Of a piecewise-linear scene all are, of another one some.
+  const bool linear = d.linear || (!d.coulomb_alone && d.chance(0.3));
+  const Words words = laws(d, linear, beside);
+  const std::string_view word = words[static_cast<std::size_t>(d.integer(0, static_cast<int>(words.size()) - 1))];
+  if (word == "clearance")
+    clearance(d, own, of_mass);
+  else if (word == "iwan")
+    joint(d);
+  else
+    friction(d, word, linear);
+  return word == "coulomb" || word == "stribeck" || word == "table" ? Beside::kRigid : Beside::kSoft;
 }
 
 void shaker(SceneDraft& d) {
@@ -181,11 +225,9 @@ void write_contacts(SceneDraft& d) {
   if (!d.linear) d.coulomb_alone = d.chance(0.1);
   const int count = std::min(d.masses(), d.chance(0.1) ? d.integer(4, 5) : d.integer(1, 3));
   choose_places(d, count);
-  for (const int own : d.places) contact(d, own);
-  if (d.beam || !d.chance(0.12)) return;
-  // A stop beside a contact, at its mass.
-  d.line("\n[[contact]]\nat = {}", d.places.front());
-  clearance(d, d.places.front(), true);
+  std::vector<Beside> standing;
+  for (const int own : d.places) standing.push_back(contact(d, own, Beside::kNothing));
+  if (!d.beam && d.chance(0.15)) contact(d, d.places.front(), standing.front());
 }
 
 void write_drive(SceneDraft& d) {

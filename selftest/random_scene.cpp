@@ -39,11 +39,23 @@ std::pair<std::vector<double>, std::vector<double>> swing(SceneDraft& d, bool wi
   return {q, v};
 }
 
+/// What people write: from rest, or from the undeflected place, or with only some masses moved.
+void make_zeros(SceneDraft& d, std::vector<double>& q, std::vector<double>& v) {
+  const double kind = d.uniform(0.0, 1.0);
+  if (kind < 0.08) q.assign(q.size(), 0.0);
+  if (kind > 0.92) v.assign(v.size(), 0.0);
+  if (kind < 0.35 || kind > 0.5) return;
+  for (auto* values : {&q, &v})
+    for (double& value : *values)
+      if (d.chance(0.6)) value = 0.0;
+}
+
 void start(SceneDraft& d) {
   const double kind = d.uniform(0.0, 1.0);
   if (kind < 0.12 && !d.closed) return;  // at rest just on a stop rounding decides
   if (kind < 0.16 && d.belt && !d.clearances && !d.varying && !d.floats) return d.line("\n[initial]\nat = \"static\"");
   auto [q, v] = swing(d, kind > 0.85);
+  make_zeros(d, q, v);
   if (d.chance(0.3)) {  // some contacts exactly on a guard: at a stop, at rest on the counterpart
     for (const auto& [mass, y] : d.stops)
       if (d.chance(0.7)) q[static_cast<std::size_t>(mass - 1)] = y;

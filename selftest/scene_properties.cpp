@@ -5,6 +5,8 @@
 #include <slipmode/core/random.hpp>
 #include <slipmode/dynamics/modal_model.hpp>
 #include <slipmode/pod/pod.hpp>
+#include <slipmode/pod/pomf.hpp>
+#include <slipmode/pod/sensors.hpp>
 #include <slipmode/rom/reduce.hpp>
 #include <slipmode/scene/scene.hpp>
 #include "selftest/random_scene.hpp"
@@ -21,12 +23,15 @@ namespace {
 
 using Eigen::Index;
 
+/// Random bases of more vectors round by more than what contacts tell apart.
+constexpr Index kLargestAtRandom = 12;
+
 /// Energy gap, of the energy exchanged.
 constexpr double kEnergyLimit = 1e-9;
 /// Two runs of the same motion, of its sizes: rounding and tolerance times what the motion multiplies them by.
 constexpr double kSameMotion = 1e-5;
-/// Of the fastest rate.
-constexpr double kPhasePerSample = 0.04;
+/// Of the fastest rate; and samples where nothing has one.
+constexpr double kPhasePerSample = 0.04, kFewest = 64.0;
 
 /// Speeds up to this are rounding: forces that all contacts hold leave nothing that moves, and nothing to measure by.
 constexpr double kStill = 1e-9;
@@ -154,6 +159,7 @@ class SceneChecker {
     const std::string written = scene::scene_to_toml(scene);
     const scene::Scene again = scene::parse_scene(written);
     if (scene::scene_to_toml(again) != written) violate("round trip", "the scene written twice is not the same text");
+    if (scene.beam() != nullptr) beam_.emplace(scene::build_beam(scene));
     system_.emplace(scene::build_system(scene));
     const dynamics::HybridSystem copy = scene::build_system(again);
     const auto same = [](const fem::Matrix& a, const fem::Matrix& b) { return fem::to_dense(a) == fem::to_dense(b); };
@@ -165,7 +171,7 @@ class SceneChecker {
     if (!equal) violate("round trip", "the scene written and read again is another system");
     start_ = scene::initial_state(scene, *system_);
     options_ = scene::simulate_options(scene);
-    options_.sample = kPhasePerSample / fastest_rate(*system_, start_);
+    options_.sample = std::min(kPhasePerSample / fastest_rate(*system_, start_), options_.duration / kFewest);
     options_.duration = std::min(options_.duration, 6000.0 * options_.sample);
     options_.transient = 0.0;
     options_.flow.tolerance = kTolerance;
@@ -220,8 +226,13 @@ class SceneChecker {
 
   /// On all modes of a random basis, and of one that the house makes.
   void reduce() {
+    if (system_->size() <= kLargestAtRandom) reduce_at_random();
+    const double kind = random_.uniform();
+    if (const std::optional<pod::Basis> own = own_basis(kind)) compare(pod::to_string(own->kind), *own);
+  }
+
+  void reduce_at_random() {
     const Index n = system_->size();
-    if (n > 12) return;
     Eigen::MatrixXd vectors(n, n);
     for (double& value : vectors.reshaped()) value = random_.normal();
     const Eigen::MatrixXd Q = Eigen::HouseholderQR<Eigen::MatrixXd>(vectors).householderQ();
@@ -233,8 +244,6 @@ class SceneChecker {
       vectors.col(j) = std::exp(random_.uniform(-2.0, 2.0)) * inertia.cwiseInverse().cwiseProduct(Q.col(j));
     mean = mean.cwiseProduct(inertia.cwiseInverse() * inertia.minCoeff());
     compare("random", rom::user_basis(vectors, mean));
-    const double kind = random_.uniform();
-    if (const std::optional<pod::Basis> own = own_basis(kind)) compare(pod::to_string(own->kind), *own);
   }
 
   /// One that the house makes, of all modes. None where it has none: structures that float have no static modes, short
@@ -243,6 +252,10 @@ class SceneChecker {
     const fem::Structure& structure = system_->structure();
     const Index n = system_->size();
     try {
+      if (beam_ && kind > 0.85) {
+        const pod::SensorArray places(*beam_, pod::evenly_spaced(n, beam_->reach()));
+        return pod::pomfs(*beam_, places, {places.readings(run_.q)}, {.pod = {.choice = {.modes = n}}}).basis;
+      }
       if (kind < 0.25) return rom::lnm_basis(structure, n);
       if (kind < 0.5) return rom::lnm_static_basis(*system_, n - static_cast<Index>(system_->contacts().size()));
       pod::Basis modes = (kind < 0.75 ? pod::pod({run_.q}) : pod::mass_pod({run_.q}, structure.M())).basis;
@@ -275,6 +288,7 @@ class SceneChecker {
   Random random_;
   SceneCheck result_;
   std::string text_;
+  std::optional<fem::Beam> beam_;
   std::optional<dynamics::HybridSystem> system_;
   dynamics::State start_;
   dynamics::SimulateOptions options_;
