@@ -1,6 +1,7 @@
 #include <slipmode/dynamics/prepare.hpp>
 
 #include <slipmode/core/errors.hpp>
+#include <slipmode/friction/engaged.hpp>
 #include <slipmode/friction/load_form.hpp>
 
 #include <Eigen/Dense>
@@ -109,8 +110,11 @@ bool agrees(const friction::Clearance& law, ContactMode mode, const std::optiona
 /// Where a clearance is at the start: as given, or by position and force; on a guard to rounding by the velocity.
 ContactMode start_mode(const friction::Clearance& law, const friction::Contact& contact, const State& start,
                        std::size_t c, const ModalModel& m, const Eigen::VectorXd& x) {
-  const double motion = motion_size(contact, start.q, x, m.displacement_row, c);
+  const auto i = static_cast<Eigen::Index>(c);
   const double speeds = motion_size(contact, start.v, x, m.velocity_row, c);
+  // What has only begun to move is placed by what its speed makes of it.
+  const double rate = std::max(m.fastest, std::sqrt(friction::engaged_stiffness(contact.law) * m.mobility(i, i)));
+  const double motion = motion_size(contact, start.q, x, m.displacement_row, c) + speeds / rate;
   std::optional<AtStop> left, right;
   if (law.left) left.emplace(*law.left, -1.0, contact, start, motion, speeds);
   if (law.right) right.emplace(*law.right, 1.0, contact, start, motion, speeds);

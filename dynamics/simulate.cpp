@@ -11,6 +11,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace slipmode::dynamics {
 namespace {
@@ -28,20 +29,29 @@ struct Energy {
   double value, size;
 };
 
-/// What springs and stops store, by their forces [J].
-double stored_in_contacts(const HybridSystem& system, const HybridPoint& point) {
+/// What springs, bristles and stops of contacts store [J].
+double stored_in_contacts(const HybridSystem& system, const ModalModel& m, const HybridPoint& point) {
   double stored = 0.0;
-  for (std::size_t c = 0; c < system.contacts().size(); ++c) {
-    const double stiffness = friction::engaged_stiffness(system.contacts()[c].law),
-                 force = point.force(static_cast<Eigen::Index>(c));
-    if (stiffness > 0.0) stored += force * force / (2.0 * stiffness);
+  for (int c = 0; c < m.contacts; ++c) {
+    const friction::Law& law = system.contacts()[static_cast<std::size_t>(c)].law;
+    if (const friction::Clearance* play = friction::clearance(law)) {
+      const double y = m.displacement_row.col(c).dot(point.x) + m.contact_offset(c);
+      const auto pressed = [&](const std::optional<friction::Stop>& stop, double outward) {
+        const double past = stop ? std::max(0.0, outward - stop->gap) : 0.0;
+        return past > 0.0 ? 0.5 * stop->stiffness * past * past : 0.0;
+      };
+      stored += pressed(play->left, -y) + pressed(play->right, y);
+    } else if (const double stiffness = friction::engaged_stiffness(law); stiffness > 0.0) {
+      const double stretch = point.internal(system.internal_begin(c));
+      stored += 0.5 * stiffness * stretch * stretch;
+    }
   }
   return stored;
 }
 
 /// From the modal coordinates where they decouple it, else from the state.
 Energy modal_energy(const HybridSystem& system, const ModalModel& m, const HybridPoint& point) {
-  const double in_contacts = stored_in_contacts(system, point);
+  const double in_contacts = stored_in_contacts(system, m, point);
   if (!m.proportional) {
     const State state = physical(m, point);
     return {system.energy(state), system.load().size() > 0 ? system.load().dot(state.q) : 0.0, in_contacts};

@@ -54,8 +54,8 @@ struct EnergyAudit {
   /// ∫ Σ u_k d_kᵀq̇ dt, done by a force drive [J].
   double force_work = 0.0;
   double viscous_loss = 0.0;  ///< ∫ q̇ᵀC q̇ dt ≥ 0 [J]
-  /// Scale: |contact work| summed over steps + viscous loss + largest energy seen, stored, in contacts too, or with
-  /// constant loads' [J]
+  /// Scale: |contact work| summed over steps + viscous loss + largest energy seen, stored or with constant loads', and
+  /// at both ends stored in contacts [J]
   double exchanged = 0.0;
   /// (E_end − E_start − contact_work − force_work + viscous_loss) / exchanged
   [[nodiscard]] double residual() const;
@@ -63,8 +63,8 @@ struct EnergyAudit {
 
 struct FlowOptions {
   FlowMethod method = FlowMethod::kAutomatic;
-  /// Collocation: bound on the error of one step's contact impulse, as a share of the static limit times the largest
-  /// step (four radians of the fastest mode).
+  /// Collocation: bound on the error of one step's contact impulse, as a share of the law's largest force times the
+  /// largest step (four radians of the fastest mode).
   double tolerance = 1e-9;
   bool audit = true;  ///< integrate the energy balance along
   /// Prove step by step that no event is passed, see FlowStatistics::certified. The closed form always does.

@@ -27,9 +27,9 @@ struct Characteristic {
   double mu_s = 0.0;                         ///< ≥ μ(0)
   std::function<double(double)> mu = {};     ///< of the sliding speed v [m/s]
   std::function<double(double)> slope = {};  ///< dμ/dv [s/m]
-  /// Largest |dμ/dv| and |d²μ/dv²| between two speeds, also below 0, and the largest μ: with them steps can be
-  /// certified. Else not, and where mu_s is 0 forces are measured by themselves.
+  /// The largest |dμ/dv| and |d²μ/dv²| between two speeds, below 0 too. With them, and `most`, steps are certified.
   std::function<LawBounds(double, double)> bounds = {};
+  /// The largest μ, where it is known. Without it, and with mu_s = 0, forces are measured by themselves.
   double most = 0.0;
 
   static constexpr auto fields() { return std::tuple{}; }

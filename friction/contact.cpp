@@ -82,6 +82,8 @@ struct Checker {
     within("mu(0)", law.mu(0.0), kNonNegative);
     within("slope(0)", law.slope(0.0), kFinite);
     holds_at_rest(law.mu_s, "mu(0)", law.mu(0.0), 1e-12);
+    if (law.bounds && !(law.most > 0.0 && law.most >= law.mu(0.0) && std::isfinite(law.most)))
+      fail(fmt::format("bounds with most = {}", law.most), "the largest coefficient, > 0 and >= mu(0)");
   }
 
   void law(const Measured& law) const {
@@ -212,6 +214,7 @@ ContactForces contact_forces(const Contact& contact) {
   const bool idle = (mu_s == 0.0 && !may_rise) || (N == 0.0 && !f.varies);
   if (idle && f.kind != LawKind::kClearance) {
     f.kind = LawKind::kFree;
+    f.characteristic.reset();
     f.varies = false;
   }
   return f;

@@ -36,6 +36,10 @@ double ContactForces::sliding(double direction, double v) const {
   return direction * (kinetic + drop * std::exp(-alpha * std::abs(v)));
 }
 
+double ContactForces::continued(double direction, double v) const {
+  return direction * load * characteristic->mu(direction * v);
+}
+
 double ContactForces::onset_slope() const {
   return characteristic != nullptr ? std::abs(slope(1.0, 0.0)) : alpha * drop;
 }

@@ -6,7 +6,7 @@ namespace slipmode::friction {
 
 /// What a law is to whoever moves its contact.
 enum class LawKind : std::uint8_t {
-  kFree,            ///< no force ever: μ_s N = 0
+  kFree,            ///< no force ever: μ N = 0
   kConstant,        ///< rigid stick; the force in slip depends on the normal load alone
   kCompliant,       ///< the same behind a contact spring, whose stretch is a state
   kSpeedDependent,  ///< rigid stick; the force in slip depends on the sliding speed

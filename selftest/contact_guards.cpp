@@ -108,8 +108,7 @@ LawCheck check_law(const friction::Contact& contact, ContactMode mode, const Con
 }
 
 bool is_idle(const friction::Contact& contact) {
-  return friction::clearance(contact.law) == nullptr && friction::static_coefficient(contact.law) == 0.0 &&
-         contact.tilt == 0.0;
+  return friction::contact_forces(contact).kind == friction::LawKind::kFree;
 }
 
 }  // namespace slipmode::selftest

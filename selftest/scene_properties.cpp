@@ -63,7 +63,7 @@ class Digest {
 /// A bound on the force of a contact: friction's limit, or what a stop that is met at this speed, or pressed from the
 /// start, answers with [N].
 double largest_force(const friction::Contact& contact, const dynamics::State& start, double mobility, double speed) {
-  double most = friction::static_coefficient(contact.law) * contact.normal_load.constant;
+  double most = friction::contact_forces(contact).most();
   if (const friction::Clearance* clearance = friction::clearance(contact.law))
     for (const friction::Stop& stop : clearance->stops())
       most = std::max(most, stop.stiffness * std::abs(contact.direction.dot(start.q)) +

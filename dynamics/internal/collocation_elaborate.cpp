@@ -128,8 +128,7 @@ double CollocationFlow::size_ahead(const OwnGuard& guard, int c) const {
 
 double CollocationFlow::tolerated(const OwnGuard& guard, int c) const {
   Eigen::VectorXd impulse = Eigen::VectorXd::Zero(x_begin_.size());
-  for (int d = 0; d < nc_; ++d)
-    impulse += laws()[static_cast<std::size_t>(d)].static_limit * model_.input.col(d).cwiseAbs();
+  for (int d = 0; d < nc_; ++d) impulse += laws()[static_cast<std::size_t>(d)].most() * model_.input.col(d).cwiseAbs();
   return moved_by(guard, options_.tolerance * tables_.step(0) * model_.velocity_row.col(c).cwiseAbs().dot(impulse));
 }
 

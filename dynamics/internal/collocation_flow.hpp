@@ -88,7 +88,7 @@ class CollocationFlow {
   /// @param load  what the load and a drive's forces add to the velocities at the nodes
   bool solve_single_smooth(const Collocation& table, const double* load);
   bool solve_coupled(const Collocation& table, const AtNodes* displacements, double h);
-  /// Of a force in `force_error` [1/N]: the static limit, or where there is none the least of other contacts.
+  /// Of a force in `force_error` [1/N]: the largest force, or where it is not known the least of other contacts.
   [[nodiscard]] double over_scale(int c) const;
   [[nodiscard]] double force_error() const;
   /// What of that is the rounding of speeds, which sticks' forces hold within a step, whatever its length: by the time
@@ -107,7 +107,7 @@ class CollocationFlow {
   struct Deviation {
     double force = 0.0, force_slope = 0.0;  ///< of any contact force, and of a sticking one's rate times the step [N]
     double speed = 0.0, speed_slope = 0.0;  ///< of any contact's speed, and of its rate times the step [m/s]
-    double room = std::numeric_limits<double>::infinity();  ///< what `speed` was taken to be at most, of bristles [m/s]
+    double room = std::numeric_limits<double>::infinity();  ///< what `speed` was taken to be at most [m/s]
   };
   /// What a bristle brings to that: μ ≤ force · e^{growth t}, as long as speeds are off by no more than `room`.
   struct BristleDefect {
@@ -121,6 +121,8 @@ class CollocationFlow {
   /// A characteristic or a smooth law, of a contact that is not held.
   [[nodiscard]] bool by_bounds(int c) const;
   [[nodiscard]] BoundedDefect bounded_defect(int c) const;
+  /// The largest sliding speed within the step.
+  [[nodiscard]] double fastest_slip(int c, const Deviation& off) const;
   void prepare_proof();
   /// Whether no guard but the one found vanishes up to this share of the solved step, nor that one before, in the true
   /// motion.
@@ -268,7 +270,7 @@ class CollocationFlow {
   struct Between;
   /// The start and halfway between nodes.
   static const Between& halfway();
-  /// What the force's polynomial leaves of a characteristic there, by the static limit.
+  /// What the force's polynomial leaves of a characteristic there, by the same.
   [[nodiscard]] double characteristic_error(int c) const;
   /// What the polynomials leave of a bristle's equations between the nodes: the error of its force, by the static
   /// limit.
@@ -334,7 +336,7 @@ class CollocationFlow {
   std::vector<double> steep_speed_;  ///< sliding speed at which a law is just resolved by the largest step [m/s]
   std::vector<double> steep_fall_;   ///< what that speed falls by from level to level [m/s]
   std::vector<int> slow_start_level_;  ///< of the longest step that follows the start of a slip
-  std::vector<double> over_limit_;     ///< 1 / static limit [1/N]
+  std::vector<double> over_limit_;     ///< 1 / largest force of the law [1/N]
   double least_limit_ = std::numeric_limits<double>::infinity();  ///< of those there are [N]
 
   double begin_;
@@ -369,6 +371,7 @@ class CollocationFlow {
       guard_least_;                     ///< Bernstein form of each guard, its start and least [8nc]
   Eigen::VectorXd ninth_;               ///< h⁹ max |(V − v_c)⁽⁹⁾| [nc]
   std::vector<OwnMotion> own_motions_;  ///< of elaborate contacts [nc]
+  std::vector<BoundedDefect> bounded_;  ///< of contacts by bounds [nc]
 
   /// Of each level: cos and sin of a force's harmonics at the nodes, from the step's begin on [16 x harmonics].
   std::vector<Eigen::MatrixXd> turned_;

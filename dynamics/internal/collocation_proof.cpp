@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 // That a step passes over no event: docs/theory/flow.md, section 4.
 
@@ -33,8 +32,6 @@ double most(const BernsteinPolynomial& p) {
   return *std::max_element(p.coefficient.begin(), p.coefficient.begin() + p.degree + 1);
 }
 
-double largest(const BernsteinPolynomial& p) { return std::max(most(p), -least(p)); }
-
 /// e^x or more, for x ≥ 0.
 double exponential_bound(double x) { return x < 0.25 ? 1.0 / (1.0 - x) : std::exp(x); }
 
@@ -48,6 +45,7 @@ void CollocationFlow::prepare_proof() {
   provable_ = halving_proves_ = options_.certify && (!guarded_ || std::ranges::all_of(laws(), known));
   ninth_.resize(nc_);
   own_motions_.resize(laws().size());
+  bounded_.resize(laws().size());
 }
 
 double CollocationFlow::drive_ninth(double h) const {
@@ -111,7 +109,7 @@ CollocationFlow::Deviation CollocationFlow::deviation(const StepBounds& bounds, 
       slope = std::max(slope, own_forces_[i].lipschitz(h));
     }
     if (by_bounds(c)) {
-      const BoundedDefect own = bounded_defect(c);
+      const BoundedDefect& own = bounded_[i];
       defect = std::max(defect, own.force);
       slope = std::max(slope, own.growth);
       out.room = std::min(out.room, own.room);
@@ -158,42 +156,6 @@ CollocationFlow::Deviation CollocationFlow::deviation(const StepBounds& bounds, 
   return out;
 }
 
-bool CollocationFlow::by_bounds(int c) const {
-  const ContactForces& law = laws()[static_cast<std::size_t>(c)];
-  return law.kind == LawKind::kSmooth || (law.characteristic != nullptr && !held(point_.modes, c));
-}
-
-CollocationFlow::BoundedDefect CollocationFlow::bounded_defect(int c) const {
-  // Of a function whose second derivative is bounded, polynomials of degree 7 leave (π/2)²/(8·7) of it, on [−1, 1]
-  // (Jackson's theorem), and their interpolation 1 + Λ times that.
-  constexpr double kJackson = std::numbers::pi * std::numbers::pi / (4.0 * 8.0 * 7.0 * 4.0);
-  const auto i = static_cast<std::size_t>(c);
-  const ContactForces& law = laws()[i];
-  const double sign = law.sticks() ? sign_of(point_.modes[i]) : 1.0;
-  const RadauTables::Vector8 speed =
-      sign * (drive_nodes_.segment<kNodes>(kNodes * c) - velocity_.segment<kNodes>(kNodes * c));
-  const BernsteinPolynomial p =
-      interpolant(sign * (drive_velocity(begin_, 0.0) - resolver_.contact_velocity(c, x_begin_.data())), speed);
-  const BernsteinPolynomial rate = derivative(p), bend = derivative(rate);
-  double left = 0.0;
-  for (int j = 0; j < kNodes; ++j) {
-    double slope;
-    const double by_law = law.sticks() ? law.load * law.characteristic->mu(speed(j)) : law.smooth(speed(j), slope);
-    left = std::max(left, std::abs(sign * forces_(kNodes * c + j) - by_law));
-  }
-  const double between = nodes_.remainder[0] * ninth_(c), slowest = least(p), fastest = most(p),
-               fastest_rate = largest(rate);
-  BoundedDefect out{.room = std::max(0.5 * (slowest - between), fastest - slowest)};
-  const LawBounds along = *law.bounds(slowest, fastest),
-                  around = *law.bounds(slowest - between - out.room, fastest + between + out.room);
-  out.rate = around.slope * fastest_rate;
-  out.growth = around.slope;
-  out.force =
-      nodes_.lebesgue * left + around.slope * between +
-      (1.0 + nodes_.lebesgue) * kJackson * (along.curve * fastest_rate * fastest_rate + along.slope * largest(bend));
-  return out;
-}
-
 double CollocationFlow::largest_force_rate(int d, const Deviation& off, double h) const {
   const auto i = static_cast<std::size_t>(d);
   const ContactForces& law = laws()[i];
@@ -214,7 +176,7 @@ double CollocationFlow::largest_force_rate(int d, const Deviation& off, double h
                ((kSteepest * series.spread() + nodes_.remainder[1] * ninth_(d) + off.speed_slope) / h + pulled);
   }
   if (by_bounds(d)) {
-    const BoundedDefect own = bounded_defect(d);
+    const BoundedDefect& own = bounded_[i];
     return (own.rate + own.growth * (nodes_.remainder[1] * ninth_(d) + off.speed_slope)) / h;
   }
   const auto form = guard_forms_.segment<kNodes>(kNodes * d);
@@ -232,7 +194,7 @@ double CollocationFlow::clear_after_release(const StepBounds& bounds, const Devi
   const double sign = sign_of(point_.modes[i]);
   const friction::Shaker* shaker = drive().shaker();
   const double omega = shaker != nullptr ? shaker->omega() : 0.0;
-  const double steepest = law.bounds(0.0, std::numeric_limits<double>::infinity())->slope;
+  const double steepest = law.bounds(0.0, fastest_slip(c, off))->slope;
   const Eigen::Index load = nc_ + given_;
   double now =
       -omega * omega * drive().velocity(begin_) - bounds.second_row.col(c).dot(x_begin_) - bounds.response1(c, load);
@@ -269,6 +231,7 @@ double CollocationFlow::clear_after_release(const StepBounds& bounds, const Devi
   // Up to where B could have vanished, s′ ≤ 2 B(0) h e^{κh}, B(0) less and more what the others may add.
   const double growth = steepest * model_.mobility(c, c) * h;
   change += by_rate * 2.0 * (now + others) * h * std::exp(growth);
+  if (!std::isfinite(change)) return 0.0;
   return std::min(1.0, now / (change * h));
 }
 
@@ -343,8 +306,10 @@ bool CollocationFlow::proves(const Guarded& found, double end) {
                        .dot(Eigen::Map<const RadauTables::Vector8>(series.data()).cwiseAbs());
   }
   const double between = nodes_.remainder[0] * ninth_.maxCoeff();
-  for (int c = 0; c < nc_; ++c)
+  for (int c = 0; c < nc_; ++c) {
     if (elaborate(c)) own_motions_[static_cast<std::size_t>(c)] = own_motion(c, h);
+    if (by_bounds(c)) bounded_[static_cast<std::size_t>(c)] = bounded_defect(c);
+  }
 
   const auto faster_than = [&](double speed) {  // of the computed motion
     for (int c = 0; c < nc_; ++c) {
@@ -373,7 +338,7 @@ bool CollocationFlow::proves(const Guarded& found, double end) {
     if (point_.modes[i] == ContactMode::kStick) {
       p.degree = kNodes - 1;
       const double greatest = form.cwiseAbs().maxCoeff();
-      if (reached == nullptr && greatest + off.force < law.static_limit) continue;
+      if (reached == nullptr && greatest + off.force <= law.static_limit) continue;
       const double at_event = nodes_.lagrange(found.theta).dot(forces_.segment<kNodes>(kNodes * c));
       for (const double sign : {1.0, -1.0}) {
         for (int k = 0; k < kNodes; ++k) p.coefficient[static_cast<std::size_t>(k)] = law.static_limit - sign * form(k);

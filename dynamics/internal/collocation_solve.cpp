@@ -16,11 +16,6 @@ constexpr int kNewtonLimit = 12;
 /// static limit: errors of all steps add up, and where a law's steepness limits the steps they would be all there is.
 constexpr double kForceShare = 5e-3, kLargestForceError = 1e-8;
 
-/// λ of a characteristic, past zero speed too.
-double continued(const ContactForces& law, double direction, double v) {
-  return direction * law.load * law.characteristic->mu(direction * v);
-}
-
 }  // namespace
 
 void CollocationFlow::guess_forces(int level, bool retry) {
@@ -238,7 +233,7 @@ bool CollocationFlow::solve_coupled(const Collocation& table, const AtNodes* dis
           lambda = law.smooth(s, slope);
           slope = -slope;
         } else if (law.characteristic != nullptr) {
-          lambda = continued(law, sign_of(point_.modes[i]), s);
+          lambda = law.continued(sign_of(point_.modes[i]), s);
           slope = -law.slope(sign_of(point_.modes[i]), s);
         } else {
           const double sign = sign_of(point_.modes[i]), scaled = law.alpha * sign * s;
@@ -265,7 +260,7 @@ bool CollocationFlow::solve_coupled(const Collocation& table, const AtNodes* dis
         double squares = 0.0;
         for (int j = kNodes * c; j < kNodes * (c + 1); ++j) {
           const double sign = sign_of(point_.modes[static_cast<std::size_t>(c)]);
-          const double left = continued(law, sign, drive_nodes_(j) - velocity_(j)) - forces_(j);
+          const double left = law.continued(sign, drive_nodes_(j) - velocity_(j)) - forces_(j);
           squares += left * left;
         }
         if (!std::isfinite(squares)) return false;

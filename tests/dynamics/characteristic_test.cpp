@@ -65,6 +65,24 @@ TEST(Characteristic, WithStribecksFormulaItMovesAsStribeck) {
               state(Eigen::VectorXd::Constant(1, 1.0), Eigen::VectorXd::Zero(1)), 30.0);
 }
 
+TEST(Characteristic, WithBoundsItsStepsAreCertified) {
+  const Stribeck law{0.4, 0.2, 2.0};
+  Characteristic functions = as_functions(law);
+  const auto run_of = [](const Characteristic& own) {
+    return simulate(belt_chain(own, Belt::constant(0.3), 4), swinging(4, 1, 1.5),
+                    {.duration = 200.0, .flow = {.certify = true}});
+  };
+  EXPECT_EQ(run_of(functions).statistics.certified, 0);
+  functions.bounds = [law](double from, double) {
+    const double slope = law.alpha * (law.mu_s - law.mu_k) * std::exp(-law.alpha * from);
+    return friction::LawBounds{slope, law.alpha * slope};
+  };
+  functions.most = law.mu_s;
+  const Trajectory run = run_of(functions);
+  EXPECT_GT(run.events.size(), 20U);
+  EXPECT_GT(run.statistics.certified, 0.98 * static_cast<double>(run.statistics.steps));
+}
+
 TEST(Characteristic, ALawNobodyShippedFollowsRungeKutta) {
   // Runge-Kutta in long double, step 1e-3 of rates below 4 (chain) and 2 (law): error of the order of 1e-12.
   const HybridSystem chain = belt_chain(bumpy(), Belt::constant(0.15), 3, 0.006, 1.0);

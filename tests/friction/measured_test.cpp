@@ -106,6 +106,17 @@ TEST(LawBounds, AreNotKnownOfFunctions) {
   EXPECT_FALSE(forces_of(law).bounds(0.0, 1.0).has_value());
 }
 
+TEST(LawBounds, ComeWithTheLargestCoefficient) {
+  Characteristic law{.mu_s = 0.0, .mu = [](double v) { return 0.3 * v; }, .slope = [](double) { return 0.3; }};
+  const auto check = [&] { validate({.direction = Eigen::VectorXd::Ones(1), .law = law}); };
+  EXPECT_NO_THROW(check());
+  EXPECT_EQ(forces_of(law).kind, LawKind::kSpeedDependent);
+  law.bounds = [](double, double) { return LawBounds{0.3, 0.0}; };
+  EXPECT_THAT(check, testing::ThrowsMessage<InvalidInput>(testing::HasSubstr("bounds with most = 0")));
+  law.most = 3.0;
+  EXPECT_NO_THROW(check());
+}
+
 TEST(Measured, MayRiseFromNothing) {
   const Measured law{.mu_s = 0.0, .speeds = {0.0, 1.0}, .coefficients = {0.0, 0.2}};
   EXPECT_EQ(forces_of(law).kind, LawKind::kSpeedDependent);
