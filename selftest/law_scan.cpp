@@ -1,6 +1,7 @@
 #include "selftest/law_scan.hpp"
 
 #include <slipmode/core/decompositions.hpp>
+#include <slipmode/dynamics/modal_model.hpp>
 #include "selftest/contact_guards.hpp"
 
 #include <fmt/format.h>
@@ -19,6 +20,9 @@ using Eigen::Index;
 
 /// Rounding of a modal coordinate, of all of them together in the norm of energy.
 constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
+
+/// Of the fastest mode, in the largest step.
+constexpr double kPhaseOfSteps = 4.0;
 
 /// How far from its start a run may begin, of its sizes.
 constexpr double kGivenBack = 1e-9;
@@ -237,11 +241,12 @@ class Scan {
     const double error = kRounding + options_.flow.tolerance;
     // A state under a force is the sum of the free structure's answer and what contacts take from it, which may be all.
     const Eigen::MatrixXd answer = free_answer();
+    const Eigen::VectorXd tolerated = tolerated_impulse();
     const Eigen::VectorXd momentum_rounding = error * swing * M.diagonal().cwiseSqrt() +
-                                              4.0 * h * kRounding * force_sizes() +
+                                              4.0 * h * kRounding * force_sizes() + tolerated +
                                               M.cwiseAbs() * (4.0 * own_v + kRounding * answer.col(1)),
                           way_rounding = error * largest(whole.q) * inverse_.diagonal().cwiseSqrt() + 4.0 * own_q +
-                                         kRounding * answer.col(0);
+                                         kRounding * answer.col(0) + 4.0 * h * (inverse_.cwiseAbs() * tolerated);
     const auto excess = [&](const Eigen::MatrixXd& rate, const Eigen::MatrixXd& sum, Index k, Index apart,
                             const Eigen::VectorXd& rounding) -> Eigen::VectorXd {
       const double step = static_cast<double>(apart) * h;
@@ -271,6 +276,16 @@ class Scan {
         violate("motion", fmt::format("residual {:.2g} of the equations of motion at t = {:.9g}, modes {}", residual,
                                       run_.times(k + 2), modes_at(run_.times(k + 2))));
     }
+  }
+
+  /// What a step's contact impulses may be off by: the tolerance, of the laws' largest forces, not of a small motion's.
+  [[nodiscard]] Eigen::VectorXd tolerated_impulse() const {
+    const double fastest = dynamics::build_modal_model(system_, false).fastest;
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(system_.size());
+    if (fastest == 0.0) return sum;
+    for (Index c = 0; c < W_.cols(); ++c)
+      sum += friction::contact_forces(contact(static_cast<int>(c))).most() * W_.col(c).cwiseAbs();
+    return options_.flow.tolerance * kPhaseOfSteps / fastest * sum;
   }
 
   /// Bounds on displacements and speeds of the steady answer to a force with all contacts free.
