@@ -171,4 +171,8 @@ double least(const BernsteinPolynomial& p) {
   return *std::min_element(p.coefficient.begin(), p.coefficient.begin() + p.degree + 1);
 }
 
+double most(const BernsteinPolynomial& p) {
+  return *std::max_element(p.coefficient.begin(), p.coefficient.begin() + p.degree + 1);
+}
+
 }  // namespace slipmode::dynamics

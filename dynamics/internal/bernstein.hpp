@@ -30,8 +30,9 @@ struct FirstRoot {
 /// dp/dt, of one degree less.
 [[nodiscard]] BernsteinPolynomial derivative(const BernsteinPolynomial& p);
 
-/// Least of its coefficients: a lower bound.
+/// Least and largest of its coefficients: bounds.
 [[nodiscard]] double least(const BernsteinPolynomial& p);
+[[nodiscard]] double most(const BernsteinPolynomial& p);
 
 /// Whether a polynomial of degree 7 stays above `bound` on [0, 1], by its convex hull on up to 2^halvings parts. A
 /// false says nothing.

@@ -9,12 +9,7 @@
 namespace slipmode::dynamics {
 namespace {
 
-/// Of a polynomial on [0, 1], by its coefficients' hull.
-double highest(const BernsteinPolynomial& p) {
-  return *std::max_element(p.coefficient.begin(), p.coefficient.begin() + p.degree + 1);
-}
-
-double largest(const BernsteinPolynomial& p) { return std::max(highest(p), -least(p)); }
+double largest(const BernsteinPolynomial& p) { return std::max(most(p), -least(p)); }
 
 }  // namespace
 
@@ -40,7 +35,7 @@ CollocationFlow::BoundedDefect CollocationFlow::bounded_defect(int c) const {
     const double by_law = law.sticks() ? law.continued(sign, sign * speed(j)) : law.smooth(speed(j), slope);
     left = std::max(left, std::abs(forces_(kNodes * c + j) - by_law));
   }
-  const double between = nodes_.remainder[0] * ninth_(c), slowest = least(p), fastest = highest(p),
+  const double between = nodes_.remainder[0] * ninth_(c), slowest = least(p), fastest = most(p),
                fastest_rate = largest(rate);
   BoundedDefect out{.room = std::max(0.5 * (std::max(slowest, -fastest) - between), fastest - slowest)};
   const LawBounds along = *law.bounds(slowest, fastest),

@@ -28,10 +28,6 @@ bool has_guard(const ContactForces& law) { return law.sticks() || law.kind == La
 
 bool positive(const BernsteinPolynomial& p) { return p.coefficient[0] > 0.0 && !first_root(p); }
 
-double most(const BernsteinPolynomial& p) {
-  return *std::max_element(p.coefficient.begin(), p.coefficient.begin() + p.degree + 1);
-}
-
 /// e^x or more, for x ≥ 0.
 double exponential_bound(double x) { return x < 0.25 ? 1.0 / (1.0 - x) : std::exp(x); }
 
