@@ -9,7 +9,6 @@
 namespace slipmode::dynamics {
 
 using friction::ContactForces;
-using friction::LawBounds;
 using friction::LawKind;
 
 /// Sign of the sliding speed: −1, 0 (stick) or 1.

@@ -115,10 +115,10 @@ void RegimeBuilder::refine_stick_rows(Regime& out) const {
   // Springs that share a place are told apart by their stretches alone: what is refined is what they exert together.
   std::vector<Eigen::Index> open;  // the first of each place
   std::vector<std::vector<Eigen::Index>> together;
-  for (const std::vector<Eigen::Index>& same : along_) {
+  for (const std::vector<std::size_t>& same : along_) {
     std::vector<Eigen::Index> follow;
-    for (const Eigen::Index c : same)
-      if (out.follows[static_cast<std::size_t>(c)]) follow.push_back(c);
+    for (const std::size_t c : same)
+      if (out.follows[c]) follow.push_back(static_cast<Eigen::Index>(c));
     if (follow.empty()) continue;
     open.push_back(follow.front());
     together.push_back(std::move(follow));

@@ -38,7 +38,7 @@ double stored_in_contacts(const HybridSystem& system, const ModalModel& m, const
       const double y = m.displacement_row.col(c).dot(point.x) + m.contact_offset(c);
       const auto pressed = [&](const std::optional<friction::Stop>& stop, double outward) {
         const double past = stop ? std::max(0.0, outward - stop->gap) : 0.0;
-        return past > 0.0 ? 0.5 * stop->stiffness * past * past : 0.0;
+        return stop ? 0.5 * stop->stiffness * past * past : 0.0;
       };
       stored += pressed(play->left, -y) + pressed(play->right, y);
     } else if (const double stiffness = friction::engaged_stiffness(law); stiffness > 0.0) {

@@ -1,8 +1,9 @@
 #include "selftest/law_scan.hpp"
 
 #include <slipmode/core/decompositions.hpp>
-#include <slipmode/dynamics/modal_model.hpp>
+#include <slipmode/dynamics/cache.hpp>
 #include "selftest/contact_guards.hpp"
+#include "selftest/load_history.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -20,9 +21,6 @@ using Eigen::Index;
 
 /// Rounding of a modal coordinate, of all of them together in the norm of energy.
 constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
-
-/// Of the fastest mode, in the largest step.
-constexpr double kPhaseOfSteps = 4.0;
 
 /// How far from its start a run may begin, of its sizes.
 constexpr double kGivenBack = 1e-9;
@@ -69,59 +67,6 @@ class Timeline {
   std::vector<double> times_;
   std::vector<ContactMode> modes_;
   bool broken_ = false;
-};
-
-/// N and dN/dt of a contact along samples. The normal oscillator is integrated by the classical Runge-Kutta method with
-/// y between samples from Hermite's cubic.
-class LoadHistory {
- public:
-  LoadHistory(const friction::NormalLoad& load, double y0) : load_(load) {
-    if (!load.oscillator) return;
-    const auto& o = *load.oscillator;
-    z_ = o.spring_stiffness * o.slope * y0 / (o.spring_stiffness + o.support_stiffness);
-  }
-
-  /// Under the cubic through places and speeds.
-  void advance(double h, double y0, double v0, double y1, double v1, int halvings = kHalvings) {
-    if (!load_.oscillator || h <= 0.0) return;
-    const double ym = 0.5 * (y0 + y1) + h / 8.0 * (v0 - v1), vm = 1.5 * (y1 - y0) / h - 0.25 * (v0 + v1);
-    if (halvings > 0) {
-      advance(h / 2.0, y0, v0, ym, vm, halvings - 1);
-      advance(h / 2.0, ym, vm, y1, v1, halvings - 1);
-      return;
-    }
-    const Eigen::Vector2d x(z_, z_rate_), a = rate(x, y0, v0), b = rate(x + 0.5 * h * a, ym, vm),
-                                          c = rate(x + 0.5 * h * b, ym, vm), d = rate(x + h * c, y1, v1);
-    const Eigen::Vector2d end = x + h / 6.0 * (a + 2.0 * b + 2.0 * c + d);
-    z_ = end(0);
-    z_rate_ = end(1);
-  }
-
-  /// @param a  contact's acceleration
-  void read(double y, double v, double a, ContactInstant& out_now) const {
-    out_now.load = load_.constant + load_.slope * y;
-    out_now.load_rate = load_.slope * v;
-    if (!load_.oscillator) return;
-    const auto& o = *load_.oscillator;
-    const Eigen::Vector2d r = rate({z_, z_rate_}, y, v);
-    out_now.load += o.spring_stiffness * (o.slope * y - z_) + o.spring_damping * (o.slope * v - z_rate_);
-    out_now.load_rate += o.spring_stiffness * (o.slope * v - r(0)) + o.spring_damping * (o.slope * a - r(1));
-  }
-
- private:
-  /// Of a step of Runge and Kutta's between samples: what hundreds of them leave is 256 times smaller so.
-  static constexpr int kHalvings = 2;
-
-  [[nodiscard]] Eigen::Vector2d rate(const Eigen::Vector2d& x, double y, double v) const {
-    const auto& o = *load_.oscillator;
-    const double force = o.spring_stiffness * o.slope * y + o.spring_damping * o.slope * v -
-                         (o.spring_stiffness + o.support_stiffness) * x(0) -
-                         (o.spring_damping + o.support_damping) * x(1);
-    return {x(1), force / o.mass};
-  }
-
-  friction::NormalLoad load_;
-  double z_ = 0.0, z_rate_ = 0.0;
 };
 
 /// The polynomial through equidistant instants, `share` of their distance beyond the last.
@@ -280,12 +225,12 @@ class Scan {
 
   /// What a step's contact impulses may be off by: the tolerance, of the laws' largest forces, not of a small motion's.
   [[nodiscard]] Eigen::VectorXd tolerated_impulse() const {
-    const double fastest = dynamics::build_modal_model(system_, false).fastest;
+    const dynamics::ModelTables& own = system_.cache().tables(system_, false);
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(system_.size());
-    if (fastest == 0.0) return sum;
+    if (own.model.fastest == 0.0) return sum;
     for (Index c = 0; c < W_.cols(); ++c)
       sum += friction::contact_forces(contact(static_cast<int>(c))).most() * W_.col(c).cwiseAbs();
-    return options_.flow.tolerance * kPhaseOfSteps / fastest * sum;
+    return options_.flow.tolerance * own.steps.step(0) * sum;
   }
 
   /// Bounds on displacements and speeds of the steady answer to a force with all contacts free.

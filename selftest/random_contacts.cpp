@@ -95,20 +95,13 @@ Words laws(const SceneDraft& d, bool linear, Beside beside) {
 void friction(SceneDraft& d, std::string_view word, bool linear) {
   const double mu_k = d.chance(0.08) ? 0.0 : d.uniform(0.05, 0.5);
   const double mu_s = d.chance(0.2) ? mu_k : mu_k + (d.chance(0.1) ? d.uniform(1.0, 5.0) : d.uniform(0.0, 0.5));
-  const auto coefficients = [&](double least) {
-    d.key("mu_s", std::max(mu_s, least));
-    d.key("mu_k", std::max(mu_k, least));
-  };
   d.line("law = \"{}\"", word);
   if (word == "compliant") {
     d.key("stiffness", d.contact_spring(200.0, 1e6));
-    coefficients(0.0);
   } else if (word == "stribeck") {
     d.key("alpha", d.uniform(0.2, 15.0) / d.speed());
-    coefficients(0.0);
   } else if (word == "tanh") {
     d.fill("alpha = #\nepsilon = #", {d.uniform(0.2, 15.0) / d.speed(), d.uniform(0.02, 0.2) * d.speed()});
-    coefficients(0.0);
   } else if (word == "dahl") {
     d.fill("mu = #\nstiffness = #", {d.uniform(0.1, 0.6), d.contact_spring(200.0, 1e4)});
   } else if (word == "lugre") {
@@ -116,18 +109,17 @@ void friction(SceneDraft& d, std::string_view word, bool linear) {
     d.fill("stribeck_speed = #\nstiffness = #", {d.uniform(0.02, 0.5) * d.speed(), bristle});
     d.key("damping", d.chance(0.3) ? 0.0 : d.uniform(0.0, 0.5) * std::sqrt(bristle * d.stiffness) / d.rate);
     d.key("viscous", d.chance(0.5) ? 0.0 : d.uniform(0.0, 0.3) * d.stiffness / d.rate);
-    coefficients(0.1);
   } else if (word == "table") {
     std::vector<double> speeds{0.0};
     for (int further = d.integer(1, 7); further > 0; --further)
       speeds.push_back(speeds.back() + d.speed() * d.uniform(0.05, 1.0));
     std::vector<double> points = d.values(static_cast<int>(speeds.size()), 0.0, 0.5);
     points.front() = mu_k;
-    d.key("mu_s", mu_s);
     d.line("speeds = {}\ncoefficients = {}", SceneDraft::numbers(speeds), SceneDraft::numbers(points));
-  } else {
-    coefficients(0.0);
   }
+  const double least = word == "lugre" ? 0.1 : 0.0;
+  if (word != "dahl") d.key("mu_s", std::max(mu_s, least));
+  if (word != "dahl" && word != "table") d.key("mu_k", std::max(mu_k, least));
   if (linear && mu_k > 0.1 && d.chance(0.2)) d.key("tilt_deg", d.uniform(-5.0, 5.0));
   load(d, linear);
 }

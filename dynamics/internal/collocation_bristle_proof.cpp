@@ -28,7 +28,7 @@ CollocationFlow::BristleDefect CollocationFlow::bristle_defect(int c, double rea
   const double off = nodes_.lebesgue * (missing.array() / nodes_.node.array()).abs().maxCoeff();
 
   BristleDefect out;
-  const double fastest = std::max(s_begin, guard_forms_.segment<kNodes>(kNodes * c).maxCoeff());
+  const double fastest = fastest_slip(c);
   out.room = at_rest ? fastest : 0.5 * (guard_least_(c) - between);
   const double slow = at_rest ? 0.0 : out.room, fast = fastest + between + out.room;
   const auto share = [&](double v) { return v * v / (law.stribeck_speed * law.stribeck_speed); };

@@ -7,6 +7,7 @@
 #include "dynamics/internal/within_step.hpp"
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -121,8 +122,10 @@ class CollocationFlow {
   /// A characteristic or a smooth law, of a contact that is not held.
   [[nodiscard]] bool by_bounds(int c) const;
   [[nodiscard]] BoundedDefect bounded_defect(int c) const;
-  /// The largest sliding speed within the step.
-  [[nodiscard]] double fastest_slip(int c, const Deviation& off) const;
+  /// The largest sliding speed within the step, of the computed motion.
+  [[nodiscard]] double fastest_slip(int c) const {
+    return std::max(guard_start_(c), guard_forms_.segment<kNodes>(kNodes * c).maxCoeff());
+  }
   void prepare_proof();
   /// Whether no guard but the one found vanishes up to this share of the solved step, nor that one before, in the true
   /// motion.

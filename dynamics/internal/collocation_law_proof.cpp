@@ -38,19 +38,14 @@ CollocationFlow::BoundedDefect CollocationFlow::bounded_defect(int c) const {
   const double between = nodes_.remainder[0] * ninth_(c), slowest = least(p), fastest = most(p),
                fastest_rate = largest(rate);
   BoundedDefect out{.room = std::max(0.5 * (std::max(slowest, -fastest) - between), fastest - slowest)};
-  const LawBounds along = *law.bounds(slowest, fastest),
-                  around = *law.bounds(slowest - between - out.room, fastest + between + out.room);
+  const friction::LawBounds along = *law.bounds(slowest, fastest),
+                            around = *law.bounds(slowest - between - out.room, fastest + between + out.room);
   out.rate = around.slope * fastest_rate;
   out.growth = around.slope;
   out.force =
       nodes_.lebesgue * left + around.slope * between +
       (1.0 + nodes_.lebesgue) * kJackson * (along.curve * fastest_rate * fastest_rate + along.slope * largest(bend));
   return out;
-}
-
-double CollocationFlow::fastest_slip(int c, const Deviation& off) const {
-  return std::max(guard_start_(c), guard_forms_.segment<kNodes>(kNodes * c).maxCoeff()) +
-         nodes_.remainder[0] * ninth_(c) + off.speed;
 }
 
 }  // namespace slipmode::dynamics

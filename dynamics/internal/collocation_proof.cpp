@@ -190,7 +190,7 @@ double CollocationFlow::clear_after_release(const StepBounds& bounds, const Devi
   const double sign = sign_of(point_.modes[i]);
   const friction::Shaker* shaker = drive().shaker();
   const double omega = shaker != nullptr ? shaker->omega() : 0.0;
-  const double steepest = law.bounds(0.0, fastest_slip(c, off))->slope;
+  const double steepest = law.bounds(0.0, fastest_slip(c) + nodes_.remainder[0] * ninth_(c) + off.speed)->slope;
   const Eigen::Index load = nc_ + given_;
   double now =
       -omega * omega * drive().velocity(begin_) - bounds.second_row.col(c).dot(x_begin_) - bounds.response1(c, load);
@@ -276,8 +276,7 @@ bool CollocationFlow::far_from_guards(const StepBounds& bounds, double h) const 
   if (!(growth < kMostGrowth)) return false;
   const double largest_defect = room * (1.0 - growth) / (reach * h) - nodes_.lebesgue * kNewtonRest * law.static_limit;
   // By the range of the law over the speeds there are; by what its interpolation can leave.
-  const double fastest = std::max(guard_start_(0), guard_forms_.head<kNodes>().maxCoeff());
-  const double range = least * std::min(1.0, law.alpha * (fastest - guard_least_(0) + 2.0 * between));
+  const double range = least * std::min(1.0, law.alpha * (fastest_slip(0) - guard_least_(0) + 2.0 * between));
   return 0.5 * (1.0 + nodes_.lebesgue) * law.drop * range < largest_defect ||
          between_nodes(0) + law.alpha * law.drop * least * between < largest_defect;
 }

@@ -3,6 +3,7 @@
 #include <slipmode/core/coupled_parts.hpp>
 #include <slipmode/core/decompositions.hpp>
 #include <slipmode/fem/modes.hpp>
+#include <slipmode/friction/places.hpp>
 #include "dynamics/internal/sprung_pairs.hpp"
 
 #include <algorithm>
@@ -38,6 +39,7 @@ RegimeBuilder::RegimeBuilder(const HybridSystem& system, const ModalModel& slipp
       modal_(slipping.modal),
       roles_(roles),
       rayleigh_(slipping.rayleigh),
+      along_(friction::by_direction(system.contacts())),
       n_(slipping.n),
       nc_(static_cast<Eigen::Index>(roles.size())),
       nk_(modal_.forces.cols()),
@@ -51,13 +53,6 @@ RegimeBuilder::RegimeBuilder(const HybridSystem& system, const ModalModel& slipp
       damper_(Eigen::VectorXd::Zero(nc_)) {
   for (Eigen::Index c = 0; c < nc_; ++c) {
     const friction::Contact& contact = system.contacts()[static_cast<std::size_t>(c)];
-    const auto same = std::ranges::find_if(along_, [&](const std::vector<Eigen::Index>& others) {
-      return system.contacts()[static_cast<std::size_t>(others.front())].direction == contact.direction;
-    });
-    if (same == along_.end())
-      along_.push_back({c});
-    else
-      same->push_back(c);
     laws_.push_back(contact_forces(contact));
     loads_.emplace_back(contact);
     if (role(c) == ContactRole::kHeld) held_.push_back(c);

@@ -66,7 +66,7 @@ class RegimeBuilder {
   const ModalCoordinates& modal_;
   const std::vector<ContactRole>& roles_;
   std::optional<fem::Rayleigh> rayleigh_;
-  std::vector<std::vector<Eigen::Index>> along_;  ///< contacts along one direction
+  std::vector<std::vector<std::size_t>> along_;  ///< contacts along one direction
   std::vector<ContactForces> laws_;
   std::vector<friction::LoadForm> loads_;
   std::vector<ContactAnswer> answers_;
