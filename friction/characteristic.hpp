@@ -34,7 +34,8 @@ struct Characteristic {
 
   static constexpr auto fields() { return std::tuple{}; }
 
-  [[nodiscard]] LawKind kind() const { return LawKind::kSpeedDependent; }
+  /// What holds nothing at rest passes zero as a function of the speed that is odd: no stick, and no event there.
+  [[nodiscard]] LawKind kind() const { return mu_s > 0.0 ? LawKind::kSpeedDependent : LawKind::kSmooth; }
   [[nodiscard]] double static_coefficient() const { return mu_s; }
   /// μ(0): what it tends to at large speed is not known.
   [[nodiscard]] double limit_coefficient() const { return mu(0.0); }

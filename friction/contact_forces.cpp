@@ -21,6 +21,10 @@ double ContactForces::most() const {
 
 double ContactForces::smooth(double v, double& slope) const {
   if (kind != LawKind::kSmooth) return slope = 0.0;
+  if (characteristic != nullptr) {
+    slope = load * characteristic->slope(std::abs(v));
+    return std::copysign(load * characteristic->mu(std::abs(v)), v);
+  }
   const double th = std::tanh(v / epsilon), dth = (1 - th * th) / epsilon;
   const double magnitude = v * th, d_magnitude = th + v * dth;
   const double e = drop * std::exp(-alpha * magnitude);
@@ -37,7 +41,8 @@ double ContactForces::sliding(double direction, double v) const {
 }
 
 double ContactForces::continued(double direction, double v) const {
-  return direction * load * characteristic->mu(direction * v);
+  double slope;
+  return sticks() ? direction * load * characteristic->mu(direction * v) : smooth(v, slope);
 }
 
 double ContactForces::onset_slope() const {
@@ -55,7 +60,8 @@ double ContactForces::slope(double direction, double v) const {
 std::optional<LawBounds> ContactForces::bounds(double from, double to) const {
   if (characteristic != nullptr) {
     if (!characteristic->bounds) return std::nullopt;
-    const LawBounds mu = characteristic->bounds(from, to);
+    const LawBounds mu = sticks() ? characteristic->bounds(from, to)
+                                  : characteristic->bounds(std::max({0.0, from, -to}), std::max(to, -from));
     return LawBounds{load * mu.slope, load * mu.curve};
   }
   if (kind == LawKind::kSpeedDependent) {

@@ -66,7 +66,8 @@ struct ContactForces {
   /// How λ depends on the speed in the direction of sliding, of the smooth law on v itself. None where nothing is known
   /// between speeds.
   [[nodiscard]] std::optional<LawBounds> bounds(double from, double to) const;
-  /// λ of a characteristic, as it goes on where v has passed zero against the direction.
+  /// λ of a law of the sliding speed by functions, as it goes on where v has passed zero against the direction; of a
+  /// smooth law λ.
   [[nodiscard]] double continued(double direction, double v) const;
   /// λ of the smooth law (0 for a free contact, and for a bristle, whose force is not a function of v) at relative
   /// velocity v, and dλ/dv.

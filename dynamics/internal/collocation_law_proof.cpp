@@ -30,11 +30,9 @@ CollocationFlow::BoundedDefect CollocationFlow::bounded_defect(int c) const {
   const BernsteinPolynomial p =
       interpolant(sign * (drive_velocity(begin_, 0.0) - resolver_.contact_velocity(c, x_begin_.data())), speed);
   const BernsteinPolynomial rate = derivative(p), bend = derivative(rate);
-  double left = 0.0, slope = 0.0;
-  for (int j = 0; j < kNodes; ++j) {
-    const double by_law = law.sticks() ? law.continued(sign, sign * speed(j)) : law.smooth(speed(j), slope);
-    left = std::max(left, std::abs(forces_(kNodes * c + j) - by_law));
-  }
+  double left = 0.0;
+  for (int j = 0; j < kNodes; ++j)
+    left = std::max(left, std::abs(forces_(kNodes * c + j) - law.continued(sign, sign * speed(j))));
   const double between = nodes_.remainder[0] * ninth_(c), slowest = least(p), fastest = most(p),
                fastest_rate = largest(rate);
   BoundedDefect out{.room = std::max(0.5 * (std::max(slowest, -fastest) - between), fastest - slowest)};

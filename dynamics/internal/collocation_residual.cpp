@@ -72,7 +72,7 @@ double CollocationFlow::characteristic_error(int c) const {
   const RadauTables::Vector8 speed = between * slip, force = between * forces_.segment<kNodes>(kNodes * c);
   double worst = 0.0;
   for (Eigen::Index k = 0; k < speed.size(); ++k) {
-    if (sign * speed(k) <= 0.0) continue;  // beyond the event that ends the step
+    if (laws()[i].sticks() && sign * speed(k) <= 0.0) continue;  // beyond the event that ends the step
     worst = std::max(worst, std::abs(force(k) - laws()[i].sliding(sign, speed(k))));
   }
   return 0.5 * worst * over_scale(c);

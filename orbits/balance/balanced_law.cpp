@@ -34,10 +34,10 @@ BalancedLaw balanced_law(const friction::Contact& contact, std::size_t c) {
   if (friction::ContactForces forces = friction::contact_forces(contact); forces.kind == friction::LawKind::kSmooth)
     return BalancedSmooth{std::move(forces)};
   throw InvalidInput(fmt::format(
-      "harmonic balance holds clearances, Coulomb friction behind a contact spring and smooth friction (contact.{}.law "
-      "= \"clearance\", \"compliant\" or \"tanh\"), and contact '{}' has another law; give it a contact spring, or "
-      "find "
-      "this orbit by shooting, which holds every law",
+      "harmonic balance holds clearances, Coulomb friction behind a contact spring and friction without stick "
+      "(contact.{}"
+      ".law = \"clearance\", \"compliant\", \"tanh\", or a \"table\" with mu_s = 0), and contact '{}' has another "
+      "law; give it a contact spring, or find this orbit by shooting, which holds every law",
       c, contact.name));
 }
 

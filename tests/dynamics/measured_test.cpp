@@ -13,6 +13,7 @@ using namespace slipmode::fixtures;
 using friction::Belt;
 using friction::Characteristic;
 using friction::Measured;
+using friction::Shaker;
 using friction::Stribeck;
 
 /// A curve as one measures it: falls, has a dip, rises; a static peak above it.
@@ -70,8 +71,27 @@ TEST(Measured, AForceThatRisesFromNothingIsADashpots) {
     const Trajectory run = simulate(system, {.q = Eigen::VectorXd::Ones(1), .v = Eigen::VectorXd::Zero(1)},
                                     {.duration = kDuration, .flow = {.tolerance = 1e-11}});
     EXPECT_NEAR(run.final_state.q(0), q, 1e-11);
-    EXPECT_EQ(run.events.size(), 6U);  // where the speed is zero: kπ/ω
+    EXPECT_TRUE(run.events.empty());
     EXPECT_LT(std::abs(run.audit.residual()), 1e-14);
+  }
+}
+
+// The reference decides at every zero of the speed anew; its steps of 1e-4 and 2e-4 end within 2e-13 of each other.
+TEST(Measured, WithoutStaticFrictionPassesZeroAsRungeKuttaDoes) {
+  Measured points = kMeasured;
+  points.mu_s = points.coefficients.front() = 0.0;
+  const Shaker shaker{.amplitude = 0.4, .frequency_hz = 0.12};
+  const auto chain = [&](const friction::Law& law) { return belt_chain(law, shaker, 3, 0.006, 1.0); };
+  const State start{.q = Eigen::VectorXd::Zero(3), .v = Eigen::VectorXd::Zero(3)};
+  constexpr double kDuration = 40.0;
+  RungeKuttaReference reference(chain(functions_of(points)), RungeKuttaReference::Mode::kPositive);
+  reference.run(kDuration, 1e-4L);
+  ASSERT_GE(reference.changes().size(), 8U);
+  for (const double tolerance : {1e-5, 1e-7, 1e-9, 1e-11}) {
+    const Trajectory run = simulate(chain(points), start, {.duration = kDuration, .flow = {.tolerance = tolerance}});
+    EXPECT_TRUE(run.events.empty());
+    EXPECT_LT((run.final_state.q - reference.q()).cwiseAbs().maxCoeff(), 30.0 * tolerance) << tolerance;
+    EXPECT_LT((run.final_state.v - reference.v()).cwiseAbs().maxCoeff(), 30.0 * tolerance) << tolerance;
   }
 }
 

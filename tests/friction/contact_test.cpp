@@ -85,8 +85,10 @@ TEST(Laws, AreWhatTheyAreToAFlow) {
   EXPECT_EQ(kind(Dahl{}), LawKind::kBristle);
   EXPECT_EQ(kind(LuGre{}), LawKind::kBristle);
   EXPECT_EQ(kind(Clearance{}), LawKind::kClearance);
-  EXPECT_EQ(kind(Measured{}), LawKind::kSpeedDependent);
-  EXPECT_EQ(kind(Characteristic{}), LawKind::kSpeedDependent);
+  EXPECT_EQ(kind(Measured{.mu_s = 0.1}), LawKind::kSpeedDependent);
+  EXPECT_EQ(kind(Characteristic{.mu_s = 0.1}), LawKind::kSpeedDependent);
+  EXPECT_EQ(kind(Measured{}), LawKind::kSmooth);
+  EXPECT_EQ(kind(Characteristic{}), LawKind::kSmooth);
 }
 
 TEST(Laws, ForcesHaveTheirOwnSlope) {

@@ -73,7 +73,9 @@ TEST(LawBounds, HoldBetweenAnyTwoSpeeds) {
   const TanhRegularised smooth{.mu_s = 0.6, .mu_k = 0.3, .alpha = 8.0, .epsilon = 0.05};
   const Stribeck stribeck{0.6, 0.3, 8.0};
   Random random = Random::stream(5, 1);
-  for (const Law& law : {Law(table), Law(smooth), Law(stribeck)}) {
+  Measured risen = table;
+  risen.mu_s = risen.coefficients.front() = 0.0;
+  for (const Law& law : {Law(table), Law(risen), Law(smooth), Law(stribeck)}) {
     const ContactForces forces = forces_of(law);
     const bool two_sided = !forces.sticks();
     const auto slope = [&](double v) {
@@ -110,7 +112,7 @@ TEST(LawBounds, ComeWithTheLargestCoefficient) {
   Characteristic law{.mu_s = 0.0, .mu = [](double v) { return 0.3 * v; }, .slope = [](double) { return 0.3; }};
   const auto check = [&] { validate({.direction = Eigen::VectorXd::Ones(1), .law = law}); };
   EXPECT_NO_THROW(check());
-  EXPECT_EQ(forces_of(law).kind, LawKind::kSpeedDependent);
+  EXPECT_EQ(forces_of(law).kind, LawKind::kSmooth);
   law.bounds = [](double, double) { return LawBounds{0.3, 0.0}; };
   EXPECT_THAT(check, testing::ThrowsMessage<InvalidInput>(testing::HasSubstr("bounds with most = 0")));
   law.most = 3.0;
@@ -119,8 +121,10 @@ TEST(LawBounds, ComeWithTheLargestCoefficient) {
 
 TEST(Measured, MayRiseFromNothing) {
   const Measured law{.mu_s = 0.0, .speeds = {0.0, 1.0}, .coefficients = {0.0, 0.2}};
-  EXPECT_EQ(forces_of(law).kind, LawKind::kSpeedDependent);
+  EXPECT_EQ(forces_of(law).kind, LawKind::kSmooth);
   EXPECT_EQ(forces_of(law).most(), 0.4);
+  EXPECT_EQ(forces_of(law).sliding(1.0, -0.5), -forces_of(law).sliding(1.0, 0.5));
+  EXPECT_EQ(forces_of(law).slope(1.0, -0.5), forces_of(law).slope(1.0, 0.5));
   const Measured nothing{.mu_s = 0.0, .speeds = {0.0, 1.0}, .coefficients = {0.0, 0.0}};
   EXPECT_EQ(forces_of(nothing).kind, LawKind::kFree);
 }

@@ -8,7 +8,7 @@
 
 namespace slipmode::orbits {
 
-/// A smooth law of the sliding speed under a constant load, as BalancedLaw lists it; y as it is seen from the
+/// A law of the sliding speed without stick, under a constant load, as BalancedLaw lists it; y as it is seen from the
 /// counterpart: λ = f(−Ω y′), δλ = −f′ Ω δy′.
 ///
 /// No integral of f is known along a series. Exact is what as many samples give as it takes: they are doubled until no
