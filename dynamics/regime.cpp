@@ -92,11 +92,10 @@ void Regime::prepare_bounds() {
   for (Eigen::Index i = 0; i < pairs.n; ++i) {
     Eigen::Matrix2d G;
     G << pairs.g11(i), pairs.g12(i), pairs.g21(i), pairs.g22(i);
-    double lag = 0.0;  // of a damped rigid-body motion: η + lag η̇ merely integrates the inputs
+    double lag = 0.0;  // of a damped rigid-body motion: x₁ + lag x₂ merely integrates the inputs
     if (pairs.proportional) {
       scale1(i) = pairs.omega(i);
       scale2(i) = pairs.omega(i) > 0 || pairs.damping(i) > 0 ? 1.0 : 0.0;
-      if (scale1(i) == 0.0 && scale2(i) > 0.0) lag = 1.0 / pairs.damping(i);
       pair_rate(i) = pairs.damping(i) / 2.0 + std::hypot(pairs.omega(i), pairs.damping(i) / 2.0);
     } else {
       const bool oscillates = pairs.g21(i) != 0.0;
@@ -106,6 +105,7 @@ void Regime::prepare_bounds() {
                                 : std::max(std::abs(pairs.g11(i)), std::abs(pairs.g22(i)));
       growth = std::max({growth, pairs.g11(i), pairs.g22(i)});
     }
+    if (scale1(i) == 0.0 && scale2(i) > 0.0) lag = -G(0, 1) / G(1, 1);
     // x_p = −G⁻¹ f − G⁻² ḟ − G⁻³ f̈ with f = B ι, ḟ = B_follows V + B_V a, f̈ = B_follows a.
     Eigen::Matrix2d inverse = Eigen::Matrix2d::Zero();
     if (scale1(i) > 0 && scale2(i) > 0)
@@ -127,7 +127,7 @@ void Regime::prepare_bounds() {
       weight(i, c) = std::hypot(scale1(i) > 0 ? row(i, c) / scale1(i) : 0.0,
                                 scale2(i) > 0 ? (row(np + i, c) - lag * row(i, c)) / scale2(i) : 0.0);
       if (scale1(i) > 0) polynomial_row(i, c) = 0.0;
-      if (scale2(i) > 0) polynomial_row(np + i, c) = 0.0;
+      if (scale2(i) > 0) polynomial_row(np + i, c) = lag * row(i, c);
     }
   }
   weight2 = pair_rate.cwiseAbs2().asDiagonal() * weight;

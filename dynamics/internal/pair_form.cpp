@@ -31,6 +31,39 @@ void check_condition(double condition) {
                            kNone, {}, condition);
 }
 
+/// A place that floats and a slow decay μ of its speed, as a mode each, would be the large summands v/μ of a small
+/// displacement. As ẋ = a v, v̇ = μ v they are not. Takes out of `decaying` what is put so, `put(mode, a)`: the slowest
+/// whose a are apart. Returns directions of the places that are left, in columns.
+/// @param drifts  a of every mode [places x modes]
+template <class Put>
+Eigen::MatrixXd put_floating(const Eigen::VectorXcd& values, const Eigen::MatrixXcd& drifts,
+                             std::vector<Eigen::Index>& decaying, const Put& put) {
+  constexpr double kApart = 1e-6;     // sine of the angle to those put before
+  constexpr double kSlowest = 1e-30;  // of the balanced state's rates: as good as none
+  const Eigen::Index places = drifts.rows();
+  Eigen::MatrixXd reached(places, 0), left = Eigen::MatrixXd::Identity(places, places);
+  while (reached.cols() < places) {
+    double largest = 0.0;
+    auto slowest = decaying.end();
+    for (auto k = decaying.begin(); k != decaying.end(); ++k) {
+      const Eigen::VectorXd a = drifts.col(*k).real();
+      const double apart = (left.transpose() * a).norm(), size = apart / std::max(std::abs(values(*k)), kSlowest);
+      if (apart <= kApart * a.norm() || size <= largest) continue;
+      largest = size;
+      slowest = k;
+    }
+    if (slowest == decaying.end()) break;
+    const Eigen::VectorXd a = drifts.col(*slowest).real();
+    put(*slowest, a);
+    decaying.erase(slowest);
+    reached.conservativeResize(Eigen::NoChange, reached.cols() + 1);
+    reached.rightCols<1>() = a / a.norm();
+    const Eigen::MatrixXd Q = Eigen::HouseholderQR<Eigen::MatrixXd>(reached).householderQ();
+    left = Q.rightCols(places - reached.cols());
+  }
+  return left;
+}
+
 /// `pair_form` of states that A couples.
 PairForm coupled_pair_form(const Eigen::MatrixXd& A) {
   const Eigen::Index n = A.rows() / 2;
@@ -67,7 +100,7 @@ PairForm coupled_pair_form(const Eigen::MatrixXd& A) {
     rest.push_back(n + i);
   }
   Eigen::VectorXcd values;
-  Eigen::MatrixXcd vectors;
+  Eigen::MatrixXcd vectors, drifts;  // [2n x m], without the places of what floats; how fast these move [shifted x m]
   if (!rest.empty()) {
     const Eigen::EigenSolver<Eigen::MatrixXd> solver(Eigen::MatrixXd(A(rest, rest)));
     if (solver.info() != Eigen::Success)
@@ -75,23 +108,40 @@ PairForm coupled_pair_form(const Eigen::MatrixXd& A) {
     values = solver.eigenvalues();
     vectors = Eigen::MatrixXcd::Zero(2 * n, values.size());
     vectors(rest, Eigen::all) = solver.eigenvectors();
-    if (!shifted.empty())
-      vectors(shifted, Eigen::all) = A(shifted, rest) * solver.eigenvectors() * values.cwiseInverse().asDiagonal();
+    drifts = A(shifted, rest) * solver.eigenvectors();
   }
+  const auto moved = [&](Eigen::Index k) -> Eigen::VectorXcd {
+    Eigen::VectorXcd vector = vectors.col(k);
+    vector(shifted) = drifts.col(k) / values(k);
+    return vector;
+  };
+
+  std::vector<Eigen::Index> decaying;
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    const auto mu = values(k);
+    if (mu.imag() > 0)
+      put(moved(k).real(), moved(k).imag(), mu.real(), mu.imag(), -mu.imag(), mu.real());
+    else if (mu.imag() == 0)
+      decaying.push_back(k);
+  }
+  const Eigen::MatrixXd places =
+      put_floating(values, drifts, decaying, [&](Eigen::Index k, const Eigen::VectorXd& along) {
+        const double speed = along.norm();
+        Eigen::VectorXd place = Eigen::VectorXd::Zero(2 * n);
+        place(shifted) = along / speed;
+        put(place, vectors.col(k).real(), 0.0, speed, 0.0, values(k).real());
+      });
 
   struct Real {
     Eigen::VectorXd vector;
     double value;
   };
   std::vector<Real> reals;
-  for (Eigen::Index k = 0; k < values.size(); ++k) {
-    const auto mu = values(k);
-    if (mu.imag() > 0)
-      put(vectors.col(k).real(), vectors.col(k).imag(), mu.real(), mu.imag(), -mu.imag(), mu.real());
-    else if (mu.imag() == 0)
-      reals.push_back({vectors.col(k).real(), mu.real()});
+  for (const Eigen::Index k : decaying) reals.push_back({moved(k).real(), values(k).real()});
+  for (const auto& place : places.colwise()) {
+    reals.push_back({Eigen::VectorXd::Zero(2 * n), 0.0});
+    reals.back().vector(shifted) = place;
   }
-  for (const Eigen::Index i : shifted) reals.push_back({Eigen::VectorXd::Unit(2 * n, i), 0.0});
   for (std::size_t k = 0; k + 1 < reals.size(); k += 2)
     put(reals[k].vector, reals[k + 1].vector, reals[k].value, 0.0, 0.0, reals[k + 1].value);
 

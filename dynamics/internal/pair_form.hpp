@@ -6,8 +6,8 @@ namespace slipmode::dynamics {
 
 /// A real matrix of even size as independent 2 x 2 blocks: A T = T G. A conjugate pair of eigenvalues σ ± iw gives the
 /// block [σ w; −w σ], two real ones a diagonal block: in these coordinates free motion grows by e^{σt} and no more.
-/// Rigid-body displacements, whose columns of A are zero, give eigenvalues that are 0 exactly; with a velocity that
-/// nothing damps either, the block [0 s; 0 0]. Block i acts on columns i and n + i of T.
+/// Rigid-body displacements, whose columns of A are zero, give eigenvalues that are 0 exactly, in one
+/// block [0 s; 0 μ] with a decay μ of their speed, which may be 0. Block i acts on columns i and n + i of T.
 struct PairForm {
   Eigen::VectorXd g11, g12, g21, g22;  ///< blocks [n]
   Eigen::MatrixXd T, T_inverse;        ///< [2n x 2n]

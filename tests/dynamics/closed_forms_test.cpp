@@ -1,4 +1,5 @@
 // Closed forms: every expected value is an elementary formula of tests/fixtures/, derived by hand.
+#include <slipmode/fem/masses.hpp>
 #include "fixtures/belt_oscillator.hpp"
 #include "fixtures/scenes.hpp"
 #include "fixtures/uniform_chain.hpp"
@@ -121,6 +122,21 @@ TEST_P(ClosedForms, ChainWithoutFrictionFollowsItsTextbookModes) {
         ASSERT_LT((run.q.col(k) - expected.q).cwiseAbs().maxCoeff(), 1e-10) << damping << " at " << run.times[k];
         ASSERT_LT((run.v.col(k) - expected.v).cwiseAbs().maxCoeff(), 1e-10) << damping << " at " << run.times[k];
       }
+    }
+  }
+}
+
+TEST_P(ClosedForms, WhatFloatsAndHardlyFeelsADamperGoesStraightOn) {
+  // Two masses on one spring, both at speed 1, the first on a damper c: |q̈| ≤ c/m of either, so q = t up to c t²/2m.
+  for (const double c : {1e-3, 1e-6, 1e-9, 1e-12}) {
+    const HybridSystem pair(
+        fem::masses({.mass = {1.0, 2.0}, .links = {{1, 2, 1.0, 0.0}, {.first = 0, .second = 1, .damping = c}}}),
+        {{unit(2, 1), friction::Coulomb{0.3, 0.3}, 0.0}}, friction::Belt::constant(0.0));
+    for (const double t : {0.01, 1.0}) {
+      const Trajectory run =
+          simulate(pair, state(Eigen::Vector2d::Zero(), Eigen::Vector2d::Ones()), {.duration = t, .flow = flow()});
+      EXPECT_LE((run.final_state.q.array() - t).abs().maxCoeff(), c * t * t / 2.0 + 1e-14 * t) << c;
+      EXPECT_LE((run.final_state.v.array() - 1.0).abs().maxCoeff(), c * t + 1e-14) << c;
     }
   }
 }
