@@ -112,11 +112,16 @@ double CollocationFlow::moved_by(const OwnGuard& guard, double speed) const {
   return (std::abs(guard.y) * tables_.step(step_level_) + std::abs(guard.v)) * speed;
 }
 
-double CollocationFlow::size_ahead(const OwnGuard& guard, int c) const {
-  Eigen::VectorXd end(x_begin_.size()), pushed = Eigen::VectorXd::Zero(x_begin_.size());
+Eigen::VectorXd CollocationFlow::state_ahead() const {
+  Eigen::VectorXd end(x_begin_.size());
   kernels_.propagate(tables_.propagator(step_level_).arrays(tables_.loaded()), x_begin_.data(), forces_.data(),
                      end.data());
-  end = end.cwiseAbs();
+  return end;
+}
+
+double CollocationFlow::size_ahead(const OwnGuard& guard, int c) const {
+  const Eigen::VectorXd end = state_ahead().cwiseAbs();
+  Eigen::VectorXd pushed = Eigen::VectorXd::Zero(x_begin_.size());
   // Forces in balance move by rounding, what they act on and all that hangs on it.
   const auto most = [&](int d) { return forces_.segment<kNodes>(kNodes * d).cwiseAbs().maxCoeff(); };
   for (int d = 0; d < nc_; ++d) pushed += most(d) * model_.input.col(d).cwiseAbs();
@@ -132,6 +137,12 @@ double CollocationFlow::tolerated(const OwnGuard& guard, int c) const {
   return moved_by(guard, options_.tolerance * tables_.step(0) * model_.velocity_row.col(c).cwiseAbs().dot(impulse));
 }
 
+bool CollocationFlow::pushed_through(const OwnGuard& guard, int c, const GuardValue& now, int order) const {
+  if (guard.kind != GuardKind::kStop || order != 2 || !(now.second < 0.0) || touched_ == c) return false;
+  const double then = evaluate(guard, c, tables_.step(step_level_), state_ahead()).second / now.second;
+  return then > 0.5 && then < 2.0;
+}
+
 bool CollocationFlow::searched_from_rest(const OwnGuard& guard, int c, const GuardValue& now, int order,
                                          const BernsteinPolynomial& form, Guarded& first) const {
   const RadauTables::Vector8 values = at_nodes(guard, c);
@@ -143,7 +154,7 @@ bool CollocationFlow::searched_from_rest(const OwnGuard& guard, int c, const Gua
   const bool leads = order == 1 ? std::abs(now.rate) > std::max(model_.fastest, over_top_) * told
                                 : std::abs(leading) > told && leading / value > 0.5 && leading / value < 2.0;
   if (leads) return false;
-  if (!(values.cwiseAbs().maxCoeff() > shows)) return true;
+  if (!(values.cwiseAbs().maxCoeff() > shows)) return !pushed_through(guard, c, now, order);
   Guarded found{0.0, c, false, guard, 2};  // too early for it: to be halved
   if (std::abs(leading) <= shows) {
     const auto showing = std::find_if(values.begin(), values.end(), [&](double v) { return std::abs(v) > shows; });
@@ -180,7 +191,9 @@ void CollocationFlow::search_own_guards(int c, Guarded& first) const {
     // to.
     const double h = tables_.step(step_level_), most = std::max(std::abs(start), form.cwiseAbs().maxCoeff());
     const double pushed = moved_by(guard, h * balanced(c));
-    if (most <= (order == 2 && !known ? kStarting : kTouching) * std::max(now.size, pushed)) continue;
+    if (most <= (order == 2 && !known ? kStarting : kTouching) * std::max(now.size, pushed) &&
+        !pushed_through(guard, c, now, order))
+      continue;
     if (order > 0 && touched_ != c && guard.kind == GuardKind::kStop &&
         searched_from_rest(guard, c, now, order, p, first))
       continue;
