@@ -54,11 +54,13 @@ std::array<double, 3> scalar_moments(double mu, double t) {
   return out;
 }
 
-/// Two real eigenvalues far apart: each has its own integral, however fast the faster one is.
+/// Two real eigenvalues far apart, also within the time: each has its own integral, however fast the faster one is.
+/// Within less than a radian these would be all but equal, and the difference of two integrals is what is wanted.
 std::optional<Moments> separate_moments(const Eigen::Matrix2d& G, double t) {
   const double half = G.trace() / 2.0, determinant = G.determinant(), gap = half * half - determinant;
   if (!(gap > 0.25 * half * half)) return std::nullopt;
   const double root = std::sqrt(gap), fast = half < 0 ? half - root : half + root, slow = determinant / fast;
+  if (std::abs(fast - slow) * t < 1.0) return std::nullopt;
   const Eigen::Matrix2d of_fast = (G - slow * Eigen::Matrix2d::Identity()) / (fast - slow);
   const Eigen::Matrix2d of_slow = (G - fast * Eigen::Matrix2d::Identity()) / (slow - fast);
   const std::array<double, 3> a = scalar_moments(fast, t), b = scalar_moments(slow, t);

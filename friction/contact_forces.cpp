@@ -23,7 +23,8 @@ double ContactForces::smooth(double v, double& slope) const {
   if (kind != LawKind::kSmooth) return slope = 0.0;
   if (characteristic != nullptr) {
     slope = load * characteristic->slope(std::abs(v));
-    return std::copysign(load * characteristic->mu(std::abs(v)), v);
+    const double forward = load * characteristic->mu(std::abs(v));
+    return v < 0.0 ? -forward : forward;
   }
   const double th = std::tanh(v / epsilon), dth = (1 - th * th) / epsilon;
   const double magnitude = v * th, d_magnitude = th + v * dth;

@@ -137,8 +137,10 @@ double CollocationFlow::tolerated(const OwnGuard& guard, int c) const {
   return moved_by(guard, options_.tolerance * tables_.step(0) * model_.velocity_row.col(c).cwiseAbs().dot(impulse));
 }
 
-bool CollocationFlow::pushed_through(const OwnGuard& guard, int c, const GuardValue& now, int order) const {
-  if (guard.kind != GuardKind::kStop || order != 2 || !(now.second < 0.0) || touched_ == c) return false;
+bool CollocationFlow::pushed_onto(const OwnGuard& guard, int c, const GuardValue& now, int order) const {
+  if (point_.modes[static_cast<std::size_t>(c)] != ContactMode::kGap || order != 2 || !(now.second < 0.0) ||
+      touched_ == c)
+    return false;
   const double then = evaluate(guard, c, tables_.step(step_level_), state_ahead()).second / now.second;
   return then > 0.5 && then < 2.0;
 }
@@ -154,7 +156,7 @@ bool CollocationFlow::searched_from_rest(const OwnGuard& guard, int c, const Gua
   const bool leads = order == 1 ? std::abs(now.rate) > std::max(model_.fastest, over_top_) * told
                                 : std::abs(leading) > told && leading / value > 0.5 && leading / value < 2.0;
   if (leads) return false;
-  if (!(values.cwiseAbs().maxCoeff() > shows)) return !pushed_through(guard, c, now, order);
+  if (!(values.cwiseAbs().maxCoeff() > shows)) return !pushed_onto(guard, c, now, order);
   Guarded found{0.0, c, false, guard, 2};  // too early for it: to be halved
   if (std::abs(leading) <= shows) {
     const auto showing = std::find_if(values.begin(), values.end(), [&](double v) { return std::abs(v) > shows; });
@@ -192,7 +194,7 @@ void CollocationFlow::search_own_guards(int c, Guarded& first) const {
     const double h = tables_.step(step_level_), most = std::max(std::abs(start), form.cwiseAbs().maxCoeff());
     const double pushed = moved_by(guard, h * balanced(c));
     if (most <= (order == 2 && !known ? kStarting : kTouching) * std::max(now.size, pushed) &&
-        !pushed_through(guard, c, now, order))
+        !pushed_onto(guard, c, now, order))
       continue;
     if (order > 0 && touched_ != c && guard.kind == GuardKind::kStop &&
         searched_from_rest(guard, c, now, order, p, first))

@@ -221,9 +221,10 @@ class CollocationFlow {
     double size = 0.0, rate_size = 0.0;  ///< of the terms that are summed
   };
   void search_own_guards(int c, Guarded& first) const;
-  /// Whether a stop's guard that starts at zero with its slope is pushed below, as told by its curvature at both ends
-  /// of a step too short to show it. @param now  at the step's start @param order  of the zero there
-  [[nodiscard]] bool pushed_through(const OwnGuard& guard, int c, const GuardValue& now, int order) const;
+  /// Whether a gap that starts at zero, as its slope does, is pushed shut, as told by its curvature at both ends of a
+  /// step too short to show it. A stop that lets go has an overlap to lose first.
+  /// @param now  at the step's start @param order  of the zero there
+  [[nodiscard]] bool pushed_onto(const OwnGuard& guard, int c, const GuardValue& now, int order) const;
   /// The same of a stop's guard that starts at zero, where the order of that zero does not lead: the leading term may
   /// be of any order, where the force that begins to act does so elsewhere, and of a higher one the form's first
   /// coefficients are errors of interpolation. The values at the nodes are none. False where the order leads.

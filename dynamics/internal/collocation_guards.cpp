@@ -44,8 +44,7 @@ CollocationFlow::Guarded CollocationFlow::first_guard() {
     if (point_.modes[i] == ContactMode::kStick) {
       const double most = kernels_.force_guard(t.bernstein7.data(), forces_.data() + kNodes * c, guard);
       const double below = law.static_limit * (1.0 - kAtLimit);
-      // Without static friction what rests under no force rests on.
-      if (most <= below || (tells_no_force(c) && std::abs(stick_force(c, x_begin_, 0.0)) <= below)) continue;
+      if (most < below || (tells_no_force(c) && std::abs(stick_force(c, x_begin_, 0.0)) <= below)) continue;
       p.degree = kNodes - 1;
       for (const double sign : {1.0, -1.0}) {
         std::array<double, kNodes> margin;

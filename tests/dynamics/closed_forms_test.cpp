@@ -141,6 +141,22 @@ TEST_P(ClosedForms, WhatFloatsAndHardlyFeelsADamperGoesStraightOn) {
   }
 }
 
+TEST_P(ClosedForms, WhatFloatsAndHardlyFeelsADamperIsPulledAlong) {
+  // The same two masses from rest, the second pulled by friction F: no speed exceeds F t, so of F t²/2 the damper takes
+  // c F t³/6 at most.
+  constexpr double kForce = 0.3;
+  for (const double c : {1e-3, 1e-6, 1e-9, 1e-12}) {
+    const HybridSystem pair(
+        fem::masses({.mass = {1.0, 2.0}, .links = {{1, 2, 1.0, 0.0}, {.first = 0, .second = 1, .damping = c}}}),
+        {{unit(2, 1), friction::Coulomb{kForce, kForce}, 1.0}}, friction::Belt::constant(100.0));
+    for (const double t : {0.01, 1.0, 20.0}) {
+      const Trajectory run = simulate(pair, pair.rest(), {.duration = t, .flow = flow()});
+      const double way = run.final_state.q(0) + 2.0 * run.final_state.q(1), free = kForce * t * t / 2.0;
+      EXPECT_LE(std::abs(way - free), c * kForce * t * t * t / 6.0 + 1e-13 * free) << c << ' ' << t;
+    }
+  }
+}
+
 TEST_P(ClosedForms, UndampedChainWithoutFrictionKeepsItsEnergy) {
   Draws random(5);
   const HybridSystem system = belt_chain(friction::Coulomb{0.0, 0.0}, friction::Belt::constant(0.2), 25, 0.0);

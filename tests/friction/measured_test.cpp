@@ -119,6 +119,20 @@ TEST(LawBounds, ComeWithTheLargestCoefficient) {
   EXPECT_NO_THROW(check());
 }
 
+// Rayleigh's oscillator: negative below 0.447.
+TEST(LawBounds, WithoutStickAForceMayDriveSlowMotion) {
+  const Characteristic law{.mu_s = 0.0,
+                           .mu = [](double v) { return v * v * v - 0.2 * v; },
+                           .slope = [](double v) { return 3.0 * v * v - 0.2; }};
+  const ContactForces forces = forces_of(law);
+  for (const double v : {-0.7, -0.1, 0.1, 0.7}) {
+    double slope = 0.0;
+    EXPECT_NEAR(forces.smooth(v, slope), 2.0 * (v * v * v - 0.2 * v), 1e-16);
+    EXPECT_NEAR(slope, 2.0 * (3.0 * v * v - 0.2), 1e-15);
+    EXPECT_EQ(forces.sliding(1.0, v), forces.smooth(v, slope));
+  }
+}
+
 TEST(Measured, MayRiseFromNothing) {
   const Measured law{.mu_s = 0.0, .speeds = {0.0, 1.0}, .coefficients = {0.0, 0.2}};
   EXPECT_EQ(forces_of(law).kind, LawKind::kSmooth);

@@ -12,8 +12,9 @@ namespace slipmode::orbits {
 /// counterpart: λ = f(−Ω y′), δλ = −f′ Ω δy′.
 ///
 /// No integral of f is known along a series. Exact is what as many samples give as it takes: they are doubled until no
-/// coefficient moves by 1e-13 of the force, which a periodic analytic function needs few for, up to 2¹⁵. How many
-/// depends on the sharpest turn of the law, ε of the largest speed. Source: docs/theory/harmonic-balance.md, section 2.
+/// coefficient moves by 1e-13 of the force, which a periodic analytic function needs few for, up to 2¹⁵, which a law by
+/// points takes for its kinks. How many depends on the sharpest turn of the law, ε of the largest speed. Source:
+/// docs/theory/harmonic-balance.md, section 2.
 struct BalancedSmooth {
   static constexpr bool kRemembers = false, kFollowsDrive = true;
   friction::ContactForces law;
