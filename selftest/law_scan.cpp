@@ -396,9 +396,11 @@ class Scan {
     for (std::size_t i = 0; i < timeline.times().size(); ++i) {
       const double t = timeline.times()[i];
       const auto k = static_cast<Index>(std::ceil((t - s.times(0)) / h)) - 1;
-      // One contact's event may set off another's.
-      const auto [first, last] = std::equal_range(event_times_.begin(), event_times_.end(), t);
-      if (last - first > 1 || k < 4 || k >= s.times.size() || !quiet(s.times(k - 4), t - 1e-12 * (1.0 + t)) ||
+      // One contact's event may set off another's, or its own next.
+      const double instant = 1e-12 * (1.0 + t);
+      const auto first = std::lower_bound(event_times_.begin(), event_times_.end(), t - instant),
+                 last = std::upper_bound(first, event_times_.end(), t + instant);
+      if (last - first > 1 || k < 4 || k >= s.times.size() || !quiet(s.times(k - 4), t - instant) ||
           !smooth_drive(s.times(k - 4), t) || t - s.times(k) < 1e-9 * h)
         continue;
       const std::span<const ContactInstant> samples(instants.data() + k - 4, 5);
