@@ -34,7 +34,7 @@ double ContactForces::smooth(double v, double& slope) const {
 }
 
 double ContactForces::sliding(double direction, double v) const {
-  double slope;
+  double slope = 0.0;
   if (!sticks()) return smooth(v, slope);
   if (kind != LawKind::kSpeedDependent) return direction * onset(direction);
   if (characteristic != nullptr) return direction * load * characteristic->mu(std::abs(v));
@@ -42,7 +42,7 @@ double ContactForces::sliding(double direction, double v) const {
 }
 
 double ContactForces::continued(double direction, double v) const {
-  double slope;
+  double slope = 0.0;
   return sticks() ? direction * load * characteristic->mu(direction * v) : smooth(v, slope);
 }
 
@@ -53,7 +53,7 @@ double ContactForces::onset_slope() const {
 double ContactForces::slope(double direction, double v) const {
   if (characteristic != nullptr && sticks()) return load * characteristic->slope(direction * v);
   if (kind == LawKind::kSpeedDependent) return -alpha * drop * std::exp(-alpha * (direction * v));
-  double slope;
+  double slope = 0.0;
   static_cast<void>(smooth(v, slope));
   return slope;
 }

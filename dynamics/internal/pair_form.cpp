@@ -137,6 +137,7 @@ PairForm coupled_pair_form(const Eigen::MatrixXd& A) {
     double value;
   };
   std::vector<Real> reals;
+  reals.reserve(decaying.size() + shifted.size());
   for (const Eigen::Index k : decaying) reals.push_back({moved(k).real(), values(k).real()});
   for (const auto& place : places.colwise()) {
     reals.push_back({Eigen::VectorXd::Zero(2 * n), 0.0});
