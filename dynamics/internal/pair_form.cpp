@@ -90,26 +90,16 @@ PairForm coupled_pair_form(const Eigen::MatrixXd& A) {
       A.topRows(n).rowwise().lpNorm<Eigen::Infinity>().cwiseMax(A.bottomRows(n).rowwise().lpNorm<Eigen::Infinity>());
   std::stable_sort(order.begin(), order.end(), [&](Eigen::Index i, Eigen::Index j) { return size(i) > size(j); });
   for (const Eigen::Index i : order) {
-    const bool rigid = A.col(i).isZero(0.0);
-    if (rigid && A.row(n + i).isZero(0.0) && A(i, n + i) != 0.0 && A.col(n + i).lpNorm<1>() == std::abs(A(i, n + i))) {
-      put(Eigen::VectorXd::Unit(2 * n, i), Eigen::VectorXd::Unit(2 * n, n + i), 0.0, A(i, n + i), 0.0, 0.0);
-      continue;
-    }
-    if (rigid) shifted.push_back(i);
-    if (!rigid) rest.push_back(i);
+    (A.col(i).isZero(0.0) ? shifted : rest).push_back(i);
     rest.push_back(n + i);
   }
-  Eigen::VectorXcd values;
-  Eigen::MatrixXcd vectors, drifts;  // [2n x m], without the places of what floats; how fast these move [shifted x m]
-  if (!rest.empty()) {
-    const Eigen::EigenSolver<Eigen::MatrixXd> solver(Eigen::MatrixXd(A(rest, rest)));
-    if (solver.info() != Eigen::Success)
-      throw NumericalFailure("eigenvalues of the damped structure did not converge", kNone, {}, kNone);
-    values = solver.eigenvalues();
-    vectors = Eigen::MatrixXcd::Zero(2 * n, values.size());
-    vectors(rest, Eigen::all) = solver.eigenvectors();
-    drifts = A(shifted, rest) * solver.eigenvectors();
-  }
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(Eigen::MatrixXd(A(rest, rest)));
+  if (solver.info() != Eigen::Success)
+    throw NumericalFailure("eigenvalues of the damped structure did not converge", kNone, {}, kNone);
+  const Eigen::VectorXcd& values = solver.eigenvalues();
+  Eigen::MatrixXcd vectors = Eigen::MatrixXcd::Zero(2 * n, values.size());  // without the places of what floats
+  vectors(rest, Eigen::all) = solver.eigenvectors();
+  const Eigen::MatrixXcd drifts = A(shifted, rest) * vectors(rest, Eigen::all);  // how fast these move
   const auto moved = [&](Eigen::Index k) -> Eigen::VectorXcd {
     Eigen::VectorXcd vector = vectors.col(k);
     vector(shifted) = drifts.col(k) / values(k);
@@ -119,10 +109,12 @@ PairForm coupled_pair_form(const Eigen::MatrixXd& A) {
   std::vector<Eigen::Index> decaying;
   for (Eigen::Index k = 0; k < values.size(); ++k) {
     const auto mu = values(k);
-    if (mu.imag() > 0)
-      put(moved(k).real(), moved(k).imag(), mu.real(), mu.imag(), -mu.imag(), mu.real());
-    else if (mu.imag() == 0)
+    if (mu.imag() > 0) {
+      const Eigen::VectorXcd vector = moved(k);
+      put(vector.real(), vector.imag(), mu.real(), mu.imag(), -mu.imag(), mu.real());
+    } else if (mu.imag() == 0) {
       decaying.push_back(k);
+    }
   }
   const Eigen::MatrixXd places =
       put_floating(values, drifts, decaying, [&](Eigen::Index k, const Eigen::VectorXd& along) {

@@ -35,9 +35,8 @@ BalancedLaw balanced_law(const friction::Contact& contact, std::size_t c) {
     return BalancedSmooth{std::move(forces)};
   throw InvalidInput(fmt::format(
       "harmonic balance holds clearances, Coulomb friction behind a contact spring and friction without stick "
-      "(contact.{}"
-      ".law = \"clearance\", \"compliant\", \"tanh\", or a \"table\" with mu_s = 0), and contact '{}' has another "
-      "law; give it a contact spring, or find this orbit by shooting, which holds every law",
+      "(contact.{}.law = \"clearance\", \"compliant\", \"tanh\", or a \"table\" with mu_s = 0), and contact "
+      "'{}' has another law; give it a contact spring, or find this orbit by shooting, which holds every law",
       c, contact.name));
 }
 
