@@ -77,19 +77,6 @@ double Drive::frequency_hz() const {
 
 double Drive::section_time() const { return shaker() ? shaker()->next_upward_zero(0.0) : 0.0; }
 
-double Drive::way(double t0, double t1) const {
-  if (force()) return 0.0;
-  if (shaker()) return shaker()->displacement(t1) - shaker()->displacement(t0);
-  const Belt& b = *belt();
-  double way = 0.0;
-  for (double t = t0; t < t1;) {
-    const double until = std::min(t1, b.next_corner(t).value_or(t1));
-    way += (until - t) * (b.velocity(t) + 0.5 * (until - t) * b.acceleration(t));
-    t = until;
-  }
-  return way;
-}
-
 namespace {
 
 void check_finite(const char* drive, const char* key, double value) {

@@ -126,8 +126,6 @@ class Drive {
   [[nodiscard]] double velocity_scale(double t) const {
     return shaker() ? shaker()->amplitude * shaker()->omega() : std::abs(velocity(t));
   }
-  /// The way it goes from t0 to t1 [m].
-  [[nodiscard]] double way(double t0, double t1) const;
   /// The first time > t at which the acceleration jumps, if any.
   [[nodiscard]] std::optional<double> next_corner(double t) const {
     return belt() ? belt()->next_corner(t) : std::nullopt;

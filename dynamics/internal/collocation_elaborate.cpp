@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace slipmode::dynamics {
 namespace {
@@ -17,6 +18,8 @@ constexpr double kTouching = 1e-12, kStarting = 1e-11, kFlat = 1e-9;
 constexpr double kShows = 10.0;
 /// A time rounds by this share of itself, and of the step it was found in.
 constexpr double kOfTime = 1e-15;
+/// A place rounds by this share of what is summed.
+constexpr double kOfPlace = 64.0 * std::numeric_limits<double>::epsilon();
 /// After a grazing the guard is as near to zero as the grazing was located.
 constexpr double kGrazed = 1e-6;
 
@@ -41,8 +44,19 @@ void CollocationFlow::set_own_forces() {
 double CollocationFlow::own_force(int c, double tau, const double* x) const {
   const OwnForce& own = own_forces_[static_cast<std::size_t>(c)];
   if (!own.moves()) return own.constant;
-  const double way = own.follows ? drive().way(begin_, begin_ + tau) : 0.0;
-  return own.at(way, resolver_.contact_displacement(c, x) - own.place, resolver_.contact_velocity(c, x));
+  return own.at(own.follows ? drive_way(begin_, tau) : 0.0, moved(c, tau, x), resolver_.contact_velocity(c, x));
+}
+
+double CollocationFlow::moved(int c, double tau, const double* x) const {
+  const double by_state = resolver_.contact_displacement(c, x) - own_forces_[static_cast<std::size_t>(c)].place;
+  // Zero at the start: a polynomial of degree 7 times the time.
+  const double theta = tau / tables_.step(step_level_);
+  const auto at_nodes = moved_.segment<kNodes>(kNodes * c).cwiseQuotient(nodes_.node);
+  const double by_nodes = theta * at_nodes.dot(nodes_.lagrange(theta));
+  const double rounds =
+      kOfPlace * model_.displacement_row.col(c).cwiseAbs().dot(
+                     Eigen::Map<const Eigen::VectorXd>(x, 2 * model_.np).cwiseAbs() + x_begin_.cwiseAbs());
+  return std::abs(by_nodes - by_state) <= rounds ? by_nodes : by_state;
 }
 
 std::vector<CollocationFlow::OwnGuard> CollocationFlow::own_guards(int c, ContactMode mode) const {
@@ -251,7 +265,9 @@ CollocationFlow::GuardValue CollocationFlow::evaluate(const OwnGuard& guard, int
     } else {
       force = own_force(c, tau, x.data());
       force_rate = own.rate(V, v, acceleration);
-      force_rate_size = std::abs(own.stiffness) * speeds + std::abs(own.damping) * accelerations;
+      // Where it turns, as where its contact has ceased to slide, speeds round by what accelerations make of them.
+      force_rate_size = std::abs(own.stiffness) * (speeds + 0.25 * tables_.step(0) * accelerations) +
+                        std::abs(own.damping) * accelerations;
     }
   }
   // Where a motion passes its origin, places round by what speeds make of them.

@@ -354,6 +354,13 @@ double CollocationFlow::drive_velocity(double begin, double tau) const {
   return V * std::cos(omega * tau) + a / omega * std::sin(omega * tau);
 }
 
+double CollocationFlow::drive_way(double begin, double tau) const {
+  const double V = drive().velocity(begin), a = drive().acceleration(begin);
+  if (drive().shaker() == nullptr) return (V + 0.5 * a * tau) * tau;
+  const double half = 0.5 * drive().shaker()->omega(), sine = std::sin(half * tau);
+  return (V * std::cos(half * tau) + 0.5 * a / half * sine) * sine / half;
+}
+
 double CollocationFlow::drive_acceleration(double begin, double tau) const {
   return drive().acceleration(drive().shaker() != nullptr ? begin + tau : begin);
 }

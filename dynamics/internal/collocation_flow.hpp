@@ -214,6 +214,9 @@ class CollocationFlow {
   /// Of the step that begins at the point.
   void set_own_forces();
   [[nodiscard]] double own_force(int c, double tau, const double* x) const;
+  /// What the contact has moved by since the step's start [m]: to rounding of places, and by as much less where the
+  /// polynomial through the nodes tells it, as in a short step. @param x  state at `begin_ + tau`
+  [[nodiscard]] double moved(int c, double tau, const double* x) const;
   [[nodiscard]] std::vector<OwnGuard> own_guards(int c, ContactMode mode) const;
   struct GuardValue {
     double value = 0.0, rate = 0.0;
@@ -310,6 +313,8 @@ class CollocationFlow {
   [[nodiscard]] double drive_velocity(double begin, double tau) const;
   [[nodiscard]] double drive_acceleration(double begin, double tau) const;
   [[nodiscard]] RadauTables::Vector8 drive_velocities(double begin, double h) const;
+  /// What it has gone since `begin`, to rounding of that way, however short.
+  [[nodiscard]] double drive_way(double begin, double tau) const;
 
   // A drive's forces follow those of the contacts, at the nodes as everywhere: docs/theory/flow.md, section 2.
   /// At the nodes of a step of this level from `begin_` on.

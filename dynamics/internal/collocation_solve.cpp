@@ -89,7 +89,7 @@ bool CollocationFlow::solve_forces(int level) {
   if (!any_elaborate_) return solve_coupled(table, nullptr, h);
   const AtNodes& displacements = tables_.displacements(level);
   without_contacts(displacements, free_way_);
-  for (int j = 0; j < kNodes; ++j) way_nodes_(j) = drive().way(begin_, begin_ + h * nodes_.node(j));
+  for (int j = 0; j < kNodes; ++j) way_nodes_(j) = drive_way(begin_, h * nodes_.node(j));
   if (!solve_coupled(table, &displacements, h)) return false;
   moved_ = free_way_ + displacements.kernel.topLeftCorner(free_.size(), free_.size()) * forces_.head(free_.size());
   return true;

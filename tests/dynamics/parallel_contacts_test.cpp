@@ -96,6 +96,51 @@ TEST(ParallelContacts, AddUpAsAProgramOfFixedStepsAddsThem) {
   EXPECT_LT(std::abs(run.audit.residual()), 1e-12);
 }
 
+TEST(ParallelContacts, OfStiffSpringsTurnOnceWhereTheMassDoes) {
+  // Elements that stretch by 1e-10 m down to 1e-15 m before they slide, under a mass that moves by metres: where the
+  // speed turns, each ceases to slide and begins to, once. By collocation as in the closed form, and as by hand. Where
+  // a stretch was a difference of places, and of times by the clock, elements that had just ceased to slide found
+  // themselves beyond their limit again and again.
+  using friction::Drive;
+  for (const Drive& drive :
+       {Drive(friction::Shaker{.amplitude = 1.0, .frequency_hz = 0.3, .phase = 0.4}), Drive(friction::Belt{})})
+    for (const double limit : {1e-4, 1e-7, 1e-9})
+      for (const double tolerance : {1e-9, 1e-12}) {
+        SCOPED_TRACE(testing::Message() << drive.period().has_value() << " " << limit << " " << tolerance);
+        std::vector<friction::Contact> contacts;
+        for (const double part : {1.0, 2.0, 3.0})
+          contacts.push_back(
+              {Eigen::VectorXd::Ones(1), friction::CompliantCoulomb{part * limit, part * limit, 1e6}, 1.0});
+        const HybridSystem system(fem::masses({.links = {{.stiffness = 1.0}}}), contacts, drive);
+        State start = system.rest();
+        start.q(0) = 1.0;
+        start.v(0) = 0.5;
+        const auto run = [&](FlowMethod method) {
+          return simulate(system, start, {.duration = 40.0, .flow = {.method = method, .tolerance = tolerance}});
+        };
+        const Trajectory exact = run(FlowMethod::kClosedForm), by_nodes = run(FlowMethod::kCollocation);
+        ASSERT_EQ(by_nodes.events.size(), exact.events.size());
+        EXPECT_EQ(std::ranges::count(by_nodes.events, EventKind::kJump, &Event::kind), 0);
+        // Turned by an acceleration a, an element slides again when it has gone 2 L/k: after √(4 L/(k a)).
+        double turned = 0.0, acceleration = 0.0;
+        for (std::size_t k = 0; k < exact.events.size(); ++k) {
+          const Event& event = by_nodes.events[k];
+          if (limit > 1e-8) {  // below, its places round by more
+            EXPECT_NEAR(event.time, exact.events[k].time, 2e-9);
+          }
+          if (event.kind == EventKind::kStick) {
+            turned = event.time;
+            acceleration = std::abs(drive.acceleration(turned) + event.displacement);
+          } else if (turned > 0.0) {
+            const double after = std::sqrt(4.0 * (event.contact + 1) * limit / 1e6 / acceleration);
+            EXPECT_NEAR((event.time - turned) / after, 1.0, 6.0 * limit + 1e-6);  // beside a: the three forces
+          }
+        }
+        EXPECT_NEAR(by_nodes.final_state.q(0), exact.final_state.q(0), 1e-11);
+        EXPECT_LT(std::abs(by_nodes.audit.residual()), 1e-12);
+      }
+}
+
 TEST(ParallelContacts, OfAStiffStopOnAHeldMassLeaveTheMotionItsDigits) {
   // Two masses, the second held by friction on a shaker A sin ωt and pressed against a stop of stiffness k: it moves as
   // the shaker does, however large the force k A sin ωt that friction bears.

@@ -86,7 +86,6 @@ TEST(Force, SumsItsHarmonicsPerDirection) {
   EXPECT_DOUBLE_EQ(drive.period().value(), std::numbers::pi);
   EXPECT_FALSE(drive.is_constant());
   EXPECT_EQ(drive.velocity(t), 0.0);  // the counterpart rests
-  EXPECT_EQ(drive.way(0.0, t), 0.0);
   EXPECT_FALSE(Drive(Belt::constant(1.0)).period().has_value());
   EXPECT_DOUBLE_EQ(Drive(Shaker{1.0, 4.0, 0.0}).period().value(), 0.25);
 }
