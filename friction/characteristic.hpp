@@ -34,8 +34,7 @@ struct Characteristic {
 
   static constexpr auto fields() { return std::tuple{}; }
 
-  /// What holds nothing at rest passes zero as a function of the speed that is odd: no stick, and no event there.
-  [[nodiscard]] LawKind kind() const { return mu_s > 0.0 ? LawKind::kSpeedDependent : LawKind::kSmooth; }
+  [[nodiscard]] LawKind kind() const { return kind_by_speed(mu_s); }
   [[nodiscard]] double static_coefficient() const { return mu_s; }
   /// μ(0): what it tends to at large speed is not known.
   [[nodiscard]] double limit_coefficient() const { return mu(0.0); }

@@ -31,6 +31,12 @@ enum class LawKind : std::uint8_t {
   return kind == LawKind::kCompliant || kind == LawKind::kBristle;
 }
 
+/// Of a law told by its coefficient at each speed. What holds nothing at rest passes zero as a function of the speed
+/// that is odd: no stick, and no event there.
+[[nodiscard]] constexpr LawKind kind_by_speed(double mu_s) {
+  return mu_s > 0.0 ? LawKind::kSpeedDependent : LawKind::kSmooth;
+}
+
 /// Two contacts of these laws may act on one displacement. Of two that stick rigidly the forces could not be told;
 /// beside one, springs and bristles would begin to slide and turn where it holds their speed at zero.
 [[nodiscard]] constexpr bool can_share_place(LawKind a, LawKind b) {

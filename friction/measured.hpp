@@ -29,8 +29,7 @@ struct Measured {
         required("coefficients", &Measured::coefficients, "1", "friction coefficients at these speeds", kNonNegative)};
   }
 
-  /// As a characteristic of that mu_s.
-  [[nodiscard]] LawKind kind() const { return mu_s > 0.0 ? LawKind::kSpeedDependent : LawKind::kSmooth; }
+  [[nodiscard]] LawKind kind() const { return kind_by_speed(mu_s); }
   [[nodiscard]] double static_coefficient() const { return mu_s; }
   [[nodiscard]] double limit_coefficient() const { return coefficients.back(); }
   [[nodiscard]] double kinetic_coefficient(double speed) const;
