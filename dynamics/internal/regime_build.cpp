@@ -262,7 +262,8 @@ void RegimeBuilder::make_general_pairs(Regime& out) {
   for (Eigen::Index c = 0; c < nc_; ++c) {
     const Eigen::VectorXd w = W.col(c).cwiseAbs();
     if (spring_(c) < 0.0) coupling.head(m) = coupling.head(m).cwiseMax(-spring_(c) * w.norm() * w);
-    if (load(c).oscillates()) coupling.head(m) = coupling.head(m).cwiseMax(std::abs(load(c).lift) * w);
+    if (load(c).oscillates())
+      coupling.head(m) = coupling.head(m).cwiseMax(std::abs(load(c).lift) * direction(c).cwiseAbs());
   }
   double beside = 0.0;
   for (Eigen::Index j = acting; j < k; ++j) beside = std::max(beside, std::sqrt(load(contact(j)).stiffness));

@@ -170,6 +170,41 @@ HybridSystem free_block(friction::NormalLoad load, friction::Law law, friction::
   return {fem::Structure(one, none, none), {{unit(1, 0), std::move(law), load}}, std::move(drive)};
 }
 
+TEST(NormalOscillators, FeelABlockThatFloatsToItsLastDigits) {
+  // A block that starts at belt speed V keeps it, held or let go: y = y0 + V t, and of its oscillator's
+  // z̈ + d ż + k z = l y, N = N0 + k_e (s y − z), everything is known. N vanishes at every event.
+  const double V = 0.37, y0 = -1.1, N0 = 0.3;
+  Draws random(11);
+  int events = 0;
+  for (int draw = 0; draw < 20; ++draw) {
+    const friction::NormalOscillator own{.mass = random.uniform(0.5, 2.0),
+                                         .support_stiffness = random.uniform(0.2, 2.0),
+                                         .support_damping = random.uniform(0.0, 0.1),
+                                         .spring_stiffness = random.uniform(0.5, 2.0),
+                                         .slope = random.uniform(-0.8, -0.3)};
+    const HybridSystem system = free_block({N0, own}, friction::Coulomb{0.7, 0.3}, friction::Belt::constant(V));
+    State start = system.rest();
+    start.q(0) = y0;
+    start.v(0) = V;
+    const double k = (own.support_stiffness + own.spring_stiffness) / own.mass, d = own.support_damping / own.mass,
+                 l = own.spring_stiffness * own.slope / own.mass;
+    const double drift = l * V / k, place = (l * y0 - d * drift) / k, w = std::sqrt(k - 0.25 * d * d);
+    start.internal = Eigen::Vector2d(l * y0 / k, 0.0);
+    const double a = start.internal(0) - place, b = (0.5 * d * a - drift) / w;
+    const auto z = [&](double t) {
+      return place + drift * t + std::exp(-0.5 * d * t) * (a * std::cos(w * t) + b * std::sin(w * t));
+    };
+    const Trajectory run = simulate(system, start, {.duration = 12.0});
+    EXPECT_NEAR(run.final_state.internal(0), z(12.0), 1e-13);
+    for (const Event& event : run.events) {
+      const double N = N0 + own.spring_stiffness * (own.slope * (y0 + V * event.time) - z(event.time));
+      EXPECT_NEAR(N, 0.0, 1e-13) << "draw " << draw << " at " << event.time;
+      ++events;
+    }
+  }
+  EXPECT_GT(events, 20);
+}
+
 TEST_P(ClosedForms, ABlockOnAShakenTableReversesTwiceACycle) {
   // m v' = ± mu N: the speed is a triangle, whose turns are half a period apart on the table's own speed, so at ± mu
   // N/m T/4. It has no natural period by which many events could be too many.
