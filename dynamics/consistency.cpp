@@ -172,6 +172,15 @@ Resolution resolve(const Instant& now, const std::vector<ContactMode>& modes, co
       trial.modes[c] = ContactMode::kStick;
   }
 
+  if (now.limit_size.size() > 0) {
+    // A limit that cannot be told from zero, as where a load is regained, decides nothing before it has grown.
+    const Eigen::VectorXd rounding = acceleration_rounding(now, trial.force);
+    for (std::size_t c = 0; c < nc; ++c) {
+      const auto i = static_cast<Eigen::Index>(c);
+      if (at_rest[c] && now.model.mobility(i, i) * now.laws[c].most() <= rounding(i)) trial.rounding(i) = rounding(i);
+    }
+  }
+
   std::vector<bool> stuck(nc);
   const auto refresh = [&] {
     for (std::size_t c = 0; c < nc; ++c) stuck[c] = at_rest[c] && trial.modes[c] == ContactMode::kStick;
@@ -195,8 +204,9 @@ Resolution resolve(const Instant& now, const std::vector<ContactMode>& modes, co
     double excess = 0.0;
     for (std::size_t c = 0; c < nc; ++c) {
       if (!stuck[c]) continue;
-      const double force = trial.force(static_cast<Eigen::Index>(c));
-      const double over = std::abs(force) - now.laws[c].limit(force) * (1 + kForceTolerance);
+      const auto i = static_cast<Eigen::Index>(c);
+      const double force = trial.force(i), slack = trial.rounding(i) / now.model.mobility(i, i),
+                   over = std::abs(force) - now.laws[c].limit(force) * (1 + kForceTolerance) - slack;
       if (over > excess) {
         excess = over;
         worst = c;
