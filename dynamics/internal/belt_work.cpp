@@ -11,6 +11,8 @@
 namespace slipmode::dynamics {
 namespace {
 
+constexpr double kRoundsBy = 64.0 * std::numeric_limits<double>::epsilon();
+
 bool has_real_modes(const ModalModel& pairs) {
   return pairs.n == 0 || (pairs.proportional && pairs.dissipation_root.size() == 0);
 }
@@ -48,6 +50,11 @@ BeltWork::BeltWork(const Regime& r, const ModalModel& slipping) : regime_(r), sl
   const auto np = r.pairs.np, nc = r.speed_input();
   impulse_ = way_ = Eigen::MatrixXd::Zero(2 * np, nc);
   steady_ = r.particular.transpose() * r.force_row + r.force_coefficient;
+  // Where all follows the belt a contact spring's way along changes no force: what is left of it is rounding, which
+  // would grow with the way and act for all of a stay.
+  const Eigen::MatrixXd sizes =
+      r.particular.cwiseAbs().transpose() * r.force_row.cwiseAbs() + r.force_coefficient.cwiseAbs();
+  steady_ = (steady_.array().abs() > kRoundsBy * sizes.array()).select(steady_, 0.0);
   for (Eigen::Index c = 0; c < nc; ++c) {
     const bool constant = r.force_row.col(c).isZero(0.0);
     if (!constant) impulse_.col(c) = antiderivative(r.pairs, r.force_row.col(c));

@@ -2,9 +2,11 @@
 #include "dynamics/internal/belt_work.hpp"
 #include <slipmode/dynamics/cache.hpp>
 #include <slipmode/dynamics/simulate.hpp>
+#include <slipmode/fem/masses.hpp>
 #include "fixtures/scenes.hpp"
 
 #include <gtest/gtest.h>
+#include <cmath>
 
 namespace slipmode::dynamics {
 namespace {
@@ -26,6 +28,23 @@ TEST(BeltWork, AgreesWithQuadrature) {
       EXPECT_NEAR(a.contact_work, b.contact_work, 1e-12 * b.exchanged);
       EXPECT_NEAR(a.drive_work, b.drive_work, 1e-12 * b.exchanged);
       EXPECT_NEAR(a.viscous_loss, b.viscous_loss, 1e-12 * b.exchanged);
+    }
+}
+
+TEST(BeltWork, BalancesHoweverFarABeltHasCarriedWhatFloats) {
+  // Two masses carried along by a belt behind a stiff spring: its force is what the belt's way and theirs leave of one
+  // another, and must do no work by their rounding, 2e-5 of what is exchanged for the stiffest and longest of these.
+  for (const double stiffness : {2e3, 2e4, 1e6})
+    for (const double duration : {100.0, 1000.0}) {
+      const HybridSystem system(
+          fem::masses({.mass = {1.0, 2.0}, .links = {{.first = 1, .second = 2, .stiffness = 1.0, .damping = 0.1}}}),
+          {{fixtures::unit(2, 0), friction::CompliantCoulomb{100.0, 100.0, stiffness}, 1.0}},
+          friction::Belt::constant(3.0));
+      State start = system.rest();
+      start.v(0) = 0.5;
+      start.q(1) = 0.2;
+      const Trajectory run = simulate(system, start, {.duration = duration, .sample = duration / 10.0});
+      EXPECT_LT(std::abs(run.audit.residual()), 1e-9) << stiffness << ' ' << duration;
     }
 }
 
