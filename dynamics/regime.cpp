@@ -21,7 +21,8 @@ constexpr Eigen::Index kFewComponents = 64;
 }  // namespace
 
 Regime::Regime(const HybridSystem& system, const ModalModel& slipping, const std::vector<ContactRole>& contact_roles) {
-  RegimeBuilder(system, slipping, contact_roles).fill(*this);
+  RegimeBuilder builder(system, slipping, contact_roles);
+  builder.fill(*this);
   for (Eigen::Index i = 0; i < pairs.n; ++i) {
     const double determinant = std::abs(pairs.g11(i) * pairs.g22(i) - pairs.g12(i) * pairs.g21(i));
     told_from_rounding &= std::sqrt(determinant) > kPerhapsZero * slipping.fastest;
@@ -44,6 +45,7 @@ Regime::Regime(const HybridSystem& system, const ModalModel& slipping, const std
   coefficient2 = coefficient1;
   derive(row2, coefficient2);
   prepare_bounds();
+  builder.make_steady_forces(*this);
   prepare_lift(slipping);
 }
 

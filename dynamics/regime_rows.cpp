@@ -1,9 +1,11 @@
+#include "dynamics/internal/quadratic_forms.hpp"
 #include "dynamics/internal/regime_build.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -12,6 +14,20 @@ namespace {
 
 /// Two forms of one row agree to this share of its largest entry; the errors of either are far below.
 constexpr double kNear = 1e-8;
+
+/// What the pairs' own motion makes of states, in columns. @param transposed  of Gᵀ  @param sizes  of the terms
+Eigen::MatrixXd rates_of(const ModalModel& pairs, const Eigen::MatrixXd& states, bool transposed = false,
+                         bool sizes = false) {
+  const auto np = pairs.np;
+  const auto part = [sizes](const auto& x) -> Eigen::MatrixXd { return sizes ? x.cwiseAbs() : Eigen::MatrixXd(x); };
+  const Eigen::MatrixXd first = part(states.topRows(np)), second = part(states.bottomRows(np));
+  const Eigen::VectorXd g11 = part(pairs.g11), g22 = part(pairs.g22), g12 = part(transposed ? pairs.g21 : pairs.g12),
+                        g21 = part(transposed ? pairs.g12 : pairs.g21);
+  Eigen::MatrixXd out(2 * np, states.cols());
+  out.topRows(np) = g11.asDiagonal() * first + g12.asDiagonal() * second;
+  out.bottomRows(np) = g21.asDiagonal() * first + g22.asDiagonal() * second;
+  return out;
+}
 
 }  // namespace
 
@@ -35,11 +51,6 @@ void RegimeBuilder::make_inputs(Regime& out) const {
     lift(j, one_) += load(c).lift * load(c).offset;
   }
   out.B = at_.from_rate * left_of(force) + at_.from_zeta_rate * lift;
-  out.B_follows = Eigen::VectorXd::Zero(out.B.rows());
-  for (Eigen::Index c = 0; c < nc_; ++c)
-    if (out.follows[static_cast<std::size_t>(c)]) out.B_follows += out.B.col(c);
-  out.forcing.resize(out.B.rows(), out.B.cols() + 1);
-  out.forcing << out.B, out.B_follows;
   const Eigen::MatrixXd dissipation = (modal_.damping + modal_.damping.transpose()) / 2.0;
   out.viscous_cross = ((P_all_.transpose() * dissipation) * Z_ * at_.to_rate).transpose();
   out.viscous_drive = P_all_.dot(dissipation * P_all_);
@@ -108,35 +119,59 @@ void RegimeBuilder::make_contact_rows(Regime& out) const {
   }
 }
 
-void RegimeBuilder::refine_stick_rows(Regime& out) const {
-  // A contact's stretch, or the stiffness of a fine mesh times its deformation, gives the force of a slow motion as a
-  // small difference. The equations of the slipping pairs give it too, b λ = T G − G_s T less what the other contacts
-  // exert, each with an error that its own rate and that of the motion make: least squares, weighted by these errors.
-  // Springs that share a place are told apart by their stretches alone: what is refined is what they exert together.
-  std::vector<Eigen::Index> open;  // the first of each place
-  std::vector<std::vector<Eigen::Index>> together;
+RegimeBuilder::Places RegimeBuilder::places(const std::function<bool(Eigen::Index)>& counts) const {
+  Places out;
   for (const std::vector<std::size_t>& same : along_) {
-    std::vector<Eigen::Index> follow;
+    std::vector<Eigen::Index> here;
     for (const std::size_t c : same)
-      if (out.follows[c]) follow.push_back(static_cast<Eigen::Index>(c));
-    if (follow.empty()) continue;
-    open.push_back(follow.front());
-    together.push_back(std::move(follow));
+      if (counts(static_cast<Eigen::Index>(c))) here.push_back(static_cast<Eigen::Index>(c));
+    if (here.empty()) continue;
+    out.first.push_back(here.front());
+    out.together.push_back(std::move(here));
   }
+  return out;
+}
+
+void RegimeBuilder::improve(const Places& at, const std::vector<Eigen::Index>& entries, const Eigen::MatrixXd& better,
+                            const Eigen::VectorXd& size, Eigen::MatrixXd& of_contacts) const {
+  for (std::size_t k = 0; k < at.first.size(); ++k) {
+    const std::vector<Eigen::Index>& same = at.together[k];
+    const Eigen::VectorXd off =
+        better.row(static_cast<Eigen::Index>(k)).transpose() - of_contacts(entries, same).rowwise().sum();
+    // Both are exact but for rounding. Where they are not near, it is the equations that tell the contacts apart badly.
+    if (!(off.norm() <= kNear * size(static_cast<Eigen::Index>(k)))) continue;
+    double stiffness = 0.0;
+    for (const Eigen::Index c : same) stiffness += law(c).stiffness;
+    for (const Eigen::Index c : same)
+      of_contacts(entries, c) += (same.size() == 1 ? 1.0 : law(c).stiffness / stiffness) * off;
+  }
+}
+
+void RegimeBuilder::refine_contacts(Regime& out) const {
+  // A contact's stretch, or the stiffness of a fine mesh times its deformation, gives the force of a slow motion as a
+  // small difference. With x = F s and s = T x of the slipping pairs, whose rates are those of the structure alone,
+  // equations of either side give it too, b λ = T G − G_s T less what the other contacts exert, and what a spring does
+  // to the pairs, B eᵀ = F G_s − G F with it; each with an error that its own rate and that of the motion make: least
+  // squares, weighted by these errors. Springs that share a place are told apart by their stretches alone: what is
+  // refined is what they do together.
+  const auto follows = [&](Eigen::Index c) { return static_cast<bool>(out.follows[static_cast<std::size_t>(c)]); };
+  const Places holding = places(follows), sprung = places([&](Eigen::Index c) { return out.spring(c) > 0.0; });
   const ModalModel &own = out.pairs, &s = slipping_;
-  if (open.empty() || own.n == 0) return;
-  const Eigen::MatrixXd T = modal_.from_eta * (Z_ * at_.to_y) + modal_.from_eta_rate * (Z_ * at_.to_rate);
-  const Eigen::MatrixXd b = s.input(Eigen::all, open);
+  if (holding.first.empty() || own.n == 0) return;
+  const Eigen::MatrixXd &T = out.to_slipping, &F = out.from_slipping;
+  const Eigen::MatrixXd b = s.input(Eigen::all, holding.first), acting = F * s.input;
+  const Eigen::MatrixXd kept = (T * F).transpose(), e = kept * s.displacement_row(Eigen::all, sprung.first);
+  const auto largest = [](const Places& at, const Eigen::MatrixXd& of_contacts) {
+    Eigen::VectorXd size(static_cast<Eigen::Index>(at.first.size()));
+    for (std::size_t k = 0; k < at.first.size(); ++k)
+      size(static_cast<Eigen::Index>(k)) =
+          of_contacts(Eigen::all, at.together[k]).rowwise().sum().cwiseAbs().maxCoeff();
+    return size;
+  };
   for (Eigen::Index i = 0; i < own.n; ++i) {
-    const std::array<Eigen::Index, 2> pair{i, own.np + i};
-    const Eigen::MatrixXd t = T(Eigen::all, pair);
-    const Eigen::Matrix2d G = (Eigen::Matrix2d() << own.g11(i), own.g12(i), own.g21(i), own.g22(i)).finished();
+    const std::vector<Eigen::Index> pair{i, own.np + i};
+    const Eigen::Matrix2d G = block(own, i);
     if (G.isZero(0.0)) continue;  // a part that floats free moves without a rate to weigh errors by, nor do they grow
-    Eigen::MatrixXd missing = t * G;
-    missing.topRows(s.np) -= s.g11.asDiagonal() * t.topRows(s.np) + s.g12.asDiagonal() * t.bottomRows(s.np);
-    missing.bottomRows(s.np) -= s.g21.asDiagonal() * t.topRows(s.np) + s.g22.asDiagonal() * t.bottomRows(s.np);
-    for (Eigen::Index c = 0; c < nc_; ++c)
-      if (!out.follows[static_cast<std::size_t>(c)]) missing -= s.input.col(c) * out.force_row(pair, c).transpose();
     const double rate = std::sqrt(std::max(std::abs(G.determinant()), G.squaredNorm() * 1e-16));
     Eigen::VectorXd weight(2 * s.np);
     for (Eigen::Index k = 0; k < s.np; ++k) {
@@ -144,23 +179,78 @@ void RegimeBuilder::refine_stick_rows(Regime& out) const {
                                               : std::hypot(s.g11(k), s.g12(k)) + std::hypot(s.g21(k), s.g22(k));
       weight(k) = weight(s.np + k) = 1.0 / std::max(rate + slip_rate, 1e-300);
     }
-    const Eigen::MatrixXd refined =
-        (weight.asDiagonal() * b).colPivHouseholderQr().solve(Eigen::MatrixXd(weight.asDiagonal() * missing));
-    for (std::size_t k = 0; k < open.size(); ++k) {
-      // Both are exact but for rounding. Where they are not near, it is these equations that tell the contacts apart
-      // badly.
-      const Eigen::VectorXd all = out.force_row(Eigen::all, together[k]).rowwise().sum();
-      const Eigen::Vector2d better = refined.row(static_cast<Eigen::Index>(k)).transpose(), off = better - all(pair);
-      if (!(off.norm() <= kNear * all.cwiseAbs().maxCoeff())) continue;
-      if (together[k].size() == 1) {
-        out.force_row.col(open[k])(pair) = better;
-        continue;
-      }
-      double stiffness = 0.0;
-      for (const Eigen::Index c : together[k]) stiffness += law(c).stiffness;
-      for (const Eigen::Index c : together[k]) out.force_row.col(c)(pair) += law(c).stiffness / stiffness * off;
-    }
+    const auto solved = [&](const Eigen::MatrixXd& along, const Eigen::MatrixXd& missing) -> Eigen::MatrixXd {
+      return (weight.asDiagonal() * along).colPivHouseholderQr().solve(Eigen::MatrixXd(weight.asDiagonal() * missing));
+    };
+    const Eigen::MatrixXd t = T(Eigen::all, pair);
+    Eigen::MatrixXd missing = t * G - rates_of(s, t);
+    for (Eigen::Index c = 0; c < nc_; ++c)
+      if (!follows(c)) missing -= s.input.col(c) * out.force_row(pair, c).transpose();
+    improve(holding, pair, solved(b, missing), largest(holding, out.force_row), out.force_row);
+    if (sprung.first.empty() || !oscillators_.empty()) continue;
+    const Eigen::MatrixXd f = F(pair, Eigen::all).transpose();
+    missing = kept * rates_of(s, f, true) - f * G.transpose();
+    for (Eigen::Index c = 0; c < nc_; ++c)
+      if (!follows(c)) missing += F.transpose() * out.force_row.col(c) * acting(pair, c).transpose();
+    improve(sprung, pair, solved(e, missing), largest(sprung, out.B), out.B);
   }
+}
+
+void RegimeBuilder::make_steady_forces(Regime& out) const {
+  // Behind a stiff spring, what a contact exerts on the motion that follows the inputs is a small difference as well.
+  constexpr double kRoundsBy = 64.0 * std::numeric_limits<double>::epsilon(), kLeast = 1e-8;
+  out.steady_force = out.particular.transpose() * out.force_row + out.force_coefficient;
+  const auto is_sprung = [&](Eigen::Index c) { return out.spring(c) > 0.0; };
+  const Places sprung = places(is_sprung);
+  const auto n = out.pairs.n;  // what only integrates the inputs has no part in x_p
+  const bool integrates = (out.scale1.head(n).array() == 0.0 || out.scale2.head(n).array() == 0.0).any();
+  if (n == 0 || sprung.first.empty() || integrates || !oscillators_.empty()) return;
+  const ModalModel& s = slipping_;
+  const Eigen::MatrixXd moved = out.to_slipping * out.particular + out.inputs_slipping,
+                        b = s.input(Eigen::all, sprung.first);
+  // Where a mode should not follow an input, it does so by rounding of what others do.
+  const Eigen::MatrixXd sizes =
+      out.particular.cwiseAbs().colwise().maxCoeff().transpose() * out.force_row.cwiseAbs().colwise().sum() +
+      out.force_coefficient.cwiseAbs();
+  Eigen::MatrixXd steady = out.steady_force.transpose();
+  for (Eigen::Index k = 0; k <= one_; ++k) {
+    Eigen::VectorXd most(2 * s.np);
+    most << Eigen::VectorXd::Constant(s.np, moved.col(k).head(s.np).cwiseAbs().maxCoeff()),
+        Eigen::VectorXd::Constant(s.np, moved.col(k).tail(s.np).cwiseAbs().maxCoeff());
+    Eigen::VectorXd missing = -rates_of(s, moved.col(k)), size = rates_of(s, most, false, true);
+    const auto add = [&](const Eigen::VectorXd& term) {
+      missing += term;
+      size += term.cwiseAbs();
+    };
+    for (Eigen::Index c = 0; c < nc_; ++c) {
+      if (!is_sprung(c)) add(-out.steady_force(k, c) * s.input.col(c));
+      if (k == V_ && out.follows[static_cast<std::size_t>(c)]) add(moved.col(c));
+    }
+    if (k == V_ + 1) add(moved.col(V_));
+    if (k == one_) add(-s.load);
+    // What floats is carried along by a spring's way without a force.
+    missing = (missing.array().abs() > kRoundsBy * size.array()).select(missing, 0.0);
+    if (!(size.maxCoeff() > 0.0)) continue;
+    // With them what the rows say, each with its error: that of a soft spring on a stiff structure is the smaller one.
+    const auto count = static_cast<Eigen::Index>(sprung.first.size());
+    Eigen::VectorXd known(size.size() + count), error(known.size());
+    Eigen::MatrixXd along(known.size(), count);
+    along << b, Eigen::MatrixXd::Identity(count, count);
+    known.head(size.size()) = missing;
+    error.head(size.size()) = size;
+    for (Eigen::Index at = 0; at < count; ++at) {
+      const std::vector<Eigen::Index>& same = sprung.together[static_cast<std::size_t>(at)];
+      known(size.size() + at) = out.steady_force(k, same).sum();
+      error(size.size() + at) = sizes(k, same).sum();
+    }
+    const Eigen::VectorXd weight = (error.array() + kLeast * error.maxCoeff()).inverse();
+    const Eigen::MatrixXd better =
+        (weight.asDiagonal() * along).colPivHouseholderQr().solve(Eigen::VectorXd(weight.asDiagonal() * known));
+    Eigen::MatrixXd of_input = steady.col(k).transpose();
+    improve(sprung, {0}, better, error.tail(count), of_input);
+    steady.col(k) = of_input.transpose();
+  }
+  out.steady_force = steady.transpose();
 }
 
 void RegimeBuilder::add_clearance_outputs(Eigen::Index c, const Regime& out, const AddOutput& add) const {

@@ -57,9 +57,9 @@ std::unique_ptr<AuditForms> AuditForms::make(const RegimeTables& tables, const M
   Power contact = none, drive = none, viscous = none, force = none;
   for (Eigen::Index c = 0; c < nc; ++c) {
     const Eigen::VectorXd f = r.force_row.col(c), v = r.velocity_row.col(c);
-    Eigen::VectorXd f_steady = steady(f, r.force_coefficient.col(c));
-    // Not by the row: behind a stiff contact spring that is a small difference too.
-    f_steady.tail<2>() << overlay.force.c(c, 0), overlay.force.s(c, 0);
+    // Not by the row: behind a stiff contact spring that is a small difference.
+    Eigen::VectorXd f_steady(nu);
+    f_steady << r.steady_force.col(c), overlay.force.c(c, 0), overlay.force.s(c, 0);
     const Eigen::VectorXd v_steady = steady(v, r.velocity_coefficient.col(c));
     if (r.spring(c) > 0.0) {  // ∫ λ wᵀq̇ dt = ∫ λ v_drive dt − [½ λ²/K_c]
       contact.R += f * speed.transpose();

@@ -11,8 +11,6 @@
 namespace slipmode::dynamics {
 namespace {
 
-constexpr double kRoundsBy = 64.0 * std::numeric_limits<double>::epsilon();
-
 bool has_real_modes(const ModalModel& pairs) {
   return pairs.n == 0 || (pairs.proportional && pairs.dissipation_root.size() == 0);
 }
@@ -49,12 +47,6 @@ std::unique_ptr<BeltWork> BeltWork::make(const RegimeTables& tables, const Modal
 BeltWork::BeltWork(const Regime& r, const ModalModel& slipping) : regime_(r), slipping_(slipping) {
   const auto np = r.pairs.np, nc = r.speed_input();
   impulse_ = way_ = Eigen::MatrixXd::Zero(2 * np, nc);
-  steady_ = r.particular.transpose() * r.force_row + r.force_coefficient;
-  // Where all follows the belt a contact spring's way along changes no force: what is left of it is rounding, which
-  // would grow with the way and act for all of a stay.
-  const Eigen::MatrixXd sizes =
-      r.particular.cwiseAbs().transpose() * r.force_row.cwiseAbs() + r.force_coefficient.cwiseAbs();
-  steady_ = (steady_.array().abs() > kRoundsBy * sizes.array()).select(steady_, 0.0);
   for (Eigen::Index c = 0; c < nc; ++c) {
     const bool constant = r.force_row.col(c).isZero(0.0);
     if (!constant) impulse_.col(c) = antiderivative(r.pairs, r.force_row.col(c));
@@ -104,7 +96,7 @@ void BeltWork::measure(const StayPlace& at, const Eigen::VectorXd& inputs, End& 
   for (Eigen::VectorXd* of_contacts : {&out.impulse, &out.steady, &out.exchange, &out.way}) of_contacts->setZero(nc);
   for (Eigen::Index c = 0; c < nc; ++c) {
     const Exchange by = exchange_[static_cast<std::size_t>(c)];
-    out.steady(c) = steady_.col(c).dot(inputs);
+    out.steady(c) = r.steady_force.col(c).dot(inputs);
     if (by != Exchange::kPotential || r.slope(c) != 0.0) out.impulse(c) = impulse_.col(c).dot(at.free);
     if (by == Exchange::kForms) {
       out.exchange(c) = r.displacement_row.col(c).dot(at.free);

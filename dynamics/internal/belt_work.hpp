@@ -56,7 +56,6 @@ class BeltWork {
   const RegimeForms* forms_ = nullptr;  ///< null: real modes, no squares in contacts' work
   std::vector<Exchange> exchange_;      ///< [nc]
   Eigen::MatrixXd impulse_, way_;       ///< y of λ and of wᵀq [2np x nc]
-  Eigen::MatrixXd steady_;              ///< ι → λ by x_p [ni x nc]
   Eigen::VectorXd dragging_;            ///< y of 2 (loss of x_f with x_p at V = 1) [2np]
   double dragged_loss_ = 0.0;           ///< q̇ᵀCq̇ of x_p at V = 1
   Eigen::VectorXd stiffness_, mass_;    ///< ω² and 1 of damped real modes, else 0 [np]

@@ -348,11 +348,16 @@ void RegimeBuilder::fill(Regime& out) {
   for (const ContactRole r : roles_) out.follows.push_back(r == ContactRole::kHeld || r == ContactRole::kSprung);
   out.answers = answers_;
   make_pairs(out);
+  make_changes(out);
   make_inputs(out);
   make_contact_rows(out);
-  refine_stick_rows(out);
+  refine_contacts(out);
+  out.B_follows = Eigen::VectorXd::Zero(out.B.rows());
+  for (Eigen::Index c = 0; c < nc_; ++c)
+    if (out.follows[static_cast<std::size_t>(c)]) out.B_follows += out.B.col(c);
+  out.forcing.resize(out.B.rows(), out.B.cols() + 1);
+  out.forcing << out.B, out.B_follows;
   make_outputs(out);
-  make_changes(out);
 }
 
 }  // namespace slipmode::dynamics

@@ -21,6 +21,8 @@ class RegimeBuilder {
   RegimeBuilder(const HybridSystem& system, const ModalModel& slipping, const std::vector<ContactRole>& roles);
 
   void fill(Regime& out);
+  /// Once the motion that follows the inputs is known.
+  void make_steady_forces(Regime& out) const;
 
  private:
   /// y (what is left of η), ẏ, ζ, ζ̇ from x, and back.
@@ -49,8 +51,18 @@ class RegimeBuilder {
   void set_blocks(ModalModel& pairs, const PairForm& form) const;
   void make_inputs(Regime& out) const;
   void make_contact_rows(Regime& out) const;
+  /// Contacts of one direction that are told apart by their stretches alone.
+  struct Places {
+    std::vector<Eigen::Index> first;
+    std::vector<std::vector<Eigen::Index>> together;
+  };
+  [[nodiscard]] Places places(const std::function<bool(Eigen::Index)>& counts) const;
+  /// Puts what is known better of contacts together, near what they have to a share of `size`, into these entries of
+  /// their columns, by their stiffnesses. @param better  [places x entries] @param size  [places]
+  void improve(const Places& at, const std::vector<Eigen::Index>& entries, const Eigen::MatrixXd& better,
+               const Eigen::VectorXd& size, Eigen::MatrixXd& of_contacts) const;
   /// Of contacts that stick, without the cancellation behind a stiff spring or on a fine mesh.
-  void refine_stick_rows(Regime& out) const;
+  void refine_contacts(Regime& out) const;
   void make_outputs(Regime& out) const;
   using AddOutput = std::function<void(Eigen::Index, RegimeOutput::Kind, Eigen::VectorXd, Eigen::VectorXd)>;
   void add_clearance_outputs(Eigen::Index c, const Regime& out, const AddOutput& add) const;
