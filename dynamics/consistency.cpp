@@ -97,15 +97,17 @@ bool evaluate(const Instant& now, const std::vector<bool>& at_rest, const std::v
   return true;
 }
 
-/// All combinations of the undecided contacts, most sticking first; the first consistent one.
-bool enumerate(const Instant& now, const std::vector<bool>& at_rest, const std::vector<bool>& released, Trial& trial) {
+/// All combinations of the undecided contacts of which less than `below` slide, most sticking first; the first
+/// consistent one.
+bool enumerate(const Instant& now, const std::vector<bool>& at_rest, const std::vector<bool>& released,
+               std::size_t below, Trial& trial) {
   std::vector<std::size_t> open;
   for (std::size_t c = 0; c < at_rest.size(); ++c)
     if (at_rest[c]) open.push_back(c);
   if (static_cast<int>(open.size()) > kMaxEnumerated) return false;
   int combinations = 1;
   for (std::size_t k = 0; k < open.size(); ++k) combinations *= 3;
-  for (std::size_t sliding = 0; sliding <= open.size(); ++sliding)
+  for (std::size_t sliding = 0; sliding < std::min(below, open.size() + 1); ++sliding)
     for (int code = 0; code < combinations; ++code) {
       std::size_t slips = 0;
       int rest = code;
@@ -192,9 +194,11 @@ Resolution resolve(const Instant& now, const std::vector<ContactMode>& modes, co
     trial.force(i) = sign_of(trial.modes[c]) * now.laws[c].onset(sign_of(trial.modes[c]));
   };
   refresh();
+  std::size_t sliding = 0, let_go = 0;  // of those at rest, and not released
   bool any_released = false;
   for (std::size_t c = 0; c < nc; ++c)
     if (released[c]) {
+      ++sliding;
       slide(c);
       any_released = true;
     }
@@ -215,10 +219,18 @@ Resolution resolve(const Instant& now, const std::vector<ContactMode>& modes, co
     if (worst == nc) break;
     slide(worst);
     refresh();
+    ++sliding;
+    ++let_go;
   }
   Trial checked = trial;
   const auto find = [&] {
-    return evaluate(now, at_rest, released, checked) || enumerate(now, at_rest, released, checked);
+    // The first that was let go may be held once others slide.
+    Trial fewer = checked;
+    if (let_go > 1 && enumerate(now, at_rest, released, sliding, fewer)) {
+      checked = fewer;
+      return true;
+    }
+    return evaluate(now, at_rest, released, checked) || enumerate(now, at_rest, released, nc + 1, checked);
   };
   bool consistent = find();
   if (!consistent) {  // forces at a limit that vanishes are told to their rounding, as are those of fast modes
