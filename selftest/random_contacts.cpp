@@ -214,7 +214,7 @@ void force(SceneDraft& d) {
 
 void write_contacts(SceneDraft& d) {
   d.linear = d.chance(0.55);
-  if (!d.linear) d.coulomb_alone = d.chance(0.1);
+  d.coulomb_alone = !d.linear && d.chance(0.1);
   const int count = std::min(d.masses(), d.chance(0.1) ? d.integer(4, 5) : d.integer(1, 3));
   choose_places(d, count);
   std::vector<Beside> standing;
