@@ -14,6 +14,8 @@ namespace {
 
 /// Two forms of one row agree to this share of its largest entry; the errors of either are far below.
 constexpr double kNear = 1e-8;
+/// The same of what springs do to the pairs, and of steady forces once that is known.
+constexpr double kNearer = 1e-11, kNearest = 1e-13;
 
 /// What the pairs' own motion makes of states, in columns. @param transposed  of Gᵀ  @param sizes  of the terms
 Eigen::MatrixXd rates_of(const ModalModel& pairs, const Eigen::MatrixXd& states, bool transposed = false,
@@ -133,13 +135,13 @@ RegimeBuilder::Places RegimeBuilder::places(const std::function<bool(Eigen::Inde
 }
 
 void RegimeBuilder::improve(const Places& at, const std::vector<Eigen::Index>& entries, const Eigen::MatrixXd& better,
-                            const Eigen::VectorXd& size, Eigen::MatrixXd& of_contacts) const {
+                            const Eigen::VectorXd& size, double near, Eigen::MatrixXd& of_contacts) const {
   for (std::size_t k = 0; k < at.first.size(); ++k) {
     const std::vector<Eigen::Index>& same = at.together[k];
     const Eigen::VectorXd off =
         better.row(static_cast<Eigen::Index>(k)).transpose() - of_contacts(entries, same).rowwise().sum();
     // Both are exact but for rounding. Where they are not near, it is the equations that tell the contacts apart badly.
-    if (!(off.norm() <= kNear * size(static_cast<Eigen::Index>(k)))) continue;
+    if (!(off.norm() <= near * size(static_cast<Eigen::Index>(k)))) continue;
     double stiffness = 0.0;
     for (const Eigen::Index c : same) stiffness += law(c).stiffness;
     for (const Eigen::Index c : same)
@@ -159,7 +161,8 @@ void RegimeBuilder::refine_contacts(Regime& out) const {
   const ModalModel &own = out.pairs, &s = slipping_;
   if (holding.first.empty() || own.n == 0) return;
   const Eigen::MatrixXd &T = out.to_slipping, &F = out.from_slipping;
-  const Eigen::MatrixXd b = s.input(Eigen::all, holding.first), acting = F * s.input;
+  const Eigen::MatrixXd b = s.input(Eigen::all, holding.first), acting = F * s.input,
+                        terms = F.cwiseAbs() * s.input.cwiseAbs();
   const Eigen::MatrixXd kept = (T * F).transpose(), e = kept * s.displacement_row(Eigen::all, sprung.first);
   const auto largest = [](const Places& at, const Eigen::MatrixXd& of_contacts) {
     Eigen::VectorXd size(static_cast<Eigen::Index>(at.first.size()));
@@ -186,13 +189,19 @@ void RegimeBuilder::refine_contacts(Regime& out) const {
     Eigen::MatrixXd missing = t * G - rates_of(s, t);
     for (Eigen::Index c = 0; c < nc_; ++c)
       if (!follows(c)) missing -= s.input.col(c) * out.force_row(pair, c).transpose();
-    improve(holding, pair, solved(b, missing), largest(holding, out.force_row), out.force_row);
+    improve(holding, pair, solved(b, missing), largest(holding, out.force_row), kNear, out.force_row);
     if (sprung.first.empty() || !oscillators_.empty()) continue;
     const Eigen::MatrixXd f = F(pair, Eigen::all).transpose();
     missing = kept * rates_of(s, f, true) - f * G.transpose();
     for (Eigen::Index c = 0; c < nc_; ++c)
       if (!follows(c)) missing += F.transpose() * out.force_row.col(c) * acting(pair, c).transpose();
-    improve(sprung, pair, solved(e, missing), largest(sprung, out.B), out.B);
+    Eigen::VectorXd size(static_cast<Eigen::Index>(sprung.first.size()));  // of what B is a sum of
+    for (std::size_t k = 0; k < sprung.first.size(); ++k) {
+      double stiffness = 0.0;
+      for (const Eigen::Index c : sprung.together[k]) stiffness += out.spring(c);
+      size(static_cast<Eigen::Index>(k)) = stiffness * terms(pair, sprung.first[k]).maxCoeff();
+    }
+    improve(sprung, pair, solved(e, missing), size, kNearer, out.B);
   }
 }
 
@@ -208,10 +217,12 @@ void RegimeBuilder::make_steady_forces(Regime& out) const {
   const ModalModel& s = slipping_;
   const Eigen::MatrixXd moved = out.to_slipping * out.particular + out.inputs_slipping,
                         b = s.input(Eigen::all, sprung.first);
-  // Where a mode should not follow an input, it does so by rounding of what others do.
-  const Eigen::MatrixXd sizes =
-      out.particular.cwiseAbs().colwise().maxCoeff().transpose() * out.force_row.cwiseAbs().colwise().sum() +
-      out.force_coefficient.cwiseAbs();
+  Eigen::MatrixXd sizes =
+      out.particular.cwiseAbs().transpose() * out.force_row.cwiseAbs() + out.force_coefficient.cwiseAbs();
+  // Where a mode should not follow a contact's way, it does so by rounding of what others do.
+  const auto ways = sizes.topRows(nc_);
+  const Eigen::RowVectorXd largest = ways.colwise().maxCoeff();
+  sizes.topRows(nc_).rowwise() = largest;
   Eigen::MatrixXd steady = out.steady_force.transpose();
   for (Eigen::Index k = 0; k <= one_; ++k) {
     Eigen::VectorXd most(2 * s.np);
@@ -247,7 +258,7 @@ void RegimeBuilder::make_steady_forces(Regime& out) const {
     const Eigen::MatrixXd better =
         (weight.asDiagonal() * along).colPivHouseholderQr().solve(Eigen::VectorXd(weight.asDiagonal() * known));
     Eigen::MatrixXd of_input = steady.col(k).transpose();
-    improve(sprung, {0}, better, error.tail(count), of_input);
+    improve(sprung, {0}, better, error.tail(count), kNearest, of_input);
     steady.col(k) = of_input.transpose();
   }
   out.steady_force = steady.transpose();

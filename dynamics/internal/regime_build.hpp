@@ -57,10 +57,10 @@ class RegimeBuilder {
     std::vector<std::vector<Eigen::Index>> together;
   };
   [[nodiscard]] Places places(const std::function<bool(Eigen::Index)>& counts) const;
-  /// Puts what is known better of contacts together, near what they have to a share of `size`, into these entries of
-  /// their columns, by their stiffnesses. @param better  [places x entries] @param size  [places]
+  /// Puts what is known better of contacts together into these entries of their columns, by their stiffnesses, where it
+  /// is near what they have, to a share of `size`. @param better  [places x entries] @param size  [places]
   void improve(const Places& at, const std::vector<Eigen::Index>& entries, const Eigen::MatrixXd& better,
-               const Eigen::VectorXd& size, Eigen::MatrixXd& of_contacts) const;
+               const Eigen::VectorXd& size, double near, Eigen::MatrixXd& of_contacts) const;
   /// Of contacts that stick, without the cancellation behind a stiff spring or on a fine mesh.
   void refine_contacts(Regime& out) const;
   void make_outputs(Regime& out) const;
