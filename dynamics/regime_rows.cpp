@@ -190,7 +190,7 @@ void RegimeBuilder::refine_contacts(Regime& out) const {
     for (Eigen::Index c = 0; c < nc_; ++c)
       if (!follows(c)) missing -= s.input.col(c) * out.force_row(pair, c).transpose();
     improve(holding, pair, solved(b, missing), largest(holding, out.force_row), kNear, out.force_row);
-    if (sprung.first.empty() || !oscillators_.empty()) continue;
+    if (sprung.first.empty() || !oscillators_.empty() || !s.proportional) continue;
     const Eigen::MatrixXd f = F(pair, Eigen::all).transpose();
     missing = kept * rates_of(s, f, true) - f * G.transpose();
     for (Eigen::Index c = 0; c < nc_; ++c)
@@ -209,16 +209,19 @@ void RegimeBuilder::make_steady_forces(Regime& out) const {
   // Behind a stiff spring, what a contact exerts on the motion that follows the inputs is a small difference as well.
   constexpr double kRoundsBy = 64.0 * std::numeric_limits<double>::epsilon(), kLeast = 1e-8;
   out.steady_force = out.particular.transpose() * out.force_row + out.force_coefficient;
-  const auto is_sprung = [&](Eigen::Index c) { return out.spring(c) > 0.0; };
-  const Places sprung = places(is_sprung);
-  const auto n = out.pairs.n;  // what only integrates the inputs has no part in x_p
-  const bool integrates = (out.scale1.head(n).array() == 0.0 || out.scale2.head(n).array() == 0.0).any();
-  if (n == 0 || sprung.first.empty() || integrates || !oscillators_.empty()) return;
-  const ModalModel& s = slipping_;
-  const Eigen::MatrixXd moved = out.to_slipping * out.particular + out.inputs_slipping,
-                        b = s.input(Eigen::all, sprung.first);
   Eigen::MatrixXd sizes =
       out.particular.cwiseAbs().transpose() * out.force_row.cwiseAbs() + out.force_coefficient.cwiseAbs();
+  // What floats is carried along by a spring's way without a force.
+  out.steady_force = (out.steady_force.array().abs() > kRoundsBy * sizes.array()).select(out.steady_force, 0.0).eval();
+  const auto is_sprung = [&](Eigen::Index c) { return out.spring(c) > 0.0; };
+  const Places sprung = places(is_sprung);
+  const ModalModel& s = slipping_;
+  const auto n = out.pairs.n;  // what only integrates the inputs has no part in x_p
+  const bool integrates = (out.scale1.head(n).array() == 0.0 || out.scale2.head(n).array() == 0.0).any();
+  // Of complex modes the equations tell less than the rows.
+  if (n == 0 || sprung.first.empty() || integrates || !oscillators_.empty() || !s.proportional) return;
+  const Eigen::MatrixXd moved = out.to_slipping * out.particular + out.inputs_slipping,
+                        b = s.input(Eigen::all, sprung.first);
   // Where a mode should not follow a contact's way, it does so by rounding of what others do.
   const auto ways = sizes.topRows(nc_);
   const Eigen::RowVectorXd largest = ways.colwise().maxCoeff();
@@ -239,7 +242,6 @@ void RegimeBuilder::make_steady_forces(Regime& out) const {
     }
     if (k == V_ + 1) add(moved.col(V_));
     if (k == one_) add(-s.load);
-    // What floats is carried along by a spring's way without a force.
     missing = (missing.array().abs() > kRoundsBy * size.array()).select(missing, 0.0);
     if (!(size.maxCoeff() > 0.0)) continue;
     // With them what the rows say, each with its error: that of a soft spring on a stiff structure is the smaller one.
