@@ -145,14 +145,6 @@ HarmonicResponse harmonic_response(const Regime& r, const ModalModel& slipping, 
   HarmonicResponse out;
   out.force = solved.head(nc);
   out.force(silent).setZero();
-  // Springs of one direction stretch alike: a soft one's force is no difference of stiff ones'.
-  for (Eigen::Index c = 0; c < nc; ++c) {
-    Eigen::Index stiffest = c;
-    for (Eigen::Index d = 0; d < nc; ++d)
-      if (r.spring(d) > r.spring(stiffest) && slipping.displacement_row.col(d) == slipping.displacement_row.col(c))
-        stiffest = d;
-    if (r.spring(c) > 0.0 && stiffest != c) out.force(c) = r.spring(c) / r.spring(stiffest) * out.force(stiffest);
-  }
   out.slipping = by_contacts * out.force + by_forces;
   out.slipping(own) = solved.tail(unknowns - nc);
   out.place_size = H.cwiseAbs() * out.force.cwiseAbs() + moved.cwiseAbs();
