@@ -194,16 +194,15 @@ Resolution resolve(const Instant& now, const std::vector<ContactMode>& modes, co
     trial.force(i) = sign_of(trial.modes[c]) * now.laws[c].onset(sign_of(trial.modes[c]));
   };
   refresh();
-  std::size_t sliding = 0, let_go = 0;  // of those at rest, and not released
-  bool any_released = false;
+  std::size_t sliding = 0;
   for (std::size_t c = 0; c < nc; ++c)
     if (released[c]) {
-      ++sliding;
       slide(c);
-      any_released = true;
+      ++sliding;
     }
-  if (any_released) refresh();
-  for (std::size_t round = 0; round < nc; ++round) {
+  if (sliding > 0) refresh();
+  std::size_t let_go = 0;
+  for (; let_go < nc; ++let_go) {
     std::size_t worst = nc;
     double excess = 0.0;
     for (std::size_t c = 0; c < nc; ++c) {
@@ -219,16 +218,16 @@ Resolution resolve(const Instant& now, const std::vector<ContactMode>& modes, co
     if (worst == nc) break;
     slide(worst);
     refresh();
-    ++sliding;
-    ++let_go;
   }
+  sliding += let_go;
   Trial checked = trial;
   const auto find = [&] {
-    // The first that was let go may be held once others slide.
-    Trial fewer = checked;
-    if (let_go > 1 && enumerate(now, at_rest, released, sliding, fewer)) {
-      checked = fewer;
-      return true;
+    if (let_go > 1) {  // the first may be held once others slide
+      Trial fewer = checked;
+      if (enumerate(now, at_rest, released, sliding, fewer)) {
+        checked = fewer;
+        return true;
+      }
     }
     return evaluate(now, at_rest, released, checked) || enumerate(now, at_rest, released, nc + 1, checked);
   };

@@ -3,7 +3,6 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -17,18 +16,36 @@ constexpr double kNear = 1e-8;
 /// The same of what springs do to the pairs, and of steady forces once that is known.
 constexpr double kNearer = 1e-11, kNearest = 1e-13;
 
-/// What the pairs' own motion makes of states, in columns. @param transposed  of Gᵀ  @param sizes  of the terms
-Eigen::MatrixXd rates_of(const ModalModel& pairs, const Eigen::MatrixXd& states, bool transposed = false,
-                         bool sizes = false) {
-  const auto np = pairs.np;
-  const auto part = [sizes](const auto& x) -> Eigen::MatrixXd { return sizes ? x.cwiseAbs() : Eigen::MatrixXd(x); };
-  const Eigen::MatrixXd first = part(states.topRows(np)), second = part(states.bottomRows(np));
-  const Eigen::VectorXd g11 = part(pairs.g11), g22 = part(pairs.g22), g12 = part(transposed ? pairs.g21 : pairs.g12),
-                        g21 = part(transposed ? pairs.g12 : pairs.g21);
+/// [g11 g12; g21 g22] of every pair on its two states, in columns.
+Eigen::MatrixXd on_pairs(const Eigen::VectorXd& g11, const Eigen::VectorXd& g12, const Eigen::VectorXd& g21,
+                         const Eigen::VectorXd& g22, const Eigen::MatrixXd& states) {
+  const auto np = g11.size();
+  const auto first = states.topRows(np), second = states.bottomRows(np);
   Eigen::MatrixXd out(2 * np, states.cols());
   out.topRows(np) = g11.asDiagonal() * first + g12.asDiagonal() * second;
   out.bottomRows(np) = g21.asDiagonal() * first + g22.asDiagonal() * second;
   return out;
+}
+
+/// What each slipping pair's equation rounds by at a rate, inverted [2np].
+Eigen::VectorXd weights_at(double rate, const ModalModel& slipping) {
+  const ModalModel& s = slipping;
+  Eigen::VectorXd weight(2 * s.np);
+  for (Eigen::Index k = 0; k < s.np; ++k) {
+    const double slip_rate = s.proportional ? std::abs(s.g21(k)) / std::max(rate, 1e-300) + std::abs(s.g22(k))
+                                            : std::hypot(s.g11(k), s.g12(k)) + std::hypot(s.g21(k), s.g22(k));
+    weight(k) = weight(s.np + k) = 1.0 / std::max(rate + slip_rate, 1e-300);
+  }
+  return weight;
+}
+
+double rate_of(const Eigen::Matrix2d& G) {
+  return std::sqrt(std::max(std::abs(G.determinant()), G.squaredNorm() * 1e-16));
+}
+
+Eigen::MatrixXd least_squares(const Eigen::VectorXd& weight, const Eigen::MatrixXd& along,
+                              const Eigen::MatrixXd& known) {
+  return (weight.asDiagonal() * along).colPivHouseholderQr().solve(Eigen::MatrixXd(weight.asDiagonal() * known));
 }
 
 }  // namespace
@@ -125,13 +142,24 @@ RegimeBuilder::Places RegimeBuilder::places(const std::function<bool(Eigen::Inde
   Places out;
   for (const std::vector<std::size_t>& same : along_) {
     std::vector<Eigen::Index> here;
+    double stiffness = 0.0;
     for (const std::size_t c : same)
-      if (counts(static_cast<Eigen::Index>(c))) here.push_back(static_cast<Eigen::Index>(c));
+      if (counts(static_cast<Eigen::Index>(c))) {
+        here.push_back(static_cast<Eigen::Index>(c));
+        stiffness += laws_[c].stiffness;
+      }
     if (here.empty()) continue;
     out.first.push_back(here.front());
     out.together.push_back(std::move(here));
+    out.stiffness.push_back(stiffness);
   }
   return out;
+}
+
+RegimeBuilder::Places RegimeBuilder::refinable_springs(const Regime& out) const {
+  // Of complex modes the equations of the slipping pairs tell less than the rows, and oscillators are not in them.
+  if (out.pairs.n == 0 || !oscillators_.empty() || !slipping_.proportional) return {};
+  return places([&](Eigen::Index c) { return out.spring(c) > 0.0; });
 }
 
 void RegimeBuilder::improve(const Places& at, const std::vector<Eigen::Index>& entries, const Eigen::MatrixXd& better,
@@ -142,66 +170,63 @@ void RegimeBuilder::improve(const Places& at, const std::vector<Eigen::Index>& e
         better.row(static_cast<Eigen::Index>(k)).transpose() - of_contacts(entries, same).rowwise().sum();
     // Both are exact but for rounding. Where they are not near, it is the equations that tell the contacts apart badly.
     if (!(off.norm() <= near * size(static_cast<Eigen::Index>(k)))) continue;
-    double stiffness = 0.0;
-    for (const Eigen::Index c : same) stiffness += law(c).stiffness;
     for (const Eigen::Index c : same)
-      of_contacts(entries, c) += (same.size() == 1 ? 1.0 : law(c).stiffness / stiffness) * off;
+      of_contacts(entries, c) += (same.size() == 1 ? 1.0 : law(c).stiffness / at.stiffness[k]) * off;
   }
 }
 
-void RegimeBuilder::refine_contacts(Regime& out) const {
+void RegimeBuilder::refine_stick_rows(Regime& out) const {
   // A contact's stretch, or the stiffness of a fine mesh times its deformation, gives the force of a slow motion as a
-  // small difference. With x = F s and s = T x of the slipping pairs, whose rates are those of the structure alone,
-  // equations of either side give it too, b λ = T G − G_s T less what the other contacts exert, and what a spring does
-  // to the pairs, B eᵀ = F G_s − G F with it; each with an error that its own rate and that of the motion make: least
-  // squares, weighted by these errors. Springs that share a place are told apart by their stretches alone: what is
-  // refined is what they do together.
-  const auto follows = [&](Eigen::Index c) { return static_cast<bool>(out.follows[static_cast<std::size_t>(c)]); };
-  const Places holding = places(follows), sprung = places([&](Eigen::Index c) { return out.spring(c) > 0.0; });
+  // small difference. The equations of the slipping pairs give it too, b λ = T G − G_s T less what the other contacts
+  // exert, each with an error that its own rate and that of the motion make: least squares, weighted by these errors.
+  // Springs that share a place are told apart by their stretches alone: what is refined is what they exert together.
+  const Places holding = places([&](Eigen::Index c) { return out.follows[static_cast<std::size_t>(c)]; });
   const ModalModel &own = out.pairs, &s = slipping_;
   if (holding.first.empty() || own.n == 0) return;
-  const Eigen::MatrixXd &T = out.to_slipping, &F = out.from_slipping;
-  const Eigen::MatrixXd b = s.input(Eigen::all, holding.first), acting = F * s.input,
-                        terms = F.cwiseAbs() * s.input.cwiseAbs();
-  const Eigen::MatrixXd kept = (T * F).transpose(), e = kept * s.displacement_row(Eigen::all, sprung.first);
-  const auto largest = [](const Places& at, const Eigen::MatrixXd& of_contacts) {
-    Eigen::VectorXd size(static_cast<Eigen::Index>(at.first.size()));
-    for (std::size_t k = 0; k < at.first.size(); ++k)
-      size(static_cast<Eigen::Index>(k)) =
-          of_contacts(Eigen::all, at.together[k]).rowwise().sum().cwiseAbs().maxCoeff();
-    return size;
-  };
+  const Eigen::MatrixXd& T = out.to_slipping;
+  const Eigen::MatrixXd b = s.input(Eigen::all, holding.first);
   for (Eigen::Index i = 0; i < own.n; ++i) {
     const std::vector<Eigen::Index> pair{i, own.np + i};
     const Eigen::Matrix2d G = block(own, i);
     if (G.isZero(0.0)) continue;  // a part that floats free moves without a rate to weigh errors by, nor do they grow
-    const double rate = std::sqrt(std::max(std::abs(G.determinant()), G.squaredNorm() * 1e-16));
-    Eigen::VectorXd weight(2 * s.np);
-    for (Eigen::Index k = 0; k < s.np; ++k) {
-      const double slip_rate = s.proportional ? std::abs(s.g21(k)) / std::max(rate, 1e-300) + std::abs(s.g22(k))
-                                              : std::hypot(s.g11(k), s.g12(k)) + std::hypot(s.g21(k), s.g22(k));
-      weight(k) = weight(s.np + k) = 1.0 / std::max(rate + slip_rate, 1e-300);
-    }
-    const auto solved = [&](const Eigen::MatrixXd& along, const Eigen::MatrixXd& missing) -> Eigen::MatrixXd {
-      return (weight.asDiagonal() * along).colPivHouseholderQr().solve(Eigen::MatrixXd(weight.asDiagonal() * missing));
-    };
     const Eigen::MatrixXd t = T(Eigen::all, pair);
-    Eigen::MatrixXd missing = t * G - rates_of(s, t);
+    Eigen::MatrixXd missing = t * G - on_pairs(s.g11, s.g12, s.g21, s.g22, t);
     for (Eigen::Index c = 0; c < nc_; ++c)
-      if (!follows(c)) missing -= s.input.col(c) * out.force_row(pair, c).transpose();
-    improve(holding, pair, solved(b, missing), largest(holding, out.force_row), kNear, out.force_row);
-    if (sprung.first.empty() || !oscillators_.empty() || !s.proportional) continue;
-    const Eigen::MatrixXd f = F(pair, Eigen::all).transpose();
-    missing = kept * rates_of(s, f, true) - f * G.transpose();
-    for (Eigen::Index c = 0; c < nc_; ++c)
-      if (!follows(c)) missing += F.transpose() * out.force_row.col(c) * acting(pair, c).transpose();
-    Eigen::VectorXd size(static_cast<Eigen::Index>(sprung.first.size()));  // of what B is a sum of
-    for (std::size_t k = 0; k < sprung.first.size(); ++k) {
-      double stiffness = 0.0;
-      for (const Eigen::Index c : sprung.together[k]) stiffness += out.spring(c);
-      size(static_cast<Eigen::Index>(k)) = stiffness * terms(pair, sprung.first[k]).maxCoeff();
+      if (!out.follows[static_cast<std::size_t>(c)]) missing -= s.input.col(c) * out.force_row(pair, c).transpose();
+    Eigen::VectorXd size(b.cols());
+    for (Eigen::Index k = 0; k < size.size(); ++k) {
+      const std::vector<Eigen::Index>& same = holding.together[static_cast<std::size_t>(k)];
+      size(k) = out.force_row(Eigen::all, same).rowwise().sum().cwiseAbs().maxCoeff();
     }
-    improve(sprung, pair, solved(e, missing), size, kNearer, out.B);
+    improve(holding, pair, least_squares(weights_at(rate_of(G), s), b, missing), size, kNear, out.force_row);
+  }
+}
+
+void RegimeBuilder::refine_spring_inputs(Regime& out) const {
+  // What a spring does to the slow pairs has the same weakness. With x = F s, s of the slipping pairs, their equations
+  // give it from the left: B eᵀ = F G_s − G F with what the other contacts exert.
+  const Places sprung = refinable_springs(out);
+  if (sprung.first.empty()) return;
+  const ModalModel &own = out.pairs, &s = slipping_;
+  const Eigen::MatrixXd& F = out.from_slipping;
+  const Eigen::MatrixXd acting = F * s.input, terms = F.cwiseAbs() * s.input.cwiseAbs();
+  const Eigen::MatrixXd kept = (out.to_slipping * F).transpose(),
+                        e = kept * s.displacement_row(Eigen::all, sprung.first);
+  for (Eigen::Index i = 0; i < own.n; ++i) {
+    const std::vector<Eigen::Index> pair{i, own.np + i};
+    const Eigen::Matrix2d G = block(own, i);
+    if (G.isZero(0.0)) continue;
+    const Eigen::MatrixXd f = F(pair, Eigen::all).transpose();
+    Eigen::MatrixXd missing = kept * on_pairs(s.g11, s.g21, s.g12, s.g22, f) - f * G.transpose();
+    for (Eigen::Index c = 0; c < nc_; ++c)
+      if (!out.follows[static_cast<std::size_t>(c)])
+        missing += F.transpose() * out.force_row.col(c) * acting(pair, c).transpose();
+    Eigen::VectorXd size(e.cols());  // of what B is a sum of
+    for (Eigen::Index k = 0; k < size.size(); ++k) {
+      const auto place = static_cast<std::size_t>(k);
+      size(k) = sprung.stiffness[place] * terms(pair, sprung.first[place]).maxCoeff();
+    }
+    improve(sprung, pair, least_squares(weights_at(rate_of(G), s), e, missing), size, kNearer, out.B);
   }
 }
 
@@ -213,43 +238,38 @@ void RegimeBuilder::make_steady_forces(Regime& out) const {
       out.particular.cwiseAbs().transpose() * out.force_row.cwiseAbs() + out.force_coefficient.cwiseAbs();
   // What floats is carried along by a spring's way without a force.
   out.steady_force = (out.steady_force.array().abs() > kRoundsBy * sizes.array()).select(out.steady_force, 0.0).eval();
-  const auto is_sprung = [&](Eigen::Index c) { return out.spring(c) > 0.0; };
-  const Places sprung = places(is_sprung);
+  const Places sprung = refinable_springs(out);
   const ModalModel& s = slipping_;
   const auto n = out.pairs.n;  // what only integrates the inputs has no part in x_p
   const bool integrates = (out.scale1.head(n).array() == 0.0 || out.scale2.head(n).array() == 0.0).any();
-  // Of complex modes the equations tell less than the rows.
-  if (n == 0 || sprung.first.empty() || integrates || !oscillators_.empty() || !s.proportional) return;
-  const Eigen::MatrixXd moved = out.to_slipping * out.particular + out.inputs_slipping,
-                        b = s.input(Eigen::all, sprung.first);
+  if (sprung.first.empty() || integrates) return;
+  const Eigen::MatrixXd moved = out.to_slipping * out.particular + out.inputs_slipping;
+  const auto count = static_cast<Eigen::Index>(sprung.first.size());
+  Eigen::MatrixXd along(2 * s.np + count, count);
+  along << s.input(Eigen::all, sprung.first), Eigen::MatrixXd::Identity(count, count);
   // Where a mode should not follow a contact's way, it does so by rounding of what others do.
-  const auto ways = sizes.topRows(nc_);
-  const Eigen::RowVectorXd largest = ways.colwise().maxCoeff();
+  const Eigen::RowVectorXd largest = sizes.topRows(nc_).colwise().maxCoeff();
   sizes.topRows(nc_).rowwise() = largest;
-  Eigen::MatrixXd steady = out.steady_force.transpose();
   for (Eigen::Index k = 0; k <= one_; ++k) {
     Eigen::VectorXd most(2 * s.np);
     most << Eigen::VectorXd::Constant(s.np, moved.col(k).head(s.np).cwiseAbs().maxCoeff()),
         Eigen::VectorXd::Constant(s.np, moved.col(k).tail(s.np).cwiseAbs().maxCoeff());
-    Eigen::VectorXd missing = -rates_of(s, moved.col(k)), size = rates_of(s, most, false, true);
+    Eigen::VectorXd missing = -on_pairs(s.g11, s.g12, s.g21, s.g22, moved.col(k)),
+                    size = on_pairs(s.g11.cwiseAbs(), s.g12.cwiseAbs(), s.g21.cwiseAbs(), s.g22.cwiseAbs(), most);
     const auto add = [&](const Eigen::VectorXd& term) {
       missing += term;
       size += term.cwiseAbs();
     };
     for (Eigen::Index c = 0; c < nc_; ++c) {
-      if (!is_sprung(c)) add(-out.steady_force(k, c) * s.input.col(c));
+      if (out.spring(c) == 0.0) add(-out.steady_force(k, c) * s.input.col(c));
       if (k == V_ && out.follows[static_cast<std::size_t>(c)]) add(moved.col(c));
     }
     if (k == V_ + 1) add(moved.col(V_));
     if (k == one_) add(-s.load);
-    missing = (missing.array().abs() > kRoundsBy * size.array()).select(missing, 0.0);
     if (!(size.maxCoeff() > 0.0)) continue;
     // With them what the rows say, each with its error: that of a soft spring on a stiff structure is the smaller one.
-    const auto count = static_cast<Eigen::Index>(sprung.first.size());
-    Eigen::VectorXd known(size.size() + count), error(known.size());
-    Eigen::MatrixXd along(known.size(), count);
-    along << b, Eigen::MatrixXd::Identity(count, count);
-    known.head(size.size()) = missing;
+    Eigen::VectorXd known(along.rows()), error(along.rows());
+    known.head(size.size()) = (missing.array().abs() > kRoundsBy * size.array()).select(missing, 0.0);
     error.head(size.size()) = size;
     for (Eigen::Index at = 0; at < count; ++at) {
       const std::vector<Eigen::Index>& same = sprung.together[static_cast<std::size_t>(at)];
@@ -257,13 +277,8 @@ void RegimeBuilder::make_steady_forces(Regime& out) const {
       error(size.size() + at) = sizes(k, same).sum();
     }
     const Eigen::VectorXd weight = (error.array() + kLeast * error.maxCoeff()).inverse();
-    const Eigen::MatrixXd better =
-        (weight.asDiagonal() * along).colPivHouseholderQr().solve(Eigen::VectorXd(weight.asDiagonal() * known));
-    Eigen::MatrixXd of_input = steady.col(k).transpose();
-    improve(sprung, {0}, better, error.tail(count), kNearest, of_input);
-    steady.col(k) = of_input.transpose();
+    improve(sprung, {k}, least_squares(weight, along, known), error.tail(count), kNearest, out.steady_force);
   }
-  out.steady_force = steady.transpose();
 }
 
 void RegimeBuilder::add_clearance_outputs(Eigen::Index c, const Regime& out, const AddOutput& add) const {

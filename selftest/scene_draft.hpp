@@ -30,7 +30,7 @@ struct SceneDraft {
   bool linear = false;                          ///< of piecewise-linear laws alone
   bool varying = false, oscillates = false;     ///< a normal load is not constant; has an oscillator
   bool clearances = false, closed = false;      ///< has some; has one without a gap
-  bool coulomb_alone = true;                    ///< no other law, but for what joins at its place
+  bool coulomb_alone = false;                   ///< no other law, but for what joins at its place
   std::vector<int> places{};                    ///< masses of the contacts, or nodes
   std::vector<std::pair<int, double>> stops{};  ///< mass and displacement at which it meets a stop
   bool belt = false;

@@ -351,7 +351,8 @@ void RegimeBuilder::fill(Regime& out) {
   make_changes(out);
   make_inputs(out);
   make_contact_rows(out);
-  refine_contacts(out);
+  refine_stick_rows(out);
+  refine_spring_inputs(out);
   out.B_follows = Eigen::VectorXd::Zero(out.B.rows());
   for (Eigen::Index c = 0; c < nc_; ++c)
     if (out.follows[static_cast<std::size_t>(c)]) out.B_follows += out.B.col(c);

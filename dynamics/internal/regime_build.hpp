@@ -55,14 +55,19 @@ class RegimeBuilder {
   struct Places {
     std::vector<Eigen::Index> first;
     std::vector<std::vector<Eigen::Index>> together;
+    std::vector<double> stiffness;  ///< of all springs there [N/m]
   };
   [[nodiscard]] Places places(const std::function<bool(Eigen::Index)>& counts) const;
   /// Puts what is known better of contacts together into these entries of their columns, by their stiffnesses, where it
   /// is near what they have, to a share of `size`. @param better  [places x entries] @param size  [places]
   void improve(const Places& at, const std::vector<Eigen::Index>& entries, const Eigen::MatrixXd& better,
                const Eigen::VectorXd& size, double near, Eigen::MatrixXd& of_contacts) const;
+  /// Springs of which the slipping pairs' equations tell more than their stretches.
+  [[nodiscard]] Places refinable_springs(const Regime& out) const;
   /// Of contacts that stick, without the cancellation behind a stiff spring or on a fine mesh.
-  void refine_contacts(Regime& out) const;
+  void refine_stick_rows(Regime& out) const;
+  /// The same of what a spring that the drive pulls does to the pairs.
+  void refine_spring_inputs(Regime& out) const;
   void make_outputs(Regime& out) const;
   using AddOutput = std::function<void(Eigen::Index, RegimeOutput::Kind, Eigen::VectorXd, Eigen::VectorXd)>;
   void add_clearance_outputs(Eigen::Index c, const Regime& out, const AddOutput& add) const;

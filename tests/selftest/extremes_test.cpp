@@ -4,6 +4,7 @@
 #include <slipmode/fem/modes.hpp>
 #include <slipmode/scene/scene.hpp>
 #include "selftest/cases.hpp"
+#include "selftest/kept_scene.hpp"
 #include "selftest/random_scene.hpp"
 #include "selftest/scene_properties.hpp"
 
@@ -11,8 +12,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -48,12 +47,6 @@ TEST(RandomScenes, MissNoEventAndKeepEveryLaw) {
   for (const auto& [reason, scenes] : survey.refused) refused += scenes;
   EXPECT_LE(refused, 1);  // nearly defective damping: 8 in 10,000
   EXPECT_LT(survey.still, 30);
-}
-
-/// A scene kept as a text, as its generator may change.
-std::string kept_scene(const std::string& name) {
-  std::ifstream file(SLIPMODE_SOURCE_DIR "/tests/selftest/scenes/" + name + ".toml");
-  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 /// The checks draw by its numbers.

@@ -2,14 +2,13 @@
 #include <slipmode/dynamics/modal_model.hpp>
 #include <slipmode/scene/scene.hpp>
 #include "fixtures/against_reference.hpp"
+#include "selftest/kept_scene.hpp"
 #include "selftest/random_scene.hpp"
 
 #include <gtest/gtest.h>
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -111,8 +110,7 @@ TEST(RandomScenes, AgreeWithAnIndependentReference) {
 TEST(RandomScenes, AsManyContactsHoldAsTheReferenceHasHold) {
   // Scene 367 of seed 13: at t = 3.34 one contact reverses, and the three others can be held; of all four held together
   // another exceeds its limit most.
-  std::ifstream file(SLIPMODE_SOURCE_DIR "/tests/selftest/scenes/13_367.toml");
-  const scene::Scene scene = scene::parse_scene(std::string(std::istreambuf_iterator<char>(file), {}));
+  const scene::Scene scene = scene::parse_scene(kept_scene("13_367"));
   const std::optional<Verdict> verdict = judge(scene, scene::build_system(scene));
   ASSERT_TRUE(verdict);
   EXPECT_EQ(verdict->gap.mismatch, "");
