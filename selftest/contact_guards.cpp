@@ -33,7 +33,7 @@ LawCheck check_friction(const friction::Contact& contact, const Sticking& law, C
   if (mode == ContactMode::kStick) {
     const double upper = tilted(law.mu_s, contact.tilt, 1.0) * N - now.lambda;
     const double lower = tilted(law.mu_s, contact.tilt, -1.0) * N + now.lambda;
-    result.guard = std::min({result.guard, upper / scales.force, lower / scales.force});
+    result.guard = std::min({result.guard, upper / scales.held, lower / scales.held});
     if (law.spring == 0.0) result.law = std::abs(now.slip) / scales.speed;
     return result;
   }

@@ -159,7 +159,7 @@ double AuditForms::Stay::contact_potential(DrivePhase p, const Eigen::VectorXd& 
 AuditForms::Stay::Values AuditForms::Stay::values(const StayPlace& at) {
   const DrivePhase p = forms_->overlay_.phase(at.time);
   const auto& vector = kernels::kernels();
-  alignas(64) std::array<double, 2 * kKinds> sums{};
+  alignas(64) std::array<double, std::size_t{2} * kKinds> sums{};
   Values out{};
   const auto add = [&](const Eigen::MatrixXd& rows, double first, double second) {
     vector.node_sums(rows.data(), at.free.data(), at.free.size(), nullptr, sums.data());

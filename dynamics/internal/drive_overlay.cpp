@@ -126,7 +126,8 @@ DriveOverlay::DriveOverlay(const Regime& r, const ModalModel& slipping_model, co
   for (Eigen::Index j = 0; j < used; ++j) {
     const double w = static_cast<double>(j + 1) * omega_;
     const Eigen::VectorXcd J = inputs.c.col(j) - Complex(0.0, 1.0) * inputs.s.col(j), load = r.B * J;
-    if (find_resonances(r, j + 1, load) || any_oscillator_resonates(r, w, kResonance)) {
+    const bool any_resonates = find_resonances(r, j + 1, load) || any_oscillator_resonates(r, w, kResonance);
+    if (!drive.shaker() || any_resonates) {
       own.col(j) = pair_receptances(r.pairs, w, load);
       for (const Resonance& of : resonances)
         if (of.order == j + 1) own(of.pair, j) = own(r.pairs.np + of.pair, j) = 0.0;
@@ -134,7 +135,7 @@ DriveOverlay::DriveOverlay(const Regime& r, const ModalModel& slipping_model, co
       forces.col(j) = r.force_row.transpose() * own.col(j) + r.force_coefficient.transpose() * J;
       continue;
     }
-    const HarmonicResponse response = harmonic_response(r, slipping_model, w, way, J.tail(r.forces));
+    const HarmonicResponse response = harmonic_response(r, slipping_model, w, way);
     own.col(j) = r.from_slipping * response.slipping + r.from_oscillators * response.oscillators;
     lifted.col(j) = response.slipping;
     forces.col(j) = response.force;

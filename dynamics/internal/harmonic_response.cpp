@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <utility>
 #include <vector>
 
 namespace slipmode::dynamics {
@@ -32,28 +31,31 @@ Complex oscillator_gain(const friction::LoadForm& load, double omega) {
   return Complex(load.lift, omega * load.lift_rate) / Complex(load.stiffness - omega * omega, omega * load.damping);
 }
 
+/// λ of a contact that is not held, per d − y.
+Complex impedance(const ContactAnswer& answer, double omega) {
+  const Complex own(answer.stiffness, omega * answer.damping);
+  const friction::LoadForm& load = answer.load;
+  if (!load.oscillates()) return own;
+  return own - answer.friction * Complex(load.z, omega * load.z_rate) * oscillator_gain(load, omega);
+}
+
 /// A direction along that of a held contact.
 struct Carried {
   Eigen::Index by = -1;  ///< the held one; -1: none
   double share = 0.0;    ///< its displacement over that of the held one
 };
 
-/// @param direction  as a column, with those of the contacts in `of_contacts`
-Carried carried(const Regime& r, const Eigen::MatrixXd& of_contacts, const Eigen::VectorXd& direction) {
+std::vector<Carried> carried_contacts(const Regime& r, const Eigen::MatrixXd& directions) {
   constexpr double kSame = 1e-13;
-  for (Eigen::Index d = 0; d < r.speed_input(); ++d) {
-    if (!r.held(static_cast<int>(d))) continue;
-    const double share = of_contacts.col(d).dot(direction) / of_contacts.col(d).squaredNorm();
-    if ((direction - share * of_contacts.col(d)).norm() <= kSame * direction.norm()) return {d, share};
-  }
-  return {};
-}
-
-std::vector<Carried> carried_contacts(const Regime& r, const ModalModel& slipping) {
   std::vector<Carried> out(static_cast<std::size_t>(r.speed_input()));
   for (Eigen::Index c = 0; c < r.speed_input(); ++c)
-    if (!r.held(static_cast<int>(c)))
-      out[static_cast<std::size_t>(c)] = carried(r, slipping.displacement_row, slipping.displacement_row.col(c));
+    for (Eigen::Index d = 0; d < r.speed_input() && !r.held(static_cast<int>(c)); ++d) {
+      if (!r.held(static_cast<int>(d))) continue;
+      const double share = directions.col(d).dot(directions.col(c)) / directions.col(d).squaredNorm();
+      if ((directions.col(c) - share * directions.col(d)).norm() > kSame * directions.col(c).norm()) continue;
+      out[static_cast<std::size_t>(c)] = {d, share};
+      break;
+    }
   return out;
 }
 
@@ -72,65 +74,54 @@ bool any_oscillator_resonates(const Regime& r, double omega, double share) {
   });
 }
 
-HarmonicResponse harmonic_response(const Regime& r, const ModalModel& slipping, double omega, Complex way,
-                                   const Eigen::VectorXcd& forces) {
+HarmonicResponse harmonic_response(const Regime& r, const ModalModel& slipping, double omega, Complex way) {
   const Eigen::Index nc = r.speed_input(), np = slipping.np;
-  // What presses on a held contact moves nothing, and its force may be far larger than what does: the unknown there is
-  // the sum of both.
-  Eigen::VectorXcd on_held = Eigen::VectorXcd::Zero(nc), moving = forces;
-  for (Eigen::Index k = 0; k < forces.size(); ++k)
-    if (const Carried at = carried(r, slipping.input, slipping.force_input.col(k)); at.by >= 0)
-      on_held(at.by) += at.share * std::exchange(moving(k), 0.0);
-  const Eigen::VectorXcd forced = slipping.force_input * moving;
-  const std::vector<Carried> contacts = carried_contacts(r, slipping);
+  const std::vector<Carried> carried = carried_contacts(r, slipping.displacement_row);
   Eigen::MatrixXd input = slipping.input;
-  for (Eigen::Index c = 0; c < nc; ++c)
-    if (contacts[static_cast<std::size_t>(c)].by >= 0) input.col(c).setZero();
+  Eigen::VectorXcd impedances(nc);
+  const auto moves_any = [&](Eigen::Index c) {
+    return r.held(static_cast<int>(c)) || (carried[static_cast<std::size_t>(c)].by < 0 && impedances(c) != 0.0);
+  };
+  for (Eigen::Index c = 0; c < nc; ++c) {
+    impedances(c) = impedance(r.answers[static_cast<std::size_t>(c)], omega);
+    if (!moves_any(c)) input.col(c).setZero();
+  }
   Eigen::MatrixXcd by_contacts = pair_receptances(slipping, omega, input.cast<Complex>());
-  Eigen::MatrixXcd by_forces = pair_receptances(slipping, omega, forced);
   std::vector<Eigen::Index> own;  // states that are unknowns of their own
   for (Eigen::Index i = 0; i < slipping.n; ++i)
     if (resonates(slipping, i, omega, kOwnUnknown))
       for (const Eigen::Index k : {i, np + i}) {
         own.push_back(k);
         by_contacts.row(k).setZero();
-        by_forces.row(k).setZero();
       }
   const Eigen::MatrixXcd H = slipping.displacement_row.transpose() * by_contacts;
-  const Eigen::VectorXcd moved = slipping.displacement_row.transpose() * by_forces;
 
   const auto unknowns = nc + std::ssize(own);
   Eigen::MatrixXcd A = Eigen::MatrixXcd::Zero(unknowns, unknowns);
-  Eigen::VectorXcd b(unknowns);
-  std::vector<Eigen::Index> silent;  // contacts that answer nothing: their rows say so, but for rounding
-  // factor · y of contact c.
-  const auto set_row = [&](Eigen::Index c, Complex factor, Complex target) {
+  Eigen::VectorXcd b = Eigen::VectorXcd::Zero(unknowns);
+  // That forces are told in: a soft spring's own, not its neighbours'.
+  Eigen::VectorXd unit = Eigen::VectorXd::Ones(nc);
+  for (Eigen::Index c = 0; c < nc; ++c) {
+    const Complex own_way = r.sticks(static_cast<int>(c)) ? way : 0.0;
+    if (!moves_any(c)) {
+      const Carried& at = carried[static_cast<std::size_t>(c)];
+      A(c, c) = 1.0;
+      if (at.by >= 0) b(c) = impedances(c) * (own_way - at.share * way);
+      continue;
+    }
+    const bool held = r.held(static_cast<int>(c));
+    const double reach = std::abs(H(c, c)), stiffness = std::abs(impedances(c));
+    const Complex factor = held ? 1.0 : impedances(c) / stiffness;
     A.row(c).head(nc) = factor * H.row(c);
     for (Eigen::Index k = nc; k < unknowns; ++k)
       A(c, k) = factor * slipping.displacement_row(own[static_cast<std::size_t>(k - nc)], c);
-    b(c) = factor * target;
-  };
-  for (Eigen::Index c = 0; c < nc; ++c) {
-    const auto i = static_cast<std::size_t>(c);
-    const double reach = std::abs(H(c, c));
-    const Complex own_way = r.sticks(static_cast<int>(c)) ? way : 0.0, target = own_way - moved(c);
-    if (r.held(static_cast<int>(c))) {
-      set_row(c, own.empty() ? 1.0 / reach : 1.0, target);  // what is left of H may be rounding
-      continue;
+    b(c) = factor * own_way;
+    if (held) {
+      if (own.empty()) unit(c) = 1.0 / reach;  // else what is left of H may be rounding
+    } else {
+      A(c, c) += 1.0 / stiffness;
+      unit(c) = stiffness / std::max(1.0, stiffness * reach);
     }
-    Complex impedance(r.answers[i].stiffness, omega * r.answers[i].damping);
-    const friction::LoadForm& load = r.answers[i].load;
-    if (load.oscillates())
-      impedance -= r.answers[i].friction * Complex(load.z, omega * load.z_rate) * oscillator_gain(load, omega);
-    if (contacts[i].by >= 0) {
-      A(c, c) = 1.0;
-      b(c) = impedance * (own_way - contacts[i].share * way);
-      continue;
-    }
-    if (impedance == 0.0) silent.push_back(c);
-    const double size = std::max(1.0, std::abs(impedance) * reach);
-    set_row(c, impedance / size, target);
-    A(c, c) += 1.0 / size;
   }
   for (Eigen::Index k = nc; k < unknowns; k += 2) {
     const Eigen::Index i = own[static_cast<std::size_t>(k - nc)];
@@ -138,20 +129,17 @@ HarmonicResponse harmonic_response(const Regime& r, const ModalModel& slipping, 
         Complex(-slipping.g22(i), omega);
     A.row(k).head(nc) = -input.row(i).cast<Complex>();
     A.row(k + 1).head(nc) = -input.row(np + i).cast<Complex>();
-    b(k) = forced(i);
-    b(k + 1) = forced(np + i);
   }
+  A.leftCols(nc) *= unit.asDiagonal();
   const Eigen::VectorXcd solved = own.empty() ? A.partialPivLu().solve(b).eval() : equilibrated_solve(A, b);
   HarmonicResponse out;
-  out.force = solved.head(nc);
-  out.force(silent).setZero();
-  out.slipping = by_contacts * out.force + by_forces;
+  out.force = unit.cwiseProduct(solved.head(nc));
+  out.slipping = by_contacts * out.force;
   out.slipping(own) = solved.tail(unknowns - nc);
-  out.place_size = H.cwiseAbs() * out.force.cwiseAbs() + moved.cwiseAbs();
+  out.place_size = H.cwiseAbs() * out.force.cwiseAbs();
   for (Eigen::Index c = 0; c < nc; ++c)
-    if (const Carried& at = contacts[static_cast<std::size_t>(c)]; at.by >= 0)
+    if (const Carried& at = carried[static_cast<std::size_t>(c)]; at.by >= 0)
       out.force(at.by) -= at.share * out.force(c);
-  out.force -= on_held;
   out.oscillators.resize(r.from_oscillators.cols());
   Eigen::Index j = 0;
   for (Eigen::Index c = 0; c < nc; ++c) {

@@ -32,8 +32,10 @@ void check_condition(double condition) {
 }
 
 /// A place that floats and a slow decay μ of its speed, as a mode each, would be the large summands v/μ of a small
-/// displacement. As ẋ = a v, v̇ = μ v they are not. Takes out of `decaying` what is put so, `put(mode, a)`: the slowest
-/// whose a are apart. Returns directions of the places that are left, in columns.
+/// displacement. As ẋ = a v, v̇ = μ v they are not. Takes out of `decaying` what is put so, `put(mode, a, summand)`: the
+/// slowest whose a are apart. What of an a is along places put before is no summand to speak of where the decay is not
+/// slow: `summand` is that over μ then, and a is what is left, so that places are at right angles; else 0. Returns
+/// directions of the places that are left, in columns.
 /// @param drifts  a of every mode [places x modes]
 template <class Put>
 Eigen::MatrixXd put_floating(const Eigen::VectorXcd& values, const Eigen::MatrixXcd& drifts,
@@ -53,8 +55,16 @@ Eigen::MatrixXd put_floating(const Eigen::VectorXcd& values, const Eigen::Matrix
       slowest = k;
     }
     if (slowest == decaying.end()) break;
-    const Eigen::VectorXd a = drifts.col(*slowest).real();
-    put(*slowest, a);
+    Eigen::VectorXd a = drifts.col(*slowest).real();
+    const Eigen::VectorXd own = left * (left.transpose() * a);
+    Eigen::VectorXd summand = a - own;
+    if (summand.norm() < std::abs(values(*slowest))) {
+      summand /= values(*slowest).real();
+      a = own;
+    } else {
+      summand.setZero();
+    }
+    put(*slowest, a, summand);
     decaying.erase(slowest);
     reached.conservativeResize(Eigen::NoChange, reached.cols() + 1);
     reached.rightCols<1>() = a / a.norm();
@@ -116,12 +126,13 @@ PairForm coupled_pair_form(const Eigen::MatrixXd& A) {
       decaying.push_back(k);
     }
   }
-  const Eigen::MatrixXd places =
-      put_floating(values, drifts, decaying, [&](Eigen::Index k, const Eigen::VectorXd& along) {
+  const Eigen::MatrixXd places = put_floating(
+      values, drifts, decaying, [&](Eigen::Index k, const Eigen::VectorXd& along, const Eigen::VectorXd& summand) {
         const double speed = along.norm();
-        Eigen::VectorXd place = Eigen::VectorXd::Zero(2 * n);
+        Eigen::VectorXd place = Eigen::VectorXd::Zero(2 * n), decay = vectors.col(k).real();
         place(shifted) = along / speed;
-        put(place, vectors.col(k).real(), 0.0, speed, 0.0, values(k).real());
+        decay(shifted) = summand;
+        put(place, decay, 0.0, speed, 0.0, values(k).real());
       });
 
   struct Real {

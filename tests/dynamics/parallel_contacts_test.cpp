@@ -1,12 +1,15 @@
 // Several contacts on one degree of freedom: those behind springs and stops add their forces.
 #include <slipmode/core/errors.hpp>
+#include <slipmode/dynamics/cache.hpp>
 #include <slipmode/dynamics/simulate.hpp>
 #include <slipmode/fem/chain.hpp>
 #include <slipmode/fem/masses.hpp>
+#include "dynamics/internal/drive_overlay.hpp"
 
 #include <gtest/gtest.h>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -94,6 +97,36 @@ TEST(ParallelContacts, AddUpAsAProgramOfFixedStepsAddsThem) {
   EXPECT_NEAR(run.final_state.q[0], q, 1e-7);
   EXPECT_NEAR(run.final_state.v[0], v, 1e-7);
   EXPECT_LT(std::abs(run.audit.residual()), 1e-12);
+}
+
+TEST(ParallelContacts, StretchAlikeUnderADriveHoweverSoft) {
+  // λ_c/K_c is one number, d − y, to rounding. Where forces were solved for side by side, a soft spring's was a
+  // difference of its neighbours', and beside a stiff one on a force's way all of them differences of what the force
+  // would move without them: limits of 4e-9 N were passed by 4e-8 of them.
+  const friction::Shaker shaker{.amplitude = 0.7, .frequency_hz = 0.2, .phase = 0.3};
+  const friction::Force force{1.3, {{.amplitude = 0.7, .phase = 0.3}}};
+  const auto spread = [](const std::vector<double>& stiffness, const friction::Drive& drive) {
+    std::vector<friction::Contact> contacts;
+    for (const double k : stiffness)
+      contacts.push_back({Eigen::VectorXd::Unit(8, 2), friction::CompliantCoulomb{1.0, 1.0, k}, 1.0});
+    const HybridSystem system(fem::chain({.masses = 8, .damping = 0.01}), contacts, drive, {},
+                              drive.shaker() ? Eigen::MatrixXd() : Eigen::MatrixXd(Eigen::MatrixXd::Ones(8, 1)));
+    const ModalModel& slipping = system.cache().tables(system, false).model;
+    const Regime regime(system, slipping, std::vector<ContactRole>(stiffness.size(), ContactRole::kSprung));
+    const DriveOverlay overlay(regime, slipping, drive);
+    const Eigen::ArrayXd k = Eigen::Map<const Eigen::ArrayXd>(stiffness.data(), std::ssize(stiffness));
+    double worst = 0.0;
+    for (const Eigen::MatrixXd* part : {&overlay.force.c, &overlay.force.s}) {
+      const Eigen::ArrayXd stretch = part->col(0).array() / k;
+      worst = std::max(worst, (stretch - stretch.mean()).abs().maxCoeff() / std::abs(stretch.mean()));
+    }
+    return worst;
+  };
+  EXPECT_LT(spread({1e-9, 20.0, 1e-3, 5.0}, shaker), 1e-14);
+  EXPECT_LT(spread({20.0, 1e-9, 1e-3}, shaker), 1e-14);
+  EXPECT_LT(spread({1e-9, 20.0, 1e-3, 5.0}, force), 1e-14);
+  EXPECT_LT(spread({1e2, 3e4, 7e6}, force), 1e-14);
+  EXPECT_LT(spread({7e9, 1e2, 1e-6}, force), 1e-14);
 }
 
 TEST(ParallelContacts, OfStiffSpringsTurnOnceWhereTheMassDoes) {
