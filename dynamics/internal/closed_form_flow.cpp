@@ -239,7 +239,8 @@ bool ClosedFormFlow::step(double t_limit) {
     level_ = std::min(level_ + found.refinement, RegimeTables::kLevels - 1);
     ++statistics_.rejected;
   }
-  if (found.guard >= 0 && !found.touching) {
+  const bool at_once = found.guard >= 0 && guards_[static_cast<std::size_t>(found.guard)].at_once;
+  if (found.guard >= 0 && !found.touching && !at_once) {
     // Up to the part that is proved clear; beyond it Newton, which may prove itself.
     if (!found.resolved) tau *= kUsed;
     double root = (found.guess > 0.0 ? found.guess : found.at) * h;

@@ -59,6 +59,7 @@ class ClosedFormFlow {
     GuardKind kind = GuardKind::kFriction;
     ContactMode next = ContactMode::kStick;  ///< of a clearance, once the guard is crossed
     double exempt_until = -1e300;            ///< known to be clear up to this time
+    bool at_once = false;                    ///< falls from zero, from rest: a motion that starts on a stop
   };
   /// What tangents need of a regime, without padding.
   struct TangentMaps {

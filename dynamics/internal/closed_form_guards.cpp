@@ -248,7 +248,11 @@ void ClosedFormFlow::foresee_starts() {
     // A guard that falls through zero is an event at once; one of which neither slope nor curvature can be told may
     // rise.
     const bool told = !flat || std::abs(g2) > kSimpleStart * r.rate * r.rate * size;
-    if (!rigid_speed && clear == 0.0 && told) continue;
+    if (!rigid_speed && clear == 0.0 && told) {
+      const bool at_rest = flat && std::abs(g1) <= kRising * r.rate * size && std::abs(start.value) <= kTouching * size;
+      guard.at_once = guard.kind == GuardKind::kStop && at_rest;
+      continue;
+    }
     clear = std::min(std::max(clear, near), 1.0 / r.rate);
     blind_start_ |= clear < tiny;
     clear = std::max(clear, tiny);
@@ -314,6 +318,7 @@ ClosedFormFlow::Search ClosedFormFlow::search(int level) const {
   for (std::size_t g = 0; g < guards_.size(); ++g) {
     const Guard& guard = guards_[g];
     if (guard.exempt_until > begin_) continue;
+    if (guard.at_once) return {.guard = static_cast<int>(g), .at = 0.0, .resolved = true};
     const auto k = guard.output;
     if (k != computed) {
       computed = k;

@@ -233,7 +233,7 @@ void ClosedFormFlow::leave_tangents(const Guard* guard) {
     }
     // Reached at rest, as where a motion starts on a stop: when is nobody's, and forces do not jump there.
     const double rate = evaluate(*guard, point_.time).rate;
-    delay_ *= rate != 0.0 ? guard->sign / rate : 0.0;
+    delay_ *= guard->at_once || rate == 0.0 ? 0.0 : guard->sign / rate;
   }
   static_cast<void>(tangents());
   rate_before_ = point_rate();

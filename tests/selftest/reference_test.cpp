@@ -35,9 +35,10 @@ double size_of(const dynamics::State& state) {
 
 /// What the motion multiplies a change of its start by until the end, by the reference alone; infinite where other
 /// events follow.
-double amplification(const dynamics::HybridSystem& system, const dynamics::State& start, double duration) {
+/// @param size  of the motion, which may start at rest at zero
+double amplification(const dynamics::HybridSystem& system, const dynamics::State& start, double duration, double size) {
   constexpr double kMoved = 1e-11;
-  const double moved = kMoved * size_of(start);
+  const double moved = kMoved * size;
   fixtures::TaylorReference<long double> reference(fixtures::reference_of(system));
   const fixtures::ReferenceRun one = reference.run(start.q, start.v, start.time, duration);
   const fixtures::ReferenceRun other =
@@ -67,8 +68,9 @@ std::optional<Verdict> judge(const scene::Scene& scene, const dynamics::HybridSy
   try {
     Verdict v{fixtures::gap_to_reference(system, start, duration, {.method = scene.flow.method, .tolerance = 1e-12})};
     if (!v.gap.unique && !v.gap.mismatch.empty()) return std::nullopt;
-    v.apart = std::max(v.gap.state / std::max({1e-3, size_of(start), v.gap.size}), v.gap.event_time / duration);
-    if (v.sensitive()) v.grown = amplification(system, start, duration);
+    const double size = std::max(size_of(start), v.gap.size);
+    v.apart = std::max(v.gap.state / std::max(1e-3, size), v.gap.event_time / duration);
+    if (v.sensitive()) v.grown = amplification(system, start, duration, size);
     return v;
   } catch (const std::runtime_error&) {
     return std::nullopt;
