@@ -129,5 +129,26 @@ TEST(RestOnAStop, StopsOnSeveralMassesAreLeft) {
   EXPECT_GT(moved, 1500);
 }
 
+TEST(RestOnAStop, IsPressedFromTheFirstInstantOn) {
+  // A force that pushes a chain at rest into a stop without a gap: the event is at once, as by the reference. Sought as
+  // a root, it came 1e-8 to 6e-8 s late.
+  const friction::Force push{1.3, {{.amplitude = 0.1, .phase = 0.4}}};
+  for (const auto loss : {friction::ContactLoss::kGap, friction::ContactLoss::kZeroForce})
+    for (const double side : {-1.0, 1.0})
+      for (const FlowMethod method : {FlowMethod::kClosedForm, FlowMethod::kCollocation}) {
+        SCOPED_TRACE(testing::Message() << static_cast<int>(loss) << " " << side << " " << static_cast<int>(method));
+        const Clearance stops{
+            .left = Stop{.stiffness = 40.0}, .right = Stop{.stiffness = 56.0, .damping = 0.3}, .loss = loss};
+        const HybridSystem system(chain_of_six(0.03), {{.direction = Eigen::VectorXd::Unit(kMasses, 2), .law = stops}},
+                                  push, side * 0.2 * Eigen::VectorXd::Unit(kMasses, 2),
+                                  Eigen::MatrixXd(Eigen::VectorXd::Unit(kMasses, 2)));
+        const Trajectory run = simulate(system, system.rest(), {.duration = 20.0, .flow = {.method = method}});
+        ASSERT_FALSE(run.events.empty());
+        EXPECT_EQ(run.events[0].time, 0.0);
+        EXPECT_EQ(run.events[0].after, side < 0.0 ? ContactMode::kLeftStop : ContactMode::kRightStop);
+        EXPECT_LT(std::abs(run.audit.residual()), 1e-12);
+      }
+}
+
 }  // namespace
 }  // namespace slipmode::dynamics
