@@ -288,12 +288,18 @@ void EventResolver::start(HybridPoint& point) const {
     const double sign = sign_of(point.modes[c]);
     if (sign * slide_velocity(point, static_cast<int>(c), sign) < 0.0) point.modes[c] = ContactMode::kStick;
   }
-  const std::vector<bool> none(at_rest.size(), false);
+  point.assign(decide(point, at_rest, std::vector<bool>(at_rest.size())));
+}
+
+Resolution EventResolver::decide(const HybridPoint& point, std::vector<bool> at_rest,
+                                 const std::vector<bool>& released) const {
+  const std::vector<ContactForces> laws = laws_at(point);
   Eigen::VectorXd applied;
   applied_forces(point, applied);
   const Instant here = instant(point, laws, applied);
-  Resolution first = resolve(here, point.modes, at_rest, none);
-  // A contact said to slide at zero speed does so if its acceleration takes it there; else it is at rest.
+  Resolution first = resolve(here, point.modes, at_rest, released);
+  // A contact said to slide at zero speed, at a start or since it was let go at this instant, does so if its
+  // acceleration takes it there; else it is at rest.
   bool again = false;
   for (std::size_t c = 0; c < at_rest.size(); ++c) {
     const auto i = static_cast<int>(c);
@@ -302,7 +308,7 @@ void EventResolver::start(HybridPoint& point) const {
     first.multiplicity[c] = std::max(multiplicity, 0);
     if (multiplicity < 0) again = at_rest[c] = true;
   }
-  point.assign(again ? resolve(here, point.modes, at_rest, none) : std::move(first));
+  return again ? resolve(here, point.modes, at_rest, released) : first;
 }
 
 bool EventResolver::decides_by_acceleration(const HybridPoint& point, std::size_t c) const {

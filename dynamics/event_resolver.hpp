@@ -112,6 +112,9 @@ class EventResolver {
   [[nodiscard]] std::vector<bool> released_together(const HybridPoint& point, int contact) const;
   /// z of the contacts with bristles, 0 of the others [nc].
   [[nodiscard]] Eigen::VectorXd deflections(const HybridPoint& point) const;
+  /// What the point's contacts do next, those at rest among them.
+  [[nodiscard]] Resolution decide(const HybridPoint& point, std::vector<bool> at_rest,
+                                  const std::vector<bool>& released) const;
   void settle_single(HybridPoint& point);
   void settle_stop(HybridPoint& point, const Reached& reached);
   /// One contact behind a contact spring: its force is a function of the state, there is nothing to resolve.

@@ -173,21 +173,17 @@ void EventResolver::settle_coupled(HybridPoint& point, const Reached& reached) {
     turn_together(point, contact);
 
   // Rigid contacts at rest on the drive, to be decided together: the sticking ones, the one whose guard was reached,
-  // and any other whose sliding speed is zero to rounding.
+  // and any other whose sliding speed is zero to rounding and does not grow.
   std::vector<bool> at_rest(point.modes.size());
   std::vector<Eigen::Index> resting;
   for (std::size_t c = 0; c < point.modes.size(); ++c) {
     const auto i = static_cast<int>(c);
     if (!decides_by_acceleration(point, c)) continue;
-    at_rest[c] = point.modes[c] == ContactMode::kStick || (i == contact && kind == GuardKind::kFriction) ||
-                 at_belt_speed(point.time, i, point.x.data());
-    if (at_rest[c]) resting.push_back(i);
+    at_rest[c] = point.modes[c] == ContactMode::kStick || (i == contact && kind == GuardKind::kFriction);
+    if (at_rest[c] || at_belt_speed(point.time, i, point.x.data())) resting.push_back(i);
   }
   hold(point.time, resting, point.x.data());
-  const std::vector<ContactForces> laws = laws_at(point);
-  Eigen::VectorXd applied;
-  applied_forces(point, applied);
-  point.assign(resolve(instant(point, laws, applied), point.modes, at_rest, released));
+  point.assign(decide(point, at_rest, released));
 
   if (contact < 0) record(point, -1, EventKind::kDriveCorner, ContactMode::kStick);
   for (std::size_t c = 0; c < point.modes.size(); ++c)

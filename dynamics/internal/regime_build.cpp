@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace slipmode::dynamics {
 namespace {
@@ -102,6 +103,9 @@ void RegimeBuilder::eliminate_held() {
     const Eigen::MatrixXd W = modal_.directions(Eigen::all, held_);
     std::vector<Eigen::Index> reached, others;
     for (Eigen::Index i = 0; i < n_; ++i) (W.row(i).isZero(0.0) ? others : reached).push_back(i);
+    // With the largest first, what a heavy part hardly moves with keeps its digits.
+    std::ranges::stable_sort(reached, std::ranges::greater{},
+                             [&](Eigen::Index i) { return W.row(i).lpNorm<Eigen::Infinity>(); });
     const auto m = static_cast<Eigen::Index>(reached.size());
     const Eigen::MatrixXd Q = Eigen::HouseholderQR<Eigen::MatrixXd>(W(reached, Eigen::all)).householderQ();
     Z_ = Eigen::MatrixXd::Zero(n_, n_ - s);

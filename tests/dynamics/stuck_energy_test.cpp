@@ -132,5 +132,24 @@ TEST(StuckEnergy, AMomentFromRestIsToldFromTheShakersOwnPlace) {
   EXPECT_LT(std::abs(run.audit.residual()), 1e-13);
 }
 
+TEST(StuckEnergy, AHeavyPartBesideAHeldOneKeepsItsDigits) {
+  // A mass of 1e12 on a spring to one that sticks: x = x₀ cos ωt, λ = −k x. What is free was told from what is held by
+  // a reflection whose small entries were differences of ones: both errors were 1e-10 x₀.
+  const double heavy = 1e12, k = 1.1, x0 = 1.5, omega = std::sqrt(k / heavy);
+  const Eigen::MatrixXd M = Eigen::Vector2d(1.3, heavy).asDiagonal(), K{{2.1, -k}, {-k, k}};
+  const HybridSystem system(fem::Structure(fem::Matrix(M), fem::Matrix(Eigen::MatrixXd(0.0 * M)), fem::Matrix(K)),
+                            {{unit(2, 0), friction::Coulomb{1.0, 1.0}, 10.0}}, friction::Belt::constant(0.0));
+  State start = system.rest();
+  start.q(1) = x0;
+  const Trajectory run = simulate(system, start, {.duration = 1e7, .sample = 1e5});
+  EXPECT_TRUE(run.events.empty());
+  for (Eigen::Index i = 0; i < run.times.size(); ++i) {
+    const double x = x0 * std::cos(omega * run.times(i));
+    EXPECT_NEAR(run.q(1, i), x, 1e-13 * x0);
+    EXPECT_NEAR(run.q(0, i), 0.0, 1e-15 * x0);
+    EXPECT_NEAR(run.lambda(0, i), -k * x, 1e-13 * k * x0);
+  }
+}
+
 }  // namespace
 }  // namespace slipmode::dynamics

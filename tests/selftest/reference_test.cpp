@@ -109,14 +109,18 @@ TEST(RandomScenes, AgreeWithAnIndependentReference) {
   EXPECT_LE(sensitive, judged / 50);
 }
 
-TEST(RandomScenes, AsManyContactsHoldAsTheReferenceHasHold) {
-  // Scene 367 of seed 13: at t = 3.34 one contact reverses, and the three others can be held; of all four held together
-  // another exceeds its limit most.
-  const scene::Scene scene = scene::parse_scene(kept_scene("13_367"));
-  const std::optional<Verdict> verdict = judge(scene, scene::build_system(scene));
-  ASSERT_TRUE(verdict);
-  EXPECT_EQ(verdict->gap.mismatch, "");
-  EXPECT_LT(verdict->apart, kAgreement);
+TEST(RandomScenes, AreToldAsTheReferenceTellsThem) {
+  // 13: 367: at t = 3.34 one contact reverses, and the three others can be held; of all four held together another
+  // exceeds its limit most. 12: 343 starts at rest on a stop and is pushed into it: at once, not 2e-8 s later. 14: 610
+  // (collocation) and 11: 103 (closed form): a contact is let go and a stop met in one instant, and that is all.
+  for (const char* name : {"13_367", "12_343", "14_610", "11_103"}) {
+    SCOPED_TRACE(name);
+    const scene::Scene scene = scene::parse_scene(kept_scene(name));
+    const std::optional<Verdict> verdict = judge(scene, scene::build_system(scene));
+    ASSERT_TRUE(verdict);
+    EXPECT_EQ(verdict->gap.mismatch, "");
+    EXPECT_LT(verdict->apart, 1e-11);
+  }
 }
 
 }  // namespace
