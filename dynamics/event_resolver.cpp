@@ -297,18 +297,20 @@ Resolution EventResolver::decide(const HybridPoint& point, std::vector<bool> at_
   Eigen::VectorXd applied;
   applied_forces(point, applied);
   const Instant here = instant(point, laws, applied);
-  Resolution first = resolve(here, point.modes, at_rest, released);
   // A contact said to slide at zero speed, at a start or since it was let go at this instant, does so if its
   // acceleration takes it there; else it is at rest.
-  bool again = false;
-  for (std::size_t c = 0; c < at_rest.size(); ++c) {
-    const auto i = static_cast<int>(c);
-    if (at_rest[c] || !decides_by_acceleration(point, c) || !at_belt_speed(point.time, i, point.x.data())) continue;
-    const int multiplicity = start_multiplicity(here, i, first.modes[c], first.force);
-    first.multiplicity[c] = std::max(multiplicity, 0);
-    if (multiplicity < 0) again = at_rest[c] = true;
+  for (;;) {
+    Resolution found = resolve(here, point.modes, at_rest, released);
+    bool again = false;
+    for (std::size_t c = 0; c < at_rest.size(); ++c) {
+      const auto i = static_cast<int>(c);
+      if (at_rest[c] || !decides_by_acceleration(point, c) || !at_belt_speed(point.time, i, point.x.data())) continue;
+      const int multiplicity = start_multiplicity(here, i, found.modes[c], found.force);
+      found.multiplicity[c] = std::max(multiplicity, 0);
+      if (multiplicity < 0) again = at_rest[c] = true;
+    }
+    if (!again) return found;
   }
-  return again ? resolve(here, point.modes, at_rest, released) : first;
 }
 
 bool EventResolver::decides_by_acceleration(const HybridPoint& point, std::size_t c) const {

@@ -112,7 +112,7 @@ class EventResolver {
   [[nodiscard]] std::vector<bool> released_together(const HybridPoint& point, int contact) const;
   /// z of the contacts with bristles, 0 of the others [nc].
   [[nodiscard]] Eigen::VectorXd deflections(const HybridPoint& point) const;
-  /// What the point's contacts do next, those at rest among them.
+  /// What the point's contacts do next, those at rest among them; more are, if at zero speed they do not slide on.
   [[nodiscard]] Resolution decide(const HybridPoint& point, std::vector<bool> at_rest,
                                   const std::vector<bool>& released) const;
   void settle_single(HybridPoint& point);

@@ -172,8 +172,8 @@ void EventResolver::settle_coupled(HybridPoint& point, const Reached& reached) {
   else if (contact >= 0 && laws_[static_cast<std::size_t>(contact)].kind == LawKind::kCompliant)
     turn_together(point, contact);
 
-  // Rigid contacts at rest on the drive, to be decided together: the sticking ones, the one whose guard was reached,
-  // and any other whose sliding speed is zero to rounding and does not grow.
+  // Rigid contacts at rest on the drive, to be decided together: those that stick and the one whose guard was reached.
+  // Others at zero speed are held there too; decide() tells whether they slide on.
   std::vector<bool> at_rest(point.modes.size());
   std::vector<Eigen::Index> resting;
   for (std::size_t c = 0; c < point.modes.size(); ++c) {

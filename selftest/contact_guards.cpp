@@ -33,7 +33,8 @@ LawCheck check_friction(const friction::Contact& contact, const Sticking& law, C
   if (mode == ContactMode::kStick) {
     const double upper = tilted(law.mu_s, contact.tilt, 1.0) * N - now.lambda;
     const double lower = tilted(law.mu_s, contact.tilt, -1.0) * N + now.lambda;
-    result.guard = std::min({result.guard, upper / scales.held, lower / scales.held});
+    const auto told = [&](double left) { return std::copysign(std::max(0.0, std::abs(left) - scales.slack), left); };
+    result.guard = std::min({result.guard, told(upper) / scales.force, told(lower) / scales.force});
     if (law.spring == 0.0) result.law = std::abs(now.slip) / scales.speed;
     return result;
   }

@@ -21,7 +21,7 @@ struct ContactScales {
   double way = 1.0;    ///< [m]
   double speed = 1.0;  ///< [m/s]
   double force = 1.0;  ///< [N]
-  double held = 1.0;   ///< of a stick's force, which behind a spring rounds by places [N]
+  double slack = 0.0;  ///< what a stick's force behind a spring rounds by, as its places do [N]
 };
 
 /// What must not be negative while a mode lasts (the least of its guards), and what must be zero, as shares of the

@@ -300,7 +300,7 @@ class Scan {
     }
     for (double* scale : {&scales.way, &scales.speed, &scales.force})
       if (!(*scale > 0.0)) *scale = 1.0;
-    scales.held = std::max(scales.force, kRounding / limits_.guard * friction::spring_stiffness(law.law) * scales.way);
+    scales.slack = kRounding * friction::spring_stiffness(law.law) * scales.way;
     return scales;
   }
 

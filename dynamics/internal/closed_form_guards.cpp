@@ -17,6 +17,8 @@ constexpr double kTouching = 1e-12;
 constexpr double kCancels = 1e-2;
 /// A guard below this share of its scale when a regime begins starts at zero …
 constexpr double kStarting = 1e-9;
+/// What a place rounds by, of its size.
+constexpr double kPlaceRounding = 64.0 * std::numeric_limits<double>::epsilon();
 /// … its slope is known to rise above this share of its scale times the fastest rate, and may be zero below that one.
 constexpr double kRising = 1e-13, kSimpleStart = 1e-9;
 /// A root is located to this phase of the fastest pair.
@@ -249,7 +251,8 @@ void ClosedFormFlow::foresee_starts() {
     // rise.
     const bool told = !flat || std::abs(g2) > kSimpleStart * r.rate * r.rate * size;
     if (!rigid_speed && clear == 0.0 && told) {
-      const bool at_rest = flat && std::abs(g1) <= kRising * r.rate * size && std::abs(start.value) <= kTouching * size;
+      const bool at_rest =
+          flat && std::abs(g1) <= kRising * r.rate * size && std::abs(start.value) <= kPlaceRounding * size;
       guard.at_once = guard.kind == GuardKind::kStop && at_rest;
       continue;
     }

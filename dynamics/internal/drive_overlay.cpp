@@ -88,6 +88,15 @@ Eigen::Vector2cd pair_from_rest(const ModalModel& pairs, Eigen::Index i, const E
 
 Amplitudes amplitudes(const Eigen::MatrixXcd& phasors) { return {phasors.real(), -phasors.imag()}; }
 
+/// Springs side by side are told apart by their stretch alone, which the contacts' answer to a force has as a
+/// difference of what that would move without them and of what they take back.
+bool springs_share_a_place(const Regime& r) {
+  for (Eigen::Index c = 0; c < r.speed_input(); ++c)
+    for (Eigen::Index d = 0; d < c; ++d)
+      if (r.spring(c) > 0.0 && r.spring(d) > 0.0 && r.displacement_row.col(c) == r.displacement_row.col(d)) return true;
+  return false;
+}
+
 /// How much of an output is the force of its contact in stick.
 double force_share(RegimeOutput::Kind kind) {
   if (kind == RegimeOutput::Kind::kForce || kind == RegimeOutput::Kind::kReserve) return 1.0;
@@ -126,8 +135,9 @@ DriveOverlay::DriveOverlay(const Regime& r, const ModalModel& slipping_model, co
   for (Eigen::Index j = 0; j < used; ++j) {
     const double w = static_cast<double>(j + 1) * omega_;
     const Eigen::VectorXcd J = inputs.c.col(j) - Complex(0.0, 1.0) * inputs.s.col(j), load = r.B * J;
-    const bool any_resonates = find_resonances(r, j + 1, load) || any_oscillator_resonates(r, w, kResonance);
-    if (!drive.shaker() || any_resonates) {
+    const bool by_pairs = find_resonances(r, j + 1, load) || any_oscillator_resonates(r, w, kResonance) ||
+                          (drive.force() && springs_share_a_place(r));
+    if (by_pairs) {
       own.col(j) = pair_receptances(r.pairs, w, load);
       for (const Resonance& of : resonances)
         if (of.order == j + 1) own(of.pair, j) = own(r.pairs.np + of.pair, j) = 0.0;
@@ -135,7 +145,7 @@ DriveOverlay::DriveOverlay(const Regime& r, const ModalModel& slipping_model, co
       forces.col(j) = r.force_row.transpose() * own.col(j) + r.force_coefficient.transpose() * J;
       continue;
     }
-    const HarmonicResponse response = harmonic_response(r, slipping_model, w, way);
+    const HarmonicResponse response = harmonic_response(r, slipping_model, w, way, J.tail(r.forces));
     own.col(j) = r.from_slipping * response.slipping + r.from_oscillators * response.oscillators;
     lifted.col(j) = response.slipping;
     forces.col(j) = response.force;

@@ -33,9 +33,9 @@ void check_condition(double condition) {
 
 /// A place that floats and a slow decay μ of its speed, as a mode each, would be the large summands v/μ of a small
 /// displacement. As ẋ = a v, v̇ = μ v they are not. Takes out of `decaying` what is put so, `put(mode, a, summand)`: the
-/// slowest whose a are apart. What of an a is along places put before is no summand to speak of where the decay is not
-/// slow: `summand` is that over μ then, and a is what is left, so that places are at right angles; else 0. Returns
-/// directions of the places that are left, in columns.
+/// slowest whose a are apart. What of an a is along places put before goes into the mode's shape, as `summand` = that
+/// over μ, if it is below one, and the place is the rest, at right angles to them; else all of a. Returns directions of
+/// the places that are left, in columns.
 /// @param drifts  a of every mode [places x modes]
 template <class Put>
 Eigen::MatrixXd put_floating(const Eigen::VectorXcd& values, const Eigen::MatrixXcd& drifts,
