@@ -27,25 +27,37 @@ Eigen::MatrixXd on_pairs(const Eigen::VectorXd& g11, const Eigen::VectorXd& g12,
   return out;
 }
 
-/// What each slipping pair's equation rounds by at a rate, inverted [2np].
-Eigen::VectorXd weights_at(double rate, const ModalModel& slipping) {
+/// What each slipping pair's equation rounds by at a rate, of what moves [2np].
+Eigen::VectorXd errors_at(double rate, const ModalModel& slipping) {
   const ModalModel& s = slipping;
-  Eigen::VectorXd weight(2 * s.np);
+  Eigen::VectorXd error(2 * s.np);
   for (Eigen::Index k = 0; k < s.np; ++k) {
     const double slip_rate = s.proportional ? std::abs(s.g21(k)) / std::max(rate, 1e-300) + std::abs(s.g22(k))
                                             : std::hypot(s.g11(k), s.g12(k)) + std::hypot(s.g21(k), s.g22(k));
-    weight(k) = weight(s.np + k) = 1.0 / std::max(rate + slip_rate, 1e-300);
+    error(k) = error(s.np + k) = std::max(rate + slip_rate, 1e-300);
   }
-  return weight;
+  return error;
 }
 
 double rate_of(const Eigen::Matrix2d& G) {
   return std::sqrt(std::max(std::abs(G.determinant()), G.squaredNorm() * 1e-16));
 }
 
-Eigen::MatrixXd least_squares(const Eigen::VectorXd& weight, const Eigen::MatrixXd& along,
-                              const Eigen::MatrixXd& known) {
-  return (weight.asDiagonal() * along).colPivHouseholderQr().solve(Eigen::MatrixXd(weight.asDiagonal() * known));
+/// x of along · x = known, each equation with its error, beside x = own with its, 0 where that tells nothing: least
+/// squares, column by column.
+Eigen::MatrixXd least_squares(const Eigen::MatrixXd& along, const Eigen::MatrixXd& known, const Eigen::MatrixXd& error,
+                              const Eigen::MatrixXd& own, const Eigen::MatrixXd& own_error) {
+  const auto rows = along.rows(), count = along.cols();
+  Eigen::MatrixXd out(count, known.cols()), left(rows + count, count);
+  Eigen::VectorXd right(rows + count);
+  for (Eigen::Index j = 0; j < known.cols(); ++j) {
+    const Eigen::VectorXd weight = error.col(j).cwiseInverse(),
+                          own_weight = (own_error.col(j).array() > 0.0).select(own_error.col(j).cwiseInverse(), 0.0);
+    left << weight.asDiagonal() * along, Eigen::MatrixXd(own_weight.asDiagonal());
+    right << weight.cwiseProduct(known.col(j)), own_weight.cwiseProduct(own.col(j));
+    out.col(j) = left.colPivHouseholderQr().solve(right);
+  }
+  return out;
 }
 
 }  // namespace
@@ -178,13 +190,16 @@ void RegimeBuilder::improve(const Places& at, const std::vector<Eigen::Index>& e
 void RegimeBuilder::refine_stick_rows(Regime& out) const {
   // A contact's stretch, or the stiffness of a fine mesh times its deformation, gives the force of a slow motion as a
   // small difference. The equations of the slipping pairs give it too, b λ = T G − G_s T less what the other contacts
-  // exert, each with an error that its own rate and that of the motion make: least squares, weighted by these errors.
-  // Springs that share a place are told apart by their stretches alone: what is refined is what they exert together.
+  // exert, each with an error that its own rate and that of the motion make: least squares, weighted by these errors,
+  // beside what the row of a spring says itself, which is the better one of a soft spring. Springs that share a place
+  // are told apart by their stretches alone: what is refined is what they exert together.
   const Places holding = places([&](Eigen::Index c) { return out.follows[static_cast<std::size_t>(c)]; });
   const ModalModel &own = out.pairs, &s = slipping_;
   if (holding.first.empty() || own.n == 0) return;
   const Eigen::MatrixXd& T = out.to_slipping;
   const Eigen::MatrixXd b = s.input(Eigen::all, holding.first);
+  const Eigen::MatrixXd stretch_size =  // of what it is a sum of
+      (Z_ * at_.to_y).cwiseAbs().transpose() * modal_.directions(Eigen::all, holding.first).cwiseAbs();
   for (Eigen::Index i = 0; i < own.n; ++i) {
     const std::vector<Eigen::Index> pair{i, own.np + i};
     const Eigen::Matrix2d G = block(own, i);
@@ -194,11 +209,19 @@ void RegimeBuilder::refine_stick_rows(Regime& out) const {
     for (Eigen::Index c = 0; c < nc_; ++c)
       if (!out.follows[static_cast<std::size_t>(c)]) missing -= s.input.col(c) * out.force_row(pair, c).transpose();
     Eigen::VectorXd size(b.cols());
+    Eigen::MatrixXd by_row(b.cols(), 2), by_row_error = Eigen::MatrixXd::Zero(b.cols(), 2);
     for (Eigen::Index k = 0; k < size.size(); ++k) {
-      const std::vector<Eigen::Index>& same = holding.together[static_cast<std::size_t>(k)];
+      const auto place = static_cast<std::size_t>(k);
+      const std::vector<Eigen::Index>& same = holding.together[place];
       size(k) = out.force_row(Eigen::all, same).rowwise().sum().cwiseAbs().maxCoeff();
+      by_row.row(k) = out.force_row(pair, same).rowwise().sum().transpose();
+      if (out.spring(same.front()) > 0.0)
+        by_row_error.row(k) = holding.stiffness[place] * stretch_size(pair, k).transpose();
     }
-    improve(holding, pair, least_squares(weights_at(rate_of(G), s), b, missing), size, kNear, out.force_row);
+    Eigen::RowVector2d moves = t.cwiseAbs().colwise().maxCoeff();
+    if (own.proportional) moves(0) *= rate_of(G);
+    improve(holding, pair, least_squares(b, missing, errors_at(rate_of(G), s) * moves, by_row, by_row_error), size,
+            kNear, out.force_row);
   }
 }
 
@@ -221,12 +244,16 @@ void RegimeBuilder::refine_spring_inputs(Regime& out) const {
     for (Eigen::Index c = 0; c < nc_; ++c)
       if (!out.follows[static_cast<std::size_t>(c)])
         missing += F.transpose() * out.force_row.col(c) * acting(pair, c).transpose();
-    Eigen::VectorXd size(e.cols());  // of what B is a sum of
-    for (Eigen::Index k = 0; k < size.size(); ++k) {
+    Eigen::MatrixXd by_itself(e.cols(), 2), size(e.cols(), 2);  // of what B is a sum of
+    for (Eigen::Index k = 0; k < e.cols(); ++k) {
       const auto place = static_cast<std::size_t>(k);
-      size(k) = sprung.stiffness[place] * terms(pair, sprung.first[place]).maxCoeff();
+      by_itself.row(k) = out.B(pair, sprung.together[place]).rowwise().sum().transpose();
+      size.row(k) = sprung.stiffness[place] * terms(pair, sprung.first[place]).transpose();
     }
-    improve(sprung, pair, least_squares(weights_at(rate_of(G), s), e, missing), size, kNearer, out.B);
+    Eigen::RowVector2d moves = f.cwiseAbs().colwise().maxCoeff();
+    if (own.proportional) moves(1) *= rate_of(G);
+    improve(sprung, pair, least_squares(e, missing, errors_at(rate_of(G), s) * moves, by_itself, size),
+            size.rowwise().maxCoeff(), kNearer, out.B);
   }
 }
 
@@ -245,8 +272,7 @@ void RegimeBuilder::make_steady_forces(Regime& out) const {
   if (sprung.first.empty() || integrates) return;
   const Eigen::MatrixXd moved = out.to_slipping * out.particular + out.inputs_slipping;
   const auto count = static_cast<Eigen::Index>(sprung.first.size());
-  Eigen::MatrixXd along(2 * s.np + count, count);
-  along << s.input(Eigen::all, sprung.first), Eigen::MatrixXd::Identity(count, count);
+  const Eigen::MatrixXd b = s.input(Eigen::all, sprung.first);
   // Where a mode should not follow a contact's way, it does so by rounding of what others do.
   const Eigen::RowVectorXd largest = sizes.topRows(nc_).colwise().maxCoeff();
   sizes.topRows(nc_).rowwise() = largest;
@@ -268,16 +294,16 @@ void RegimeBuilder::make_steady_forces(Regime& out) const {
     if (k == one_) add(-s.load);
     if (!(size.maxCoeff() > 0.0)) continue;
     // With them what the rows say, each with its error: that of a soft spring on a stiff structure is the smaller one.
-    Eigen::VectorXd known(along.rows()), error(along.rows());
-    known.head(size.size()) = (missing.array().abs() > kRoundsBy * size.array()).select(missing, 0.0);
-    error.head(size.size()) = size;
+    missing = (missing.array().abs() > kRoundsBy * size.array()).select(missing, 0.0).eval();
+    Eigen::VectorXd by_row(count), by_row_size(count);
     for (Eigen::Index at = 0; at < count; ++at) {
       const std::vector<Eigen::Index>& same = sprung.together[static_cast<std::size_t>(at)];
-      known(size.size() + at) = out.steady_force(k, same).sum();
-      error(size.size() + at) = sizes(k, same).sum();
+      by_row(at) = out.steady_force(k, same).sum();
+      by_row_size(at) = sizes(k, same).sum();
     }
-    const Eigen::VectorXd weight = (error.array() + kLeast * error.maxCoeff()).inverse();
-    improve(sprung, {k}, least_squares(weight, along, known), error.tail(count), kNearest, out.steady_force);
+    const double least = kLeast * std::max(size.maxCoeff(), by_row_size.maxCoeff());
+    improve(sprung, {k}, least_squares(b, missing, size.array() + least, by_row, by_row_size.array() + least),
+            by_row_size, kNearest, out.steady_force);
   }
 }
 

@@ -15,10 +15,10 @@ namespace {
 constexpr double kTouching = 1e-12;
 /// Terms that cancel count by what they round by, 1e-14 of them.
 constexpr double kCancels = 1e-2;
-/// A guard below this share of its scale when a regime begins starts at zero …
-constexpr double kStarting = 1e-9;
 /// What a place rounds by, of its size.
 constexpr double kPlaceRounding = 64.0 * std::numeric_limits<double>::epsilon();
+/// A guard below this share of its scale when a regime begins starts at zero …
+constexpr double kStarting = 1e-9;
 /// … its slope is known to rise above this share of its scale times the fastest rate, and may be zero below that one.
 constexpr double kRising = 1e-13, kSimpleStart = 1e-9;
 /// A root is located to this phase of the fastest pair.

@@ -130,19 +130,19 @@ DriveOverlay::DriveOverlay(const Regime& r, const ModalModel& slipping_model, co
   omega_ = drive.omega();
   phase_ = drive.shaker() ? drive.shaker()->phase : 0.0;
   const Complex way = drive.shaker() ? Complex(0.0, -drive.shaker()->amplitude) : 0.0;
+  const bool told_apart = drive.force() && springs_share_a_place(r);
   const auto used = inputs.c.cols();
   Eigen::MatrixXcd own(2 * r.pairs.np, used), lifted(slipping_model.input.rows(), used), forces(r.speed_input(), used);
   for (Eigen::Index j = 0; j < used; ++j) {
     const double w = static_cast<double>(j + 1) * omega_;
     const Eigen::VectorXcd J = inputs.c.col(j) - Complex(0.0, 1.0) * inputs.s.col(j), load = r.B * J;
-    const bool by_pairs = find_resonances(r, j + 1, load) || any_oscillator_resonates(r, w, kResonance) ||
-                          (drive.force() && springs_share_a_place(r));
-    if (by_pairs) {
+    if (find_resonances(r, j + 1, load) || any_oscillator_resonates(r, w, kResonance) || told_apart) {
       own.col(j) = pair_receptances(r.pairs, w, load);
       for (const Resonance& of : resonances)
         if (of.order == j + 1) own(of.pair, j) = own(r.pairs.np + of.pair, j) = 0.0;
       lifted.col(j) = r.to_slipping * own.col(j) + r.inputs_slipping * J;
       forces.col(j) = r.force_row.transpose() * own.col(j) + r.force_coefficient.transpose() * J;
+      place_size += r.displacement_row.cwiseAbs().transpose() * own.col(j).cwiseAbs();
       continue;
     }
     const HarmonicResponse response = harmonic_response(r, slipping_model, w, way, J.tail(r.forces));

@@ -93,12 +93,12 @@ HarmonicResponse harmonic_response(const Regime& r, const ModalModel& slipping, 
   const std::vector<Carried> contacts = carried_contacts(r, slipping);
   Eigen::MatrixXd input = slipping.input;
   Eigen::VectorXcd impedances(nc);
-  const auto answers = [&](Eigen::Index c) {
+  const auto acts = [&](Eigen::Index c) {
     return r.held(static_cast<int>(c)) || (contacts[static_cast<std::size_t>(c)].by < 0 && impedances(c) != 0.0);
   };
   for (Eigen::Index c = 0; c < nc; ++c) {
     impedances(c) = impedance(r.answers[static_cast<std::size_t>(c)], omega);
-    if (!answers(c)) input.col(c).setZero();
+    if (!acts(c)) input.col(c).setZero();
   }
   Eigen::MatrixXcd by_contacts = pair_receptances(slipping, omega, input.cast<Complex>());
   Eigen::MatrixXcd by_forces = pair_receptances(slipping, omega, forced);
@@ -120,7 +120,7 @@ HarmonicResponse harmonic_response(const Regime& r, const ModalModel& slipping, 
   Eigen::VectorXd unit = Eigen::VectorXd::Ones(nc);
   for (Eigen::Index c = 0; c < nc; ++c) {
     const Complex own_way = r.sticks(static_cast<int>(c)) ? way : 0.0;
-    if (!answers(c)) {
+    if (!acts(c)) {
       const Carried& at = contacts[static_cast<std::size_t>(c)];
       A(c, c) = 1.0;
       if (at.by >= 0) b(c) = impedances(c) * (own_way - at.share * way);

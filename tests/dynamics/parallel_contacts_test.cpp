@@ -5,6 +5,7 @@
 #include <slipmode/fem/chain.hpp>
 #include <slipmode/fem/masses.hpp>
 #include "dynamics/internal/drive_overlay.hpp"
+#include "fixtures/cantilever_beam.hpp"
 
 #include <gtest/gtest.h>
 #include <algorithm>
@@ -127,6 +128,21 @@ TEST(ParallelContacts, StretchAlikeUnderADriveHoweverSoft) {
   EXPECT_LT(spread({1e-9, 20.0, 1e-3, 5.0}, force), 1e-14);
   EXPECT_LT(spread({1e2, 3e4, 7e6}, force), 1e-14);
   EXPECT_LT(spread({7e9, 1e2, 1e-6}, force), 1e-14);
+}
+
+TEST(ParallelContacts, ASoftSpringBesideAHeldContactIsItsStretch) {
+  // λ = K (d − y) of every pair, whatever the held contact's force, 1e5 times as large. By the equations of all pairs
+  // alone its row was off by 1e-9, its limit passed again and again.
+  const fem::Beam beam(fixtures::source_beam(12));
+  for (const double K : {0.1, 78.0, 1e4}) {
+    const std::vector<friction::Contact> contacts{
+        {beam.displacement_row(0.31), friction::Coulomb{0.5, 0.5}, 1.0},
+        {beam.displacement_row(0.2), friction::CompliantCoulomb{0.5, 0.5, K}, 1.0}};
+    const HybridSystem system(beam.structure(), contacts, friction::Belt{});
+    const Regime regime(system, system.cache().tables(system, false).model, {ContactRole::kHeld, ContactRole::kSprung});
+    const Eigen::VectorXd own = -K * regime.displacement_row.col(1);
+    EXPECT_LT((regime.force_row.col(1) - own).norm(), 1e-12 * own.norm()) << K;
+  }
 }
 
 TEST(ParallelContacts, OfStiffSpringsTurnOnceWhereTheMassDoes) {
