@@ -2,6 +2,7 @@
 
 #include <slipmode/core/decompositions.hpp>
 #include <slipmode/dynamics/cache.hpp>
+#include <slipmode/dynamics/prepare.hpp>
 #include "selftest/contact_guards.hpp"
 #include "selftest/load_history.hpp"
 
@@ -92,9 +93,10 @@ class Scan {
     const auto nc = static_cast<Index>(system.contacts().size());
     W_.resize(system.size(), nc);
     for (Index c = 0; c < nc; ++c) W_.col(c) = system.contacts()[static_cast<std::size_t>(c)].direction;
-    const Eigen::MatrixXd M = fem::to_dense(system.structure().M());
-    inverse_ = M.llt().solve(Eigen::MatrixXd::Identity(system.size(), system.size()));
+    mass_ = fem::to_dense(system.structure().M());
+    inverse_ = mass_.llt().solve(Eigen::MatrixXd::Identity(system.size(), system.size()));
     rows_ = W_.transpose() * inverse_;
+    largest_place_ = largest(run.q);
     for (int c = 0; c < static_cast<int>(nc); ++c) timelines_.emplace_back(run, c);
     for (const dynamics::Event& e : run.events) event_times_.push_back(e.time);
   }
@@ -148,6 +150,11 @@ class Scan {
     return total;
   }
 
+  /// |M^½ x|, the largest of all columns.
+  [[nodiscard]] double largest(const Eigen::MatrixXd& x) const {
+    return std::sqrt(x.cwiseProduct(mass_ * x).colwise().sum().maxCoeff());
+  }
+
   /// True when no event lies within [from, to].
   [[nodiscard]] bool quiet(double from, double to) const {
     const auto next = std::ranges::lower_bound(event_times_, from);
@@ -157,21 +164,24 @@ class Scan {
   /// Momentum and displacement over four intervals by Boole's rule, which is Simpson's with the error that half its
   /// step shows taken off. That error, and the rounding of modal coordinates in the norm of energy, are no residual.
   void check_motion(const Eigen::MatrixXd& force) {
-    const Eigen::MatrixXd M = fem::to_dense(system_.structure().M()), momentum = M * run_.v;
+    const Eigen::MatrixXd momentum = mass_ * run_.v;
     const double h = options_.sample;
     // Rows have units of their own; one in which nothing happens is measured by the others.
     const auto floored = [](const Eigen::VectorXd& x) -> Eigen::VectorXd {
       return x.array() + 1e-6 * x.maxCoeff() + 1e-300;
     };
     const Eigen::VectorXd speed_scale = floored(run_.v.cwiseAbs().rowwise().maxCoeff()), scale = floored(force_scale_);
-    const auto largest = [&](const Eigen::MatrixXd& x) {  // |M^½ x|
-      return std::sqrt(x.cwiseProduct(M * x).colwise().sum().maxCoeff());
-    };
-    // A motion rounds by the steady answer to its drive, beside which a short record from rest has next to none.
+    // In closed form a motion rounds by the steady answer to its drive, beside which a short record from rest has next
+    // to none.
     std::optional<dynamics::Trajectory> cycle;
-    if (const auto period = system_.drive().period(); period && *period > options_.duration)
-      cycle =
-          dynamics::simulate(system_, start_, {.duration = *period, .sample = *period / 64.0, .flow = options_.flow});
+    const dynamics::FlowMethod method = dynamics::choose_method(system_, options_.flow.method);
+    const std::optional<double> period = system_.drive().period();
+    if (method == dynamics::FlowMethod::kClosedForm && period && *period > options_.duration)
+      cycle = dynamics::simulate(system_, start_,
+                                 {.duration = *period,
+                                  .sample = *period / 64.0,
+                                  .keep_events = false,
+                                  .flow = {.method = method, .audit = false}});
     const dynamics::Trajectory& whole = cycle ? *cycle : run_;
     // Speeds round by the energy of the motion, displacements' included; and by what the run makes of its own start.
     const Eigen::MatrixXd elastic = fem::multiply(system_.structure().K(), whole.q);
@@ -187,9 +197,9 @@ class Scan {
     // A state under a force is the sum of the free structure's answer and what contacts take from it, which may be all.
     const Eigen::MatrixXd answer = free_answer();
     const Eigen::VectorXd tolerated = tolerated_impulse();
-    const Eigen::VectorXd momentum_rounding = error * swing * M.diagonal().cwiseSqrt() +
+    const Eigen::VectorXd momentum_rounding = error * swing * mass_.diagonal().cwiseSqrt() +
                                               4.0 * h * kRounding * force_sizes() + tolerated +
-                                              M.cwiseAbs() * (4.0 * own_v + kRounding * answer.col(1)),
+                                              mass_.cwiseAbs() * (4.0 * own_v + kRounding * answer.col(1)),
                           way_rounding = error * largest(whole.q) * inverse_.diagonal().cwiseSqrt() + 4.0 * own_q +
                                          kRounding * answer.col(0) + 4.0 * h * (inverse_.cwiseAbs() * tolerated);
     const auto excess = [&](const Eigen::MatrixXd& rate, const Eigen::MatrixXd& sum, Index k, Index apart,
@@ -300,7 +310,9 @@ class Scan {
     }
     for (double* scale : {&scales.way, &scales.speed, &scales.force})
       if (!(*scale > 0.0)) *scale = 1.0;
-    scales.slack = kRounding * friction::spring_stiffness(law.law) * scales.way;
+    // A place is the sum of what all modes move it by.
+    const double place = std::max(scales.way, largest_place_ * std::sqrt(rows_.row(c).dot(W_.col(c))));
+    scales.slack = kRounding * friction::spring_stiffness(law.law) * place;
     return scales;
   }
 
@@ -428,7 +440,8 @@ class Scan {
   std::vector<Violation>& violations_;
   ScanLimits limits_;
   ScanFigures figures_;
-  Eigen::MatrixXd W_, inverse_, rows_;
+  Eigen::MatrixXd W_, mass_, inverse_, rows_;
+  double largest_place_ = 0.0;  ///< |M^½ q| of the run
   Eigen::VectorXd force_scale_;
   std::vector<Timeline> timelines_;
   std::vector<double> event_times_;
