@@ -43,19 +43,18 @@ double rate_of(const Eigen::Matrix2d& G) {
   return std::sqrt(std::max(std::abs(G.determinant()), G.squaredNorm() * 1e-16));
 }
 
-/// x of along · x = known, each equation with its error, beside x = own with its, 0 where that tells nothing: least
-/// squares, column by column.
+/// x of along · x = known, each equation with its error, beside x = own with its, 0 where that is exact: least squares,
+/// column by column, of the change from `own` in units of its error.
 Eigen::MatrixXd least_squares(const Eigen::MatrixXd& along, const Eigen::MatrixXd& known, const Eigen::MatrixXd& error,
                               const Eigen::MatrixXd& own, const Eigen::MatrixXd& own_error) {
   const auto rows = along.rows(), count = along.cols();
-  Eigen::MatrixXd out(count, known.cols()), left(rows + count, count);
-  Eigen::VectorXd right(rows + count);
+  Eigen::MatrixXd out = own, left(rows + count, count);
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(rows + count);
   for (Eigen::Index j = 0; j < known.cols(); ++j) {
-    const Eigen::VectorXd weight = error.col(j).cwiseInverse(),
-                          own_weight = (own_error.col(j).array() > 0.0).select(own_error.col(j).cwiseInverse(), 0.0);
-    left << weight.asDiagonal() * along, Eigen::MatrixXd(own_weight.asDiagonal());
-    right << weight.cwiseProduct(known.col(j)), own_weight.cwiseProduct(own.col(j));
-    out.col(j) = left.colPivHouseholderQr().solve(right);
+    const auto unit = own_error.col(j).asDiagonal();
+    left << error.col(j).cwiseInverse().asDiagonal() * along * unit, Eigen::MatrixXd::Identity(count, count);
+    right.head(rows) = (known.col(j) - along * own.col(j)).cwiseQuotient(error.col(j));
+    out.col(j) += unit * left.colPivHouseholderQr().solve(right);
   }
   return out;
 }
@@ -191,15 +190,24 @@ void RegimeBuilder::refine_stick_rows(Regime& out) const {
   // A contact's stretch, or the stiffness of a fine mesh times its deformation, gives the force of a slow motion as a
   // small difference. The equations of the slipping pairs give it too, b λ = T G − G_s T less what the other contacts
   // exert, each with an error that its own rate and that of the motion make: least squares, weighted by these errors,
-  // beside what the row of a spring says itself, which is the better one of a soft spring. Springs that share a place
-  // are told apart by their stretches alone: what is refined is what they exert together.
+  // beside what the row says itself, which is the better one of a soft spring, or where pairs are nearly alike. Springs
+  // that share a place are told apart by their stretches alone: what is refined is what they exert together.
   const Places holding = places([&](Eigen::Index c) { return out.follows[static_cast<std::size_t>(c)]; });
   const ModalModel &own = out.pairs, &s = slipping_;
   if (holding.first.empty() || own.n == 0) return;
   const Eigen::MatrixXd& T = out.to_slipping;
   const Eigen::MatrixXd b = s.input(Eigen::all, holding.first);
-  const Eigen::MatrixXd stretch_size =  // of what it is a sum of
-      (Z_ * at_.to_y).cwiseAbs().transpose() * modal_.directions(Eigen::all, holding.first).cwiseAbs();
+  const Eigen::MatrixXd y_size = (Z_ * at_.to_y).cwiseAbs().transpose(),
+                        rate_size = (Z_ * at_.to_rate).cwiseAbs().transpose();
+  Eigen::MatrixXd row_size(y_size.rows(), b.cols());  // of what a row is a sum of
+  for (std::size_t k = 0; k < holding.first.size(); ++k) {
+    const Eigen::Index c = holding.first[k];
+    row_size.col(static_cast<Eigen::Index>(k)) =
+        out.held(static_cast<int>(c))
+            ? Eigen::VectorXd(y_size * (K_.cwiseAbs() * P_.col(c).cwiseAbs()) +
+                              rate_size * (C_.cwiseAbs().transpose() * P_.col(c).cwiseAbs()))
+            : Eigen::VectorXd(holding.stiffness[k] * (y_size * modal_.directions.col(c).cwiseAbs()));
+  }
   for (Eigen::Index i = 0; i < own.n; ++i) {
     const std::vector<Eigen::Index> pair{i, own.np + i};
     const Eigen::Matrix2d G = block(own, i);
@@ -209,19 +217,17 @@ void RegimeBuilder::refine_stick_rows(Regime& out) const {
     for (Eigen::Index c = 0; c < nc_; ++c)
       if (!out.follows[static_cast<std::size_t>(c)]) missing -= s.input.col(c) * out.force_row(pair, c).transpose();
     Eigen::VectorXd size(b.cols());
-    Eigen::MatrixXd by_row(b.cols(), 2), by_row_error = Eigen::MatrixXd::Zero(b.cols(), 2);
+    Eigen::MatrixXd by_row(b.cols(), 2);
     for (Eigen::Index k = 0; k < size.size(); ++k) {
-      const auto place = static_cast<std::size_t>(k);
-      const std::vector<Eigen::Index>& same = holding.together[place];
+      const std::vector<Eigen::Index>& same = holding.together[static_cast<std::size_t>(k)];
       size(k) = out.force_row(Eigen::all, same).rowwise().sum().cwiseAbs().maxCoeff();
       by_row.row(k) = out.force_row(pair, same).rowwise().sum().transpose();
-      if (out.spring(same.front()) > 0.0)
-        by_row_error.row(k) = holding.stiffness[place] * stretch_size(pair, k).transpose();
     }
     Eigen::RowVector2d moves = t.cwiseAbs().colwise().maxCoeff();
     if (own.proportional) moves(0) *= rate_of(G);
-    improve(holding, pair, least_squares(b, missing, errors_at(rate_of(G), s) * moves, by_row, by_row_error), size,
-            kNear, out.force_row);
+    improve(holding, pair,
+            least_squares(b, missing, errors_at(rate_of(G), s) * moves, by_row, row_size(pair, Eigen::all).transpose()),
+            size, kNear, out.force_row);
   }
 }
 
