@@ -47,6 +47,15 @@ double CollocationFlow::own_force(int c, double tau, const double* x) const {
   return own.at(own.follows ? drive_way(begin_, tau) : 0.0, moved(c, tau, x), resolver_.contact_velocity(c, x));
 }
 
+double CollocationFlow::rounding_of_stop(int c) const {
+  const auto i = static_cast<std::size_t>(c);
+  if (over_limit_[i] > 0.0 || !elaborate(c)) return 0.0;
+  const OwnForce& own = own_forces_[i];
+  return kOfPlace * (std::abs(own.stiffness) * model_.displacement_row.col(c).cwiseAbs() +
+                     std::abs(own.damping) * model_.velocity_row.col(c).cwiseAbs())
+                        .dot(x_begin_.cwiseAbs());
+}
+
 double CollocationFlow::moved(int c, double tau, const double* x) const {
   const double by_state = resolver_.contact_displacement(c, x) - own_forces_[static_cast<std::size_t>(c)].place;
   // Zero at the start: a polynomial of degree 7 times the time.

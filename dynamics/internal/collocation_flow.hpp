@@ -214,6 +214,8 @@ class CollocationFlow {
   /// Of the step that begins at the point.
   void set_own_forces();
   [[nodiscard]] double own_force(int c, double tau, const double* x) const;
+  /// What the force of a stop alone rounds by, as its place does [N]: of one that is touched by rounding, all of it.
+  [[nodiscard]] double rounding_of_stop(int c) const;
   /// What the contact has moved by since the step's start [m]: to rounding of places, and by as much less where the
   /// polynomial through the nodes tells it, as in a short step. @param x  state at `begin_ + tau`
   [[nodiscard]] double moved(int c, double tau, const double* x) const;

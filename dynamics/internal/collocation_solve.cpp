@@ -301,7 +301,7 @@ double CollocationFlow::force_error() const {
     if (laws()[i].kind == LawKind::kFree) continue;
     // The first coefficient left out, if the sequence keeps falling as it does.
     const auto [last, ratio] = ending(forces_.data() + kNodes * c);
-    worst = std::max(worst, last * ratio * over_scale(c));
+    worst = std::max(worst, std::max(0.0, last * ratio - rounding_of_stop(c)) * over_scale(c));
     if (bristled(c)) worst = std::max(worst, bristle_error(c, halfway()) / (tables_.step(step_level_) * over_top_));
     if (laws()[i].characteristic != nullptr && point_.modes[i] != ContactMode::kStick)
       worst = std::max(worst, characteristic_error(c));
