@@ -269,13 +269,14 @@ void RegimeBuilder::make_steady_forces(Regime& out) const {
   out.steady_force = out.particular.transpose() * out.force_row + out.force_coefficient;
   Eigen::MatrixXd sizes =
       out.particular.cwiseAbs().transpose() * out.force_row.cwiseAbs() + out.force_coefficient.cwiseAbs();
+  const Places sprung = refinable_springs(out);
+  if (sprung.first.empty()) return;  // works are those of the forces there are
   // What floats is carried along by a spring's way without a force.
   out.steady_force = (out.steady_force.array().abs() > kRoundsBy * sizes.array()).select(out.steady_force, 0.0).eval();
-  const Places sprung = refinable_springs(out);
   const ModalModel& s = slipping_;
   const auto n = out.pairs.n;  // what only integrates the inputs has no part in x_p
   const bool integrates = (out.scale1.head(n).array() == 0.0 || out.scale2.head(n).array() == 0.0).any();
-  if (sprung.first.empty() || integrates) return;
+  if (integrates) return;
   const Eigen::MatrixXd moved = out.to_slipping * out.particular + out.inputs_slipping;
   const auto count = static_cast<Eigen::Index>(sprung.first.size());
   const Eigen::MatrixXd b = s.input(Eigen::all, sprung.first);
