@@ -196,7 +196,7 @@ class Scan {
     const double error = kRounding + options_.flow.tolerance;
     // A state under a force is the sum of the free structure's answer and what contacts take from it, which may be all.
     const Eigen::MatrixXd answer = free_answer();
-    const Eigen::VectorXd tolerated = tolerated_impulse();
+    const Eigen::VectorXd tolerated = W_.cwiseAbs() * tolerated_impulses(system_, options_.flow.tolerance);
     const Eigen::VectorXd momentum_rounding = error * swing * mass_.diagonal().cwiseSqrt() +
                                               4.0 * h * kRounding * force_sizes() + tolerated +
                                               mass_.cwiseAbs() * (4.0 * own_v + kRounding * answer.col(1)),
@@ -231,16 +231,6 @@ class Scan {
         violate("motion", fmt::format("residual {:.2g} of the equations of motion at t = {:.9g}, modes {}", residual,
                                       run_.times(k + 2), modes_at(run_.times(k + 2))));
     }
-  }
-
-  /// What a step's contact impulses may be off by: the tolerance, of the laws' largest forces, not of a small motion's.
-  [[nodiscard]] Eigen::VectorXd tolerated_impulse() const {
-    const dynamics::ModelTables& own = system_.cache().tables(system_, false);
-    Eigen::VectorXd sum = Eigen::VectorXd::Zero(system_.size());
-    if (own.model.fastest == 0.0) return sum;
-    for (Index c = 0; c < W_.cols(); ++c)
-      sum += friction::contact_forces(contact(static_cast<int>(c))).most() * W_.col(c).cwiseAbs();
-    return options_.flow.tolerance * own.steps.step(0) * sum;
   }
 
   /// Bounds on displacements and speeds of the steady answer to a force with all contacts free.
@@ -457,6 +447,16 @@ void ScanFigures::merge(const ScanFigures& other) {
   samples += other.samples;
   minima += other.minima;
   events += other.events;
+}
+
+Eigen::VectorXd tolerated_impulses(const dynamics::HybridSystem& system, double tolerance, double longest) {
+  const auto nc = static_cast<Index>(system.contacts().size());
+  const dynamics::ModelTables& own = system.cache().tables(system, false);
+  Eigen::VectorXd most = Eigen::VectorXd::Zero(nc);
+  if (own.model.fastest == 0.0) return most;
+  for (Index c = 0; c < nc; ++c)
+    most(c) = friction::contact_forces(system.contacts()[static_cast<std::size_t>(c)]).most();
+  return tolerance * std::min(own.steps.step(0), longest) * most;
 }
 
 ScanFigures scan_run(const dynamics::HybridSystem& system, const dynamics::State& start,

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,12 @@ struct ScanLimits {
   double motion = 1e-3;
   double spurious = 1e-4;
 };
+
+/// What the flow may leave the impulse of each contact off by in a step: its tolerance, of the law's largest force, not
+/// of a small motion's [nc, N s].
+/// @param longest  that steps are [s]; the flow's own largest is not exceeded
+[[nodiscard]] Eigen::VectorXd tolerated_impulses(const dynamics::HybridSystem& system, double tolerance,
+                                                 double longest = std::numeric_limits<double>::infinity());
 
 /// Certifies a run from its samples alone: that every contact obeys the law of its mode, that no guard was passed
 /// unnoticed, that modes change only where a guard is reached, and that the samples solve the equations of motion, in

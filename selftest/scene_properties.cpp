@@ -3,6 +3,7 @@
 #include <slipmode/core/decompositions.hpp>
 #include <slipmode/core/errors.hpp>
 #include <slipmode/core/random.hpp>
+#include <slipmode/dynamics/cache.hpp>
 #include <slipmode/dynamics/modal_model.hpp>
 #include <slipmode/dynamics/prepare.hpp>
 #include <slipmode/pod/pod.hpp>
@@ -95,8 +96,8 @@ Eigen::VectorXd accelerations(const dynamics::HybridSystem& system, const dynami
 }
 
 /// A bound on how fast anything in the system changes once it slides, from its numbers alone.
-double fastest_rate(const dynamics::HybridSystem& system, const dynamics::ModalModel& model,
-                    const dynamics::State& start) {
+double fastest_rate(const dynamics::HybridSystem& system, const dynamics::State& start) {
+  const dynamics::ModalModel& model = system.cache().tables(system, false).model;
   double rate = std::max(model.fastest, 1e-3);
   const double speed =
       start.v.cwiseAbs().maxCoeff() + start.q.cwiseAbs().maxCoeff() * rate + system.drive().velocity_scale(0.0);
@@ -118,17 +119,13 @@ double fastest_rate(const dynamics::HybridSystem& system, const dynamics::ModalM
   return rate;
 }
 
-/// What a flow lets speeds be off by: its tolerance of what the largest force changes them by in its largest step, four
-/// radians of the fastest mode; nothing in closed form [m/s].
-double tolerated_speed(const dynamics::HybridSystem& system, const dynamics::ModalModel& model,
-                       const dynamics::SimulateOptions& options) {
+/// What a flow lets speeds be off by, nothing in closed form [m/s].
+double tolerated_speed(const dynamics::HybridSystem& system, const dynamics::SimulateOptions& options) {
   if (dynamics::choose_method(system, options.flow.method) == dynamics::FlowMethod::kClosedForm) return 0.0;
-  double most = 0.0;
-  for (std::size_t c = 0; c < system.contacts().size(); ++c) {
-    const auto at = static_cast<Index>(c);
-    most = std::max(most, friction::contact_forces(system.contacts()[c]).most() * model.mobility(at, at));
-  }
-  return options.flow.tolerance * most * 4.0 / std::max(model.fastest, 4.0 / options.duration);
+  const Eigen::MatrixXd& mobility = system.cache().tables(system, false).model.mobility;
+  return tolerated_impulses(system, options.flow.tolerance, options.duration)
+      .cwiseProduct(mobility.diagonal())
+      .maxCoeff();
 }
 
 class SceneChecker {
@@ -185,12 +182,11 @@ class SceneChecker {
     if (!equal) violate("round trip", "the scene written and read again is another system");
     start_ = scene::initial_state(scene, *system_);
     options_ = scene::simulate_options(scene);
-    const dynamics::ModalModel model = dynamics::build_modal_model(*system_, false);
-    options_.sample = std::min(kPhasePerSample / fastest_rate(*system_, model, start_), options_.duration / kFewest);
+    options_.sample = std::min(kPhasePerSample / fastest_rate(*system_, start_), options_.duration / kFewest);
     options_.duration = std::min(options_.duration, 6000.0 * options_.sample);
     options_.transient = 0.0;
     options_.flow.tolerance = kTolerance;
-    tolerated_ = tolerated_speed(*system_, model, options_);
+    tolerated_ = tolerated_speed(*system_, options_);
   }
 
   void simulate() {
