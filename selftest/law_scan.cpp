@@ -282,9 +282,12 @@ class Scan {
     for (Index k = 0; k < run_.times.size(); ++k)
       drive = std::max(drive, std::abs(system_.drive().velocity(run_.times(k))));
     ContactScales scales;
-    // What is held, or hardly moves, has a place that rounds by the motion around it.
-    scales.way = run_.contact_q.row(c).cwiseAbs().maxCoeff() + 1e-3 * run_.q.cwiseAbs().maxCoeff();
+    // What is held, or hardly moves, has a place that is told by the motion around it, and by what the speeds of its
+    // sides make of that within a radian of the fastest mode.
     const Eigen::VectorXd speeds = run_.v.cwiseAbs().rowwise().maxCoeff();
+    const double fastest = system_.cache().tables(system_, false).model.fastest,
+                 soon = fastest > 0.0 ? W_.col(c).cwiseAbs().dot(speeds) / fastest : 0.0;
+    scales.way = run_.contact_q.row(c).cwiseAbs().maxCoeff() + 1e-3 * (run_.q.cwiseAbs().maxCoeff() + soon);
     // Where all is all but at rest, speeds round by what displacements would become.
     const double rounding =
         std::numeric_limits<double>::epsilon() / limits_.law / options_.sample * run_.q.cwiseAbs().maxCoeff();

@@ -24,17 +24,24 @@ void ClosedFormFlow::account(double tau, bool ends) {
   if (!measured_) measure_amplitudes();
   const StayPlace now{point_.time, x_, free_, point_.x};
   StayWork work = regime_->belt ? regime_->belt->until(now, inputs_) : stay_.until(now);
-  if (work.rounding > kLostInForms * (work_.exchanged + std::abs(work.contact) + std::abs(work.force) + work.viscous))
+  if (work.rounding > kLostInForms * (work_.exchanged + std::abs(work.contact) + std::abs(work.force) + work.viscous) ||
+      little_left(accounted_, x_accounted_))
     work = integrate(accounted_, x_accounted_, inputs_accounted_, point_.time - accounted_);
   add(work);
   mark_accounted();
+}
+
+bool ClosedFormFlow::little_left(double t, const Eigen::VectorXd& x) const {
+  // A whole period later it is so again.
+  if (regime_->overlay == nullptr || regime_->overlay->omega() * (point_.time - t) > 1.0) return false;
+  return cancels(*regime_, t, x) && cancels(*regime_, point_.time, x_);
 }
 
 StayWork ClosedFormFlow::integrate(double t, Eigen::VectorXd x, Eigen::VectorXd inputs, double tau) const {
   const RegimeTables& tables = *tables_;
   const Regime& r = tables.regime();
   const DriveOverlay* const drive = regime_->overlay;
-  const bool whole = cancels(*regime_, t, x) && cancels(*regime_, point_.time, x_);
+  const bool whole = little_left(t, x);
   StayWork sum;
   Eigen::VectorXd x_whole, inputs_whole;
   const auto add = [&](double weight, double at, const Eigen::VectorXd& x_beside,

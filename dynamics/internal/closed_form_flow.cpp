@@ -21,7 +21,7 @@ constexpr int kLargestGrowth = 4;
 /// Events this share of a window apart may be one, and come in either order.
 constexpr double kSameInstant = 1e-6;
 /// A sum of which no more than this share of its terms is left is made anew.
-constexpr double kLittleLeft = 1e-3;
+constexpr double kLittleLeft = 1e-2;
 
 /// Of a regime's state, in the scales in which free motion does not grow.
 double squared_size(const Regime& r, const Eigen::VectorXd& x) {

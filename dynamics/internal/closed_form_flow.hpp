@@ -181,6 +181,8 @@ class ClosedFormFlow {
   /// Under an overlay: whether x and the steady response at t, each far larger than their sum, leave it few digits. The
   /// sum is then made `anew`: from where the stay began, with what the drive alone has moved since.
   [[nodiscard]] bool cancels(const Visited& in, double t, const Eigen::VectorXd& x) const;
+  /// Whether that is so of this regime from t to the point, within a radian of the drive.
+  [[nodiscard]] bool little_left(double t, const Eigen::VectorXd& x) const;
   /// The state of a regime, the steady response included, and its inputs, the drive's part included.
   void anew(const Visited& in, double t, Eigen::VectorXd& out_x, Eigen::VectorXd& out_inputs) const;
   /// State of the slipping model and contact forces at t, from the regime's.

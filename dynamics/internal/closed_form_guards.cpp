@@ -91,9 +91,14 @@ double ClosedFormFlow::moving_size(const Guard& guard) const {
   const auto row = r.row.col(guard.output).cwiseAbs();
   double size = row.dot(x_.cwiseAbs()) + row.dot((free_ - free_entered_).cwiseAbs()) +
                 r.coefficient.col(guard.output).cwiseAbs().dot(inputs_.cwiseAbs());
-  if (const DriveOverlay* overlay = regime_->overlay) {
-    size += overlay->outputs[0].size(guard.output);
-    if (guard.kind == GuardKind::kStop) size += kCancels * overlay->place_size(guard.contact) * per_place(guard);
+  const DriveOverlay* overlay = regime_->overlay;
+  if (overlay != nullptr) size += overlay->outputs[0].size(guard.output);
+  if (guard.kind == GuardKind::kStop) {
+    // What moves elsewhere, or moves both sides alike, cancels.
+    double place = r.place_row.col(guard.contact).dot(x_.cwiseAbs()) +
+                   r.place_coefficient.col(guard.contact).dot(inputs_.cwiseAbs());
+    if (overlay != nullptr) place += overlay->place_size(guard.contact);
+    size += kCancels * place * per_place(guard);
   }
   return size;
 }

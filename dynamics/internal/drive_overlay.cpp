@@ -151,6 +151,7 @@ DriveOverlay::DriveOverlay(const Regime& r, const ModalModel& slipping_model, co
     forces.col(j) = response.force;
     place_size += response.place_size;
   }
+  place_size += slipping_model.place_row.transpose() * lifted.cwiseAbs().rowwise().sum();
   state = amplitudes(own);
   slipping = amplitudes(lifted);
   force = amplitudes(forces);
