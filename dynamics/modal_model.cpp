@@ -132,18 +132,6 @@ void fill_general(ModalModel& m, const fem::Modes& modes, const Eigen::MatrixXd&
   m.modal.from_eta_rate = spread_rows(from_eta_dot);
 }
 
-/// See ModalModel::place_row.
-Eigen::MatrixXd place_rows(const ModalModel& m, const Eigen::MatrixXd& W) {
-  const double radian = m.fastest > 0.0 ? 1.0 / m.fastest : 0.0;
-  if (!m.has_shapes()) return m.displacement_row.cwiseAbs() + radian * m.velocity_row.cwiseAbs();
-  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(2 * m.np, W.cols());
-  for (Eigen::Index c = 0; c < W.cols(); ++c)
-    for (Eigen::Index i = 0; i < W.rows(); ++i)
-      if (W(i, c) != 0.0)
-        rows.col(c) += std::abs(W(i, c)) * (m.to_q.row(i).cwiseAbs() + radian * m.to_v.row(i).cwiseAbs()).transpose();
-  return rows;
-}
-
 }  // namespace
 
 Eigen::MatrixXd square_root(const Eigen::MatrixXd& A) {
@@ -283,7 +271,6 @@ ModalModel build_modal_model(const HybridSystem& system, bool rows_only) {
                       modal.rows.middleRows(m.contacts, nk).transpose());
     m.rayleigh = rayleigh;
     finish(m);
-    m.place_row = place_rows(m, W);
     return m;
   }
 
@@ -319,7 +306,8 @@ ModalModel build_modal_model(const HybridSystem& system, bool rows_only) {
     }
   }
   finish(m);
-  m.place_row = place_rows(m, W);
+  const double radian = m.fastest > 0.0 ? 1.0 / m.fastest : 0.0;
+  m.place_row = (m.to_q.cwiseAbs() + radian * m.to_v.cwiseAbs()).transpose() * W.cwiseAbs();
   return m;
 }
 

@@ -44,8 +44,7 @@ struct ModalModel {
   Eigen::MatrixXd force_row;           ///< d_kᵀq̇ = this·x, columns [2np x nk]
   Eigen::MatrixXd displacement_row;    ///< u_c, columns [2np x nc]
   Eigen::MatrixXd velocity_row;        ///< g_c, columns [2np x nc]
-  /// |w_c|ᵀ(|Q| + |V|/fastest): wᵀq has parts of this·|x|, now or a radian later. Without Q and V: of their sums
-  /// [2np x nc].
+  /// |w_c|ᵀ(|Q| + |V|/fastest): wᵀq has parts of this·|x|, now or a radian later [2np x nc]. Empty without Q and V.
   Eigen::MatrixXd place_row;
   Eigen::MatrixXd acceleration_row;    ///< Gᵀ g_c: wᵀq̈ = this·x + g_cᵀ(Σ b λ + p) [2np x nc]
   Eigen::MatrixXd mobility;            ///< g_cᵀ b_d = (Wᵀ M⁻¹ W)_cd [nc x nc]

@@ -78,7 +78,7 @@ struct Regime {
   /// λ, wᵀq̇ and wᵀq of each contact [2np x nc], [ni x nc].
   Eigen::MatrixXd force_row, force_coefficient, velocity_row, velocity_coefficient;
   Eigen::MatrixXd displacement_row, displacement_coefficient;
-  /// Of clearances, what adds up to wᵀq, see ModalModel::place_row: of sizes |x| and |ι|; others' columns are 0.
+  /// What adds up to wᵀq, see ModalModel::place_row: of sizes |x| and |ι|.
   Eigen::MatrixXd place_row, place_coefficient;
   Eigen::MatrixXd steady_force;                  ///< λ of each contact on x_p [ni x nc]
   Eigen::MatrixXd drive_row, drive_coefficient;  ///< d_kᵀq̇ of each force direction [2np x nk], [ni x nk]

@@ -393,13 +393,8 @@ void RegimeBuilder::make_changes(Regime& out) const {
   out.to_slipping = modal_.from_eta * (Z_ * at_.to_y) + modal_.from_eta_rate * (Z_ * at_.to_rate);
   out.inputs_slipping = modal_.from_eta * P_;
   out.inputs_slipping.col(V_) += modal_.from_eta_rate * P_all_;
-  out.place_row = Eigen::MatrixXd::Zero(2 * out.pairs.np, nc_);
-  out.place_coefficient = Eigen::MatrixXd::Zero(ni_, nc_);
-  for (Eigen::Index c = 0; c < nc_; ++c) {
-    if (law(c).kind != LawKind::kClearance) continue;
-    out.place_row.col(c) = out.to_slipping.cwiseAbs().transpose() * slipping_.place_row.col(c);
-    out.place_coefficient.col(c) = out.inputs_slipping.cwiseAbs().transpose() * slipping_.place_row.col(c);
-  }
+  out.place_row = out.to_slipping.cwiseAbs().transpose() * slipping_.place_row;
+  out.place_coefficient = out.inputs_slipping.cwiseAbs().transpose() * slipping_.place_row;
   const auto k = static_cast<Eigen::Index>(oscillators_.size());
   out.from_oscillators.resize(2 * out.pairs.np, 2 * k);
   out.to_oscillators.resize(2 * k, 2 * out.pairs.np);

@@ -110,7 +110,8 @@ class ClosedFormFlow {
   /// for good where they are `lasting`.
   struct GuardStart {
     double value = 0.0, rate = 0.0, second = 0.0, most_second = 0.0, most_third = 0.0;
-    double size = 0.0;  ///< see `scale`
+    double size = 0.0;      ///< see `scale`, with what has `cancelled`
+    double starting = 0.0;  ///< values below may be zero, and derivatives, in radians of the fastest pair
     bool lasting = false;
   };
 
@@ -145,6 +146,8 @@ class ClosedFormFlow {
   /// Of that what moves: by the terms that are summed, not by amplitudes, as a slow drift has a large one, however
   /// little it has moved. What has moved may be a small difference of free motion and what the inputs have moved.
   [[nodiscard]] double moving_size(const Guard& guard) const;
+  /// What a stop's guard rounds by beyond its scale, in units of that: parts of its place that cancel.
+  [[nodiscard]] double cancelled(const Guard& guard) const;
   /// What moves of a stop's guard, as it was where an earlier stay ended, for as long as the fastest pair takes: the
   /// state still has the rounding of what moved then.
   struct Recall {

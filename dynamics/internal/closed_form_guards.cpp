@@ -17,10 +17,11 @@ constexpr double kTouching = 1e-12;
 constexpr double kCancels = 1e-2;
 /// What a place rounds by, of its size.
 constexpr double kPlaceRounding = 64.0 * std::numeric_limits<double>::epsilon();
-/// A guard below this share of its scale when a regime begins starts at zero …
+/// A guard below this share of its scale when a regime begins starts at zero; a slope below it times the fastest rate
+/// may be zero …
 constexpr double kStarting = 1e-9;
-/// … its slope is known to rise above this share of its scale times the fastest rate, and may be zero below that one.
-constexpr double kRising = 1e-13, kSimpleStart = 1e-9;
+/// … and is known to rise above this one.
+constexpr double kRising = 1e-13;
 /// A root is located to this phase of the fastest pair.
 constexpr double kClock = 1e-15;
 constexpr int kNewtonSteps = 20;
@@ -91,16 +92,17 @@ double ClosedFormFlow::moving_size(const Guard& guard) const {
   const auto row = r.row.col(guard.output).cwiseAbs();
   double size = row.dot(x_.cwiseAbs()) + row.dot((free_ - free_entered_).cwiseAbs()) +
                 r.coefficient.col(guard.output).cwiseAbs().dot(inputs_.cwiseAbs());
-  const DriveOverlay* overlay = regime_->overlay;
-  if (overlay != nullptr) size += overlay->outputs[0].size(guard.output);
-  if (guard.kind == GuardKind::kStop) {
-    // What moves elsewhere, or moves both sides alike, cancels.
-    double place = r.place_row.col(guard.contact).dot(x_.cwiseAbs()) +
-                   r.place_coefficient.col(guard.contact).dot(inputs_.cwiseAbs());
-    if (overlay != nullptr) place += overlay->place_size(guard.contact);
-    size += kCancels * place * per_place(guard);
-  }
+  if (const DriveOverlay* overlay = regime_->overlay) size += overlay->outputs[0].size(guard.output);
   return size;
+}
+
+double ClosedFormFlow::cancelled(const Guard& guard) const {
+  if (guard.kind != GuardKind::kStop) return 0.0;
+  const Regime& r = tables_->regime();
+  double place = r.place_row.col(guard.contact).dot(x_.cwiseAbs()) +
+                 r.place_coefficient.col(guard.contact).dot(inputs_.cwiseAbs());
+  if (const DriveOverlay* overlay = regime_->overlay) place += overlay->place_size(guard.contact);
+  return kCancels * place * per_place(guard);
 }
 
 double ClosedFormFlow::scale(const Guard& guard) const {
@@ -185,15 +187,18 @@ ClosedFormFlow::GuardStart ClosedFormFlow::start_of(const Guard& guard) const {
   const double harmonic3 = overlay ? overlay->outputs[3].size(guard.output) : 0.0;
   const double third = std::abs(r.polynomial3.col(guard.output).dot(inputs_));
   const auto [value, rate] = evaluate(guard, point_.time);
-  const double size = scale(guard);
+  // Of what rests where the guard is zero, what moves from now on is the size.
+  double size = scale(guard);
+  const double rest = cancelled(guard);
+  if (size + rest == 0.0) size = most(r.weight.col(guard.output), 0.0);
   return {.value = value,
           .rate = rate,
           .second = second_derivative(guard, point_.time),
           .most_second = room * most(r.weight2.col(guard.output), 1.0 / r.rate) +
                          std::abs(r.polynomial2.col(guard.output).dot(inputs_)) + third / r.rate + harmonic2,
           .most_third = room * most(r.weight3.col(guard.output), 1.0 / r.rate) + third + harmonic3,
-          // Of what rests where the guard is zero, what moves from now on is the size.
-          .size = size > 0.0 ? size : most(r.weight.col(guard.output), 0.0),
+          .size = size + rest,
+          .starting = kStarting * size + kTouching * rest,
           .lasting = r.growth == 0.0 && third == 0.0 && !swells()};
 }
 
@@ -235,7 +240,8 @@ void ClosedFormFlow::foresee_starts() {
     if (rigid_speed) {
       if (point_.multiplicity[i] == 0) continue;
     } else if (const GuardValue now = evaluate(guard, point_.time);
-               now.value > std::max(kStarting * scale(guard), kClock / r.rate * std::abs(now.rate))) {
+               now.value > std::max(kStarting * scale(guard) + kTouching * cancelled(guard),
+                                    kClock / r.rate * std::abs(now.rate))) {
       continue;
     }
     const GuardStart start = start_of(guard);
@@ -246,15 +252,14 @@ void ClosedFormFlow::foresee_starts() {
     }
     const bool simple = rigid_speed ? point_.multiplicity[i] == 1 : g1 > kRising * r.rate * size;
     // Flat, too, where it falls by rounding, and no further below zero than can be told.
-    const bool flat = rigid_speed
-                          ? point_.multiplicity[i] == 2
-                          : std::abs(g1) <= kSimpleStart * r.rate * size || g1 * g1 <= 2.0 * g2 * kTouching * size;
+    const bool flat = rigid_speed ? point_.multiplicity[i] == 2
+                                  : std::abs(g1) <= r.rate * start.starting || g1 * g1 <= 2.0 * g2 * kTouching * size;
     double clear = 0.0;
     if (simple && g1 > 0) clear = g1 / start.most_second;
     if (flat && g2 > 0) clear = std::max(clear, 1.5 * g2 / start.most_third);
     // A guard that falls through zero is an event at once; one of which neither slope nor curvature can be told may
     // rise.
-    const bool told = !flat || std::abs(g2) > kSimpleStart * r.rate * r.rate * size;
+    const bool told = !flat || std::abs(g2) > r.rate * r.rate * start.starting;
     if (!rigid_speed && clear == 0.0 && told) {
       const bool at_rest =
           flat && std::abs(g1) <= kRising * r.rate * size && std::abs(start.value) <= kPlaceRounding * size;
@@ -362,14 +367,15 @@ ClosedFormFlow::Search ClosedFormFlow::search(int level) const {
     BernsteinPolynomial polynomial;
     polynomial.degree = kNodes - 1;
     std::copy_n(values.begin(), kNodes, polynomial.coefficient.begin());
-    judge(polynomial, remainder, kTouching * scale(guard), static_cast<int>(g), found);
+    judge(polynomial, remainder, kTouching * (scale(guard) + cancelled(guard)), static_cast<int>(g), found);
   }
   return found;
 }
 
 bool ClosedFormFlow::approach(const Guard& guard, double from, double& tau) {
   // Newton on the exact guard.
-  const double rate = tables_->regime().rate, bend = curvature(guard.output), size = scale(guard), start = tau;
+  const double rate = tables_->regime().rate, bend = curvature(guard.output), size = scale(guard) + cancelled(guard),
+               start = tau;
   const double rounding = std::numeric_limits<double>::epsilon() / 2.0 * size;
   const auto give_up = [&] {
     tau = start;

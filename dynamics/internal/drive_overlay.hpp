@@ -75,12 +75,14 @@ class DriveOverlay {
   Amplitudes inputs, input_rate;  ///< J, dJ/dt [ni]
   /// The outputs and their first three derivatives, beside what Regime's rows say of the state [no].
   std::array<Amplitudes, 4> outputs;
-  Amplitudes force;            ///< λ of each contact [nc]
-  Amplitudes velocity;         ///< wᵀq̇ of each contact [nc]
-  Amplitudes displacement;     ///< wᵀq of each contact [nc]
-  Eigen::VectorXd place_size;  ///< of what adds up to `displacement`, where what a contact holds is taken away [nc]
-  Amplitudes driven;           ///< d_kᵀq̇ of each force direction [nk]
-  Amplitudes slipping;         ///< the state in the slipping model [2np_s]
+  Amplitudes force;         ///< λ of each contact [nc]
+  Amplitudes velocity;      ///< wᵀq̇ of each contact [nc]
+  Amplitudes displacement;  ///< wᵀq of each contact [nc]
+  /// Of what adds up to `displacement`: parts by slipping modes, and what those are differences of where contacts hold
+  /// what a force moves [nc].
+  Eigen::VectorXd place_size;
+  Amplitudes driven;    ///< d_kᵀq̇ of each force direction [nk]
+  Amplitudes slipping;  ///< the state in the slipping model [2np_s]
   std::vector<Resonance> resonances;
   Eigen::VectorXd swell;  ///< the most by which they make pairs' sizes grow, in the regime's scales [np, 1/s]
 

@@ -151,6 +151,62 @@ TEST(RestOnAStop, ChainsThatGlideLeaveNoStopBetweenTheirMasses) {
       }
 }
 
+TEST(RestOnAStop, IsMetAlikeFarFromTheOrigin) {
+  // The same inner motion, 1e-3, of a free chain at the origin and 1,000 km from it, from a stop without a gap: places
+  // round by 1e-10 there. Where zero is to be told by that, but not whether a stop is met.
+  constexpr double kAway = 1e6, kSize = 1e-3;
+  fem::Structure chain = chain_of_six(0.0);
+  Eigen::MatrixXd K = fem::to_dense(chain.K());
+  K(0, 0) -= 0.7;
+  const Contact between{
+      .direction = Eigen::VectorXd::Unit(kMasses, 2) - Eigen::VectorXd::Unit(kMasses, 1),
+      .law = Clearance{.left = Stop{.stiffness = 50.0}, .right = Stop{.stiffness = 20.0, .damping = 0.1}}};
+  const HybridSystem system({chain.M(), fem::Matrix(Eigen::MatrixXd(0.0 * K)), fem::Matrix(K)}, {between},
+                            friction::Belt{.speed = 0.3});
+  Random random(5);
+  for (int draw = 0; draw < 20; ++draw) {
+    SCOPED_TRACE(testing::Message() << "draw " << draw);
+    State start = system.rest();
+    for (int i = 0; i < kMasses; ++i) {
+      start.q(i) = kSize * random.uniform(-1.0, 1.0);
+      start.v(i) = kSize * random.uniform(-1.0, 1.0);
+    }
+    start.q(2) = start.q(1);
+    const Trajectory here = simulate(system, start, {.duration = 10.0});
+    start.q.array() += kAway;
+    start.q(2) = start.q(1);
+    const Trajectory there = simulate(system, start, {.duration = 10.0});
+    const Eigen::VectorXd apart = (there.final_state.q.array() - kAway).matrix() - here.final_state.q;
+    EXPECT_LT(apart.cwiseAbs().maxCoeff(), 1e-4 * kSize);
+  }
+}
+
+TEST(RestOnAStop, IsNotLeftWhereTwoContactsTakeAllOfAForce) {
+  // A force on two masses that stick: nothing moves. The steady answer is a difference, of neither contact alone.
+  for (int draw = 0; draw < 60; ++draw) {
+    SCOPED_TRACE(testing::Message() << "draw " << draw);
+    Random random = Random::stream(13, static_cast<std::uint64_t>(draw));
+    const int held = static_cast<int>(random.uniform(0.0, kMasses - 1)),
+              stop = static_cast<int>(random.uniform(0.0, kMasses));
+    std::vector<Contact> contacts;
+    for (const int at : {held, held + 1})
+      contacts.push_back({.direction = Eigen::VectorXd::Unit(kMasses, at),
+                          .law = friction::Coulomb{.mu_s = 0.4, .mu_k = 0.3},
+                          .normal_load = 100.0});
+    contacts.push_back(
+        {.direction = Eigen::VectorXd::Unit(kMasses, stop),
+         .law = Clearance{.left = Stop{.stiffness = 50.0}, .right = Stop{.stiffness = 20.0, .damping = 0.3}}});
+    const Eigen::VectorXd along = random.uniform(0.2, 1.0) * Eigen::VectorXd::Unit(kMasses, held) +
+                                  random.uniform(-1.0, 1.0) * Eigen::VectorXd::Unit(kMasses, held + 1);
+    const HybridSystem system(chain_of_six(draw % 2 == 0 ? 0.0 : 0.03), contacts,
+                              friction::Force{0.69, {{.amplitude = 1.0, .phase = draw % 5 == 0 ? 0.0 : 1.1}}}, {},
+                              Eigen::MatrixXd(along));
+    Trajectory run;
+    ASSERT_NO_THROW(run = simulate(system, system.rest(), {.duration = 20.0}));
+    EXPECT_LT(run.final_state.q.cwiseAbs().maxCoeff(), 1e-13);
+  }
+}
+
 /// A chain with contacts, stops without a gap at or between its masses, and a drive, all of any kind; at rest on the
 /// stops and anything elsewhere.
 struct DrawnStart {
@@ -174,7 +230,7 @@ DrawnStart draw_start(std::uint64_t index) {
 
   std::vector<Contact> contacts;
   for (int left = 1 + any(3); left > 0; --left) {
-    contacts.push_back(contacts_on_the_first()[static_cast<std::size_t>(any(4))]);
+    contacts.push_back(contacts_on_the_first()[static_cast<std::size_t>(any(any(8) == 0 ? 5 : 2))]);
     contacts.back().direction = at_mass(any(n));
   }
   const double speed = random.uniform(-0.5, 0.5);
