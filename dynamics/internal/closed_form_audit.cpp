@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace slipmode::dynamics {
@@ -12,8 +13,10 @@ namespace {
 constexpr double kShortRest = 0.25;
 /// Phase of the fastest harmonic that the rules of a window, made for the regime's own rate, take at least.
 constexpr double kDriveRest = 1.0;
-/// Forms that round by more than this share of the energy exchanged are left for quadrature.
+/// Forms that round by more than this share of the energy exchanged are left for quadrature if that rounds by less.
 constexpr double kLostInForms = 1e-12;
+/// What a sum over nodes may be off by, of its terms' sizes.
+constexpr double kRounding = std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
@@ -24,9 +27,12 @@ void ClosedFormFlow::account(double tau, bool ends) {
   if (!measured_) measure_amplitudes();
   const StayPlace now{point_.time, x_, free_, point_.x};
   StayWork work = regime_->belt ? regime_->belt->until(now, inputs_) : stay_.until(now);
-  if (work.rounding > kLostInForms * (work_.exchanged + std::abs(work.contact) + std::abs(work.force) + work.viscous) ||
-      little_left(accounted_, x_accounted_))
-    work = integrate(accounted_, x_accounted_, inputs_accounted_, point_.time - accounted_);
+  const bool little = little_left(accounted_, x_accounted_);
+  if (little ||
+      work.rounding > kLostInForms * (work_.exchanged + std::abs(work.contact) + std::abs(work.force) + work.viscous)) {
+    const StayWork summed = integrate(accounted_, x_accounted_, inputs_accounted_, point_.time - accounted_);
+    if (little || summed.rounding < work.rounding) work = summed;
+  }
   add(work);
   mark_accounted();
 }
@@ -63,12 +69,16 @@ StayWork ClosedFormFlow::integrate(double t, Eigen::VectorXd x, Eigen::VectorXd 
       }
       sum.contact += weight * force * velocity;
       sum.drive += weight * force * V;
+      sum.rounding += kRounding * weight * std::abs(force) * (std::abs(velocity) + std::abs(V));
     }
     if (const friction::Force* force = resolver_.drive().force())
-      for (Eigen::Index k = 0; k < r.forces; ++k)
-        sum.force += weight * force->value(static_cast<int>(k), at) *
-                     (r.drive_row.col(k).dot(x_then) + r.drive_coefficient.col(k).dot(inputs_then) +
-                      (overlay ? overlay->driven.at(k, phase) : 0.0));
+      for (Eigen::Index k = 0; k < r.forces; ++k) {
+        const double power = force->value(static_cast<int>(k), at) *
+                             (r.drive_row.col(k).dot(x_then) + r.drive_coefficient.col(k).dot(inputs_then) +
+                              (overlay ? overlay->driven.at(k, phase) : 0.0));
+        sum.force += weight * power;
+        sum.rounding += kRounding * weight * std::abs(power);
+      }
     if (overlay) {
       Eigen::VectorXd all = x_then;
       overlay->state.add(phase, 1.0, all);
