@@ -106,12 +106,21 @@ class ClosedFormFlow {
     double value = 0.0, rate = 0.0;
   };
 
+  /// What a guard's values are measured by.
+  struct GuardSize {
+    double own = 0.0;        ///< of its terms
+    double cancelled = 0.0;  ///< in the same units, of a stop's: parts of its place that cancel
+    /// What it rounds by.
+    [[nodiscard]] double told() const { return own + cancelled; }
+    /// Values below may be zero where a regime begins, and derivatives, in radians of the fastest pair.
+    [[nodiscard]] double starting() const;
+  };
+
   /// A guard at the point, with bounds on its second and third derivative: for as long as the fastest pair takes, or
   /// for good where they are `lasting`.
   struct GuardStart {
     double value = 0.0, rate = 0.0, second = 0.0, most_second = 0.0, most_third = 0.0;
-    double size = 0.0;      ///< see `scale`, with what has `cancelled`
-    double starting = 0.0;  ///< values below may be zero, and derivatives, in radians of the fastest pair
+    GuardSize size;
     bool lasting = false;
   };
 
@@ -141,12 +150,13 @@ class ClosedFormFlow {
   void look_again();
   /// How long, by bounds, a guard stays so near to zero that it cannot be told from it.
   [[nodiscard]] double near_zero(const GuardStart& guard) const;
+  [[nodiscard]] GuardSize size_of(const Guard& guard) const;
   /// The size of an output's values, which its rounding error is measured by.
   [[nodiscard]] double scale(const Guard& guard) const;
   /// Of that what moves: by the terms that are summed, not by amplitudes, as a slow drift has a large one, however
   /// little it has moved. What has moved may be a small difference of free motion and what the inputs have moved.
   [[nodiscard]] double moving_size(const Guard& guard) const;
-  /// What a stop's guard rounds by beyond its scale, in units of that: parts of its place that cancel.
+  /// See GuardSize.
   [[nodiscard]] double cancelled(const Guard& guard) const;
   /// What moves of a stop's guard, as it was where an earlier stay ended, for as long as the fastest pair takes: the
   /// state still has the rounding of what moved then.

@@ -105,6 +105,10 @@ double ClosedFormFlow::cancelled(const Guard& guard) const {
   return kCancels * place * per_place(guard);
 }
 
+ClosedFormFlow::GuardSize ClosedFormFlow::size_of(const Guard& guard) const { return {scale(guard), cancelled(guard)}; }
+
+double ClosedFormFlow::GuardSize::starting() const { return kStarting * own + kTouching * cancelled; }
+
 double ClosedFormFlow::scale(const Guard& guard) const {
   const Regime& r = tables_->regime();
   const RegimeOutput& output = r.outputs[static_cast<std::size_t>(guard.output)];
@@ -188,17 +192,15 @@ ClosedFormFlow::GuardStart ClosedFormFlow::start_of(const Guard& guard) const {
   const double third = std::abs(r.polynomial3.col(guard.output).dot(inputs_));
   const auto [value, rate] = evaluate(guard, point_.time);
   // Of what rests where the guard is zero, what moves from now on is the size.
-  double size = scale(guard);
-  const double rest = cancelled(guard);
-  if (size + rest == 0.0) size = most(r.weight.col(guard.output), 0.0);
+  GuardSize size = size_of(guard);
+  if (size.told() == 0.0) size.own = most(r.weight.col(guard.output), 0.0);
   return {.value = value,
           .rate = rate,
           .second = second_derivative(guard, point_.time),
           .most_second = room * most(r.weight2.col(guard.output), 1.0 / r.rate) +
                          std::abs(r.polynomial2.col(guard.output).dot(inputs_)) + third / r.rate + harmonic2,
           .most_third = room * most(r.weight3.col(guard.output), 1.0 / r.rate) + third + harmonic3,
-          .size = size + rest,
-          .starting = kStarting * size + kTouching * rest,
+          .size = size,
           .lasting = r.growth == 0.0 && third == 0.0 && !swells()};
 }
 
@@ -206,8 +208,8 @@ double ClosedFormFlow::near_zero(const GuardStart& g) const {
   // |g| ≤ |g₀| + |g′|t + M₂t²/2, and ≤ |g₀| + |g′|t + |g″|t²/2 + M₃t³/6, of whose terms each is given its share.
   const double bounded = 1.0 / tables_->regime().rate;
   const auto lasts = [&](double stays) { return g.lasting ? stays : std::min(stays, bounded); };
-  const double left = kTouching * g.size - std::abs(g.value), slope = std::abs(g.rate);
-  if (g.size == 0.0 && g.value == 0.0 && slope == 0.0 && g.most_second == 0.0)  // of what nothing moves
+  const double left = kTouching * g.size.told() - std::abs(g.value), slope = std::abs(g.rate);
+  if (g.size.told() == 0.0 && g.value == 0.0 && slope == 0.0 && g.most_second == 0.0)  // of what nothing moves
     return lasts(std::numeric_limits<double>::infinity());
   if (!(left > 0.0)) return 0.0;
   const double by_second = 2.0 * left / (slope + std::sqrt(slope * slope + 2.0 * g.most_second * left));
@@ -220,7 +222,7 @@ void ClosedFormFlow::look_again() {
   for (Guard& guard : guards_) {
     if (guard.exempt_until != begin_) continue;
     const GuardStart now = start_of(guard);
-    if (std::abs(now.value) <= kTouching * now.size / 2.0)
+    if (std::abs(now.value) <= kTouching * now.size.told() / 2.0)
       guard.exempt_until = std::max(begin_ + near_zero(now), std::nextafter(begin_, 1e300));
   }
 }
@@ -240,26 +242,26 @@ void ClosedFormFlow::foresee_starts() {
     if (rigid_speed) {
       if (point_.multiplicity[i] == 0) continue;
     } else if (const GuardValue now = evaluate(guard, point_.time);
-               now.value > std::max(kStarting * scale(guard) + kTouching * cancelled(guard),
-                                    kClock / r.rate * std::abs(now.rate))) {
+               now.value > std::max(size_of(guard).starting(), kClock / r.rate * std::abs(now.rate))) {
       continue;
     }
     const GuardStart start = start_of(guard);
-    const double g1 = start.rate, g2 = start.second, size = start.size, near = near_zero(start);
+    const double g1 = start.rate, g2 = start.second, size = start.size.told(), near = near_zero(start);
     if (guard.kind == GuardKind::kStop && near >= 1.0 / r.rate) {  // at rest on the limit
       guard.exempt_until = point_.time + near;
       continue;
     }
     const bool simple = rigid_speed ? point_.multiplicity[i] == 1 : g1 > kRising * r.rate * size;
     // Flat, too, where it falls by rounding, and no further below zero than can be told.
-    const bool flat = rigid_speed ? point_.multiplicity[i] == 2
-                                  : std::abs(g1) <= r.rate * start.starting || g1 * g1 <= 2.0 * g2 * kTouching * size;
+    const bool flat = rigid_speed
+                          ? point_.multiplicity[i] == 2
+                          : std::abs(g1) <= r.rate * start.size.starting() || g1 * g1 <= 2.0 * g2 * kTouching * size;
     double clear = 0.0;
     if (simple && g1 > 0) clear = g1 / start.most_second;
     if (flat && g2 > 0) clear = std::max(clear, 1.5 * g2 / start.most_third);
     // A guard that falls through zero is an event at once; one of which neither slope nor curvature can be told may
     // rise.
-    const bool told = !flat || std::abs(g2) > r.rate * r.rate * start.starting;
+    const bool told = !flat || std::abs(g2) > r.rate * r.rate * start.size.starting();
     if (!rigid_speed && clear == 0.0 && told) {
       const bool at_rest =
           flat && std::abs(g1) <= kRising * r.rate * size && std::abs(start.value) <= kPlaceRounding * size;
@@ -367,15 +369,14 @@ ClosedFormFlow::Search ClosedFormFlow::search(int level) const {
     BernsteinPolynomial polynomial;
     polynomial.degree = kNodes - 1;
     std::copy_n(values.begin(), kNodes, polynomial.coefficient.begin());
-    judge(polynomial, remainder, kTouching * (scale(guard) + cancelled(guard)), static_cast<int>(g), found);
+    judge(polynomial, remainder, kTouching * size_of(guard).told(), static_cast<int>(g), found);
   }
   return found;
 }
 
 bool ClosedFormFlow::approach(const Guard& guard, double from, double& tau) {
   // Newton on the exact guard.
-  const double rate = tables_->regime().rate, bend = curvature(guard.output), size = scale(guard) + cancelled(guard),
-               start = tau;
+  const double rate = tables_->regime().rate, bend = curvature(guard.output), size = size_of(guard).told(), start = tau;
   const double rounding = std::numeric_limits<double>::epsilon() / 2.0 * size;
   const auto give_up = [&] {
     tau = start;
