@@ -49,16 +49,17 @@ double stored_in_contacts(const HybridSystem& system, const ModalModel& m, const
   return stored;
 }
 
-/// From the modal coordinates where they decouple it, else from the state.
+/// In natural modes: what a soft mode stores far out would be the small difference of large products with K.
 Energy modal_energy(const HybridSystem& system, const ModalModel& m, const HybridPoint& point) {
-  const double in_contacts = stored_in_contacts(system, m, point);
-  if (!m.proportional) {
-    const State state = physical(m, point);
-    return {system.energy(state), system.load().size() > 0 ? system.load().dot(state.q) : 0.0, in_contacts};
-  }
-  const auto eta = point.x.head(m.np), rate = point.x.tail(m.np);
-  const double by_load = m.load.tail(m.np).dot(eta);
-  return {0.5 * rate.squaredNorm() + 0.5 * m.omega.cwiseProduct(eta).squaredNorm() - by_load, by_load, in_contacts};
+  const auto of = [&](const auto& omega, const auto& load, const auto& eta, const auto& rate) {
+    const double by_load = load.dot(eta);
+    return Energy(0.5 * rate.squaredNorm() + 0.5 * omega.cwiseProduct(eta).squaredNorm() - by_load, by_load,
+                  stored_in_contacts(system, m, point));
+  };
+  const Eigen::VectorXd& x = point.x;
+  if (m.proportional) return of(m.omega, m.load.tail(m.np), x.head(m.np), x.tail(m.np));
+  const ModalCoordinates& modal = m.modal;
+  return of(modal.omega, modal.load, Eigen::VectorXd(modal.to_eta * x), Eigen::VectorXd(modal.to_eta_rate * x));
 }
 
 /// Keeps what the options ask for, sample by sample in blocks so that lifting to the degrees of freedom is one product.
