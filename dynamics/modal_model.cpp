@@ -24,11 +24,12 @@ Eigen::MatrixXd contact_directions(const HybridSystem& system) {
 
 /// The least-squares a + b ω² through the modal dampings, if it fits to rounding.
 std::optional<fem::Rayleigh> fit_rayleigh(const Eigen::VectorXd& omega, const Eigen::VectorXd& damping) {
+  const double fastest = omega.size() > 0 && omega.maxCoeff() > 0.0 ? omega.maxCoeff() : 1.0;
   Eigen::MatrixXd A(omega.size(), 2);
-  A << Eigen::VectorXd::Ones(omega.size()), omega.array().square().matrix();
+  A << Eigen::VectorXd::Ones(omega.size()), (omega / fastest).array().square().matrix();
   const Eigen::Vector2d ab = A.colPivHouseholderQr().solve(damping);
-  if ((A * ab - damping).norm() > kProportionalTolerance * std::max(damping.norm(), 1e-300)) return std::nullopt;
-  return fem::Rayleigh{ab(0), ab(1)};
+  if (!((A * ab - damping).norm() <= kProportionalTolerance * damping.norm())) return std::nullopt;
+  return fem::Rayleigh{ab(0), ab(1) / (fastest * fastest)};
 }
 
 /// Everything that follows from G, the inputs and the rows.
@@ -306,8 +307,8 @@ ModalModel build_modal_model(const HybridSystem& system, bool rows_only) {
     }
   }
   finish(m);
-  const double radian = m.fastest > 0.0 ? 1.0 / m.fastest : 0.0;
-  m.place_row = (m.to_q.cwiseAbs() + radian * m.to_v.cwiseAbs()).transpose() * W.cwiseAbs();
+  m.place_row.resize(2 * m.np, 2 * W.cols());
+  m.place_row << m.to_q.cwiseAbs().transpose() * W.cwiseAbs(), m.to_v.cwiseAbs().transpose() * W.cwiseAbs();
   return m;
 }
 
@@ -331,6 +332,7 @@ ModalModel with_given_forces(const ModalModel& model) {
   m.fastest = model.fastest;
   m.proportional = model.proportional;
   m.omega = model.omega;
+  m.modal.omega = model.modal.omega;
   m.damping = model.damping;
   m.dissipation_root = model.dissipation_root;
   return m;

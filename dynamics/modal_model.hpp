@@ -3,6 +3,7 @@
 #include <slipmode/dynamics/system.hpp>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <optional>
 
 namespace slipmode::dynamics {
@@ -44,7 +45,7 @@ struct ModalModel {
   Eigen::MatrixXd force_row;           ///< d_kᵀq̇ = this·x, columns [2np x nk]
   Eigen::MatrixXd displacement_row;    ///< u_c, columns [2np x nc]
   Eigen::MatrixXd velocity_row;        ///< g_c, columns [2np x nc]
-  /// |w_c|ᵀ(|Q| + |V|/fastest): wᵀq has parts of this·|x|, now or a radian later [2np x nc]. Empty without Q and V.
+  /// |w_c|ᵀ|Q|, then |w_c|ᵀ|V|: wᵀq and wᵀq̇ have parts of this·|x| [2np x 2nc]. Empty without Q and V.
   Eigen::MatrixXd place_row;
   Eigen::MatrixXd acceleration_row;    ///< Gᵀ g_c: wᵀq̈ = this·x + g_cᵀ(Σ b λ + p) [2np x nc]
   Eigen::MatrixXd mobility;            ///< g_cᵀ b_d = (Wᵀ M⁻¹ W)_cd [nc x nc]
@@ -72,6 +73,11 @@ struct ModalModel {
   [[nodiscard]] double viscous_power(const Eigen::VectorXd& x, const Eigen::VectorXd& y) const;
   /// ẋ under these contact forces and the constant load.
   [[nodiscard]] Eigen::VectorXd rate(const Eigen::VectorXd& x, const Eigen::VectorXd& force) const;
+  /// Nothing has a stiffness.
+  [[nodiscard]] bool floats() const { return (proportional ? omega : modal.omega).isZero(0.0); }
+  /// What times are measured by: the fastest rate, and 1/s at least where nothing has a stiffness. How slowly light
+  /// damping makes a motion decay is no measure of what happens in it [1/s].
+  [[nodiscard]] double pace() const { return floats() ? std::max(fastest, 1.0) : fastest; }
   [[nodiscard]] bool has_shapes() const { return to_q.size() > 0; }
   /// e^{G_i t} of pair i as {a, b; c, d}: stable for oscillating, critical, overdamped and rigid-body pairs.
   [[nodiscard]] Eigen::Matrix2d exponential(Eigen::Index pair, double t) const;

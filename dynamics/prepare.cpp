@@ -139,6 +139,15 @@ ContactMode start_mode(const friction::Clearance& law, const friction::Contact& 
   return ContactMode::kGap;
 }
 
+/// What a sliding speed that should be zero is a share of: the belt's, the structure's, and what the contact's own
+/// force makes in a radian [m/s].
+double speeds_at_play(const friction::Contact& contact, std::size_t c, const ModalModel& m, double belt,
+                      const Eigen::VectorXd& v) {
+  const auto i = static_cast<Eigen::Index>(c);
+  return belt + contact.direction.cwiseAbs().dot(v.cwiseAbs()) +
+         contact_forces(contact).most() * m.mobility(i, i) / m.pace();
+}
+
 /// Modes at the start: as given, or by the sign of the sliding speed with zero speed left to consistency.
 std::vector<ContactMode> start_modes(const HybridSystem& system, const ModalModel& m, const State& start,
                                      const Eigen::VectorXd& x) {
@@ -155,8 +164,8 @@ std::vector<ContactMode> start_modes(const HybridSystem& system, const ModalMode
       continue;
     }
     const double sliding = V - contact.direction.dot(start.v);
-    const double scale =
-        system.drive().velocity_scale(start.time) + contact.direction.cwiseAbs().dot(start.v.cwiseAbs());
+    const double belt = system.drive().velocity_scale(start.time),
+                 scale = belt + contact.direction.cwiseAbs().dot(start.v.cwiseAbs());
     const double at_rest = 1e-12 * scale + kModalRounding * motion_size(contact, start.v, x, m.velocity_row, c);
     const ContactMode by_sign = std::abs(sliding) <= at_rest ? ContactMode::kStick
                                 : sliding > 0                ? ContactMode::kSlipPositive
@@ -169,8 +178,8 @@ std::vector<ContactMode> start_modes(const HybridSystem& system, const ModalMode
     modes[c] = start.modes[c];
     if (compliant || modes[c] == ContactMode::kSeparated) continue;  // decided by the force and the normal load
     // A run that ended at an event leaves a sliding speed of rounding, of either sign.
-    const bool agrees =
-        by_sign == ContactMode::kStick || modes[c] == by_sign || std::abs(sliding) <= 1e-9 * std::max(1.0, scale);
+    const bool agrees = by_sign == ContactMode::kStick || modes[c] == by_sign ||
+                        std::abs(sliding) <= 1e-9 * speeds_at_play(contact, c, m, belt, start.v);
     require_or_say(agrees && modes[c] != ContactMode::kSmooth, [&] {
       return "start state says contact " + std::to_string(c + 1) + " is in mode " +
              std::to_string(static_cast<int>(modes[c])) + ", but its relative velocity is " + std::to_string(sliding) +
@@ -227,9 +236,9 @@ FlowMethod choose_method(const HybridSystem& system, FlowMethod asked) {
 
 namespace {
 
-/// The fastest rate of the slipping structure, or of a contact on its own spring or stop [1/s].
+/// The fastest rate of the drive, of the slipping structure, or of a contact on its own spring or stop [1/s].
 double fastest_rate(const HybridSystem& system, const ModalModel& m) {
-  double fastest = m.fastest;
+  double fastest = std::max(system.drive().omega(), m.floats() ? 0.0 : m.fastest);
   for (std::size_t c = 0; c < system.contacts().size(); ++c) {
     const auto i = static_cast<Eigen::Index>(c);
     const double mobility = m.mobility(i, i);
@@ -282,13 +291,12 @@ State end_state(const HybridSystem& system, const ModalModel& m, const HybridPoi
   const double belt = system.drive().velocity(end.time);
   std::vector<Eigen::Index> held;
   for (std::size_t c = 0; c < end.modes.size(); ++c) {
-    const Eigen::VectorXd& w = system.contacts()[c].direction;
-    const double sliding = belt - w.dot(end.v), sign = sign_of(end.modes[c]);
-    const double scale = std::abs(belt) + w.cwiseAbs().dot(end.v.cwiseAbs());
+    const friction::Contact& contact = system.contacts()[c];
+    const double sliding = belt - contact.direction.dot(end.v), sign = sign_of(end.modes[c]);
     const bool sticks = end.modes[c] == ContactMode::kStick, slips = std::abs(sign) == 1.0;
-    const bool rigid = friction::kind(system.contacts()[c].law) != LawKind::kCompliant;
+    const bool rigid = friction::kind(contact.law) != LawKind::kCompliant;
     const bool off_guard = rigid && (sticks || (slips && sliding * sign < 0.0));
-    if (off_guard && std::abs(sliding) <= kLargestRepair * std::max(1.0, scale))
+    if (off_guard && std::abs(sliding) <= kLargestRepair * speeds_at_play(contact, c, m, std::abs(belt), end.v))
       held.push_back(static_cast<Eigen::Index>(c));
   }
   if (held.empty()) return end;

@@ -28,7 +28,8 @@ Regime::Regime(const HybridSystem& system, const ModalModel& slipping, const std
     told_from_rounding &= std::sqrt(determinant) > kPerhapsZero * slipping.fastest;
   }
   if (told_from_rounding) motion = PairMotion(pairs);
-  rate = pairs.fastest > 0 ? pairs.fastest : slipping.fastest > 0 ? slipping.fastest : 1.0;
+  rate = pairs.fastest > 0 ? pairs.fastest : slipping.fastest;
+  if (slipping.floats()) rate = std::max(rate, slipping.pace());
 
   row1 = row;
   coefficient1 = coefficient;

@@ -78,7 +78,7 @@ struct Regime {
   /// λ, wᵀq̇ and wᵀq of each contact [2np x nc], [ni x nc].
   Eigen::MatrixXd force_row, force_coefficient, velocity_row, velocity_coefficient;
   Eigen::MatrixXd displacement_row, displacement_coefficient;
-  /// What adds up to wᵀq, see ModalModel::place_row: of sizes |x| and |ι|.
+  /// What adds up to wᵀq and wᵀq̇, see ModalModel::place_row: of sizes |x| and |ι| [2np x 2nc], [ni x 2nc].
   Eigen::MatrixXd place_row, place_coefficient;
   Eigen::MatrixXd steady_force;                  ///< λ of each contact on x_p [ni x nc]
   Eigen::MatrixXd drive_row, drive_coefficient;  ///< d_kᵀq̇ of each force direction [2np x nk], [ni x nk]
@@ -150,7 +150,7 @@ struct RegimeForms {
 /// A regime and its tables for windows of length top·2^{-level}, built when first used; safe to share between threads.
 class RegimeTables {
  public:
-  static constexpr int kLevels = 80;
+  static constexpr int kLevels = 112;
   /// The first level at which the energy audit's rules are short enough to be tabulated.
   static constexpr int kAuditLevel = 28;
 

@@ -63,8 +63,8 @@ struct EnergyAudit {
 
 struct FlowOptions {
   FlowMethod method = FlowMethod::kAutomatic;
-  /// Collocation: bound on the error of one step's contact impulse, as a share of the law's largest force times the
-  /// largest step (four radians of the fastest mode).
+  /// Collocation: bound on the error of one step's contact impulse, as a share of the law's largest force times how
+  /// long it acts: four radians of the fastest mode or of the drive, whichever is less.
   double tolerance = 1e-9;
   bool audit = true;  ///< integrate the energy balance along
   /// Prove step by step that no event is passed, see FlowStatistics::certified. The closed form always does.

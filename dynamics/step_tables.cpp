@@ -9,9 +9,6 @@
 namespace slipmode::dynamics {
 namespace {
 
-/// The largest step spans this many radians of the fastest pair: quadratures below are then exact to rounding.
-constexpr double kLongestPhase = 4.0;
-
 /// Values of a function at `targets` from its values at the Chebyshev points of [0, h] (barycentric form).
 Eigen::MatrixXd chebyshev_interpolation(const Eigen::VectorXd& points, const Eigen::VectorXd& targets) {
   const auto count = points.size();
@@ -46,7 +43,7 @@ StepTables::StepTables(const ModalModel& model)
       driven_(model.force_input.cols() > 0 ? std::optional(with_given_forces(model)) : std::nullopt),
       acted_on_(driven_ ? *driven_ : model),
       motion_(model),
-      top_(first_step(kLongestPhase / (model.fastest > 0 ? model.fastest : 1.0))),
+      top_(first_step(kLongestPhase / model.pace())),
       loaded_(!model.load.isZero(0.0)) {}
 
 Eigen::MatrixXd StepTables::changes(const Eigen::VectorXd& times) const {

@@ -7,6 +7,7 @@
 #include <slipmode/dynamics/pair_motion.hpp>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -102,11 +103,18 @@ struct NodeStates {
 /// Tables for steps of size top·2^{-level}, built when first used; safe to share between threads.
 class StepTables {
  public:
-  static constexpr int kLevels = 48;
+  static constexpr int kLevels = 64;
+  /// The largest step spans this many radians of the fastest pair: quadratures are then exact to rounding.
+  static constexpr double kLongestPhase = 4.0;
 
   explicit StepTables(const ModalModel& model);
 
-  [[nodiscard]] double step(int level) const { return top_ / static_cast<double>(std::int64_t{1} << level); }
+  [[nodiscard]] double step(int level) const { return top_ / static_cast<double>(std::uint64_t{1} << level); }
+  /// How long a law's force acts where a step is held to a tolerance, under a drive of this frequency: a step at its
+  /// longest, or as many radians of the drive if these are less [s].
+  [[nodiscard]] double acting_time(double omega) const {
+    return omega > 0.0 ? std::min(top_, kLongestPhase / omega) : top_;
+  }
   [[nodiscard]] const Propagator& propagator(int level) const {
     return propagators_.get(level, [&](Propagator& out) { make(out, level); });
   }

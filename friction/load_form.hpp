@@ -14,6 +14,7 @@ struct LoadForm {
   explicit LoadForm(const Contact& contact)
       : constant(contact.normal_load.constant), y(contact.normal_load.slope), offset(contact.offset) {
     if (const auto& own = contact.normal_load.oscillator) {
+      mass = own->mass;
       y = own->spring_stiffness * own->slope;
       v = own->spring_damping * own->slope;
       z = -own->spring_stiffness;
@@ -43,7 +44,7 @@ struct LoadForm {
   }
 
   double constant = 0.0, y = 0.0, v = 0.0, z = 0.0, z_rate = 0.0;
-  double stiffness = 0.0, damping = 0.0, lift = 0.0, lift_rate = 0.0;
+  double mass = 0.0, stiffness = 0.0, damping = 0.0, lift = 0.0, lift_rate = 0.0;
   double offset = 0.0;
 };
 

@@ -459,7 +459,7 @@ Eigen::VectorXd tolerated_impulses(const dynamics::HybridSystem& system, double 
   if (own.model.fastest == 0.0) return most;
   for (Index c = 0; c < nc; ++c)
     most(c) = friction::contact_forces(system.contacts()[static_cast<std::size_t>(c)]).most();
-  return tolerance * std::min(own.steps.step(0), longest) * most;
+  return tolerance * std::min(own.steps.acting_time(system.drive().omega()), longest) * most;
 }
 
 ScanFigures scan_run(const dynamics::HybridSystem& system, const dynamics::State& start,

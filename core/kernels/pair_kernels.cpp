@@ -16,6 +16,8 @@ constexpr double kChordRatio = 0.05;
 constexpr double kClip = -1.4;
 /// Speeds that change by less than this, in units of 1/α, leave the law's slopes what they were.
 constexpr double kSameSlope = 0.1;
+/// Changes below this share of the speeds at play are rounding.
+constexpr double kUnmoved = 1e-14;
 constexpr double kSingular = 1e-14;
 /// What the solution of a step's Newton equations may leave of the right side.
 constexpr double kSolved = 1e-8;
@@ -199,12 +201,13 @@ bool solve_stribeck(const Trial& t) {
     }
     v = v + delta;
     const double change = largest(abs8(delta));
-    if (!(change < 1e12)) return false;
+    if (!(change < __builtin_huge_val())) return false;
     // The law's second derivative is α slope: what its linearisation leaves out. The changes after one inversion shrink
     // by a constant factor.
     const double left = inverted ? change * change / last : 0.0;
     const bool slopes_hold = t.alpha * change < kSameSlope;
-    if (change < 1e-14 || (slopes_hold && steepest * (0.5 * t.alpha * change * change + left) < allowed)) {
+    if ((slopes_hold && steepest * (0.5 * t.alpha * change * change + left) < allowed) ||
+        change < kUnmoved * largest(max8(abs8(v), abs8(drive)))) {
       store8(t.forces, fma8(slope, delta, lambda));
       store8(t.velocity, v);
       return true;

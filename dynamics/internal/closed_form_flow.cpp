@@ -98,6 +98,7 @@ void ClosedFormFlow::enter_regime() {
     regime_ = &*known;
   }
   tables_ = regime_->tables;
+  fastest_ = std::max(tables_->regime().rate, resolver_.drive().omega());
   const Regime& r = tables_->regime();
   const DriveOverlay* overlay = regime_->overlay;
   const DrivePhase phase = overlay ? phase_at(point_.time) : DrivePhase{};

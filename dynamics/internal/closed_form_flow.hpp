@@ -241,6 +241,7 @@ class ClosedFormFlow {
 
   Visited* regime_ = nullptr;
   const RegimeTables* tables_ = nullptr;  ///< its tables
+  double fastest_ = 0.0;                  ///< rate of the regime, or of the drive if that is faster [1/s]
   const Visited* step_regime_ = nullptr;  ///< that of the last step
   std::vector<Guard> guards_;
   std::vector<Eigen::Index> oscillator_states_;  ///< in HybridPoint::internal

@@ -99,9 +99,13 @@ double ClosedFormFlow::moving_size(const Guard& guard) const {
 double ClosedFormFlow::cancelled(const Guard& guard) const {
   if (guard.kind != GuardKind::kStop) return 0.0;
   const Regime& r = tables_->regime();
-  double place = r.place_row.col(guard.contact).dot(x_.cwiseAbs()) +
-                 r.place_coefficient.col(guard.contact).dot(inputs_.cwiseAbs());
-  if (const DriveOverlay* overlay = regime_->overlay) place += overlay->place_size(guard.contact);
+  const auto parts = [&](Eigen::Index of) {
+    const double moving = r.place_row.col(of).dot(x_.cwiseAbs()) + r.place_coefficient.col(of).dot(inputs_.cwiseAbs());
+    return regime_->overlay ? moving + regime_->overlay->place_size(of) : moving;
+  };
+  double place = parts(guard.contact);
+  // Now, or a radian of the slipping structure later.
+  place += parts(nc_ + guard.contact) / std::max(slipping_.pace(), resolver_.drive().omega());
   return kCancels * place * per_place(guard);
 }
 
@@ -121,7 +125,7 @@ double ClosedFormFlow::scale(const Guard& guard) const {
   const double size = constant + moving;
   if (output.kind == RegimeOutput::Kind::kSpeed)
     return size + std::abs(inputs_(r.speed_input())) +
-           slipping_.mobility(guard.contact, guard.contact) * law.static_limit / r.rate;
+           slipping_.mobility(guard.contact, guard.contact) * law.static_limit / fastest_;
   return size + (guard.kind == GuardKind::kLoad ? law.load : law.static_limit);
 }
 
@@ -134,7 +138,7 @@ double ClosedFormFlow::per_place(const Guard& guard) const {
 
 double ClosedFormFlow::recalled(const Guard& guard) const {
   const Recall& last = recall_[static_cast<std::size_t>(guard.contact)];
-  return point_.time - last.time < 1.0 / tables_->regime().rate ? last.size * per_place(guard) : 0.0;
+  return point_.time - last.time < 1.0 / fastest_ ? last.size * per_place(guard) : 0.0;
 }
 
 void ClosedFormFlow::recall_sizes() {
@@ -186,7 +190,7 @@ void ClosedFormFlow::drop_idle_guards() {
 ClosedFormFlow::GuardStart ClosedFormFlow::start_of(const Guard& guard) const {
   const Regime& r = tables_->regime();
   const DriveOverlay* overlay = regime_->overlay;
-  const double room = std::exp(r.growth / r.rate);
+  const double room = std::exp(r.growth / fastest_);
   const double harmonic2 = overlay ? overlay->outputs[2].size(guard.output) : 0.0;
   const double harmonic3 = overlay ? overlay->outputs[3].size(guard.output) : 0.0;
   const double third = std::abs(r.polynomial3.col(guard.output).dot(inputs_));
@@ -197,16 +201,16 @@ ClosedFormFlow::GuardStart ClosedFormFlow::start_of(const Guard& guard) const {
   return {.value = value,
           .rate = rate,
           .second = second_derivative(guard, point_.time),
-          .most_second = room * most(r.weight2.col(guard.output), 1.0 / r.rate) +
-                         std::abs(r.polynomial2.col(guard.output).dot(inputs_)) + third / r.rate + harmonic2,
-          .most_third = room * most(r.weight3.col(guard.output), 1.0 / r.rate) + third + harmonic3,
+          .most_second = room * most(r.weight2.col(guard.output), 1.0 / fastest_) +
+                         std::abs(r.polynomial2.col(guard.output).dot(inputs_)) + third / fastest_ + harmonic2,
+          .most_third = room * most(r.weight3.col(guard.output), 1.0 / fastest_) + third + harmonic3,
           .size = size,
           .lasting = r.growth == 0.0 && third == 0.0 && !swells()};
 }
 
 double ClosedFormFlow::near_zero(const GuardStart& g) const {
   // |g| ≤ |g₀| + |g′|t + M₂t²/2, and ≤ |g₀| + |g′|t + |g″|t²/2 + M₃t³/6, of whose terms each is given its share.
-  const double bounded = 1.0 / tables_->regime().rate;
+  const double bounded = 1.0 / fastest_;
   const auto lasts = [&](double stays) { return g.lasting ? stays : std::min(stays, bounded); };
   const double left = kTouching * g.size.told() - std::abs(g.value), slope = std::abs(g.rate);
   if (g.size.told() == 0.0 && g.value == 0.0 && slope == 0.0 && g.most_second == 0.0)  // of what nothing moves
@@ -232,7 +236,7 @@ void ClosedFormFlow::foresee_starts() {
   // g″t²/2 − M₃t³/6 when g′ vanishes); half of that time is used. It is not looked at either as long as it cannot be
   // told from zero: rounding alone would decide, of its terms or, where these are nothing either, of when it vanished.
   const Regime& r = tables_->regime();
-  const double tiny = 1e-9 / r.rate;
+  const double tiny = 1e-9 / fastest_;
   double shortest = std::numeric_limits<double>::infinity();
   for (Guard& guard : guards_) {
     const auto i = static_cast<std::size_t>(guard.contact), k = static_cast<std::size_t>(guard.output);
@@ -242,33 +246,33 @@ void ClosedFormFlow::foresee_starts() {
     if (rigid_speed) {
       if (point_.multiplicity[i] == 0) continue;
     } else if (const GuardValue now = evaluate(guard, point_.time);
-               now.value > std::max(size_of(guard).starting(), kClock / r.rate * std::abs(now.rate))) {
+               now.value > std::max(size_of(guard).starting(), kClock / fastest_ * std::abs(now.rate))) {
       continue;
     }
     const GuardStart start = start_of(guard);
     const double g1 = start.rate, g2 = start.second, size = start.size.told(), near = near_zero(start);
-    if (guard.kind == GuardKind::kStop && near >= 1.0 / r.rate) {  // at rest on the limit
+    if (guard.kind == GuardKind::kStop && near >= 1.0 / fastest_) {  // at rest on the limit
       guard.exempt_until = point_.time + near;
       continue;
     }
-    const bool simple = rigid_speed ? point_.multiplicity[i] == 1 : g1 > kRising * r.rate * size;
+    const bool simple = rigid_speed ? point_.multiplicity[i] == 1 : g1 > kRising * fastest_ * size;
     // Flat, too, where it falls by rounding, and no further below zero than can be told.
     const bool flat = rigid_speed
                           ? point_.multiplicity[i] == 2
-                          : std::abs(g1) <= r.rate * start.size.starting() || g1 * g1 <= 2.0 * g2 * kTouching * size;
+                          : std::abs(g1) <= fastest_ * start.size.starting() || g1 * g1 <= 2.0 * g2 * kTouching * size;
     double clear = 0.0;
     if (simple && g1 > 0) clear = g1 / start.most_second;
     if (flat && g2 > 0) clear = std::max(clear, 1.5 * g2 / start.most_third);
     // A guard that falls through zero is an event at once; one of which neither slope nor curvature can be told may
     // rise.
-    const bool told = !flat || std::abs(g2) > r.rate * r.rate * start.size.starting();
+    const bool told = !flat || std::abs(g2) > fastest_ * fastest_ * start.size.starting();
     if (!rigid_speed && clear == 0.0 && told) {
       const bool at_rest =
-          flat && std::abs(g1) <= kRising * r.rate * size && std::abs(start.value) <= kPlaceRounding * size;
+          flat && std::abs(g1) <= kRising * fastest_ * size && std::abs(start.value) <= kPlaceRounding * size;
       guard.at_once = guard.kind == GuardKind::kStop && at_rest;
       continue;
     }
-    clear = std::min(std::max(clear, near), 1.0 / r.rate);
+    clear = std::min(std::max(clear, near), 1.0 / fastest_);
     blind_start_ |= clear < tiny;
     clear = std::max(clear, tiny);
     guard.exempt_until = point_.time + clear;
@@ -277,7 +281,7 @@ void ClosedFormFlow::foresee_starts() {
   if (shortest < std::numeric_limits<double>::infinity())
     level_ = tables_->level_covering(shortest);
   else
-    level_ = std::min(std::max(level_, tables_->level_covering(4.0 / r.rate)), RegimeTables::kLevels - 1);
+    level_ = std::min(std::max(level_, tables_->level_covering(4.0 / fastest_)), RegimeTables::kLevels - 1);
 }
 
 void ClosedFormFlow::judge(const BernsteinPolynomial& polynomial, double remainder, double tolerance, int guard,
@@ -376,7 +380,7 @@ ClosedFormFlow::Search ClosedFormFlow::search(int level) const {
 
 bool ClosedFormFlow::approach(const Guard& guard, double from, double& tau) {
   // Newton on the exact guard.
-  const double rate = tables_->regime().rate, bend = curvature(guard.output), size = size_of(guard).told(), start = tau;
+  const double bend = curvature(guard.output), size = size_of(guard).told(), start = tau;
   const double rounding = std::numeric_limits<double>::epsilon() / 2.0 * size;
   const auto give_up = [&] {
     tau = start;
@@ -389,15 +393,16 @@ bool ClosedFormFlow::approach(const Guard& guard, double from, double& tau) {
     const GuardValue now = evaluate(guard, begin_ + tau);
     slope = now.rate;
     const double shift = -now.value / slope;
-    if (!(slope < 0.0) || !(std::abs(shift) * rate < 2.0) || tau + shift < 0.0) return give_up();
+    if (!(slope < 0.0) || !(std::abs(shift) * fastest_ < 2.0) || tau + shift < 0.0) return give_up();
     tau += shift;
-    if (!tables_->regime().motion.available() && !swells() && std::abs(shift) * rate < kClose)
+    if (!tables_->regime().motion.available() && !swells() && std::abs(shift) * fastest_ < kClose)
       advance(*tables_, shift, x_, inputs_);
     else
       move_from_begin(tau);
     // Newton squares its error, with a factor of about the guard's curvature by its slope. It is done where that is
     // beyond the clock, or leaves of the guard no more than its rounding.
-    if (std::abs(shift) * rate < kClock || shift * shift * bend < std::max(kClock / rate * std::abs(slope), rounding))
+    if (std::abs(shift) * fastest_ < kClock ||
+        shift * shift * bend < std::max(kClock / fastest_ * std::abs(slope), rounding))
       break;
   }
   // A root that the window has is no other one: of a guard that is all but flat there, Newton's may be.

@@ -157,7 +157,7 @@ double CollocationFlow::size_ahead(const OwnGuard& guard, int c) const {
 double CollocationFlow::tolerated(const OwnGuard& guard, int c) const {
   Eigen::VectorXd impulse = Eigen::VectorXd::Zero(x_begin_.size());
   for (int d = 0; d < nc_; ++d) impulse += laws()[static_cast<std::size_t>(d)].most() * model_.input.col(d).cwiseAbs();
-  return moved_by(guard, options_.tolerance * tables_.step(0) * model_.velocity_row.col(c).cwiseAbs().dot(impulse));
+  return moved_by(guard, options_.tolerance * acting_ * model_.velocity_row.col(c).cwiseAbs().dot(impulse));
 }
 
 bool CollocationFlow::pushed_onto(const OwnGuard& guard, int c, const GuardValue& now, int order) const {
@@ -176,7 +176,7 @@ bool CollocationFlow::searched_from_rest(const OwnGuard& guard, int c, const Gua
   const double told = kTouching * std::max(now.size, size_ahead(guard, c)),
                shows = kShows * std::max(told, tolerated(guard, c));
   // A speed that is told leads, also where it turns before it shows at the nodes.
-  const bool leads = order == 1 ? std::abs(now.rate) > std::max(model_.fastest, over_top_) * told
+  const bool leads = order == 1 ? std::abs(now.rate) > std::max(model_.fastest, 1.0 / acting_) * told
                                 : std::abs(leading) > told && leading / value > 0.5 && leading / value < 2.0;
   if (leads) return false;
   if (!(values.cwiseAbs().maxCoeff() > shows)) return !pushed_onto(guard, c, now, order);
@@ -275,12 +275,12 @@ CollocationFlow::GuardValue CollocationFlow::evaluate(const OwnGuard& guard, int
       force = own_force(c, tau, x.data());
       force_rate = own.rate(V, v, acceleration);
       // Where it turns, as where its contact has ceased to slide, speeds round by what accelerations make of them.
-      force_rate_size = std::abs(own.stiffness) * (speeds + 0.25 * tables_.step(0) * accelerations) +
-                        std::abs(own.damping) * accelerations;
+      force_rate_size =
+          std::abs(own.stiffness) * (speeds + 0.25 * acting_ * accelerations) + std::abs(own.damping) * accelerations;
     }
   }
   // Where a motion passes its origin, places round by what speeds make of them.
-  const double places = row_size(model_.displacement_row) + 0.25 * tables_.step(0) * speeds;
+  const double places = row_size(model_.displacement_row) + 0.25 * acting_ * speeds;
   const double size = std::abs(guard.constant) + std::abs(guard.y) * places +
                       std::abs(guard.v) * row_size(model_.velocity_row) + std::abs(guard.force * force) +
                       std::abs(guard.drive) * drive_speed;
@@ -295,7 +295,7 @@ CollocationFlow::GuardValue CollocationFlow::evaluate(const OwnGuard& guard, int
           .rate = guard.y * v + guard.v * acceleration + guard.force * force_rate + guard.drive * a,
           .second = second,
           .size = size,
-          .rate_size = std::max(model_.fastest, 1.0 / tables_.step(0)) * size + std::abs(guard.y) * speeds +
+          .rate_size = std::max(model_.fastest, 1.0 / acting_) * size + std::abs(guard.y) * speeds +
                        (std::abs(guard.v) + std::abs(guard.drive)) * accelerations +
                        std::abs(guard.force) * force_rate_size};
 }

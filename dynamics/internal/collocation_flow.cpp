@@ -92,7 +92,7 @@ CollocationFlow::CollocationFlow(const HybridSystem& system, const StepTables& t
       within_(tables, options.audit),
       nc_(model_.contacts),
       given_(tables.acted_on().given),
-      over_top_(1.0 / tables.step(0)),
+      acting_(tables.acting_time(system.drive().omega())),
       begin_(start.time),
       point_(std::move(start)),
       x_begin_(point_.x),
@@ -178,7 +178,7 @@ bool CollocationFlow::step(double t_limit) {
       ++level;
       continue;
     }
-    error = force_error() * h * over_top_;
+    error = force_error() * (h / acting_);
     if (error > options_.tolerance) error = std::max(options_.tolerance, error - rounding_of_sticks());
     const bool smallest = level + 1 == StepTables::kLevels;
     if (!(error <= options_.tolerance / kEndNodeGain) && !smallest) {
@@ -334,7 +334,7 @@ double CollocationFlow::rounding_of_sticks() const {
   double most = 0.0;
   for (int c = 0; c < nc_; ++c)
     if (held(point_.modes, c)) most = std::max(most, impulse_of_rounding(c) * over_scale(c));
-  return most * over_top_;
+  return most / acting_;
 }
 
 bool CollocationFlow::tells_no_force(int c) const {

@@ -348,7 +348,7 @@ class CollocationFlow {
   int given_;                        ///< directions of a drive's forces
   bool single_ = false;              ///< one contact, of a law the kernels know: no bristles, no characteristic
   const double* ahead_ = nullptr;    ///< takes the last step's velocities to this one's nodes, where that is the guess
-  double over_top_;                  ///< 1 / the largest step [1/s]
+  double acting_;                    ///< StepTables::acting_time [s]
   std::vector<double> steep_speed_;  ///< sliding speed at which a law is just resolved by the largest step [m/s]
   std::vector<double> steep_fall_;   ///< what that speed falls by from level to level [m/s]
   std::vector<int> slow_start_level_;  ///< of the longest step that follows the start of a slip

@@ -107,7 +107,7 @@ double CollocationFlow::velocity_scale(int c, const Eigen::VectorXd& x) const {
   // Where a bristle is at rest, speeds are what forces in balance leave: those of the structure, and of the contacts.
   const double way = model_.displacement_row.col(c).cwiseAbs().dot(x.cwiseAbs());
   const auto reach = (model_.mobility(c, c) * model_.mobility.diagonal()).cwiseSqrt();
-  return scale + model_.fastest * way + reach.dot(point_.force.cwiseAbs()) * tables_.step(0);
+  return scale + model_.fastest * way + reach.dot(point_.force.cwiseAbs()) * acting_;
 }
 
 bool CollocationFlow::too_early(const Guarded& guard) const {

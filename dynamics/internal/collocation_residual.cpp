@@ -49,7 +49,7 @@ double CollocationFlow::bristle_error(int c, const Between& at) const {
         at.seventh.row(k).dot(force) - (law.stiffness * bristle + law.damping * exact + law.viscous * speed);
     const double lasts = std::min(h, 1.0 / std::max(decay, 1.0 / h));
     worst = std::max(
-        {worst, kOscillates * law.stiffness * std::abs(off_rate) * lasts, 0.5 * std::abs(off_force) * h * over_top_});
+        {worst, kOscillates * law.stiffness * std::abs(off_rate) * lasts, 0.5 * std::abs(off_force) * h / acting_});
   }
   return worst * over_limit_[i];
 }

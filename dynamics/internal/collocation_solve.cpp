@@ -146,8 +146,9 @@ bool CollocationFlow::solve_single_smooth(const Collocation& table, const double
       delta = (RadauTables::Matrix8::Identity() - kernel * slope.asDiagonal()).eval().partialPivLu().solve(residual);
     v += delta;
     const double change = delta.cwiseAbs().maxCoeff();
-    if (!(change < 1e12)) return false;
-    if (change < newton_change_ * law.epsilon || change < 1e-14) {
+    if (!std::isfinite(change)) return false;
+    if (change < newton_change_ * law.epsilon ||
+        change <= kUnmoved * (v.cwiseAbs().maxCoeff() + drive_nodes_.head<kNodes>().cwiseAbs().maxCoeff())) {
       forces_.head<kNodes>() = force + slope.cwiseProduct(delta);
       velocity_ = v;
       return true;
@@ -302,7 +303,7 @@ double CollocationFlow::force_error() const {
     // The first coefficient left out, if the sequence keeps falling as it does.
     const auto [last, ratio] = ending(forces_.data() + kNodes * c);
     worst = std::max(worst, std::max(0.0, last * ratio - rounding_of_stop(c)) * over_scale(c));
-    if (bristled(c)) worst = std::max(worst, bristle_error(c, halfway()) / (tables_.step(step_level_) * over_top_));
+    if (bristled(c)) worst = std::max(worst, bristle_error(c, halfway()) * acting_ / tables_.step(step_level_));
     if (laws()[i].characteristic != nullptr && point_.modes[i] != ContactMode::kStick)
       worst = std::max(worst, characteristic_error(c));
   }

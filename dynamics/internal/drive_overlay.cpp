@@ -125,7 +125,7 @@ void Amplitudes::add(DrivePhase first, double factor, Eigen::VectorXd& out) cons
 
 DriveOverlay::DriveOverlay(const Regime& r, const ModalModel& slipping_model, const friction::Drive& drive)
     : inputs(driven_inputs(r, drive)),
-      place_size(Eigen::VectorXd::Zero(r.speed_input())),
+      place_size(Eigen::VectorXd::Zero(2 * r.speed_input())),
       swell(Eigen::VectorXd::Zero(r.pairs.np)) {
   omega_ = drive.omega();
   phase_ = drive.shaker() ? drive.shaker()->phase : 0.0;
@@ -142,14 +142,14 @@ DriveOverlay::DriveOverlay(const Regime& r, const ModalModel& slipping_model, co
         if (of.order == j + 1) own(of.pair, j) = own(r.pairs.np + of.pair, j) = 0.0;
       lifted.col(j) = r.to_slipping * own.col(j) + r.inputs_slipping * J;
       forces.col(j) = r.force_row.transpose() * own.col(j) + r.force_coefficient.transpose() * J;
-      place_size += r.displacement_row.cwiseAbs().transpose() * own.col(j).cwiseAbs();
+      place_size.head(r.speed_input()) += r.displacement_row.cwiseAbs().transpose() * own.col(j).cwiseAbs();
       continue;
     }
     const HarmonicResponse response = harmonic_response(r, slipping_model, w, way, J.tail(r.forces));
     own.col(j) = r.from_slipping * response.slipping + r.from_oscillators * response.oscillators;
     lifted.col(j) = response.slipping;
     forces.col(j) = response.force;
-    place_size += response.place_size;
+    place_size.head(r.speed_input()) += response.place_size;
   }
   place_size += slipping_model.place_row.transpose() * lifted.cwiseAbs().rowwise().sum();
   state = amplitudes(own);

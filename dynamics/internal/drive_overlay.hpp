@@ -78,8 +78,8 @@ class DriveOverlay {
   Amplitudes force;         ///< λ of each contact [nc]
   Amplitudes velocity;      ///< wᵀq̇ of each contact [nc]
   Amplitudes displacement;  ///< wᵀq of each contact [nc]
-  /// Of what adds up to `displacement`: parts by slipping modes, and what those are differences of where contacts hold
-  /// what a force moves [nc].
+  /// Of what adds up to `displacement`, then to `velocity`: parts by slipping modes, and what those are differences of
+  /// where contacts hold what a force moves [2nc].
   Eigen::VectorXd place_size;
   Amplitudes driven;    ///< d_kᵀq̇ of each force direction [nk]
   Amplitudes slipping;  ///< the state in the slipping model [2np_s]

@@ -238,7 +238,8 @@ void RegimeBuilder::make_symmetric_pairs(Regime& out) {
 
 void RegimeBuilder::make_general_pairs(Regime& out) {
   // First states: scaled displacements of the modes without what is not symmetric or not positive, then scaled ζ;
-  // second states: their rates. First ζ that act back, by a friction that follows the load; the others are driven.
+  // second states: their rates. First ζ that act back, by a friction that follows the load; the others are driven. All
+  // in units of mass-normalised modes: neither A nor what its decomposition rounds by depends on the user's.
   const auto m = Z_.cols();
   fem::Modes base = base_modes();
   Eigen::MatrixXd& shapes = base.shapes;
@@ -251,6 +252,8 @@ void RegimeBuilder::make_general_pairs(Regime& out) {
   const auto contact = [&](Eigen::Index j) {
     return oscillators_[static_cast<std::size_t>(order[static_cast<std::size_t>(j)])];
   };
+  Eigen::VectorXd inertia(k);  // √m: ζ in m takes this to units of η
+  for (Eigen::Index j = 0; j < k; ++j) inertia(j) = std::sqrt(load(contact(j)).mass);
   Eigen::VectorXd omega(N);
   omega.head(m) = base.omega;
   for (Eigen::Index j = 0; j < acting; ++j) omega(m + j) = std::sqrt(load(contact(j)).stiffness);
@@ -267,7 +270,8 @@ void RegimeBuilder::make_general_pairs(Regime& out) {
     const Eigen::VectorXd w = W.col(c).cwiseAbs();
     if (spring_(c) < 0.0) coupling.head(m) = coupling.head(m).cwiseMax(-spring_(c) * w.norm() * w);
     if (load(c).oscillates())
-      coupling.head(m) = coupling.head(m).cwiseMax(std::abs(load(c).lift) * direction(c).cwiseAbs());
+      coupling.head(m) =
+          coupling.head(m).cwiseMax(std::abs(load(c).lift) * std::sqrt(load(c).mass) * direction(c).cwiseAbs());
   }
   double beside = 0.0;
   for (Eigen::Index j = acting; j < k; ++j) beside = std::max(beside, std::sqrt(load(contact(j)).stiffness));
@@ -281,10 +285,10 @@ void RegimeBuilder::make_general_pairs(Regime& out) {
     const friction::LoadForm& own = load(c);
     const auto w = W.col(c);
     A(N + m + j, N + m + j) = -own.damping;
-    A.block(N + m + j, 0, 1, m) += own.lift * w.cwiseQuotient(state.scale.head(m)).transpose();
-    A.block(N + m + j, N, 1, m) += own.lift_rate * w.transpose();
-    A.block(N, m + j, m, 1) += friction_(c) * own.z / state.scale(m + j) * w;
-    A.block(N, N + m + j, m, 1) += friction_(c) * own.z_rate * w;
+    A.block(N + m + j, 0, 1, m) += inertia(j) * own.lift * w.cwiseQuotient(state.scale.head(m)).transpose();
+    A.block(N + m + j, N, 1, m) += inertia(j) * own.lift_rate * w.transpose();
+    A.block(N, m + j, m, 1) += friction_(c) * own.z / (inertia(j) * state.scale(m + j)) * w;
+    A.block(N, N + m + j, m, 1) += friction_(c) * own.z_rate / inertia(j) * w;
   }
   PairForm form = N > 0 ? pair_form(A) : PairForm{};
   for (Eigen::Index j = acting; j < k; ++j) {
@@ -293,8 +297,8 @@ void RegimeBuilder::make_general_pairs(Regime& out) {
     const double scale = std::sqrt(own.stiffness);
     const Eigen::Index before = form.g11.size();
     Eigen::MatrixXd B = Eigen::MatrixXd::Zero(2, 2 * before);
-    B.block(1, 0, 1, m) = own.lift * w.cwiseQuotient(state.scale.head(m)).transpose();
-    B.block(1, before, 1, m) = own.lift_rate * w.transpose();
+    B.block(1, 0, 1, m) = inertia(j) * own.lift * w.cwiseQuotient(state.scale.head(m)).transpose();
+    B.block(1, before, 1, m) = inertia(j) * own.lift_rate * w.transpose();
     add_driven_pair(form, Eigen::Matrix2d{{0.0, scale}, {-scale, -own.damping}}, B);
     state.scale.conservativeResize(before + 1);
     state.scale(before) = scale;
@@ -316,10 +320,10 @@ void RegimeBuilder::make_general_pairs(Regime& out) {
                         from_zeta_rate = spread(from_second.rightCols(k), pairs.np);
   for (Eigen::Index j = 0; j < k; ++j) {
     const Eigen::Index own = order[static_cast<std::size_t>(j)];
-    at_.to_zeta.row(own) = zeta.row(j);
-    at_.to_zeta_rate.row(own) = zeta_rate.row(j);
-    at_.from_zeta.col(own) = from_zeta.col(j);
-    at_.from_zeta_rate.col(own) = from_zeta_rate.col(j);
+    at_.to_zeta.row(own) = zeta.row(j) / inertia(j);
+    at_.to_zeta_rate.row(own) = zeta_rate.row(j) / inertia(j);
+    at_.from_zeta.col(own) = inertia(j) * from_zeta.col(j);
+    at_.from_zeta_rate.col(own) = inertia(j) * from_zeta_rate.col(j);
   }
 }
 
