@@ -4,11 +4,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numbers>
 #include <numeric>
 
 namespace slipmode::orbits {
 namespace {
+
+/// Norm of Φ, velocities as displacements in a radian of the orbit: of any units.
+double size_of_monodromy(const PeriodicOrbit& orbit) {
+  if (orbit.monodromy.size() == 0) return 0.0;
+  const Eigen::Index n = orbit.start.v.size();
+  const double radian = orbit.period / (2.0 * std::numbers::pi);
+  Eigen::MatrixXd balanced = orbit.monodromy;
+  balanced.middleRows(n, n) *= radian;
+  balanced.middleCols(n, n) /= radian;
+  return balanced.norm();
+}
 
 std::vector<Eigen::Index> order_by_modulus(const Eigen::VectorXcd& values) {
   std::vector<Eigen::Index> order(static_cast<std::size_t>(values.size()));
@@ -56,7 +67,7 @@ std::vector<Eigen::Index> trivial_indices(const Eigen::VectorXcd& multipliers, i
 void set_stability(PeriodicOrbit& orbit, double marginal_band) {
   if (orbit.monodromy.size() > 0) orbit.multipliers = sorted_eigenvalues(orbit.monodromy);
   const std::vector<Eigen::Index> trivial = trivial_indices(orbit.multipliers, orbit.trivial_multipliers);
-  const double zero = 1e-8 * std::max(1.0, orbit.monodromy.norm());
+  const double zero = 1e-8 * std::max(1.0, size_of_monodromy(orbit));
   orbit.leading_modulus = 0.0;
   orbit.zero_multipliers = 0;
   for (Eigen::Index i = 0; i < orbit.multipliers.size(); ++i) {

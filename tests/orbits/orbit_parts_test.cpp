@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
 #include <cmath>
+#include <numbers>
 
 namespace slipmode::orbits {
 namespace {
@@ -113,6 +114,21 @@ TEST(Floquet, TrivialMultipliersAreNotJudged) {
   orbit.trivial_multipliers = 0;
   set_stability(orbit, 1e-9);
   EXPECT_EQ(orbit.stability, Stability::kMarginal);
+}
+
+TEST(Floquet, AMultiplierIsZeroInAnyUnitsOrInNone) {
+  // Eigenvalues 1e-3 and 1e-4. At 1e12 rad/s velocities are that much larger than displacements, and so is Φ.
+  for (const double omega : {1.0, 1e-12, 1e12}) {
+    PeriodicOrbit orbit;
+    orbit.start = {.q = Eigen::VectorXd::Zero(1), .v = Eigen::VectorXd::Zero(1)};
+    orbit.period = 2.0 * std::numbers::pi / omega;
+    orbit.monodromy = Eigen::Matrix2d{{1e-3, 1.0 / omega}, {0.0, 1e-4}};
+    set_stability(orbit, 1e-9);
+    EXPECT_EQ(orbit.zero_multipliers, 0) << omega;
+    orbit.monodromy = Eigen::Matrix2d{{1e-3, 0.0}, {omega, 0.0}};
+    set_stability(orbit, 1e-9);
+    EXPECT_EQ(orbit.zero_multipliers, 1) << omega;
+  }
 }
 
 TEST(Symmetry, IsLostByLoadsOffsetsAndEvenHarmonics) {
