@@ -126,6 +126,9 @@ StayWork BeltWork::until(const StayPlace& at, const Eigen::VectorXd& inputs) {
     const Exchange by = exchange_[static_cast<std::size_t>(c)];
     const double impulse = end_.impulse(c) - begin_.impulse(c) + stay * (begin_.steady(c) + end_.steady(c)) / 2.0;
     work.drive += V * impulse;
+    // Of a stay that has just begun the parts of an impulse all but cancel.
+    size += std::abs(V) * (std::abs(begin_.impulse(c)) + std::abs(end_.impulse(c)) +
+                           stay * (std::abs(begin_.steady(c)) + std::abs(end_.steady(c))) / 2.0);
     if (by == Exchange::kForms) {
       // ∫ λ v_p + ∫ λ_p d(wᵀq)_f, by parts; λ_p is linear.
       const double growth = stay > 0.0 ? (end_.steady(c) - begin_.steady(c)) / stay : 0.0;
