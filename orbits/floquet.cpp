@@ -46,7 +46,7 @@ std::vector<FloquetMode> floquet_modes(const Eigen::MatrixXd& matrix) {
   std::vector<FloquetMode> modes;
   for (const Eigen::Index i : order_by_modulus(pairs.values)) {
     Eigen::VectorXcd direction = pairs.vectors.col(i).normalized();
-    Eigen::Index at;
+    Eigen::Index at = 0;
     direction.cwiseAbs().maxCoeff(&at);
     direction *= std::conj(direction[at]) / std::abs(direction[at]);
     modes.push_back({pairs.values[i], std::move(direction)});
