@@ -139,13 +139,10 @@ ContactMode start_mode(const friction::Clearance& law, const friction::Contact& 
   return ContactMode::kGap;
 }
 
-/// What a sliding speed that should be zero is a share of: the belt's, the structure's, and what the contact's own
-/// force makes in a radian [m/s].
-double speeds_at_play(const friction::Contact& contact, std::size_t c, const ModalModel& m, double belt,
-                      const Eigen::VectorXd& v) {
+/// The speed that a contact's own force makes in a radian [m/s].
+double speed_of_force(const friction::Contact& contact, std::size_t c, const ModalModel& m) {
   const auto i = static_cast<Eigen::Index>(c);
-  return belt + contact.direction.cwiseAbs().dot(v.cwiseAbs()) +
-         contact_forces(contact).most() * m.mobility(i, i) / m.pace();
+  return contact_forces(contact).most() * m.mobility(i, i) / m.pace();
 }
 
 /// Modes at the start: as given, or by the sign of the sliding speed with zero speed left to consistency.
@@ -164,8 +161,8 @@ std::vector<ContactMode> start_modes(const HybridSystem& system, const ModalMode
       continue;
     }
     const double sliding = V - contact.direction.dot(start.v);
-    const double belt = system.drive().velocity_scale(start.time),
-                 scale = belt + contact.direction.cwiseAbs().dot(start.v.cwiseAbs());
+    const double scale =
+        system.drive().velocity_scale(start.time) + contact.direction.cwiseAbs().dot(start.v.cwiseAbs());
     const double at_rest = 1e-12 * scale + kModalRounding * motion_size(contact, start.v, x, m.velocity_row, c);
     const ContactMode by_sign = std::abs(sliding) <= at_rest ? ContactMode::kStick
                                 : sliding > 0                ? ContactMode::kSlipPositive
@@ -179,7 +176,7 @@ std::vector<ContactMode> start_modes(const HybridSystem& system, const ModalMode
     if (compliant || modes[c] == ContactMode::kSeparated) continue;  // decided by the force and the normal load
     // A run that ended at an event leaves a sliding speed of rounding, of either sign.
     const bool agrees = by_sign == ContactMode::kStick || modes[c] == by_sign ||
-                        std::abs(sliding) <= 1e-9 * speeds_at_play(contact, c, m, belt, start.v);
+                        std::abs(sliding) <= 1e-9 * (scale + speed_of_force(contact, c, m));
     require_or_say(agrees && modes[c] != ContactMode::kSmooth, [&] {
       return "start state says contact " + std::to_string(c + 1) + " is in mode " +
              std::to_string(static_cast<int>(modes[c])) + ", but its relative velocity is " + std::to_string(sliding) +
@@ -293,10 +290,11 @@ State end_state(const HybridSystem& system, const ModalModel& m, const HybridPoi
   for (std::size_t c = 0; c < end.modes.size(); ++c) {
     const friction::Contact& contact = system.contacts()[c];
     const double sliding = belt - contact.direction.dot(end.v), sign = sign_of(end.modes[c]);
+    const double scale = std::abs(belt) + contact.direction.cwiseAbs().dot(end.v.cwiseAbs());
     const bool sticks = end.modes[c] == ContactMode::kStick, slips = std::abs(sign) == 1.0;
     const bool rigid = friction::kind(contact.law) != LawKind::kCompliant;
     const bool off_guard = rigid && (sticks || (slips && sliding * sign < 0.0));
-    if (off_guard && std::abs(sliding) <= kLargestRepair * speeds_at_play(contact, c, m, std::abs(belt), end.v))
+    if (off_guard && std::abs(sliding) <= kLargestRepair * (scale + speed_of_force(contact, c, m)))
       held.push_back(static_cast<Eigen::Index>(c));
   }
   if (held.empty()) return end;

@@ -37,6 +37,7 @@ ClosedFormFlow::ClosedFormFlow(const HybridSystem& system, HybridPoint start, co
       resolver_(system, slipping_, options),
       options_(options),
       nc_(slipping_.contacts),
+      slipping_rate_(std::max(slipping_.pace(), resolver_.drive().omega())),
       point_(std::move(start)) {
   statistics_.stick_time.assign(static_cast<std::size_t>(nc_), 0.0);
   recall_.resize(static_cast<std::size_t>(nc_));

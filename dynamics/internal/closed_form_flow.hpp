@@ -237,6 +237,7 @@ class ClosedFormFlow {
   EventResolver resolver_;
   FlowOptions options_;
   int nc_;
+  double slipping_rate_;  ///< of the slipping structure, or of the drive if that is faster [1/s]
   HybridPoint point_;
 
   Visited* regime_ = nullptr;

@@ -103,10 +103,8 @@ double ClosedFormFlow::cancelled(const Guard& guard) const {
     const double moving = r.place_row.col(of).dot(x_.cwiseAbs()) + r.place_coefficient.col(of).dot(inputs_.cwiseAbs());
     return regime_->overlay ? moving + regime_->overlay->place_size(of) : moving;
   };
-  double place = parts(guard.contact);
   // Now, or a radian of the slipping structure later.
-  place += parts(nc_ + guard.contact) / std::max(slipping_.pace(), resolver_.drive().omega());
-  return kCancels * place * per_place(guard);
+  return kCancels * (parts(guard.contact) + parts(nc_ + guard.contact) / slipping_rate_) * per_place(guard);
 }
 
 ClosedFormFlow::GuardSize ClosedFormFlow::size_of(const Guard& guard) const { return {scale(guard), cancelled(guard)}; }

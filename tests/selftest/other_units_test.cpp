@@ -51,32 +51,12 @@ TEST(OtherUnits, OfFastLightThingsMakeTheSameMotions) {
 
 TEST(OtherUnits, AreUnderstoodByEveryStart) {
   // A contact that slides backwards at 1e-12 m/s does not slide forwards, however small that is beside 1 m/s.
-  const scene::Scene scene = scene::parse_scene(R"(
-units = "dimensionless"
-[structure]
-kind = "masses"
-mass = [1.0]
-[[structure.link]]
-at = 1
-stiffness = 1.0
-damping = 0.0
-[[contact]]
-at = 1
-law = "coulomb"
-mu_s = 0.4
-mu_k = 0.2
-normal_load = 1.0
-[drive]
-kind = "belt"
-speed = 0.1
-[time]
-duration = 1.0
-[initial]
-displacement = [0.0]
-velocity = [0.3]
-)");
-  const dynamics::HybridSystem system = scene::build_system(scene);
-  dynamics::State start = scene::initial_state(scene, system);
+  const auto one = [](double value) { return fem::Matrix(Eigen::MatrixXd::Constant(1, 1, value)); };
+  const dynamics::HybridSystem system(fem::Structure(one(1.0), one(0.0), one(1.0)),
+                                      {{Eigen::VectorXd::Ones(1), friction::Coulomb{0.4, 0.2}, 1.0}},
+                                      friction::Belt::constant(0.1));
+  dynamics::State start = system.rest();
+  start.v(0) = 0.3;
   start.modes = {dynamics::ContactMode::kSlipPositive};
   for (const int length : {0, -20, -40}) {
     const OtherUnits units{.length = length};
