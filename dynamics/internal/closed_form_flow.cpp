@@ -116,12 +116,14 @@ void ClosedFormFlow::enter_regime() {
   vector.product(r.from_slipping.data(), x_.size(), point_.x.size(), point_.x.data(), x_.data());
   if (!oscillator_states_.empty())
     x_.noalias() += r.from_oscillators * Eigen::VectorXd(point_.internal(oscillator_states_));
+  hold_springs(x_, nullptr, inputs_);
   if (overlay) {
     regime_->entered = point_.time;
     regime_->x_entered = x_;
     regime_->inputs_entered = inputs_;
     for (Eigen::Index c = 0; c < nc_; ++c) inputs_(c) -= overlay->inputs.at(c, phase);
     overlay->state.add(phase, -1.0, x_);
+    hold_springs(x_, overlay, inputs_);
   }
   amplitude_.resize(r.pairs.np);
   if (overlay) {
@@ -137,6 +139,17 @@ void ClosedFormFlow::enter_regime() {
   set_guards();
   drop_idle_guards();
   foresee_starts();
+}
+
+void ClosedFormFlow::hold_springs(const Eigen::VectorXd& x, const DriveOverlay* beside, Eigen::VectorXd& inputs) const {
+  const Regime& r = tables_->regime();
+  for (const int c : compliant_) {
+    if (point_.modes[static_cast<std::size_t>(c)] != ContactMode::kStick) continue;
+    const double force = r.force_row.col(c).dot(x) + r.force_coefficient.col(c).dot(inputs) +
+                         (beside ? beside->force.at(c, phase_at(point_.time)) : 0.0);
+    inputs(c) +=
+        point_.internal(system_.internal_begin(c)) - force / resolver_.laws()[static_cast<std::size_t>(c)].stiffness;
+  }
 }
 
 void ClosedFormFlow::mark_accounted() {
@@ -316,10 +329,13 @@ bool ClosedFormFlow::settle(int guard, bool touching) {
 
 bool ClosedFormFlow::cancels(const Visited& in, double t, const Eigen::VectorXd& x) const {
   if (in.overlay == nullptr || t < in.entered) return false;
-  sum_ = x;
-  in.overlay->state.add(phase_at(t), 1.0, sum_);
   const Regime& r = in.tables->regime();
-  return squared_size(r, sum_) < kLittleLeft * kLittleLeft * squared_size(r, x);
+  // Where the stay began may be far from the origin: how far it has come since then counts.
+  sum_ = x;
+  sum_.head(r.pairs.np) -= in.x_entered.head(r.pairs.np);
+  const double alone = squared_size(r, sum_);
+  in.overlay->state.add(phase_at(t), 1.0, sum_);
+  return squared_size(r, sum_) < kLittleLeft * kLittleLeft * alone;
 }
 
 void ClosedFormFlow::anew(const Visited& in, double t, Eigen::VectorXd& out_x, Eigen::VectorXd& out_inputs) const {

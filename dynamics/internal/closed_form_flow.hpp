@@ -125,6 +125,10 @@ class ClosedFormFlow {
   };
 
   void enter_regime();
+  /// Moves the ends of contact springs, among the inputs, to where the regime's own rows find the forces that they
+  /// have: its coordinates round otherwise than those of the slipping structure, and each return to them would stretch
+  /// a spring anew. @param beside  the drive, where x and the inputs are beside its steady response
+  void hold_springs(const Eigen::VectorXd& x, const DriveOverlay* beside, Eigen::VectorXd& inputs) const;
   /// What the step that begins at the point begins with: it is readable from here on.
   void begin_step();
   void set_guards();
