@@ -16,29 +16,6 @@ constexpr double kNear = 1e-8;
 /// The same of what springs do to the pairs, and of steady forces once that is known.
 constexpr double kNearer = 1e-11, kNearest = 1e-13;
 
-/// [g11 g12; g21 g22] of every pair on its two states, in columns.
-Eigen::MatrixXd on_pairs(const Eigen::VectorXd& g11, const Eigen::VectorXd& g12, const Eigen::VectorXd& g21,
-                         const Eigen::VectorXd& g22, const Eigen::MatrixXd& states) {
-  const auto np = g11.size();
-  const auto first = states.topRows(np), second = states.bottomRows(np);
-  Eigen::MatrixXd out(2 * np, states.cols());
-  out.topRows(np) = g11.asDiagonal() * first + g12.asDiagonal() * second;
-  out.bottomRows(np) = g21.asDiagonal() * first + g22.asDiagonal() * second;
-  return out;
-}
-
-/// What each slipping pair's equation rounds by at a rate, of what moves [2np].
-Eigen::VectorXd errors_at(double rate, const ModalModel& slipping) {
-  const ModalModel& s = slipping;
-  Eigen::VectorXd error(2 * s.np);
-  for (Eigen::Index k = 0; k < s.np; ++k) {
-    const double slip_rate = s.proportional ? std::abs(s.g21(k)) / std::max(rate, 1e-300) + std::abs(s.g22(k))
-                                            : std::hypot(s.g11(k), s.g12(k)) + std::hypot(s.g21(k), s.g22(k));
-    error(k) = error(s.np + k) = std::max(rate + slip_rate, 1e-300);
-  }
-  return error;
-}
-
 double rate_of(const Eigen::Matrix2d& G) {
   return std::sqrt(std::max(std::abs(G.determinant()), G.squaredNorm() * 1e-16));
 }
@@ -60,6 +37,42 @@ Eigen::MatrixXd least_squares(const Eigen::MatrixXd& along, const Eigen::MatrixX
 }
 
 }  // namespace
+
+Eigen::MatrixXd RegimeBuilder::to_modes() const {
+  Eigen::MatrixXd out(2 * n_, at_.to_y.cols());
+  out << Z_ * at_.to_y, Z_ * at_.to_rate;
+  return out;
+}
+
+Eigen::MatrixXd RegimeBuilder::of_forces(const Eigen::MatrixXd& along) const {
+  Eigen::MatrixXd out(2 * n_, along.cols());
+  out << Eigen::MatrixXd::Zero(n_, along.cols()), along;
+  return out;
+}
+
+Eigen::MatrixXd RegimeBuilder::mode_rates(const Eigen::MatrixXd& states) const {
+  const auto place = states.topRows(n_), speed = states.bottomRows(n_);
+  const Eigen::MatrixXd damped =
+      slipping_.proportional ? Eigen::MatrixXd(modal_.damping.diagonal().asDiagonal() * speed) : modal_.damping * speed;
+  Eigen::MatrixXd out(2 * n_, states.cols());
+  out << speed, -(modal_.omega.cwiseAbs2().asDiagonal() * place) - damped;
+  return out;
+}
+
+Eigen::MatrixXd RegimeBuilder::of_mode_rates(const Eigen::MatrixXd& columns) const {
+  const auto place = columns.topRows(n_), speed = columns.bottomRows(n_);
+  const Eigen::MatrixXd damped = slipping_.proportional
+                                     ? Eigen::MatrixXd(modal_.damping.diagonal().asDiagonal() * speed)
+                                     : modal_.damping.transpose() * speed;
+  Eigen::MatrixXd out(2 * n_, columns.cols());
+  out << -(modal_.omega.cwiseAbs2().asDiagonal() * speed), place - damped;
+  return out;
+}
+
+Eigen::VectorXd RegimeBuilder::mode_errors(double rate) const {
+  const Eigen::VectorXd own = modal_.omega.cwiseAbs2() / std::max(rate, 1e-300) + most_damped_;
+  return (rate + own.array()).max(1e-300).replicate(2, 1);
+}
 
 void RegimeBuilder::make_inputs(Regime& out) const {
   // M η̈ = force: what the inputs put into the equations of y and of ζ.
@@ -168,8 +181,8 @@ RegimeBuilder::Places RegimeBuilder::places(const std::function<bool(Eigen::Inde
 }
 
 RegimeBuilder::Places RegimeBuilder::refinable_springs(const Regime& out) const {
-  // Of complex modes the equations of the slipping pairs tell less than the rows, and oscillators are not in them.
-  if (out.pairs.n == 0 || !oscillators_.empty() || !slipping_.proportional) return {};
+  // Oscillators are not in the equations of the slipping modes.
+  if (out.pairs.n == 0 || !oscillators_.empty()) return {};
   return places([&](Eigen::Index c) { return out.spring(c) > 0.0; });
 }
 
@@ -188,15 +201,14 @@ void RegimeBuilder::improve(const Places& at, const std::vector<Eigen::Index>& e
 
 void RegimeBuilder::refine_stick_rows(Regime& out) const {
   // A contact's stretch, or the stiffness of a fine mesh times its deformation, gives the force of a slow motion as a
-  // small difference. The equations of the slipping pairs give it too, b λ = T G − G_s T less what the other contacts
+  // small difference. The equations of the slipping modes give it too, b λ = T G − G_s T less what the other contacts
   // exert, each with an error that its own rate and that of the motion make: least squares, weighted by these errors,
   // beside what the row says itself, which is the better one of a soft spring, or where pairs are nearly alike. Springs
   // that share a place are told apart by their stretches alone: what is refined is what they exert together.
   const Places holding = places([&](Eigen::Index c) { return out.follows[static_cast<std::size_t>(c)]; });
-  const ModalModel &own = out.pairs, &s = slipping_;
+  const ModalModel& own = out.pairs;
   if (holding.first.empty() || own.n == 0) return;
-  const Eigen::MatrixXd& T = out.to_slipping;
-  const Eigen::MatrixXd b = s.input(Eigen::all, holding.first);
+  const Eigen::MatrixXd T = to_modes(), input = of_forces(modal_.directions), b = input(Eigen::all, holding.first);
   const Eigen::MatrixXd y_size = (Z_ * at_.to_y).cwiseAbs().transpose(),
                         rate_size = (Z_ * at_.to_rate).cwiseAbs().transpose();
   Eigen::MatrixXd row_size(y_size.rows(), b.cols());  // of what a row is a sum of
@@ -213,9 +225,9 @@ void RegimeBuilder::refine_stick_rows(Regime& out) const {
     const Eigen::Matrix2d G = block(own, i);
     if (G.isZero(0.0)) continue;  // a part that floats free moves without a rate to weigh errors by, nor do they grow
     const Eigen::MatrixXd t = T(Eigen::all, pair);
-    Eigen::MatrixXd missing = t * G - on_pairs(s.g11, s.g12, s.g21, s.g22, t);
+    Eigen::MatrixXd missing = t * G - mode_rates(t);
     for (Eigen::Index c = 0; c < nc_; ++c)
-      if (!out.follows[static_cast<std::size_t>(c)]) missing -= s.input.col(c) * out.force_row(pair, c).transpose();
+      if (!out.follows[static_cast<std::size_t>(c)]) missing -= input.col(c) * out.force_row(pair, c).transpose();
     Eigen::VectorXd size(b.cols());
     Eigen::MatrixXd by_row(b.cols(), 2);
     for (Eigen::Index k = 0; k < size.size(); ++k) {
@@ -223,30 +235,35 @@ void RegimeBuilder::refine_stick_rows(Regime& out) const {
       size(k) = out.force_row(Eigen::all, same).rowwise().sum().cwiseAbs().maxCoeff();
       by_row.row(k) = out.force_row(pair, same).rowwise().sum().transpose();
     }
-    Eigen::RowVector2d moves = t.cwiseAbs().colwise().maxCoeff();
-    if (own.proportional) moves(0) *= rate_of(G);
+    const double rate = rate_of(G);
+    const Eigen::RowVector2d moves = (rate * t.topRows(n_).cwiseAbs())
+                                         .colwise()
+                                         .maxCoeff()
+                                         .cwiseMax(t.bottomRows(n_).cwiseAbs().colwise().maxCoeff());
     improve(holding, pair,
-            least_squares(b, missing, errors_at(rate_of(G), s) * moves, by_row, row_size(pair, Eigen::all).transpose()),
-            size, kNear, out.force_row);
+            least_squares(b, missing, mode_errors(rate) * moves, by_row, row_size(pair, Eigen::all).transpose()), size,
+            kNear, out.force_row);
   }
 }
 
 void RegimeBuilder::refine_spring_inputs(Regime& out) const {
-  // What a spring does to the slow pairs has the same weakness. With x = F s, s of the slipping pairs, their equations
+  // What a spring does to the slow pairs has the same weakness. With x = F s, s of the slipping modes, their equations
   // give it from the left: B eᵀ = F G_s − G F with what the other contacts exert.
   const Places sprung = refinable_springs(out);
   if (sprung.first.empty()) return;
-  const ModalModel &own = out.pairs, &s = slipping_;
-  const Eigen::MatrixXd& F = out.from_slipping;
-  const Eigen::MatrixXd acting = F * s.input, terms = F.cwiseAbs() * s.input.cwiseAbs();
-  const Eigen::MatrixXd kept = (out.to_slipping * F).transpose(),
-                        e = kept * s.displacement_row(Eigen::all, sprung.first);
+  const ModalModel& own = out.pairs;
+  Eigen::MatrixXd F(2 * own.np, 2 * n_), places = Eigen::MatrixXd::Zero(2 * n_, nc_);
+  F << at_.from_y * Z_.transpose(), at_.from_rate * Z_.transpose();
+  places.topRows(n_) = modal_.directions;
+  const Eigen::MatrixXd input = of_forces(modal_.directions), acting = F * input,
+                        terms = F.cwiseAbs() * input.cwiseAbs();
+  const Eigen::MatrixXd kept = (to_modes() * F).transpose(), e = kept * places(Eigen::all, sprung.first);
   for (Eigen::Index i = 0; i < own.n; ++i) {
     const std::vector<Eigen::Index> pair{i, own.np + i};
     const Eigen::Matrix2d G = block(own, i);
     if (G.isZero(0.0)) continue;
     const Eigen::MatrixXd f = F(pair, Eigen::all).transpose();
-    Eigen::MatrixXd missing = kept * on_pairs(s.g11, s.g21, s.g12, s.g22, f) - f * G.transpose();
+    Eigen::MatrixXd missing = kept * of_mode_rates(f) - f * G.transpose();
     for (Eigen::Index c = 0; c < nc_; ++c)
       if (!out.follows[static_cast<std::size_t>(c)])
         missing += F.transpose() * out.force_row.col(c) * acting(pair, c).transpose();
@@ -256,9 +273,10 @@ void RegimeBuilder::refine_spring_inputs(Regime& out) const {
       by_itself.row(k) = out.B(pair, sprung.together[place]).rowwise().sum().transpose();
       size.row(k) = sprung.stiffness[place] * terms(pair, sprung.first[place]).transpose();
     }
-    Eigen::RowVector2d moves = f.cwiseAbs().colwise().maxCoeff();
-    if (own.proportional) moves(1) *= rate_of(G);
-    improve(sprung, pair, least_squares(e, missing, errors_at(rate_of(G), s) * moves, by_itself, size),
+    const double rate = rate_of(G);
+    const Eigen::RowVector2d moves = f.topRows(n_).cwiseAbs().colwise().maxCoeff().cwiseMax(
+        (rate * f.bottomRows(n_).cwiseAbs()).colwise().maxCoeff());
+    improve(sprung, pair, least_squares(e, missing, mode_errors(rate) * moves, by_itself, size),
             size.rowwise().maxCoeff(), kNearer, out.B);
   }
 }
@@ -273,32 +291,31 @@ void RegimeBuilder::make_steady_forces(Regime& out) const {
   if (sprung.first.empty()) return;  // works are those of the forces there are
   // What floats is carried along by a spring's way without a force.
   out.steady_force = (out.steady_force.array().abs() > kRoundsBy * sizes.array()).select(out.steady_force, 0.0).eval();
-  const ModalModel& s = slipping_;
   const auto n = out.pairs.n;  // what only integrates the inputs has no part in x_p
   const bool integrates = (out.scale1.head(n).array() == 0.0 || out.scale2.head(n).array() == 0.0).any();
   if (integrates) return;
-  const Eigen::MatrixXd moved = out.to_slipping * out.particular + out.inputs_slipping;
+  Eigen::MatrixXd moved = to_modes() * out.particular;
+  moved.topRows(n_) += P_;
+  moved.bottomRows(n_).col(V_) += P_all_;
   const auto count = static_cast<Eigen::Index>(sprung.first.size());
-  const Eigen::MatrixXd b = s.input(Eigen::all, sprung.first);
+  const Eigen::MatrixXd input = of_forces(modal_.directions), b = input(Eigen::all, sprung.first);
   // Where a mode should not follow a contact's way, it does so by rounding of what others do.
   const Eigen::RowVectorXd largest = sizes.topRows(nc_).colwise().maxCoeff();
   sizes.topRows(nc_).rowwise() = largest;
   for (Eigen::Index k = 0; k <= one_; ++k) {
-    Eigen::VectorXd most(2 * s.np);
-    most << Eigen::VectorXd::Constant(s.np, moved.col(k).head(s.np).cwiseAbs().maxCoeff()),
-        Eigen::VectorXd::Constant(s.np, moved.col(k).tail(s.np).cwiseAbs().maxCoeff());
-    Eigen::VectorXd missing = -on_pairs(s.g11, s.g12, s.g21, s.g22, moved.col(k)),
-                    size = on_pairs(s.g11.cwiseAbs(), s.g12.cwiseAbs(), s.g21.cwiseAbs(), s.g22.cwiseAbs(), most);
+    const double way = moved.col(k).head(n_).cwiseAbs().maxCoeff(), speed = moved.col(k).tail(n_).cwiseAbs().maxCoeff();
+    Eigen::VectorXd missing = -mode_rates(moved.col(k)), size(2 * n_);
+    size << Eigen::VectorXd::Constant(n_, speed), way * modal_.omega.cwiseAbs2() + speed * most_damped_;
     const auto add = [&](const Eigen::VectorXd& term) {
       missing += term;
       size += term.cwiseAbs();
     };
     for (Eigen::Index c = 0; c < nc_; ++c) {
-      if (out.spring(c) == 0.0) add(-out.steady_force(k, c) * s.input.col(c));
+      if (out.spring(c) == 0.0) add(-out.steady_force(k, c) * input.col(c));
       if (k == V_ && out.follows[static_cast<std::size_t>(c)]) add(moved.col(c));
     }
     if (k == V_ + 1) add(moved.col(V_));
-    if (k == one_) add(-s.load);
+    if (k == one_) add(-of_forces(modal_.load));
     if (!(size.maxCoeff() > 0.0)) continue;
     // With them what the rows say, each with its error: that of a soft spring on a stiff structure is the smaller one.
     missing = (missing.array().abs() > kRoundsBy * size.array()).select(missing, 0.0).eval();

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 #include <string_view>
+#include <variant>
 
 namespace slipmode::rom {
 
@@ -31,9 +32,13 @@ dynamics::State restrict_state(const fem::Structure& structure, const pod::Basis
   constexpr double kNothingLost = 1e-12;
   check_basis(basis, structure.size(), "restrict");
   check_state(full, structure.size(), "restrict");
-  // Φ = Q R: the Gram matrix of Q is as well conditioned as M, that of Φ need not be.
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(basis.vectors);
-  const Eigen::MatrixXd Q = orthonormal_columns(basis.vectors);
+  // S Φ = Q R: the Gram matrix of Q in S⁻¹MS⁻¹, S² = diag M, is well conditioned where Φ is not, nor M of metres and
+  // radians.
+  const Eigen::VectorXd scale =
+      std::visit([](const auto& M) -> Eigen::VectorXd { return M.diagonal().cwiseSqrt(); }, structure.M());
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * basis.vectors;
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(scaled);
+  const Eigen::MatrixXd Q = scale.cwiseInverse().asDiagonal() * orthonormal_columns(scaled);
   const Eigen::MatrixXd MQ = fem::multiply(structure.M(), Q);
   const Eigen::LLT<Eigen::MatrixXd> gram(Q.transpose() * MQ);
   const auto R = qr.matrixQR().topRows(basis.modes()).triangularView<Eigen::Upper>();

@@ -215,9 +215,11 @@ class SceneChecker {
 
   /// Distance of two final states, of the run's sizes.
   [[nodiscard]] double distance(const dynamics::State& a, const dynamics::State& b) const {
-    // Speeds round by what displacements would become, which may be stretched far more than they move.
-    constexpr double kRoundsBy = 64.0 * std::numeric_limits<double>::epsilon() / kSameMotion;
-    const double size_v = size_v_ + kRoundsBy * size_q_ * kPhasePerSample / options_.sample;
+    // Speeds round by what displacements would become, which may be stretched far more than they move, and by what
+    // forces round by for as long as these push; and are off by what the flow's tolerance lets them.
+    const double rate = kPhasePerSample / options_.sample;
+    const double rounding = (64.0 + rate * options_.duration) * std::numeric_limits<double>::epsilon() * size_q_ * rate;
+    const double size_v = size_v_ + (rounding + tolerated_) / kSameMotion;
     return std::max((a.q - b.q).cwiseAbs().maxCoeff() / size_q_, (a.v - b.v).cwiseAbs().maxCoeff() / size_v);
   }
 

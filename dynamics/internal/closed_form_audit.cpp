@@ -22,11 +22,11 @@ constexpr double kRounding = std::numeric_limits<double>::epsilon();
 
 void ClosedFormFlow::account(double tau, bool ends) {
   const auto add = [this](const StayWork& work) { work_.add(work.contact, work.drive, work.viscous, work.force); };
-  if (!regime_->forms && !regime_->belt) return add(integrate(begin_, x_begin_, inputs_begin_, tau));
+  if (!has_forms()) return add(integrate(begin_, x_begin_, inputs_begin_, tau));
   if (!ends) return;
   if (!measured_) measure_amplitudes();
   const StayPlace now{point_.time, x_, free_, point_.x};
-  StayWork work = regime_->belt ? regime_->belt->until(now, inputs_) : stay_.until(now);
+  StayWork work = regime_->forms ? stay_.until(now) : regime_->belt->until(now, inputs_);
   const bool little = little_left(accounted_, x_accounted_);
   if (little ||
       work.rounding > kLostInForms * (work_.exchanged + std::abs(work.contact) + std::abs(work.force) + work.viscous)) {
@@ -49,7 +49,7 @@ StayWork ClosedFormFlow::integrate(double t, Eigen::VectorXd x, Eigen::VectorXd 
   const DriveOverlay* const drive = regime_->overlay;
   const bool whole = little_left(t, x);
   StayWork sum;
-  Eigen::VectorXd x_whole, inputs_whole;
+  Eigen::VectorXd x_whole, inputs_whole, free;
   const auto add = [&](double weight, double at, const Eigen::VectorXd& x_beside,
                        const Eigen::VectorXd& inputs_beside) {
     if (whole) anew(*regime_, at, x_whole, inputs_whole);
@@ -58,9 +58,13 @@ StayWork ClosedFormFlow::integrate(double t, Eigen::VectorXd x, Eigen::VectorXd 
     const DriveOverlay* const overlay = whole ? nullptr : drive;
     const DrivePhase phase = overlay ? phase_at(at) : DrivePhase{};
     const double V = drive_velocity(at, inputs_then);
+    const bool beside_inputs = !whole && !compliant_.empty();
+    if (beside_inputs) free = x_then - r.particular * inputs_then;
     for (int c = 0; c < nc_; ++c) {
       double force = inputs_then(c), velocity = V;
-      if (r.roles[static_cast<std::size_t>(c)] != ContactRole::kSliding)
+      if (beside_inputs && r.spring(c) > 0.0)  // what its row says of the way rounds by the way times its stiffness
+        force = r.force_row.col(c).dot(free) + r.steady_force.col(c).dot(inputs_then);
+      else if (r.roles[static_cast<std::size_t>(c)] != ContactRole::kSliding)
         force = r.force_row.col(c).dot(x_then) + r.force_coefficient.col(c).dot(inputs_then);
       if (!r.held(c)) velocity = r.velocity_row.col(c).dot(x_then) + r.velocity_coefficient.col(c).dot(inputs_then);
       if (overlay) {

@@ -90,7 +90,7 @@ void ClosedFormFlow::enter_regime() {
       const DrivenRegime& driven = system_.drive_cache().regime(tables, slipping_, system_.drive());
       now.overlay = &driven.overlay;
       if (options_.audit) now.forms = driven.forms();
-    } else if (options_.audit && resolver_.drive().is_constant()) {
+    } else if (options_.audit) {
       now.belt = BeltWork::make(tables, slipping_);
     }
     regime_ = &now;
@@ -134,7 +134,7 @@ void ClosedFormFlow::enter_regime() {
   free_entered_ = free_;
   const StayPlace entered{point_.time, x_, free_, point_.x};
   if (regime_->forms) stay_.begin(*regime_->forms, entered, inputs_);
-  if (regime_->belt) regime_->belt->begin(entered, inputs_);
+  if (!regime_->forms && has_forms()) regime_->belt->begin(entered, inputs_);
   mark_accounted();
   set_guards();
   drop_idle_guards();
@@ -153,7 +153,7 @@ void ClosedFormFlow::hold_springs(const Eigen::VectorXd& x, const DriveOverlay* 
 }
 
 void ClosedFormFlow::mark_accounted() {
-  if (!regime_->forms && !regime_->belt) return;
+  if (!has_forms()) return;
   accounted_ = point_.time;
   x_accounted_ = x_;
   inputs_accounted_ = inputs_;

@@ -87,7 +87,7 @@ class ClosedFormFlow {
     Eigen::VectorXd x_entered{};            ///< and its state then, the steady response included,
     Eigen::VectorXd inputs_entered{};       ///< and inputs, of contacts with the drive's
     const AuditForms* forms = nullptr;      ///< for a shaker or a force; null where the audit integrates by quadrature
-    std::unique_ptr<BeltWork> belt;         ///< for a belt of constant speed; the same
+    std::unique_ptr<BeltWork> belt;         ///< for a belt, while its speed is constant; the same
     std::unique_ptr<TangentMaps> maps;      ///< null until tangents are carried
   };
   /// What a search of one window found.
@@ -191,6 +191,10 @@ class ClosedFormFlow {
   [[nodiscard]] double curvature(Eigen::Index output) const;
   /// Adds the work of a step of this length; where forms integrate whole stays, once a stay or the run `ends`.
   void account(double tau, bool ends);
+  /// Whether forms integrate this stay. A belt changes speed at corners only, where a stay begins.
+  [[nodiscard]] bool has_forms() const {
+    return regime_->forms || (regime_->belt && inputs_(tables_->regime().speed_input() + 1) == 0.0);
+  }
   /// Up to the point and its state.
   void mark_accounted();
   /// Work of a time tau from a state on, by quadrature.

@@ -1,6 +1,7 @@
 #include "dynamics/internal/quadratic_forms.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 
 namespace slipmode::dynamics {
@@ -73,6 +74,9 @@ bool solve_quadratic(const ModalModel& pairs, const Eigen::MatrixXd& Q, Eigen::M
 /// coordinates.
 bool is_energy(const Regime& r, const ModalModel& slipping, const Eigen::MatrixXd& Y) {
   if (r.pairs.n < kManyPairs || Y.size() == 0 || !slipping.proportional || r.to_oscillators.rows() > 0) return false;
+  // A spring that pushes makes of the energy a small difference.
+  const auto pushes = [](const ContactAnswer& answer) { return answer.stiffness < 0.0; };
+  if (std::any_of(r.answers.begin(), r.answers.end(), pushes)) return false;
   const auto n = slipping.np;
   Eigen::MatrixXd energy = r.to_slipping.bottomRows(n).transpose() * r.to_slipping.bottomRows(n);
   const Eigen::MatrixXd stretched = slipping.omega.asDiagonal() * r.to_slipping.topRows(n);

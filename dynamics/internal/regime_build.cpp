@@ -48,6 +48,8 @@ RegimeBuilder::RegimeBuilder(const HybridSystem& system, const ModalModel& slipp
       V_(nc_),
       one_(nc_ + 2),
       friction_(Eigen::VectorXd::Zero(nc_)),
+      most_damped_(slipping.proportional ? Eigen::VectorXd(modal_.damping.diagonal().cwiseAbs())
+                                         : Eigen::VectorXd(modal_.damping.cwiseAbs().rowwise().sum())),
       K_(modal_.omega.cwiseAbs2().asDiagonal()),
       C_(modal_.damping),
       spring_(Eigen::VectorXd::Zero(nc_)),

@@ -64,6 +64,14 @@ class RegimeBuilder {
                const Eigen::VectorXd& size, double near, Eigen::MatrixXd& of_contacts) const;
   /// Springs of which the slipping pairs' equations tell more than their stretches.
   [[nodiscard]] Places refinable_springs(const Regime& out) const;
+  /// States of the slipping structure's undamped modes (η, η̇), in columns: from x; of what forces along these
+  /// directions add to their rates; their rates without any force, G_s s; G_sᵀ of columns.
+  [[nodiscard]] Eigen::MatrixXd to_modes() const;
+  [[nodiscard]] Eigen::MatrixXd of_forces(const Eigen::MatrixXd& along) const;
+  [[nodiscard]] Eigen::MatrixXd mode_rates(const Eigen::MatrixXd& states) const;
+  [[nodiscard]] Eigen::MatrixXd of_mode_rates(const Eigen::MatrixXd& columns) const;
+  /// What their equations round by at a rate, of what moves [2n].
+  [[nodiscard]] Eigen::VectorXd mode_errors(double rate) const;
   /// Of contacts that stick, without the cancellation behind a stiff spring or on a fine mesh.
   void refine_stick_rows(Regime& out) const;
   /// The same of what a spring that the drive pulls does to the pairs.
@@ -90,6 +98,7 @@ class RegimeBuilder {
   Eigen::Index n_, nc_, nk_, ni_, V_, one_;
   std::vector<Eigen::Index> held_, oscillators_;  ///< contacts
   Eigen::VectorXd friction_;                      ///< ±μ_k of contacts that slide under a varying load, else 0
+  Eigen::VectorXd most_damped_;                   ///< Σ_j |D_ij|, what damps mode i [n]
   Eigen::MatrixXd Z_, P_;                         ///< η = Z y + P ι
   Eigen::VectorXd P_all_;
   Eigen::MatrixXd moved_;   ///< contacts' directions in y, zero where held ones leave none [m x contacts]

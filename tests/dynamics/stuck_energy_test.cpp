@@ -111,6 +111,34 @@ TEST(StuckEnergy, SeveralContactsBalanceUnderAShakerAndUnderForces) {
   }
 }
 
+TEST(StuckEnergy, AStiffSpringOnAStructureWithDampersIsToldByTheStructure) {
+  // Dampers that are no share of mass or stiffness: complex modes. A belt pulls the spring of one mass for good. Once
+  // free motion has died, q = a t + b with (K + K_c wwᵀ) a = K_c w V, (K + K_c wwᵀ) b = −C a, and w λ = K q + C a.
+  const double V = 0.7;
+  Eigen::MatrixXd K(3, 3), C = Eigen::MatrixXd::Zero(3, 3);
+  K << 3.0, -1.0, 0.0, -1.0, 2.5, -1.2, 0.0, -1.2, 1.6;
+  C.diagonal() << 0.3, 0.9, 1.3;
+  const Eigen::VectorXd m = (Eigen::VectorXd(3) << 0.9, 0.3, 0.5).finished();
+  const fem::Structure structure(fem::Matrix(Eigen::MatrixXd(m.asDiagonal())), fem::Matrix(C), fem::Matrix(K));
+  for (const double spring : {1e3, 1e5, 1e7, 1e9})
+    for (const friction::Belt& belt : {friction::Belt::constant(V), friction::Belt::ramp(0.5 * V, V, 0.0, 1.0)}) {
+      SCOPED_TRACE(spring);
+      const HybridSystem system(structure, {{unit(3, 2), friction::CompliantCoulomb{1.0, 1.0, spring}, 1e9}}, belt);
+      const double T = 90.0, way = V * T - (belt.is_constant() ? 0.0 : 0.25 * V);
+      const Trajectory run = simulate(system, system.rest(), {.duration = T});
+      using Matrix = Eigen::Matrix<Long, 3, 3>;
+      using Vector = Eigen::Matrix<Long, 3, 1>;
+      Matrix held = K.cast<Long>();
+      held(2, 2) += spring;
+      const Vector a = held.fullPivLu().solve(Vector(0.0L, 0.0L, static_cast<Long>(spring) * V)),
+                   b = held.fullPivLu().solve(Vector(-C.cast<Long>() * a));
+      const auto force = static_cast<double>((K.cast<Long>() * (a * (way / V) + b) + C.cast<Long>() * a)(2));
+      EXPECT_NEAR(run.final_state.internal(0) * spring / force, 1.0, 1e-13 + 1e-15 * spring);
+      // A ramp's work is by quadrature, of forces that round by what the way does.
+      EXPECT_LT(std::abs(run.audit.residual()), belt.is_constant() ? 1e-12 : 1e-12 + 1e-20 * spring);
+    }
+}
+
 TEST(StuckEnergy, AMomentFromRestIsToldFromTheShakersOwnPlace) {
   // From rest at t = 0 the spring takes d(τ) − d(0) = A (sin(ωτ + φ) − sin φ), since the mass moves by (K/m) ∫∫ (d −
   // d(0)) only, 1e-14 of it: work K (d − d(0))²/2. In 1e-10 s the shaker goes 1e-9 of its amplitude.

@@ -87,6 +87,19 @@ TEST(BeamReduction, RestrictUndoesLiftForManyModes) {
   EXPECT_NEAR(model.energy(reduced) + offset, lifted, 1e-10 * lifted);
 }
 
+TEST(BeamReduction, AllModesGiveAStateBackWhereMetresAndRadiansAreFarApart) {
+  // Elements of a few millimetres: masses of rotations are 1e-6 of those of displacements, and M as such has a
+  // condition of 1e7. Restricted, a state came back with 5e-9 of itself missing.
+  const HybridSystem full = rubbed_beam(80);
+  Random random(83);
+  const State state{0.0, normal_matrix(random, full.size(), 1), normal_matrix(random, full.size(), 1), {}};
+  for (const pod::Basis& basis : {lnm_basis(full.structure(), full.size()), lnm_static_basis(full, full.size() - 1)}) {
+    const State back = lift(basis, restrict_state(full.structure(), basis, state));
+    EXPECT_LT((back.q - state.q).norm(), 1e-12 * state.q.norm());
+    EXPECT_LT((back.v - state.v).norm(), 1e-12 * state.v.norm());
+  }
+}
+
 TEST(BeamReduction, KeepsEverythingAContactHasButItsDirectionAndOffset) {
   const HybridSystem plain = rubbed_beam(10);
   friction::Contact contact = plain.contacts()[0];
