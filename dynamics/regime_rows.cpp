@@ -38,12 +38,6 @@ Eigen::MatrixXd least_squares(const Eigen::MatrixXd& along, const Eigen::MatrixX
 
 }  // namespace
 
-Eigen::MatrixXd RegimeBuilder::to_modes() const {
-  Eigen::MatrixXd out(2 * n_, at_.to_y.cols());
-  out << Z_ * at_.to_y, Z_ * at_.to_rate;
-  return out;
-}
-
 Eigen::MatrixXd RegimeBuilder::of_forces(const Eigen::MatrixXd& along) const {
   Eigen::MatrixXd out(2 * n_, along.cols());
   out << Eigen::MatrixXd::Zero(n_, along.cols()), along;
@@ -95,13 +89,13 @@ void RegimeBuilder::make_inputs(Regime& out) const {
   }
   out.B = at_.from_rate * left_of(force) + at_.from_zeta_rate * lift;
   const Eigen::MatrixXd dissipation = (modal_.damping + modal_.damping.transpose()) / 2.0;
-  out.viscous_cross = ((P_all_.transpose() * dissipation) * Z_ * at_.to_rate).transpose();
+  out.viscous_cross = ((P_all_.transpose() * dissipation) * to_modes_.bottomRows(n_)).transpose();
   out.viscous_drive = P_all_.dot(dissipation * P_all_);
 }
 
 void RegimeBuilder::make_contact_rows(Regime& out) const {
   const auto np2 = 2 * out.pairs.np;
-  const Eigen::MatrixXd eta = Z_ * at_.to_y, eta_rate = Z_ * at_.to_rate;
+  const auto eta = to_modes_.topRows(n_), eta_rate = to_modes_.bottomRows(n_);
   out.force_row = out.velocity_row = Eigen::MatrixXd::Zero(np2, nc_);
   out.force_coefficient = out.velocity_coefficient = Eigen::MatrixXd::Zero(ni_, nc_);
   out.displacement_row = eta.transpose() * modal_.directions;
@@ -208,9 +202,9 @@ void RegimeBuilder::refine_stick_rows(Regime& out) const {
   const Places holding = places([&](Eigen::Index c) { return out.follows[static_cast<std::size_t>(c)]; });
   const ModalModel& own = out.pairs;
   if (holding.first.empty() || own.n == 0) return;
-  const Eigen::MatrixXd T = to_modes(), input = of_forces(modal_.directions), b = input(Eigen::all, holding.first);
-  const Eigen::MatrixXd y_size = (Z_ * at_.to_y).cwiseAbs().transpose(),
-                        rate_size = (Z_ * at_.to_rate).cwiseAbs().transpose();
+  const Eigen::MatrixXd input = of_forces(modal_.directions), b = input(Eigen::all, holding.first);
+  const Eigen::MatrixXd y_size = to_modes_.topRows(n_).cwiseAbs().transpose(),
+                        rate_size = to_modes_.bottomRows(n_).cwiseAbs().transpose();
   Eigen::MatrixXd row_size(y_size.rows(), b.cols());  // of what a row is a sum of
   for (std::size_t k = 0; k < holding.first.size(); ++k) {
     const Eigen::Index c = holding.first[k];
@@ -224,7 +218,7 @@ void RegimeBuilder::refine_stick_rows(Regime& out) const {
     const std::vector<Eigen::Index> pair{i, own.np + i};
     const Eigen::Matrix2d G = block(own, i);
     if (G.isZero(0.0)) continue;  // a part that floats free moves without a rate to weigh errors by, nor do they grow
-    const Eigen::MatrixXd t = T(Eigen::all, pair);
+    const Eigen::MatrixXd t = to_modes_(Eigen::all, pair);
     Eigen::MatrixXd missing = t * G - mode_rates(t);
     for (Eigen::Index c = 0; c < nc_; ++c)
       if (!out.follows[static_cast<std::size_t>(c)]) missing -= input.col(c) * out.force_row(pair, c).transpose();
@@ -257,7 +251,7 @@ void RegimeBuilder::refine_spring_inputs(Regime& out) const {
   places.topRows(n_) = modal_.directions;
   const Eigen::MatrixXd input = of_forces(modal_.directions), acting = F * input,
                         terms = F.cwiseAbs() * input.cwiseAbs();
-  const Eigen::MatrixXd kept = (to_modes() * F).transpose(), e = kept * places(Eigen::all, sprung.first);
+  const Eigen::MatrixXd kept = (to_modes_ * F).transpose(), e = kept * places(Eigen::all, sprung.first);
   for (Eigen::Index i = 0; i < own.n; ++i) {
     const std::vector<Eigen::Index> pair{i, own.np + i};
     const Eigen::Matrix2d G = block(own, i);
@@ -294,7 +288,7 @@ void RegimeBuilder::make_steady_forces(Regime& out) const {
   const auto n = out.pairs.n;  // what only integrates the inputs has no part in x_p
   const bool integrates = (out.scale1.head(n).array() == 0.0 || out.scale2.head(n).array() == 0.0).any();
   if (integrates) return;
-  Eigen::MatrixXd moved = to_modes() * out.particular;
+  Eigen::MatrixXd moved = to_modes_ * out.particular;
   moved.topRows(n_) += P_;
   moved.bottomRows(n_).col(V_) += P_all_;
   const auto count = static_cast<Eigen::Index>(sprung.first.size());
@@ -349,7 +343,7 @@ void RegimeBuilder::add_clearance_outputs(Eigen::Index c, const Regime& out, con
 
 void RegimeBuilder::make_outputs(Regime& out) const {
   const auto np2 = 2 * out.pairs.np;
-  const Eigen::MatrixXd eta = Z_ * at_.to_y, eta_rate = Z_ * at_.to_rate;
+  const auto eta = to_modes_.topRows(n_), eta_rate = to_modes_.bottomRows(n_);
   std::vector<Eigen::VectorXd> rows, coefficients;
   const auto add = [&](Eigen::Index c, RegimeOutput::Kind kind, Eigen::VectorXd row, Eigen::VectorXd coefficient) {
     out.outputs.push_back({static_cast<int>(c), kind});
@@ -407,7 +401,7 @@ void RegimeBuilder::make_outputs(Regime& out) const {
 void RegimeBuilder::make_changes(Regime& out) const {
   out.from_slipping =
       at_.from_y * (Z_.transpose() * modal_.to_eta) + at_.from_rate * (Z_.transpose() * modal_.to_eta_rate);
-  out.to_slipping = modal_.from_eta * (Z_ * at_.to_y) + modal_.from_eta_rate * (Z_ * at_.to_rate);
+  out.to_slipping = modal_.from_eta * to_modes_.topRows(n_) + modal_.from_eta_rate * to_modes_.bottomRows(n_);
   out.inputs_slipping = modal_.from_eta * P_;
   out.inputs_slipping.col(V_) += modal_.from_eta_rate * P_all_;
   out.place_row = out.to_slipping.cwiseAbs().transpose() * slipping_.place_row;

@@ -282,12 +282,15 @@ class Scan {
     for (Index k = 0; k < run_.times.size(); ++k)
       drive = std::max(drive, std::abs(system_.drive().velocity(run_.times(k))));
     ContactScales scales;
+    // A place is the sum of what all modes move it by: |terms|₁ ≤ √n |terms|₂.
+    const double moved = largest_place_ * std::sqrt(rows_.row(c).dot(W_.col(c)));
     // What is held, or hardly moves, has a place that is told by the motion around it, and by what the speeds of its
-    // sides make of that within a radian of the fastest mode.
+    // sides make of that within a radian of the fastest mode. A flow tells a stop from it to 1e-11 of these terms.
     const Eigen::VectorXd speeds = run_.v.cwiseAbs().rowwise().maxCoeff();
     const double fastest = system_.cache().tables(system_, false).model.fastest,
                  soon = fastest > 0.0 ? W_.col(c).cwiseAbs().dot(speeds) / fastest : 0.0;
-    scales.way = run_.contact_q.row(c).cwiseAbs().maxCoeff() + 1e-3 * (run_.q.cwiseAbs().maxCoeff() + soon);
+    scales.way = run_.contact_q.row(c).cwiseAbs().maxCoeff() +
+                 1e-3 * (run_.q.cwiseAbs().maxCoeff() + soon + std::sqrt(static_cast<double>(run_.q.rows())) * moved);
     // Where all is all but at rest, speeds round by what displacements would become.
     const double rounding =
         std::numeric_limits<double>::epsilon() / limits_.law / options_.sample * run_.q.cwiseAbs().maxCoeff();
@@ -303,9 +306,7 @@ class Scan {
     }
     for (double* scale : {&scales.way, &scales.speed, &scales.force})
       if (!(*scale > 0.0)) *scale = 1.0;
-    // A place is the sum of what all modes move it by.
-    const double place = std::max(scales.way, largest_place_ * std::sqrt(rows_.row(c).dot(W_.col(c))));
-    scales.slack = kRounding * friction::spring_stiffness(law.law) * place;
+    scales.slack = kRounding * friction::spring_stiffness(law.law) * std::max(scales.way, moved);
     return scales;
   }
 

@@ -32,8 +32,12 @@ constexpr Index kLargestAtRandom = 12;
 constexpr double kEnergyLimit = 1e-9;
 /// Two runs of the same motion, of its sizes: rounding and tolerance times what the motion multiplies them by.
 constexpr double kSameMotion = 1e-5;
-/// Of the fastest rate; and samples where nothing has one.
-constexpr double kPhasePerSample = 0.04, kFewest = 64.0;
+/// Of the fastest rate; samples where nothing has one, and the most there are.
+constexpr double kPhasePerSample = 0.04, kFewest = 64.0, kMostSamples = 6000.0;
+/// What nothing is taken to be slower than [1/s].
+constexpr double kSlowest = 1e-3;
+/// One scene in so many is run for as many radians of its slipping structure.
+constexpr double kRunLonger = 4.0;
 
 /// Speeds up to this are rounding: forces that all contacts hold leave nothing that moves, and nothing to measure by.
 constexpr double kStill = 1e-9;
@@ -98,7 +102,7 @@ Eigen::VectorXd accelerations(const dynamics::HybridSystem& system, const dynami
 /// A bound on how fast anything in the system changes once it slides, from its numbers alone.
 double fastest_rate(const dynamics::HybridSystem& system, const dynamics::State& start) {
   const dynamics::ModalModel& model = system.cache().tables(system, false).model;
-  double rate = std::max(model.fastest, 1e-3);
+  double rate = std::max(model.fastest, kSlowest);
   const double speed =
       start.v.cwiseAbs().maxCoeff() + start.q.cwiseAbs().maxCoeff() * rate + system.drive().velocity_scale(0.0);
   const Eigen::VectorXd acceleration = accelerations(system, model, start, speed);
@@ -144,6 +148,7 @@ class SceneChecker {
     if (result_.still) return result_;
     guarded("restart", [&] { take_up_again(); });
     guarded("reduction", [&] { reduce(); });
+    guarded("longer run", [&] { run_longer(); });
     return result_;
   }
 
@@ -181,9 +186,10 @@ class SceneChecker {
       equal = equal && copy.contacts()[c].direction == system_->contacts()[c].direction;
     if (!equal) violate("round trip", "the scene written and read again is another system");
     start_ = scene::initial_state(scene, *system_);
+    whole_ = scene::simulate_options(scene).duration;
     options_ = scene::simulate_options(scene);
     options_.sample = std::min(kPhasePerSample / fastest_rate(*system_, start_), options_.duration / kFewest);
-    options_.duration = std::min(options_.duration, 6000.0 * options_.sample);
+    options_.duration = std::min(options_.duration, kMostSamples * options_.sample);
     options_.transient = 0.0;
     options_.flow.tolerance = kTolerance;
     tolerated_ = tolerated_speed(*system_, options_);
@@ -204,13 +210,28 @@ class SceneChecker {
     size_q_ = run_.q.cwiseAbs().maxCoeff() + 1e-300;
     size_v_ = run_.v.cwiseAbs().maxCoeff() + 1e-300;
     if (size_v_ < kStill) return;
-    result_.energy = std::abs(run_.audit.residual());
-    const double told = tolerated_ / size_v_;  // energies go with the square
-    if (!(result_.energy <= std::max(kEnergyLimit, told * told)))
-      violate("energy", fmt::format("residual {:.2g}", result_.energy));
-    if (run_.audit.viscous_loss < -1e-12 * run_.audit.exchanged)
-      violate("energy", fmt::format("viscous loss {:.2g} is negative", run_.audit.viscous_loss));
+    check_balance(run_.audit);
     result_.scan = scan_run(*system_, start_, options_, run_, result_.violations);
+  }
+
+  void check_balance(const dynamics::EnergyAudit& audit) {
+    const double residual = std::abs(audit.residual());
+    result_.energy = std::max(result_.energy, residual);
+    const double told = tolerated_ / size_v_;  // energies go with the square
+    if (!(residual <= std::max(kEnergyLimit, told * told))) violate("energy", fmt::format("residual {:.2g}", residual));
+    if (audit.viscous_loss < -1e-12 * audit.exchanged)
+      violate("energy", fmt::format("viscous loss {:.2g} is negative", audit.viscous_loss));
+  }
+
+  /// Samples follow the stiffest contact. Without any, for as many radians of the slipping structure: events and
+  /// balance alone.
+  void run_longer() {
+    if (random_.uniform() * kRunLonger > 1.0) return;
+    dynamics::SimulateOptions options = plain();
+    options.flow.audit = true;
+    const double rate = std::max(system_->cache().tables(*system_, false).model.fastest, kSlowest);
+    options.duration = std::min(whole_, kMostSamples * kPhasePerSample / rate);
+    if (options.duration > options_.duration) check_balance(dynamics::simulate(*system_, start_, options).audit);
   }
 
   /// Distance of two final states, of the run's sizes.
@@ -311,6 +332,7 @@ class SceneChecker {
   dynamics::Trajectory run_;
   bool simulated_ = false;
   std::vector<dynamics::State> events_;
+  double whole_ = 0.0;  ///< the scene's own duration [s]
   double size_q_ = 1.0, size_v_ = 1.0, tolerated_ = 0.0;
 };
 

@@ -26,7 +26,7 @@ struct SceneCheck {
 /// Builds a scene, runs it and checks:
 /// - its text: parse, write, parse again gives the same text and the same matrices;
 /// - the run, by scan_run with samples a hundredth of the flow's largest step apart;
-/// - the energy audit;
+/// - the energy audit, and of one scene in four that of a longer run;
 /// - the run taken up again at one of its events, in the mode it is in (exactly on a guard);
 /// - the model reduced on all modes of a random basis with a random mean, and of one of the house's own (natural modes,
 ///   with static ones, proper orthogonal ones in either metric): same modes at the end, same state.

@@ -15,6 +15,9 @@ constexpr double kShortRest = 0.25;
 constexpr double kDriveRest = 1.0;
 /// Forms that round by more than this share of the energy exchanged are left for quadrature if that rounds by less.
 constexpr double kLostInForms = 1e-12;
+/// What a way holds is near if the terms of the force that this makes add up to no more than this many times the
+/// spring's own.
+constexpr double kHeldNear = 8.0;
 /// What a sum over nodes may be off by, of its terms' sizes.
 constexpr double kRounding = std::numeric_limits<double>::epsilon();
 
@@ -48,6 +51,12 @@ StayWork ClosedFormFlow::integrate(double t, Eigen::VectorXd x, Eigen::VectorXd 
   const Regime& r = tables.regime();
   const DriveOverlay* const drive = regime_->overlay;
   const bool whole = little_left(t, x);
+  // What a spring's row says of ways rounds by these times its stiffness; what they hold does not, unless a mode hardly
+  // resists and is held far out.
+  const Eigen::Index others = r.inputs() - nc_;
+  bool beside_ways = !whole && !compliant_.empty();
+  for (const int c : compliant_)
+    beside_ways &= r.force_row.col(c).cwiseAbs().dot(r.particular.col(c).cwiseAbs()) <= kHeldNear * r.spring(c);
   StayWork sum;
   Eigen::VectorXd x_whole, inputs_whole, free;
   const auto add = [&](double weight, double at, const Eigen::VectorXd& x_beside,
@@ -58,12 +67,12 @@ StayWork ClosedFormFlow::integrate(double t, Eigen::VectorXd x, Eigen::VectorXd 
     const DriveOverlay* const overlay = whole ? nullptr : drive;
     const DrivePhase phase = overlay ? phase_at(at) : DrivePhase{};
     const double V = drive_velocity(at, inputs_then);
-    const bool beside_inputs = !whole && !compliant_.empty();
-    if (beside_inputs) free = x_then - r.particular * inputs_then;
+    if (beside_ways) free = x_then - r.particular.leftCols(nc_) * inputs_then.head(nc_);
     for (int c = 0; c < nc_; ++c) {
       double force = inputs_then(c), velocity = V;
-      if (beside_inputs && r.spring(c) > 0.0)  // what its row says of the way rounds by the way times its stiffness
-        force = r.force_row.col(c).dot(free) + r.steady_force.col(c).dot(inputs_then);
+      if (beside_ways && r.spring(c) > 0.0)
+        force = r.force_row.col(c).dot(free) + r.steady_force.col(c).head(nc_).dot(inputs_then.head(nc_)) +
+                r.force_coefficient.col(c).tail(others).dot(inputs_then.tail(others));
       else if (r.roles[static_cast<std::size_t>(c)] != ContactRole::kSliding)
         force = r.force_row.col(c).dot(x_then) + r.force_coefficient.col(c).dot(inputs_then);
       if (!r.held(c)) velocity = r.velocity_row.col(c).dot(x_then) + r.velocity_coefficient.col(c).dot(inputs_then);

@@ -347,9 +347,11 @@ void RegimeBuilder::make_pairs(Regime& out) {
   } else {
     make_general_pairs(out);
   }
+  to_modes_.resize(2 * n_, 2 * pairs.np);
+  to_modes_ << Z_ * at_.to_y, Z_ * at_.to_rate;
   pairs.measure_rates();
   if ((!pairs.proportional || !damper_.isZero(0.0)) && !bare_ && pairs.n > 0)
-    pairs.dissipation_root = square_root(modal_.damping) * (Z_ * at_.to_rate);
+    pairs.dissipation_root = square_root(modal_.damping) * to_modes_.bottomRows(n_);
 }
 
 void RegimeBuilder::fill(Regime& out) {

@@ -64,9 +64,8 @@ class RegimeBuilder {
                const Eigen::VectorXd& size, double near, Eigen::MatrixXd& of_contacts) const;
   /// Springs of which the slipping pairs' equations tell more than their stretches.
   [[nodiscard]] Places refinable_springs(const Regime& out) const;
-  /// States of the slipping structure's undamped modes (η, η̇), in columns: from x; of what forces along these
-  /// directions add to their rates; their rates without any force, G_s s; G_sᵀ of columns.
-  [[nodiscard]] Eigen::MatrixXd to_modes() const;
+  /// States of the slipping structure's undamped modes (η, η̇), in columns: what forces along these directions add to
+  /// their rates; their rates without any force, G_s s; G_sᵀ of columns.
   [[nodiscard]] Eigen::MatrixXd of_forces(const Eigen::MatrixXd& along) const;
   [[nodiscard]] Eigen::MatrixXd mode_rates(const Eigen::MatrixXd& states) const;
   [[nodiscard]] Eigen::MatrixXd of_mode_rates(const Eigen::MatrixXd& columns) const;
@@ -107,6 +106,7 @@ class RegimeBuilder {
   Eigen::VectorXd damper_;  ///< damping that stops add along it
   bool symmetric_ = true, bare_ = true;
   Coordinates at_;
+  Eigen::MatrixXd to_modes_;  ///< x → (η, η̇), beside what the inputs hold [2n x 2np]
 };
 
 }  // namespace slipmode::dynamics
