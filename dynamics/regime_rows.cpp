@@ -16,6 +16,12 @@ constexpr double kNear = 1e-8;
 /// The same of what springs do to the pairs, and of steady forces once that is known.
 constexpr double kNearer = 1e-11, kNearest = 1e-13;
 
+/// D speeds; of a diagonal D in O(n).
+Eigen::MatrixXd damped(const auto& D, bool diagonal, const auto& speeds) {
+  if (diagonal) return D.diagonal().asDiagonal() * speeds;
+  return D * speeds;
+}
+
 double rate_of(const Eigen::Matrix2d& G) {
   return std::sqrt(std::max(std::abs(G.determinant()), G.squaredNorm() * 1e-16));
 }
@@ -46,20 +52,17 @@ Eigen::MatrixXd RegimeBuilder::of_forces(const Eigen::MatrixXd& along) const {
 
 Eigen::MatrixXd RegimeBuilder::mode_rates(const Eigen::MatrixXd& states) const {
   const auto place = states.topRows(n_), speed = states.bottomRows(n_);
-  const Eigen::MatrixXd damped =
-      slipping_.proportional ? Eigen::MatrixXd(modal_.damping.diagonal().asDiagonal() * speed) : modal_.damping * speed;
   Eigen::MatrixXd out(2 * n_, states.cols());
-  out << speed, -(modal_.omega.cwiseAbs2().asDiagonal() * place) - damped;
+  out << speed,
+      -(modal_.omega.cwiseAbs2().asDiagonal() * place) - damped(modal_.damping, slipping_.proportional, speed);
   return out;
 }
 
 Eigen::MatrixXd RegimeBuilder::of_mode_rates(const Eigen::MatrixXd& columns) const {
   const auto place = columns.topRows(n_), speed = columns.bottomRows(n_);
-  const Eigen::MatrixXd damped = slipping_.proportional
-                                     ? Eigen::MatrixXd(modal_.damping.diagonal().asDiagonal() * speed)
-                                     : modal_.damping.transpose() * speed;
   Eigen::MatrixXd out(2 * n_, columns.cols());
-  out << -(modal_.omega.cwiseAbs2().asDiagonal() * speed), place - damped;
+  out << -(modal_.omega.cwiseAbs2().asDiagonal() * speed),
+      place - damped(modal_.damping.transpose(), slipping_.proportional, speed);
   return out;
 }
 

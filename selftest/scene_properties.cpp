@@ -186,8 +186,8 @@ class SceneChecker {
       equal = equal && copy.contacts()[c].direction == system_->contacts()[c].direction;
     if (!equal) violate("round trip", "the scene written and read again is another system");
     start_ = scene::initial_state(scene, *system_);
-    whole_ = scene::simulate_options(scene).duration;
     options_ = scene::simulate_options(scene);
+    whole_ = options_.duration;
     options_.sample = std::min(kPhasePerSample / fastest_rate(*system_, start_), options_.duration / kFewest);
     options_.duration = std::min(options_.duration, kMostSamples * options_.sample);
     options_.transient = 0.0;

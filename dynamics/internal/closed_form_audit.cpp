@@ -15,9 +15,6 @@ constexpr double kShortRest = 0.25;
 constexpr double kDriveRest = 1.0;
 /// Forms that round by more than this share of the energy exchanged are left for quadrature if that rounds by less.
 constexpr double kLostInForms = 1e-12;
-/// What a way holds is near if the terms of the force that this makes add up to no more than this many times the
-/// spring's own.
-constexpr double kHeldNear = 8.0;
 /// What a sum over nodes may be off by, of its terms' sizes.
 constexpr double kRounding = std::numeric_limits<double>::epsilon();
 
@@ -51,12 +48,8 @@ StayWork ClosedFormFlow::integrate(double t, Eigen::VectorXd x, Eigen::VectorXd 
   const Regime& r = tables.regime();
   const DriveOverlay* const drive = regime_->overlay;
   const bool whole = little_left(t, x);
-  // What a spring's row says of ways rounds by these times its stiffness; what they hold does not, unless a mode hardly
-  // resists and is held far out.
+  const bool beside_ways = !whole && regime_->beside_ways;
   const Eigen::Index others = r.inputs() - nc_;
-  bool beside_ways = !whole && !compliant_.empty();
-  for (const int c : compliant_)
-    beside_ways &= r.force_row.col(c).cwiseAbs().dot(r.particular.col(c).cwiseAbs()) <= kHeldNear * r.spring(c);
   StayWork sum;
   Eigen::VectorXd x_whole, inputs_whole, free;
   const auto add = [&](double weight, double at, const Eigen::VectorXd& x_beside,

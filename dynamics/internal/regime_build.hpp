@@ -62,7 +62,7 @@ class RegimeBuilder {
   /// is near what they have, to a share of `size`. @param better  [places x entries] @param size  [places]
   void improve(const Places& at, const std::vector<Eigen::Index>& entries, const Eigen::MatrixXd& better,
                const Eigen::VectorXd& size, double near, Eigen::MatrixXd& of_contacts) const;
-  /// Springs of which the slipping pairs' equations tell more than their stretches.
+  /// Springs of which the slipping modes' equations tell more than their stretches.
   [[nodiscard]] Places refinable_springs(const Regime& out) const;
   /// States of the slipping structure's undamped modes (η, η̇), in columns: what forces along these directions add to
   /// their rates; their rates without any force, G_s s; G_sᵀ of columns.
