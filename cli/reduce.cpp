@@ -56,7 +56,9 @@ Verb add_reduce(CLI::App& app) {
   CLI::App* command = app.add_subcommand("reduce", "project a scene's model on a basis");
   const auto arguments = std::make_shared<ReduceArguments>();
   command->add_option("SCENE", arguments->scene, "scene file (TOML)")->required();
-  command->add_option("BASIS", arguments->basis, "result of 'slipmode pod', or the word lnm, on a beam also lnm+static")
+  command
+      ->add_option("BASIS", arguments->basis,
+                   "result of 'slipmode pod', or the word lnm, under a shaker also lnm+static")
       ->required();
   command->add_option("-o,--output", arguments->output, "result file (HDF5)")->required();
   command->add_option("--modes", arguments->modes, "number of modes; 0: as [reduction] says")

@@ -73,7 +73,7 @@ Eigen::VectorXd RegimeBuilder::mode_errors(double rate) const {
 
 void RegimeBuilder::make_inputs(Regime& out) const {
   // M η̈ = force: what the inputs put into the equations of y and of ζ.
-  Eigen::MatrixXd force = -K_ * P_;
+  Eigen::MatrixXd force = -KP_;
   force.col(V_) -= C_ * P_all_;
   force.col(one_) += modal_.load;
   force.rightCols(nk_) += modal_.forces;
@@ -122,8 +122,8 @@ void RegimeBuilder::make_contact_rows(Regime& out) const {
       }
     } else {
       out.velocity_coefficient(V_, c) = 1.0;
-      row = (eta.transpose() * K_ + eta_rate.transpose() * C_.transpose()) * P_.col(c);
-      coefficient = P_.transpose() * (K_ * P_.col(c));
+      row = eta.transpose() * KP_.col(c) + eta_rate.transpose() * (C_.transpose() * P_.col(c));
+      coefficient = P_.transpose() * KP_.col(c);
       coefficient(V_) += P_.col(c).dot(C_ * P_all_);
       coefficient(V_ + 1) += P_.col(c).dot(P_all_);
       coefficient(one_) -= P_.col(c).dot(modal_.load);
@@ -177,9 +177,12 @@ RegimeBuilder::Places RegimeBuilder::places(const std::function<bool(Eigen::Inde
   return out;
 }
 
+RegimeBuilder::Places RegimeBuilder::holding_places(const Regime& out) const {
+  return places([&](Eigen::Index c) { return out.follows[static_cast<std::size_t>(c)]; });
+}
+
 RegimeBuilder::Places RegimeBuilder::refinable_springs(const Regime& out) const {
-  // Oscillators are not in the equations of the slipping modes.
-  if (out.pairs.n == 0 || !oscillators_.empty()) return {};
+  if (out.pairs.n == 0) return {};
   return places([&](Eigen::Index c) { return out.spring(c) > 0.0; });
 }
 
@@ -202,7 +205,7 @@ void RegimeBuilder::refine_stick_rows(Regime& out) const {
   // exert, each with an error that its own rate and that of the motion make: least squares, weighted by these errors,
   // beside what the row says itself, which is the better one of a soft spring, or where pairs are nearly alike. Springs
   // that share a place are told apart by their stretches alone: what is refined is what they exert together.
-  const Places holding = places([&](Eigen::Index c) { return out.follows[static_cast<std::size_t>(c)]; });
+  const Places holding = holding_places(out);
   const ModalModel& own = out.pairs;
   if (holding.first.empty() || own.n == 0) return;
   const Eigen::MatrixXd input = of_forces(modal_.directions), b = input(Eigen::all, holding.first);
@@ -213,8 +216,7 @@ void RegimeBuilder::refine_stick_rows(Regime& out) const {
     const Eigen::Index c = holding.first[k];
     row_size.col(static_cast<Eigen::Index>(k)) =
         out.held(static_cast<int>(c))
-            ? Eigen::VectorXd(y_size * (K_.cwiseAbs() * P_.col(c).cwiseAbs()) +
-                              rate_size * (C_.cwiseAbs().transpose() * P_.col(c).cwiseAbs()))
+            ? Eigen::VectorXd(y_size * KP_size_.col(c) + rate_size * (C_.cwiseAbs().transpose() * P_.col(c).cwiseAbs()))
             : Eigen::VectorXd(holding.stiffness[k] * (y_size * modal_.directions.col(c).cwiseAbs()));
   }
   for (Eigen::Index i = 0; i < own.n; ++i) {
@@ -244,8 +246,9 @@ void RegimeBuilder::refine_stick_rows(Regime& out) const {
 }
 
 void RegimeBuilder::refine_spring_inputs(Regime& out) const {
-  // What a spring does to the slow pairs has the same weakness. With x = F s, s of the slipping modes, their equations
-  // give it from the left: B eᵀ = F G_s − G F with what the other contacts exert.
+  // What a spring does to the slow pairs has the same weakness. With x = F s + F_ζ (ζ, ζ̇), s of the slipping modes,
+  // their equations give it from the left: B eᵀ = F G_s − G F with what the other contacts exert and, through F_ζ, what
+  // s does to normal oscillators.
   const Places sprung = refinable_springs(out);
   if (sprung.first.empty()) return;
   const ModalModel& own = out.pairs;
@@ -255,12 +258,20 @@ void RegimeBuilder::refine_spring_inputs(Regime& out) const {
   const Eigen::MatrixXd input = of_forces(modal_.directions), acting = F * input,
                         terms = F.cwiseAbs() * input.cwiseAbs();
   const Eigen::MatrixXd kept = (to_modes_ * F).transpose(), e = kept * places(Eigen::all, sprung.first);
+  Eigen::MatrixXd by_modes = kept * of_mode_rates(F.transpose()), lifts(2 * n_, at_.from_zeta_rate.cols());
+  for (Eigen::Index j = 0; j < lifts.cols(); ++j) {
+    const Eigen::Index c = oscillators_[static_cast<std::size_t>(j)];
+    const Eigen::VectorXd w = Z_ * moved_.col(c);
+    lifts.col(j) << load(c).lift * w, load(c).lift_rate * w;
+  }
+  by_modes += lifts * at_.from_zeta_rate.transpose();
+  const Eigen::MatrixXd lift_sizes = lifts.cwiseAbs() * at_.from_zeta_rate.cwiseAbs().transpose();
   for (Eigen::Index i = 0; i < own.n; ++i) {
     const std::vector<Eigen::Index> pair{i, own.np + i};
     const Eigen::Matrix2d G = block(own, i);
     if (G.isZero(0.0)) continue;
     const Eigen::MatrixXd f = F(pair, Eigen::all).transpose();
-    Eigen::MatrixXd missing = kept * of_mode_rates(f) - f * G.transpose();
+    Eigen::MatrixXd missing = by_modes(Eigen::all, pair) - f * G.transpose();
     for (Eigen::Index c = 0; c < nc_; ++c)
       if (!out.follows[static_cast<std::size_t>(c)])
         missing += F.transpose() * out.force_row.col(c) * acting(pair, c).transpose();
@@ -273,7 +284,8 @@ void RegimeBuilder::refine_spring_inputs(Regime& out) const {
     const double rate = rate_of(G);
     const Eigen::RowVector2d moves = f.topRows(n_).cwiseAbs().colwise().maxCoeff().cwiseMax(
         (rate * f.bottomRows(n_).cwiseAbs()).colwise().maxCoeff());
-    improve(sprung, pair, least_squares(e, missing, mode_errors(rate) * moves, by_itself, size),
+    improve(sprung, pair,
+            least_squares(e, missing, mode_errors(rate) * moves + lift_sizes(Eigen::all, pair), by_itself, size),
             size.rowwise().maxCoeff(), kNearer, out.B);
   }
 }
@@ -284,46 +296,67 @@ void RegimeBuilder::make_steady_forces(Regime& out) const {
   out.steady_force = out.particular.transpose() * out.force_row + out.force_coefficient;
   Eigen::MatrixXd sizes =
       out.particular.cwiseAbs().transpose() * out.force_row.cwiseAbs() + out.force_coefficient.cwiseAbs();
-  const Places sprung = refinable_springs(out);
-  if (sprung.first.empty()) return;  // works are those of the forces there are
+  if (refinable_springs(out).first.empty()) return;  // works are those of the forces there are
+  // A spring's force rounds by its stiffness times all that moves its end, a held contact's by what springs do at it.
+  const Eigen::MatrixXd to_places = to_modes_.topRows(n_), place = to_places * out.particular + P_,
+                        terms = to_places.cwiseAbs() * out.particular.cwiseAbs() + P_.cwiseAbs();
+  for (Eigen::Index c = 0; c < nc_; ++c) {
+    const Eigen::VectorXd w = modal_.directions.col(c).cwiseAbs();
+    sizes.col(c) += out.spring(c) * (terms.transpose() * w);
+    for (const Eigen::Index h : held_) sizes(c, h) += out.spring(c) * P_.col(h).cwiseAbs().dot(w);
+  }
   // What floats is carried along by a spring's way without a force.
   out.steady_force = (out.steady_force.array().abs() > kRoundsBy * sizes.array()).select(out.steady_force, 0.0).eval();
-  const auto n = out.pairs.n;  // what only integrates the inputs has no part in x_p
-  const bool integrates = (out.scale1.head(n).array() == 0.0 || out.scale2.head(n).array() == 0.0).any();
-  if (integrates) return;
-  Eigen::MatrixXd moved = to_modes_ * out.particular;
-  moved.topRows(n_) += P_;
-  moved.bottomRows(n_).col(V_) += P_all_;
-  const auto count = static_cast<Eigen::Index>(sprung.first.size());
-  const Eigen::MatrixXd input = of_forces(modal_.directions), b = input(Eigen::all, sprung.first);
+  // What only integrates the inputs has no part in x_p, but moves on by them.
+  const ModalModel& own = out.pairs;
+  Eigen::MatrixXd on = out.B;
+  for (Eigen::Index i = 0; i < own.n; ++i) {
+    const std::vector<Eigen::Index> pair{i, own.np + i};
+    on(pair, Eigen::all) += block(own, i) * out.particular(pair, Eigen::all);
+    if (out.scale1(i) != 0.0) on.row(i).setZero();
+    if (out.scale2(i) != 0.0) on.row(own.np + i).setZero();
+  }
+  // What x_p holds moves as what it holds of the ways: its speeds and their rates round by no spring.
+  const Eigen::MatrixXd moves_on = to_modes_ * on;
+  Eigen::MatrixXd speed = moves_on.topRows(n_), rate = moves_on.bottomRows(n_);
+  const auto add_rates = [&](const Eigen::MatrixXd& moved, Eigen::MatrixXd& rates) {
+    for (Eigen::Index c = 0; c < nc_; ++c)
+      if (out.follows[static_cast<std::size_t>(c)]) rates.col(V_) += moved.col(c);
+    rates.col(V_ + 1) += moved.col(V_);
+  };
+  add_rates(place, speed);
+  add_rates(speed, rate);
+  const Places holding = holding_places(out);
+  const auto count = static_cast<Eigen::Index>(holding.first.size());
+  const Eigen::MatrixXd b = modal_.directions(Eigen::all, holding.first);
   // Where a mode should not follow a contact's way, it does so by rounding of what others do.
   const Eigen::RowVectorXd largest = sizes.topRows(nc_).colwise().maxCoeff();
   sizes.topRows(nc_).rowwise() = largest;
+  const Eigen::VectorXd squared = modal_.omega.cwiseAbs2();
   for (Eigen::Index k = 0; k <= one_; ++k) {
-    const double way = moved.col(k).head(n_).cwiseAbs().maxCoeff(), speed = moved.col(k).tail(n_).cwiseAbs().maxCoeff();
-    Eigen::VectorXd missing = -mode_rates(moved.col(k)), size(2 * n_);
-    size << Eigen::VectorXd::Constant(n_, speed), way * modal_.omega.cwiseAbs2() + speed * most_damped_;
+    Eigen::VectorXd missing =
+        squared.cwiseProduct(place.col(k)) + damped(modal_.damping, slipping_.proportional, speed.col(k));
+    Eigen::VectorXd size =
+        place.col(k).cwiseAbs().maxCoeff() * squared + speed.col(k).cwiseAbs().maxCoeff() * most_damped_;
     const auto add = [&](const Eigen::VectorXd& term) {
       missing += term;
       size += term.cwiseAbs();
     };
-    for (Eigen::Index c = 0; c < nc_; ++c) {
-      if (out.spring(c) == 0.0) add(-out.steady_force(k, c) * input.col(c));
-      if (k == V_ && out.follows[static_cast<std::size_t>(c)]) add(moved.col(c));
-    }
-    if (k == V_ + 1) add(moved.col(V_));
-    if (k == one_) add(-of_forces(modal_.load));
+    add(rate.col(k));
+    for (Eigen::Index c = 0; c < nc_; ++c)
+      if (!out.follows[static_cast<std::size_t>(c)]) add(-out.steady_force(k, c) * modal_.directions.col(c));
+    if (k == one_) add(-modal_.load);
     if (!(size.maxCoeff() > 0.0)) continue;
     // With them what the rows say, each with its error: that of a soft spring on a stiff structure is the smaller one.
     missing = (missing.array().abs() > kRoundsBy * size.array()).select(missing, 0.0).eval();
     Eigen::VectorXd by_row(count), by_row_size(count);
     for (Eigen::Index at = 0; at < count; ++at) {
-      const std::vector<Eigen::Index>& same = sprung.together[static_cast<std::size_t>(at)];
+      const std::vector<Eigen::Index>& same = holding.together[static_cast<std::size_t>(at)];
       by_row(at) = out.steady_force(k, same).sum();
       by_row_size(at) = sizes(k, same).sum();
     }
     const double least = kLeast * std::max(size.maxCoeff(), by_row_size.maxCoeff());
-    improve(sprung, {k}, least_squares(b, missing, size.array() + least, by_row, by_row_size.array() + least),
+    improve(holding, {k}, least_squares(b, missing, size.array() + least, by_row, by_row_size.array() + least),
             by_row_size, kNearest, out.steady_force);
   }
 }

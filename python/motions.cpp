@@ -112,7 +112,7 @@ void add_motions(py::module_& module) {
   module.def(
       "reduce", &reduce, py::arg("scene"), py::arg("basis"), py::arg("modes") = 0,
       "A scene's model projected on a basis.\n\n"
-      "    basis: of `pod` or of a reduced model; the word \"lnm\", on a beam also \"lnm+static\"; or an array,\n"
+      "    basis: of `pod` or of a reduced model; the word \"lnm\", under a shaker also \"lnm+static\"; or an array,\n"
       "           dof x mode, taken about where a belt holds the structure\n"
       "    modes: how many; 0: as [reduction] says, of an array all\n");
   module.def("validate", &validate, py::arg("scene"), py::arg("basis"),

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <utility>
+#include <vector>
 
 namespace slipmode::dynamics {
 namespace {
@@ -17,6 +18,32 @@ constexpr double kDriveRest = 1.0;
 constexpr double kLostInForms = 1e-12;
 /// What a sum over nodes may be off by, of its terms' sizes.
 constexpr double kRounding = std::numeric_limits<double>::epsilon();
+/// What inputs hold is near if the terms of a stick's force that this makes add up to no more than this many times
+/// those of all there is.
+constexpr double kHeldNear = 8.0;
+
+/// Whether springs pull, and no contact that sticks does at a mode that hardly resists and is held far out.
+bool springs_hold_near(const Regime& r, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs) {
+  const Eigen::VectorXd given = inputs.cwiseAbs(), held = r.particular.cwiseAbs() * given;
+  bool any = false, near = true;
+  for (Eigen::Index c = 0; c < r.speed_input(); ++c) {
+    if (!r.sticks(static_cast<int>(c))) continue;
+    const Eigen::VectorXd row = r.force_row.col(c).cwiseAbs();
+    any |= r.spring(c) > 0.0;
+    near &= row.dot(held) <= kHeldNear * (row.dot(x.cwiseAbs()) + r.force_coefficient.col(c).cwiseAbs().dot(given));
+  }
+  return any && near;
+}
+
+/// Components of x that merely integrate the inputs: these hold nothing there.
+std::vector<Eigen::Index> integrating(const Regime& r) {
+  std::vector<Eigen::Index> out;
+  for (Eigen::Index i = 0; i < r.pairs.n; ++i) {
+    if (r.scale1(i) == 0.0) out.push_back(i);
+    if (r.scale2(i) == 0.0) out.push_back(r.pairs.np + i);
+  }
+  return out;
+}
 
 }  // namespace
 
@@ -48,10 +75,18 @@ StayWork ClosedFormFlow::integrate(double t, Eigen::VectorXd x, Eigen::VectorXd 
   const Regime& r = tables.regime();
   const DriveOverlay* const drive = regime_->overlay;
   const bool whole = little_left(t, x);
-  const bool beside_ways = !whole && regime_->beside_ways;
-  const Eigen::Index others = r.inputs() - nc_;
+  // As rows of all of x, forces round by the springs' stiffness times all that the inputs move. Free motion is told
+  // apart once, and goes on by itself.
+  const bool apart = !whole && springs_hold_near(r, x, inputs);
+  Eigen::VectorXd free(apart ? x.size() : 0), at_free = free, none;
+  std::vector<Eigen::Index> carried;
+  if (apart) {
+    free = x - r.particular * inputs;
+    none = Eigen::VectorXd::Zero(inputs.size());
+    carried = integrating(r);
+  }
   StayWork sum;
-  Eigen::VectorXd x_whole, inputs_whole, free;
+  Eigen::VectorXd x_whole, inputs_whole;
   const auto add = [&](double weight, double at, const Eigen::VectorXd& x_beside,
                        const Eigen::VectorXd& inputs_beside) {
     if (whole) anew(*regime_, at, x_whole, inputs_whole);
@@ -60,12 +95,10 @@ StayWork ClosedFormFlow::integrate(double t, Eigen::VectorXd x, Eigen::VectorXd 
     const DriveOverlay* const overlay = whole ? nullptr : drive;
     const DrivePhase phase = overlay ? phase_at(at) : DrivePhase{};
     const double V = drive_velocity(at, inputs_then);
-    if (beside_ways) free = x_then - r.particular.leftCols(nc_) * inputs_then.head(nc_);
     for (int c = 0; c < nc_; ++c) {
       double force = inputs_then(c), velocity = V;
-      if (beside_ways && r.spring(c) > 0.0)
-        force = r.force_row.col(c).dot(free) + r.steady_force.col(c).head(nc_).dot(inputs_then.head(nc_)) +
-                r.force_coefficient.col(c).tail(others).dot(inputs_then.tail(others));
+      if (apart && r.sticks(c))
+        force = r.force_row.col(c).dot(at_free) + r.steady_force.col(c).dot(inputs_then);
       else if (r.roles[static_cast<std::size_t>(c)] != ContactRole::kSliding)
         force = r.force_row.col(c).dot(x_then) + r.force_coefficient.col(c).dot(inputs_then);
       if (!r.held(c)) velocity = r.velocity_row.col(c).dot(x_then) + r.velocity_coefficient.col(c).dot(inputs_then);
@@ -102,6 +135,10 @@ StayWork ClosedFormFlow::integrate(double t, Eigen::VectorXd x, Eigen::VectorXd 
     swell(s.h, out_x);
     out_inputs = from_inputs;
     r.advance_inputs(out_inputs, s.h);
+    if (!apart) return;
+    apply(s, free.data(), none, at_free.data());
+    swell(s.h, at_free);
+    at_free(carried) = out_x(carried);
   };
   Eigen::VectorXd at_x(x.size()), at_inputs(inputs.size());
   const double drive_rate = drive ? static_cast<double>(drive->orders()) * drive->omega() : 0.0;
@@ -124,6 +161,7 @@ StayWork ClosedFormFlow::integrate(double t, Eigen::VectorXd x, Eigen::VectorXd 
     move_to(tables.step(level), x, inputs, at_x, at_inputs);
     x.swap(at_x);
     inputs.swap(at_inputs);
+    free.swap(at_free);
     tau -= h;
     t += h;
   }
@@ -134,6 +172,12 @@ StayWork ClosedFormFlow::integrate(double t, Eigen::VectorXd x, Eigen::VectorXd 
       at_inputs = inputs;
       advance(tables, rule.node(j) * tau, at_x, at_inputs);
       swell(rule.node(j) * tau, at_x);
+      if (apart) {
+        at_free = free;
+        advance(tables, rule.node(j) * tau, at_free, none);
+        swell(rule.node(j) * tau, at_free);
+        at_free(carried) = at_x(carried);
+      }
       add(rule.weight(j) * tau, t + rule.node(j) * tau, at_x, at_inputs);
     }
   return sum;

@@ -22,25 +22,11 @@ constexpr int kLargestGrowth = 4;
 constexpr double kSameInstant = 1e-6;
 /// A sum of which no more than this share of its terms is left is made anew.
 constexpr double kLittleLeft = 1e-2;
-/// What a way holds is near if the terms of the force that this makes add up to no more than this many times the
-/// spring's own.
-constexpr double kHeldNear = 8.0;
 
 /// Of a regime's state, in the scales in which free motion does not grow.
 double squared_size(const Regime& r, const Eigen::VectorXd& x) {
   return r.scale1.cwiseProduct(x.head(r.pairs.np)).squaredNorm() +
          r.scale2.cwiseProduct(x.tail(r.pairs.np)).squaredNorm();
-}
-
-/// Whether springs pull, and none at a mode that hardly resists and is held far out.
-bool springs_hold_near(const Regime& r) {
-  bool any = false, near = true;
-  for (int c = 0; c < r.speed_input(); ++c) {
-    if (!(r.spring(c) > 0.0)) continue;
-    any = true;
-    near &= r.force_row.col(c).cwiseAbs().dot(r.particular.col(c).cwiseAbs()) <= kHeldNear * r.spring(c);
-  }
-  return any && near;
 }
 
 }  // namespace
@@ -100,7 +86,6 @@ void ClosedFormFlow::enter_regime() {
     const RegimeTables& tables = system_.cache().regime(system_, roles);
     visited_.push_back({.roles = roles, .tables = &tables, .belt = nullptr, .maps = nullptr});
     Visited& now = visited_.back();
-    if (options_.audit) now.beside_ways = springs_hold_near(tables.regime());
     if (resolver_.drive().belt() == nullptr) {
       const DrivenRegime& driven = system_.drive_cache().regime(tables, slipping_, system_.drive());
       now.overlay = &driven.overlay;

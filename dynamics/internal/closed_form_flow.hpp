@@ -88,10 +88,7 @@ class ClosedFormFlow {
     Eigen::VectorXd inputs_entered{};       ///< and inputs, of contacts with the drive's
     const AuditForms* forms = nullptr;      ///< for a shaker or a force; null where the audit integrates by quadrature
     std::unique_ptr<BeltWork> belt;         ///< for a belt, while its speed is constant; the same
-    /// Whether quadrature reads springs beside what contacts' ways hold: what their rows say of ways rounds by these
-    /// times the stiffness.
-    bool beside_ways = false;
-    std::unique_ptr<TangentMaps> maps;  ///< null until tangents are carried
+    std::unique_ptr<TangentMaps> maps;      ///< null until tangents are carried
   };
   /// What a search of one window found.
   struct Search {

@@ -50,7 +50,6 @@ RegimeBuilder::RegimeBuilder(const HybridSystem& system, const ModalModel& slipp
       friction_(Eigen::VectorXd::Zero(nc_)),
       most_damped_(slipping.proportional ? Eigen::VectorXd(modal_.damping.diagonal().cwiseAbs())
                                          : Eigen::VectorXd(modal_.damping.cwiseAbs().rowwise().sum())),
-      K_(modal_.omega.cwiseAbs2().asDiagonal()),
       C_(modal_.damping),
       spring_(Eigen::VectorXd::Zero(nc_)),
       damper_(Eigen::VectorXd::Zero(nc_)) {
@@ -83,7 +82,6 @@ void RegimeBuilder::couple_contacts() {
     if (answer.damping != 0.0) C_ += answer.damping * w * w.transpose();
     symmetric_ &= friction_(c) == 0.0 || load(c).v == 0.0;
     symmetric_ &= spring_(c) >= 0.0;
-    if (spring_(c) != 0.0) K_ += spring_(c) * w * w.transpose();
   }
   symmetric_ &= oscillators_.empty();
   bare_ = symmetric_ && held_.empty() && spring_.isZero(0.0) && damper_.isZero(0.0);
@@ -117,6 +115,12 @@ void RegimeBuilder::eliminate_held() {
     for (Eigen::Index k = 0; k < s; ++k) P_.col(held_[static_cast<std::size_t>(k)]) = pseudo.col(k);
   }
   P_all_ = P_.rowwise().sum();
+  // w k wᵀ of a stiff contact's spring as two factors: formed, its rounding would push in all directions, not along w.
+  const Eigen::MatrixXd& W_all = modal_.directions;
+  const Eigen::MatrixXd sizes = W_all.cwiseAbs(), P_sizes = P_.cwiseAbs();
+  const Eigen::VectorXd own = modal_.omega.cwiseAbs2();
+  KP_ = own.asDiagonal() * P_ + W_all * (spring_.asDiagonal() * (W_all.transpose() * P_));
+  KP_size_ = own.asDiagonal() * P_sizes + sizes * (spring_.cwiseAbs().asDiagonal() * (sizes.transpose() * P_sizes));
 }
 
 Eigen::MatrixXd RegimeBuilder::left_damping() const {

@@ -62,6 +62,8 @@ class RegimeBuilder {
   /// is near what they have, to a share of `size`. @param better  [places x entries] @param size  [places]
   void improve(const Places& at, const std::vector<Eigen::Index>& entries, const Eigen::MatrixXd& better,
                const Eigen::VectorXd& size, double near, Eigen::MatrixXd& of_contacts) const;
+  /// Contacts that stick: held, or by their springs.
+  [[nodiscard]] Places holding_places(const Regime& out) const;
   /// Springs of which the slipping modes' equations tell more than their stretches.
   [[nodiscard]] Places refinable_springs(const Regime& out) const;
   /// States of the slipping structure's undamped modes (η, η̇), in columns: what forces along these directions add to
@@ -100,10 +102,11 @@ class RegimeBuilder {
   Eigen::VectorXd most_damped_;                   ///< Σ_j |D_ij|, what damps mode i [n]
   Eigen::MatrixXd Z_, P_;                         ///< η = Z y + P ι
   Eigen::VectorXd P_all_;
-  Eigen::MatrixXd moved_;   ///< contacts' directions in y, zero where held ones leave none [m x contacts]
-  Eigen::MatrixXd K_, C_;   ///< with what contacts add
-  Eigen::VectorXd spring_;  ///< stiffness added along each contact's direction, of either sign
-  Eigen::VectorXd damper_;  ///< damping that stops add along it
+  Eigen::MatrixXd moved_;         ///< contacts' directions in y, zero where held ones leave none [m x contacts]
+  Eigen::MatrixXd KP_, KP_size_;  ///< K P, K with what contacts add, and the sizes it is a sum of [n x inputs]
+  Eigen::MatrixXd C_;             ///< with what contacts add
+  Eigen::VectorXd spring_;        ///< stiffness added along each contact's direction, of either sign
+  Eigen::VectorXd damper_;        ///< damping that stops add along it
   bool symmetric_ = true, bare_ = true;
   Coordinates at_;
   Eigen::MatrixXd to_modes_;  ///< x → (η, η̇), beside what the inputs hold [2n x 2np]

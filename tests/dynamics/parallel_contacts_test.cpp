@@ -178,6 +178,42 @@ TEST(ParallelContacts, RowsOnBothSidesOfAHeldMassAreExact) {
   }
 }
 
+TEST(ParallelContacts, SteadyForcesBesideAHeldMassAreThoseOfTheStructure) {
+  // Mass 1 held, mass 3 behind a spring, along the way of one or the other, or of both in time at unit speed: K x =
+  // forces, with what damps −C x' under it. K_c w wᵀ as a matrix pushed in all directions by its rounding: both forces
+  // were off by 4e-17 K_c, and the energy balance of two stuck contacts by 9e-9.
+  using Long = long double;
+  using Two = Eigen::Matrix<Long, 2, 1>;
+  Eigen::MatrixXd K(3, 3), C = Eigen::MatrixXd::Zero(3, 3);
+  K << 3.0, -1.0, 0.0, -1.0, 2.5, -1.2, 0.0, -1.2, 1.6;
+  C.diagonal() << 0.3, 0.9, 1.3;
+  const Eigen::Vector3d m(0.9, 0.3, 0.5);
+  const fem::Structure structure(fem::Matrix(Eigen::MatrixXd(m.asDiagonal())), fem::Matrix(C), fem::Matrix(K));
+  for (const double spring : {1e-3, 1.0, 1e3, 1e5, 1e7, 1e9}) {
+    SCOPED_TRACE(spring);
+    const HybridSystem system(structure,
+                              {{Eigen::VectorXd::Unit(3, 0), friction::Coulomb{1.0, 1.0}, 1.0},
+                               {Eigen::VectorXd::Unit(3, 2), friction::CompliantCoulomb{1.0, 1.0, spring}, 1.0}},
+                              friction::Belt::constant(1.0));
+    const Regime regime(system, system.cache().tables(system, false).model, {ContactRole::kHeld, ContactRole::kSprung});
+    Eigen::Matrix<Long, 2, 2> free = K.bottomRightCorner(2, 2).cast<Long>();
+    free(1, 1) += spring;
+    const auto places = [&](const Two& forces) -> Two { return free.fullPivLu().solve(forces); };
+    const Eigen::Vector2d c(C(1, 1), C(2, 2));
+    const Two by_held = places(Two(-K(0, 1), 0.0L)), by_spring = places(Two(0.0L, spring)), speed = by_held + by_spring,
+              lag = places(-(c.cast<Long>().cwiseProduct(speed)));
+    const auto expect = [&](Eigen::Index input, Long held_place, const Two& x, Long damped_held, Long damped) {
+      const Long held = K(0, 0) * held_place + K(0, 1) * x(0) + damped_held,
+                 sprung = K(2, 1) * x(0) + K(2, 2) * x(1) + damped;
+      EXPECT_NEAR(regime.steady_force(input, 0), static_cast<double>(held), 1e-14 + 1e-17 * std::sqrt(spring));
+      EXPECT_NEAR(regime.steady_force(input, 1), static_cast<double>(sprung), 1e-14 + 1e-17 * std::sqrt(spring));
+    };
+    expect(0, 1.0L, by_held, 0.0L, 0.0L);
+    expect(1, 0.0L, by_spring, 0.0L, 0.0L);
+    expect(regime.speed_input(), 0.0L, lag, C(0, 0), C(2, 2) * speed(1));
+  }
+}
+
 TEST(ParallelContacts, OfStiffSpringsTurnOnceWhereTheMassDoes) {
   // Elements that stretch by 1e-10 m down to 1e-15 m before they slide, under a mass that moves by metres: where the
   // speed turns, each ceases to slide and begins to, once. By collocation as in the closed form, and as by hand. Where

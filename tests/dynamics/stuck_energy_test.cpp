@@ -3,6 +3,7 @@
 // double.
 #include <slipmode/dynamics/simulate.hpp>
 #include <slipmode/fem/chain.hpp>
+#include <slipmode/fem/masses.hpp>
 #include <slipmode/fem/modes.hpp>
 #include "fixtures/cantilever_beam.hpp"
 #include "fixtures/scenes.hpp"
@@ -137,6 +138,106 @@ TEST(StuckEnergy, AStiffSpringOnAStructureWithDampersIsToldByTheStructure) {
       // A ramp's work is by quadrature, of forces that round by what the way does.
       EXPECT_LT(std::abs(run.audit.residual()), belt.is_constant() ? 1e-12 : 1e-12 + 1e-20 * spring);
     }
+}
+
+TEST(StuckEnergy, OneOrTwoContactsThatABeltPullsFarBalanceUnderAnyDamping) {
+  // 63 m of way behind springs up to 1e8 times the structure's, beside a rigid contact too; modes that are damped each
+  // by itself, that damping couples, that hardly decay (the audit is by quadrature then). Rounding of such springs'
+  // rows by all of the way left up to 2e-9.
+  Eigen::MatrixXd K(3, 3);
+  K << 3.0, -1.0, 0.0, -1.0, 2.5, -1.2, 0.0, -1.2, 1.6;
+  const Eigen::MatrixXd of_masses = Eigen::Vector3d(0.3, 0.9, 1.3).asDiagonal(),
+                        hardly = Eigen::Vector3d(3e-8, 0.0, 1e-8).asDiagonal();
+  const Eigen::MatrixXd M = Eigen::Vector3d(0.9, 0.3, 0.5).asDiagonal();
+  for (const Eigen::MatrixXd& C : {Eigen::MatrixXd(0.1 * K), of_masses, hardly}) {
+    const fem::Structure structure{fem::Matrix(M), fem::Matrix(C), fem::Matrix(K)};
+    for (const double spring : {1e4, 1e6, 1e8}) {
+      SCOPED_TRACE(testing::Message() << "K_c = " << spring << ", C =\n" << C);
+      const friction::Contact third{unit(3, 2), friction::CompliantCoulomb{1.0, 1.0, spring}, 1e12},
+          first{unit(3, 0), friction::CompliantCoulomb{1.0, 1.0, 0.7 * spring}, 1e12},
+          rigid{unit(3, 0), friction::Coulomb{1.0, 1.0}, 1e12};
+      for (const std::vector<friction::Contact>& contacts :
+           {std::vector{third}, std::vector{third, first}, std::vector{rigid, third}}) {
+        const HybridSystem system(structure, contacts, friction::Belt::constant(0.7));
+        State start = system.rest();
+        start.v.setConstant(0.7);
+        const Trajectory run = simulate(system, start, {.duration = 90.0});
+        EXPECT_TRUE(run.events.empty());
+        EXPECT_LT(std::abs(run.audit.residual()), 1e-13 + 1.5e-14 * std::sqrt(spring));
+      }
+    }
+  }
+}
+
+TEST(StuckEnergy, ANormalOscillatorBesideAStiffSpringLeavesItItsDigits) {
+  // The same with a block that slides on the first mass under the load of an oscillator, N = N₀ + s (k y + c ẏ) − k ζ −
+  // c ζ̇, which adds to K, C and the steady force of (q, ζ). Without friction it is only carried along.
+  const double V = 0.7, T = 150.0, N0 = 40.0;
+  Eigen::MatrixXd K(3, 3), C = Eigen::MatrixXd::Zero(3, 3);
+  K << 3.0, -1.0, 0.0, -1.0, 2.5, -1.2, 0.0, -1.2, 1.6;
+  C.diagonal() << 0.3, 0.9, 1.3;
+  const Eigen::VectorXd m = (Eigen::VectorXd(3) << 0.9, 0.3, 0.5).finished();
+  const fem::Structure structure(fem::Matrix(Eigen::MatrixXd(m.asDiagonal())), fem::Matrix(C), fem::Matrix(K));
+  const friction::NormalOscillator own{.mass = 0.4,
+                                       .support_stiffness = 1.3,
+                                       .support_damping = 0.7,
+                                       .spring_stiffness = 0.9,
+                                       .spring_damping = 0.2,
+                                       .slope = 0.6};
+  using Matrix = Eigen::Matrix<Long, 4, 4>;
+  using Vector = Eigen::Matrix<Long, 4, 1>;
+  for (const double spring : {1e3, 1e5, 1e7, 1e9})
+    for (const double mu : {0.0, 0.3}) {
+      SCOPED_TRACE(testing::Message() << "K_c = " << spring << ", mu = " << mu);
+      Matrix held = Matrix::Zero(), damped = Matrix::Zero();
+      held.topLeftCorner(3, 3) = K.cast<Long>();
+      damped.topLeftCorner(3, 3) = C.cast<Long>();
+      const auto add = [&](Matrix& of, Long spring_, Long support) {
+        of(0, 0) -= mu * spring_ * own.slope;
+        of(0, 3) = mu * spring_;
+        of(3, 0) = -spring_ * own.slope;
+        of(3, 3) = spring_ + support;
+      };
+      add(held, own.spring_stiffness, own.support_stiffness);
+      add(damped, own.spring_damping, own.support_damping);
+      held(2, 2) += spring;
+      const Vector a = held.fullPivLu().solve(Vector(0.0L, 0.0L, static_cast<Long>(spring) * V, 0.0L)),
+                   b = held.fullPivLu().solve(Vector(Vector(mu * N0, 0.0L, 0.0L, 0.0L) - damped * a)),
+                   q = a * static_cast<Long>(T) + b;
+      const auto force = static_cast<double>((K.cast<Long>() * q.head(3) + C.cast<Long>() * a.head(3))(2));
+      const HybridSystem system(structure,
+                                {{unit(3, 0), friction::Coulomb{mu, mu}, friction::NormalLoad(N0, own)},
+                                 {unit(3, 2), friction::CompliantCoulomb{1.0, 1.0, spring}, 1e9}},
+                                friction::Belt::constant(V));
+      const Trajectory run = simulate(system, system.rest(), {.duration = T});
+      const Eigen::Index last = run.final_state.internal.size() - 1;
+      EXPECT_NEAR(run.final_state.internal(last) * spring / force, 1.0, 1e-13 + 1e-15 * spring);
+      EXPECT_NEAR(run.final_state.internal(0) / static_cast<double>(q(3)), 1.0, 1e-13 + 1e-16 * std::sqrt(spring));
+      EXPECT_LT(std::abs(run.audit.residual()), 1e-12);
+    }
+}
+
+TEST(StuckEnergy, AFloatingMassThatABeltCarriesTakesNoWork) {
+  // A mass that nothing else holds moves with the belt, its spring without a force, while two others swing and a damper
+  // carries one of them off. Of all that the belt has moved it by, the spring's row rounds by 1e-16 K_c: the work was
+  // off by that times the way.
+  const double V = -0.5;
+  const fem::Structure structure =
+      fem::masses({.mass = {1.5, 0.8, 2.0}, .links = {{0, 2, 0.36, 0.0}, {2, 3, 0.0, 0.035}}});
+  for (const double spring : {1e2, 1e4, 1e6, 1e8}) {
+    SCOPED_TRACE(spring);
+    const HybridSystem system(structure, {{unit(3, 0), friction::CompliantCoulomb{0.3, 0.3, spring}, 2.0}},
+                              friction::Belt::constant(V));
+    State start = system.rest();
+    start.q = Eigen::Vector3d(0.6, 0.5, 0.9);
+    start.v.setConstant(V);
+    const Trajectory run = simulate(system, start, {.duration = 40.0});
+    EXPECT_TRUE(run.events.empty());
+    EXPECT_NEAR(run.final_state.q(0), start.q(0) + V * 40.0, 1e-13);
+    // A stretch that is rounding at the begin of each sum swings on: sqrt(K_c m) V 1e-16 in a period, of all sums more.
+    EXPECT_LT(std::abs(run.audit.drive_work), 1e-14 + 1e-14 * std::sqrt(spring));
+    EXPECT_LT(std::abs(run.audit.residual()), 1e-14 + 1e-14 * std::sqrt(spring));
+  }
 }
 
 TEST(StuckEnergy, AMomentFromRestIsToldFromTheShakersOwnPlace) {
