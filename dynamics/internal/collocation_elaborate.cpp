@@ -169,7 +169,7 @@ bool CollocationFlow::pushed_onto(const OwnGuard& guard, int c, const GuardValue
 }
 
 bool CollocationFlow::searched_from_rest(const OwnGuard& guard, int c, const GuardValue& now, int order,
-                                         const BernsteinPolynomial& form, Guarded& first) const {
+                                         const BernsteinPolynomial& form, FirstGuards& out) const {
   const RadauTables::Vector8 values = at_nodes(guard, c);
   const double t = nodes_.node(0) * tables_.step(step_level_), value = values(0),
                leading = order == 1 ? now.rate * t : now.second * t * t / 2.0;
@@ -195,11 +195,11 @@ bool CollocationFlow::searched_from_rest(const OwnGuard& guard, int c, const Gua
       found.touching = root->touching;
     }
   }
-  if (found.theta < first.theta) first = found;
+  out.add(found);
   return true;
 }
 
-void CollocationFlow::search_own_guards(int c, Guarded& first) const {
+void CollocationFlow::search_own_guards(int c, FirstGuards& out) const {
   const auto i = static_cast<std::size_t>(c);
   const bool untold = held(step_modes_, c) && tells_no_force(c);
   for (const OwnGuard& guard : own_guards(c, point_.modes[i])) {
@@ -220,7 +220,7 @@ void CollocationFlow::search_own_guards(int c, Guarded& first) const {
         !pushed_onto(guard, c, now, order))
       continue;
     if (order > 0 && touched_ != c && guard.kind == GuardKind::kStop &&
-        searched_from_rest(guard, c, now, order, p, first))
+        searched_from_rest(guard, c, now, order, p, out))
       continue;
     const bool rises = order == 1 ? now.rate > 0.0 : known && now.second > 0.0;
     if (rises && (std::abs(now.rate) + std::abs(now.second) * h) * h <= kStarting * now.size)
@@ -231,7 +231,7 @@ void CollocationFlow::search_own_guards(int c, Guarded& first) const {
     const auto* leading = std::find_if(p.coefficient.begin(), p.coefficient.end(), [](double b) { return b != 0.0; });
     if (leading == p.coefficient.end()) continue;
     const auto reached = [&](double theta, bool touching) {
-      if (theta < first.theta) first = {theta, c, touching, guard, theta == 0.0 && known ? 1 : order};
+      out.add({theta, c, touching, guard, theta == 0.0 && known ? 1 : order});
     };
     if (*leading < 0.0)  // falls through zero where the step begins
       reached(0.0, false);

@@ -159,7 +159,8 @@ bool CollocationFlow::step(double t_limit) {
   for (std::size_t c = 0; c < slow_start_level_.size(); ++c)
     if (point_.multiplicity[c] > 0) level = std::max(level, slow_start_level_[c]);
   while (level + 1 < StepTables::kLevels && tables_.step(level + 1) >= remaining) ++level;
-  Guarded guard;
+  FirstGuards guards;
+  Guarded& guard = guards.first;
   double h = 0.0, tau = 0.0, error = 0.0, tolerance = 0.0;
   bool proved = false;
   int halved = 0;
@@ -185,7 +186,7 @@ bool CollocationFlow::step(double t_limit) {
       level += halvings(error * kEndNodeGain / options_.tolerance);
       continue;
     }
-    guard = first_guard();
+    guards = first_guards();
     if (guard.contact >= 0 && bristled(guard.contact)) error = std::max(error, reversal_error(guard));
     // Steps that sum up to all but a sliver of the time leave it to rounding: forces solved in it alone are noise.
     const double whole = remaining > h && remaining - h < kSliver * h ? remaining / 2.0 : h;
@@ -239,7 +240,7 @@ bool CollocationFlow::step(double t_limit) {
     within_.begin(x_begin_.data(), forces_.data(), level);
     within_.state(tau, point_.x.data());
     if (at_guard)
-      refine_event(guard, tau, point_.x);
+      refine_first(guards, tau, point_.x);
     else
       resolver_.hold(begin_ + tau, point_.modes, point_.x.data());  // between nodes a stick is only nearly held
   } else {

@@ -78,6 +78,19 @@ class CollocationFlow {
     std::optional<OwnGuard> own = {};  ///< of an elaborate contact
     int order = 0;                     ///< of the zero that guard starts with
   };
+  /// The two that a step's polynomials reach first: the exact time of the one may lie beyond the other's.
+  struct FirstGuards {
+    Guarded first, second;
+
+    void add(const Guarded& reached) {
+      if (reached.theta < first.theta) {
+        second = first;
+        first = reached;
+      } else if (reached.theta < second.theta) {
+        second = reached;
+      }
+    }
+  };
 
   void guess_forces(int level, bool retry);
   [[nodiscard]] int foreseen_level(int level) const;
@@ -100,7 +113,7 @@ class CollocationFlow {
   /// The step is so short that of a held contact's force at its nodes little but that is known.
   [[nodiscard]] bool tells_no_force(int c) const;
   /// Keeps the guards' Bernstein forms for the proof.
-  [[nodiscard]] Guarded first_guard();
+  [[nodiscard]] FirstGuards first_guards();
 
   /// Largest slope of a polynomial of degree 8 that stays within one, on [0, 1] (Markov).
   static constexpr double kSteepest = 2.0 * kNodes * kNodes;
@@ -174,6 +187,8 @@ class CollocationFlow {
   [[nodiscard]] bool too_early(const Guarded& guard) const;
   [[nodiscard]] double deepest_overshoot() const;
   void refine_event(const Guarded& guard, double& tau, Eigen::VectorXd& x);
+  /// The same of the first, which the second becomes if the first lies beyond it.
+  void refine_first(FirstGuards& guards, double& tau, Eigen::VectorXd& x);
   [[nodiscard]] double stick_force(int c, const Eigen::VectorXd& x, double tau) const;
   /// wᵀq̈ at `begin_ + tau` but for what contacts' forces add.
   [[nodiscard]] double acceleration_without_contacts(int c, const Eigen::VectorXd& x, double tau) const;
@@ -225,7 +240,7 @@ class CollocationFlow {
     double second = 0.0;  ///< of a guard of place or stretch alone, where it is told from rounding; else 0
     double size = 0.0, rate_size = 0.0;  ///< of the terms that are summed
   };
-  void search_own_guards(int c, Guarded& first) const;
+  void search_own_guards(int c, FirstGuards& out) const;
   /// Whether a gap that starts at zero, as its slope does, is pushed shut, as told by its curvature at both ends of a
   /// step too short to show it. A stop that lets go has an overlap to lose first.
   /// @param now  at the step's start @param order  of the zero there
@@ -235,7 +250,7 @@ class CollocationFlow {
   /// coefficients are errors of interpolation. The values at the nodes are none. False where the order leads.
   /// @param now  at the step's start @param order  of the zero there, 1 or 2 @param form  over the step
   [[nodiscard]] bool searched_from_rest(const OwnGuard& guard, int c, const GuardValue& now, int order,
-                                        const BernsteinPolynomial& form, Guarded& first) const;
+                                        const BernsteinPolynomial& form, FirstGuards& out) const;
   /// Of degree 8 through a start and the nodes.
   [[nodiscard]] BernsteinPolynomial interpolant(double start, const RadauTables::Vector8& at_nodes) const;
   [[nodiscard]] RadauTables::Vector8 at_nodes(const OwnGuard& guard, int c) const;

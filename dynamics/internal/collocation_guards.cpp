@@ -13,6 +13,8 @@ namespace {
 
 /// An event's time is final when the next correction is below this share of the step.
 constexpr double kNegligibleShift = 1e-15;
+/// Events that are less than this share of a step apart come in either order.
+constexpr double kEitherOrder = 1e-12;
 /// Right after sliding has begun, a guard that vanishes within this share of a step is an error of interpolation.
 constexpr double kEarly = 1.0 / 64.0;
 /// A step that starts with more than this share of its largest speed does not start at rest.
@@ -25,17 +27,17 @@ constexpr int kRefinements = 20;
 
 }  // namespace
 
-CollocationFlow::Guarded CollocationFlow::first_guard() {
-  Guarded first;
+CollocationFlow::FirstGuards CollocationFlow::first_guards() {
+  FirstGuards out;
   const auto consider = [&](const BernsteinPolynomial& p, int c) {
-    if (const auto root = first_root(p); root && root->at < first.theta) first = {root->at, c, root->touching};
+    if (const auto root = first_root(p)) out.add({root->at, c, root->touching});
   };
   const RadauTables& t = nodes_;
   for (int c = 0; c < nc_; ++c) {
     const auto i = static_cast<std::size_t>(c);
     const ContactForces& law = laws()[i];
     if (elaborate(c)) {
-      search_own_guards(c, first);
+      search_own_guards(c, out);
       continue;
     }
     if (!law.sticks() && !bristled(c)) continue;
@@ -80,7 +82,7 @@ CollocationFlow::Guarded CollocationFlow::first_guard() {
     std::fill_n(p.coefficient.begin(), multiplicity, 0.0);
     consider(p, c);
   }
-  return first;
+  return out;
 }
 
 bool CollocationFlow::unmoved(int c) const {
@@ -175,6 +177,21 @@ void CollocationFlow::refine_event(const Guarded& guard, double& tau, Eigen::Vec
     if (factor * shift * shift <= kNegligibleShift * h) return;
     previous = std::abs(shift);
   }
+}
+
+void CollocationFlow::refine_first(FirstGuards& guards, double& tau, Eigen::VectorXd& x) {
+  refine_event(guards.first, tau, x);
+  // A bristle's speed that is rounding announces its zero by a share of a step off.
+  const double h = tables_.step(step_level_);
+  if (guards.second.contact < 0 || guards.second.theta * h >= tau || too_early(guards.second)) return;
+  double before = guards.second.theta * h;
+  Eigen::VectorXd x_before(x.size());
+  within_.state(before, x_before.data());
+  refine_event(guards.second, before, x_before);
+  if (!(before < tau - kEitherOrder * h)) return;
+  guards.first = guards.second;
+  tau = before;
+  x.swap(x_before);
 }
 
 double CollocationFlow::acceleration_without_contacts(int c, const Eigen::VectorXd& x, double tau) const {
