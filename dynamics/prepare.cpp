@@ -19,6 +19,8 @@ namespace {
 constexpr double kOnGuard = 1e-12;
 /// The same where the state says its mode: it may come from a run that ended at an event, whose time was rounded.
 constexpr double kOnGuardAsGiven = 1e-9;
+/// And by this share of what its place is the sum of: flows tell a stop that is met from rest no sooner.
+constexpr double kToldTo = 1e-11;
 constexpr double kModalRounding = 64.0 * std::numeric_limits<double>::epsilon();
 
 /// What the rounding of a contact's displacement, or speed, is a share of: states come from a projection or from modal
@@ -76,8 +78,8 @@ struct AtStop {
     size = contact.direction.cwiseAbs().dot(start.q.cwiseAbs() + std::abs(start.time) * start.v.cwiseAbs()) +
            std::abs(contact.offset) + std::abs(stop.gap);
     press_size = stop.stiffness * size + stop.damping * contact.direction.cwiseAbs().dot(start.v.cwiseAbs());
-    on_guard = kOnGuardAsGiven * size + kOnGuard * motion;
-    on_press = kOnGuardAsGiven * press_size + kOnGuard * (stop.stiffness * motion + stop.damping * speeds);
+    on_guard = kOnGuardAsGiven * size + kToldTo * motion;
+    on_press = kOnGuardAsGiven * press_size + kToldTo * (stop.stiffness * motion + stop.damping * speeds);
   }
 };
 

@@ -257,7 +257,8 @@ void RegimeBuilder::refine_spring_inputs(Regime& out) const {
   places.topRows(n_) = modal_.directions;
   const Eigen::MatrixXd input = of_forces(modal_.directions), acting = F * input,
                         terms = F.cwiseAbs() * input.cwiseAbs();
-  const Eigen::MatrixXd kept = (to_modes_ * F).transpose(), e = kept * places(Eigen::all, sprung.first);
+  const Eigen::MatrixXd by_stretch = out.B, kept = (to_modes_ * F).transpose(),
+                        e = kept * places(Eigen::all, sprung.first);
   Eigen::MatrixXd by_modes = kept * of_mode_rates(F.transpose()), lifts(2 * n_, at_.from_zeta_rate.cols());
   for (Eigen::Index j = 0; j < lifts.cols(); ++j) {
     const Eigen::Index c = oscillators_[static_cast<std::size_t>(j)];
@@ -355,8 +356,11 @@ void RegimeBuilder::make_steady_forces(Regime& out) const {
       by_row(at) = out.steady_force(k, same).sum();
       by_row_size(at) = sizes(k, same).sum();
     }
-    const double least = kLeast * std::max(size.maxCoeff(), by_row_size.maxCoeff());
-    improve(holding, {k}, least_squares(b, missing, size.array() + least, by_row, by_row_size.array() + least),
+    // Each in its own unit: forces of modes beside those of contacts.
+    const Eigen::VectorXd reach = b.colwise().norm().transpose();
+    const double least = kLeast * std::max(size.maxCoeff(), by_row_size.cwiseProduct(reach).maxCoeff()),
+                 least_row = kLeast * std::max(by_row_size.maxCoeff(), size.maxCoeff() / reach.maxCoeff());
+    improve(holding, {k}, least_squares(b, missing, size.array() + least, by_row, by_row_size.array() + least_row),
             by_row_size, kNearest, out.steady_force);
   }
 }

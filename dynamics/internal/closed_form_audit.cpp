@@ -19,18 +19,25 @@ constexpr double kLostInForms = 1e-12;
 /// What a sum over nodes may be off by, of its terms' sizes.
 constexpr double kRounding = std::numeric_limits<double>::epsilon();
 /// What inputs hold is near if the terms of a stick's force that this makes add up to no more than this many times
-/// those of all there is.
-constexpr double kHeldNear = 8.0;
+/// those of all there is, and told if a spring's row makes the same force of it to this many roundings of these.
+constexpr double kHeldNear = 8.0, kToldAlike = 32.0;
 
 /// Whether springs pull, and no contact that sticks does at a mode that hardly resists and is held far out.
 bool springs_hold_near(const Regime& r, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs) {
-  const Eigen::VectorXd given = inputs.cwiseAbs(), held = r.particular.cwiseAbs() * given;
+  const Eigen::VectorXd held = r.particular * inputs, held_size = r.particular.cwiseAbs() * inputs.cwiseAbs();
   bool any = false, near = true;
   for (Eigen::Index c = 0; c < r.speed_input(); ++c) {
     if (!r.sticks(static_cast<int>(c))) continue;
-    const Eigen::VectorXd row = r.force_row.col(c).cwiseAbs();
-    any |= r.spring(c) > 0.0;
-    near &= row.dot(held) <= kHeldNear * (row.dot(x.cwiseAbs()) + r.force_coefficient.col(c).cwiseAbs().dot(given));
+    const auto row = r.force_row.col(c), coefficient = r.force_coefficient.col(c);
+    const double whole =
+        row.cwiseAbs().dot(x.cwiseAbs()) + coefficient.cwiseAbs().dot(inputs.cwiseAbs());  // that a force is the sum of
+    near &= row.cwiseAbs().dot(held_size) <= kHeldNear * whole;
+    if (!(r.spring(c) > 0.0)) continue;
+    any = true;
+    const auto speeds = r.velocity_row.col(c).cwiseAbs();
+    near &= speeds.dot(held_size) <= kHeldNear * speeds.dot(x.cwiseAbs());
+    const double otherwise = r.steady_force.col(c).dot(inputs) - row.dot(held) - coefficient.dot(inputs);
+    near &= std::abs(otherwise) <= kToldAlike * kRounding * whole;
   }
   return any && near;
 }
@@ -76,15 +83,32 @@ StayWork ClosedFormFlow::integrate(double t, Eigen::VectorXd x, Eigen::VectorXd 
   const DriveOverlay* const drive = regime_->overlay;
   const bool whole = little_left(t, x);
   // As rows of all of x, forces round by the springs' stiffness times all that the inputs move. Free motion is told
-  // apart once, and goes on by itself.
+  // apart from it, where it moves once, to go on by itself: a spring's force and its end's velocity by the same motion,
+  // so that what this is off by swings, or is constant, without work.
   const bool apart = !whole && springs_hold_near(r, x, inputs);
-  Eigen::VectorXd free(apart ? x.size() : 0), at_free = free, none;
+  const bool moves = inputs(nc_) != 0.0 || inputs(nc_ + 1) != 0.0;
+  Eigen::VectorXd held, free, at_free, none;
   std::vector<Eigen::Index> carried;
+  Eigen::VectorXd stretch_rate = Eigen::VectorXd::Zero(nc_);  // of springs, by what the ways hold, at V = 1
   if (apart) {
-    free = x - r.particular * inputs;
+    held = r.particular * inputs;
+    free = x - held;
     none = Eigen::VectorXd::Zero(inputs.size());
     carried = integrating(r);
+    for (int c = 0; c < nc_; ++c)
+      for (int k = 0; k < nc_; ++k)
+        if (r.spring(c) > 0.0 && r.sticks(k)) stretch_rate(c) += r.steady_force(k, c) / r.spring(c);
   }
+  const auto tell_free = [&](const Eigen::VectorXd& x_then, const auto& move) {
+    if (!apart) return;
+    if (moves) {
+      at_free = free;
+      move(at_free);
+      at_free(carried) = x_then(carried);
+    } else {
+      at_free = x_then - held;
+    }
+  };
   StayWork sum;
   Eigen::VectorXd x_whole, inputs_whole;
   const auto add = [&](double weight, double at, const Eigen::VectorXd& x_beside,
@@ -101,7 +125,11 @@ StayWork ClosedFormFlow::integrate(double t, Eigen::VectorXd x, Eigen::VectorXd 
         force = r.force_row.col(c).dot(at_free) + r.steady_force.col(c).dot(inputs_then);
       else if (r.roles[static_cast<std::size_t>(c)] != ContactRole::kSliding)
         force = r.force_row.col(c).dot(x_then) + r.force_coefficient.col(c).dot(inputs_then);
-      if (!r.held(c)) velocity = r.velocity_row.col(c).dot(x_then) + r.velocity_coefficient.col(c).dot(inputs_then);
+      if (apart && r.spring(c) > 0.0)
+        velocity = r.velocity_row.col(c).dot(at_free) + (1.0 - stretch_rate(c)) * inputs_then(nc_) -
+                   r.steady_force(nc_, c) / r.spring(c) * inputs_then(nc_ + 1);
+      else if (!r.held(c))
+        velocity = r.velocity_row.col(c).dot(x_then) + r.velocity_coefficient.col(c).dot(inputs_then);
       if (overlay) {
         force += overlay->force.at(c, phase);
         if (!r.held(c)) velocity += overlay->velocity.at(c, phase);
@@ -135,10 +163,10 @@ StayWork ClosedFormFlow::integrate(double t, Eigen::VectorXd x, Eigen::VectorXd 
     swell(s.h, out_x);
     out_inputs = from_inputs;
     r.advance_inputs(out_inputs, s.h);
-    if (!apart) return;
-    apply(s, free.data(), none, at_free.data());
-    swell(s.h, at_free);
-    at_free(carried) = out_x(carried);
+    tell_free(out_x, [&](Eigen::VectorXd& alone) {
+      apply(s, alone.data(), none, alone.data());
+      swell(s.h, alone);
+    });
   };
   Eigen::VectorXd at_x(x.size()), at_inputs(inputs.size());
   const double drive_rate = drive ? static_cast<double>(drive->orders()) * drive->omega() : 0.0;
@@ -172,12 +200,10 @@ StayWork ClosedFormFlow::integrate(double t, Eigen::VectorXd x, Eigen::VectorXd 
       at_inputs = inputs;
       advance(tables, rule.node(j) * tau, at_x, at_inputs);
       swell(rule.node(j) * tau, at_x);
-      if (apart) {
-        at_free = free;
-        advance(tables, rule.node(j) * tau, at_free, none);
-        swell(rule.node(j) * tau, at_free);
-        at_free(carried) = at_x(carried);
-      }
+      tell_free(at_x, [&](Eigen::VectorXd& alone) {
+        advance(tables, rule.node(j) * tau, alone, none);
+        swell(rule.node(j) * tau, alone);
+      });
       add(rule.weight(j) * tau, t + rule.node(j) * tau, at_x, at_inputs);
     }
   return sum;
