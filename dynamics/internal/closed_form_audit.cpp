@@ -18,28 +18,41 @@ constexpr double kDriveRest = 1.0;
 constexpr double kLostInForms = 1e-12;
 /// What a sum over nodes may be off by, of its terms' sizes.
 constexpr double kRounding = std::numeric_limits<double>::epsilon();
-/// What inputs hold is near if the terms of a stick's force that this makes add up to no more than this many times
-/// those of all there is, and told if a spring's row makes the same force of it to this many roundings of these.
+/// What inputs hold is near if the terms of a stick's force, or of the velocity of a spring's end, that this makes add
+/// up to no more than this many times those of all there is, and told if a spring's row makes the same force of it to
+/// this many roundings of these.
 constexpr double kHeldNear = 8.0, kToldAlike = 32.0;
+
+/// That a contact's force is the sum of.
+double size_of_force(const Regime& r, Eigen::Index c, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs) {
+  return r.force_row.col(c).cwiseAbs().dot(x.cwiseAbs()) + r.force_coefficient.col(c).cwiseAbs().dot(inputs.cwiseAbs());
+}
+
+/// Whether springs' rows make of what inputs hold the forces that the structure's equations do: of a mode that hardly
+/// resists, held far out, the two differ by more than rounding, and forces of the one are none beside motions of the
+/// other.
+bool told_alike(const Regime& r, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs) {
+  if (!(r.spring.array() > 0.0).any()) return true;
+  const Eigen::VectorXd held = r.particular * inputs;
+  for (Eigen::Index c = 0; c < r.speed_input(); ++c) {
+    if (!(r.spring(c) > 0.0)) continue;
+    const double otherwise =
+        r.steady_force.col(c).dot(inputs) - r.force_row.col(c).dot(held) - r.force_coefficient.col(c).dot(inputs);
+    if (!(std::abs(otherwise) <= kToldAlike * kRounding * size_of_force(r, c, x, inputs))) return false;
+  }
+  return true;
+}
 
 /// Whether springs pull, and no contact that sticks does at a mode that hardly resists and is held far out.
 bool springs_hold_near(const Regime& r, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs) {
-  const Eigen::VectorXd held = r.particular * inputs, held_size = r.particular.cwiseAbs() * inputs.cwiseAbs();
-  bool any = false, near = true;
-  for (Eigen::Index c = 0; c < r.speed_input(); ++c) {
-    if (!r.sticks(static_cast<int>(c))) continue;
-    const auto row = r.force_row.col(c), coefficient = r.force_coefficient.col(c);
-    const double whole =
-        row.cwiseAbs().dot(x.cwiseAbs()) + coefficient.cwiseAbs().dot(inputs.cwiseAbs());  // that a force is the sum of
-    near &= row.cwiseAbs().dot(held_size) <= kHeldNear * whole;
-    if (!(r.spring(c) > 0.0)) continue;
-    any = true;
-    const auto speeds = r.velocity_row.col(c).cwiseAbs();
-    near &= speeds.dot(held_size) <= kHeldNear * speeds.dot(x.cwiseAbs());
-    const double otherwise = r.steady_force.col(c).dot(inputs) - row.dot(held) - coefficient.dot(inputs);
-    near &= std::abs(otherwise) <= kToldAlike * kRounding * whole;
-  }
-  return any && near;
+  if (!(r.spring.array() > 0.0).any()) return false;
+  if (!(squared_size(r, r.particular * inputs) <= kHeldNear * kHeldNear * squared_size(r, x))) return false;
+  const Eigen::VectorXd held = r.particular.cwiseAbs() * inputs.cwiseAbs();
+  for (Eigen::Index c = 0; c < r.speed_input(); ++c)
+    if (r.sticks(static_cast<int>(c)) &&
+        !(r.force_row.col(c).cwiseAbs().dot(held) <= kHeldNear * size_of_force(r, c, x, inputs)))
+      return false;
+  return told_alike(r, x, inputs);
 }
 
 /// Components of x that merely integrate the inputs: these hold nothing there.
@@ -61,7 +74,7 @@ void ClosedFormFlow::account(double tau, bool ends) {
   if (!measured_) measure_amplitudes();
   const StayPlace now{point_.time, x_, free_, point_.x};
   StayWork work = regime_->forms ? stay_.until(now) : regime_->belt->until(now, inputs_);
-  const bool little = little_left(accounted_, x_accounted_);
+  const bool little = little_left(accounted_, x_accounted_) || !told_alike(tables_->regime(), x_, inputs_);
   if (little ||
       work.rounding > kLostInForms * (work_.exchanged + std::abs(work.contact) + std::abs(work.force) + work.viscous)) {
     const StayWork summed = integrate(accounted_, x_accounted_, inputs_accounted_, point_.time - accounted_);

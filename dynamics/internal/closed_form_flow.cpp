@@ -23,13 +23,12 @@ constexpr double kSameInstant = 1e-6;
 /// A sum of which no more than this share of its terms is left is made anew.
 constexpr double kLittleLeft = 1e-2;
 
-/// Of a regime's state, in the scales in which free motion does not grow.
+}  // namespace
+
 double squared_size(const Regime& r, const Eigen::VectorXd& x) {
   return r.scale1.cwiseProduct(x.head(r.pairs.np)).squaredNorm() +
          r.scale2.cwiseProduct(x.tail(r.pairs.np)).squaredNorm();
 }
-
-}  // namespace
 
 ClosedFormFlow::ClosedFormFlow(const HybridSystem& system, HybridPoint start, const FlowOptions& options)
     : system_(system),

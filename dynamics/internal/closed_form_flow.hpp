@@ -14,6 +14,9 @@
 
 namespace slipmode::dynamics {
 
+/// Of a regime's state, in the scales in which free motion does not grow.
+[[nodiscard]] double squared_size(const Regime& r, const Eigen::VectorXd& x);
+
 /// The flow of a piecewise-linear system in closed form: within a regime every state is an exact modal solution, and a
 /// window is passed only when its guards are proved positive on all of it. The proof: the guard's interpolant of degree
 /// 7 in Bernstein form (convex hull), less a bound on what interpolation leaves out, from the amplitudes of the pairs.
