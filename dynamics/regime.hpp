@@ -81,6 +81,7 @@ struct Regime {
   /// What adds up to wᵀq and wᵀq̇, see ModalModel::place_row: of sizes |x| and |ι| [2np x 2nc], [ni x 2nc].
   Eigen::MatrixXd place_row, place_coefficient;
   Eigen::MatrixXd steady_force;                  ///< λ of each contact on x_p [ni x nc]
+  Eigen::MatrixXd beside_rows;                   ///< what that is beside what the rows make of x_p [ni x nc]
   Eigen::MatrixXd drive_row, drive_coefficient;  ///< d_kᵀq̇ of each force direction [2np x nk], [ni x nk]
   Eigen::VectorXd spring;                        ///< K_c of sprung contacts, else 0 [nc]
   std::vector<ContactAnswer> answers;            ///< of each contact [nc]

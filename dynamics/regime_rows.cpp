@@ -257,8 +257,7 @@ void RegimeBuilder::refine_spring_inputs(Regime& out) const {
   places.topRows(n_) = modal_.directions;
   const Eigen::MatrixXd input = of_forces(modal_.directions), acting = F * input,
                         terms = F.cwiseAbs() * input.cwiseAbs();
-  const Eigen::MatrixXd by_stretch = out.B, kept = (to_modes_ * F).transpose(),
-                        e = kept * places(Eigen::all, sprung.first);
+  const Eigen::MatrixXd kept = (to_modes_ * F).transpose(), e = kept * places(Eigen::all, sprung.first);
   Eigen::MatrixXd by_modes = kept * of_mode_rates(F.transpose()), lifts(2 * n_, at_.from_zeta_rate.cols());
   for (Eigen::Index j = 0; j < lifts.cols(); ++j) {
     const Eigen::Index c = oscillators_[static_cast<std::size_t>(j)];
@@ -294,7 +293,9 @@ void RegimeBuilder::refine_spring_inputs(Regime& out) const {
 void RegimeBuilder::make_steady_forces(Regime& out) const {
   // Behind a stiff spring, what a contact exerts on the motion that follows the inputs is a small difference as well.
   constexpr double kRoundsBy = 64.0 * std::numeric_limits<double>::epsilon(), kLeast = 1e-8;
-  out.steady_force = out.particular.transpose() * out.force_row + out.force_coefficient;
+  const Eigen::MatrixXd by_rows = out.particular.transpose() * out.force_row + out.force_coefficient;
+  out.steady_force = by_rows;
+  out.beside_rows = Eigen::MatrixXd::Zero(ni_, nc_);
   Eigen::MatrixXd sizes =
       out.particular.cwiseAbs().transpose() * out.force_row.cwiseAbs() + out.force_coefficient.cwiseAbs();
   if (refinable_springs(out).first.empty()) return;  // works are those of the forces there are
@@ -333,7 +334,7 @@ void RegimeBuilder::make_steady_forces(Regime& out) const {
   // Where a mode should not follow a contact's way, it does so by rounding of what others do.
   const Eigen::RowVectorXd largest = sizes.topRows(nc_).colwise().maxCoeff();
   sizes.topRows(nc_).rowwise() = largest;
-  const Eigen::VectorXd squared = modal_.omega.cwiseAbs2();
+  const Eigen::VectorXd squared = modal_.omega.cwiseAbs2(), reach = b.colwise().norm().transpose();
   for (Eigen::Index k = 0; k <= one_; ++k) {
     Eigen::VectorXd missing =
         squared.cwiseProduct(place.col(k)) + damped(modal_.damping, slipping_.proportional, speed.col(k));
@@ -357,12 +358,12 @@ void RegimeBuilder::make_steady_forces(Regime& out) const {
       by_row_size(at) = sizes(k, same).sum();
     }
     // Each in its own unit: forces of modes beside those of contacts.
-    const Eigen::VectorXd reach = b.colwise().norm().transpose();
     const double least = kLeast * std::max(size.maxCoeff(), by_row_size.cwiseProduct(reach).maxCoeff()),
                  least_row = kLeast * std::max(by_row_size.maxCoeff(), size.maxCoeff() / reach.maxCoeff());
     improve(holding, {k}, least_squares(b, missing, size.array() + least, by_row, by_row_size.array() + least_row),
             by_row_size, kNearest, out.steady_force);
   }
+  out.beside_rows = out.steady_force - by_rows;
 }
 
 void RegimeBuilder::add_clearance_outputs(Eigen::Index c, const Regime& out, const AddOutput& add) const {

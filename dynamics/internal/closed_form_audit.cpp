@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <utility>
-#include <vector>
 
 namespace slipmode::dynamics {
 namespace {
@@ -18,9 +17,9 @@ constexpr double kDriveRest = 1.0;
 constexpr double kLostInForms = 1e-12;
 /// What a sum over nodes may be off by, of its terms' sizes.
 constexpr double kRounding = std::numeric_limits<double>::epsilon();
-/// What inputs hold is near if the terms of a stick's force, or of the velocity of a spring's end, that this makes add
-/// up to no more than this many times those of all there is, and told if a spring's row makes the same force of it to
-/// this many roundings of these.
+/// What inputs hold is near if it, and the terms of a stick's force that it makes, are no more than this many times
+/// what there is, and told alike if the structure's equations make the forces of it that springs' rows do to this many
+/// roundings of theirs.
 constexpr double kHeldNear = 8.0, kToldAlike = 32.0;
 
 /// That a contact's force is the sum of.
@@ -28,41 +27,25 @@ double size_of_force(const Regime& r, Eigen::Index c, const Eigen::VectorXd& x, 
   return r.force_row.col(c).cwiseAbs().dot(x.cwiseAbs()) + r.force_coefficient.col(c).cwiseAbs().dot(inputs.cwiseAbs());
 }
 
-/// Whether springs' rows make of what inputs hold the forces that the structure's equations do: of a mode that hardly
-/// resists, held far out, the two differ by more than rounding, and forces of the one are none beside motions of the
-/// other.
+/// Of a mode that hardly resists, held far out, rows and equations differ by more than rounding, and forces by the one
+/// are none beside motions by the other.
 bool told_alike(const Regime& r, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs) {
-  if (!(r.spring.array() > 0.0).any()) return true;
-  const Eigen::VectorXd held = r.particular * inputs;
-  for (Eigen::Index c = 0; c < r.speed_input(); ++c) {
-    if (!(r.spring(c) > 0.0)) continue;
-    const double otherwise =
-        r.steady_force.col(c).dot(inputs) - r.force_row.col(c).dot(held) - r.force_coefficient.col(c).dot(inputs);
-    if (!(std::abs(otherwise) <= kToldAlike * kRounding * size_of_force(r, c, x, inputs))) return false;
-  }
+  for (Eigen::Index c = 0; c < r.speed_input(); ++c)
+    if (r.spring(c) > 0.0 &&
+        !(std::abs(r.beside_rows.col(c).dot(inputs)) <= kToldAlike * kRounding * size_of_force(r, c, x, inputs)))
+      return false;
   return true;
 }
 
-/// Whether springs pull, and no contact that sticks does at a mode that hardly resists and is held far out.
-bool springs_hold_near(const Regime& r, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs) {
-  if (!(r.spring.array() > 0.0).any()) return false;
-  if (!(squared_size(r, r.particular * inputs) <= kHeldNear * kHeldNear * squared_size(r, x))) return false;
-  const Eigen::VectorXd held = r.particular.cwiseAbs() * inputs.cwiseAbs();
+/// @param held  x_p
+bool held_near(const Regime& r, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs, const Eigen::VectorXd& held) {
+  if (!(squared_size(r, held) <= kHeldNear * kHeldNear * squared_size(r, x))) return false;
+  const Eigen::VectorXd terms = r.particular.cwiseAbs() * inputs.cwiseAbs();
   for (Eigen::Index c = 0; c < r.speed_input(); ++c)
     if (r.sticks(static_cast<int>(c)) &&
-        !(r.force_row.col(c).cwiseAbs().dot(held) <= kHeldNear * size_of_force(r, c, x, inputs)))
+        !(r.force_row.col(c).cwiseAbs().dot(terms) <= kHeldNear * size_of_force(r, c, x, inputs)))
       return false;
-  return told_alike(r, x, inputs);
-}
-
-/// Components of x that merely integrate the inputs: these hold nothing there.
-std::vector<Eigen::Index> integrating(const Regime& r) {
-  std::vector<Eigen::Index> out;
-  for (Eigen::Index i = 0; i < r.pairs.n; ++i) {
-    if (r.scale1(i) == 0.0) out.push_back(i);
-    if (r.scale2(i) == 0.0) out.push_back(r.pairs.np + i);
-  }
-  return out;
+  return true;
 }
 
 }  // namespace
@@ -98,16 +81,17 @@ StayWork ClosedFormFlow::integrate(double t, Eigen::VectorXd x, Eigen::VectorXd 
   // As rows of all of x, forces round by the springs' stiffness times all that the inputs move. Free motion is told
   // apart from it, where it moves once, to go on by itself: a spring's force and its end's velocity by the same motion,
   // so that what this is off by swings, or is constant, without work.
-  const bool apart = !whole && springs_hold_near(r, x, inputs);
-  const bool moves = inputs(nc_) != 0.0 || inputs(nc_ + 1) != 0.0;
+  bool apart = !whole && (r.spring.array() > 0.0).any() && told_alike(r, x, inputs);
   Eigen::VectorXd held, free, at_free, none;
-  std::vector<Eigen::Index> carried;
-  Eigen::VectorXd stretch_rate = Eigen::VectorXd::Zero(nc_);  // of springs, by what the ways hold, at V = 1
   if (apart) {
     held = r.particular * inputs;
+    apart = held_near(r, x, inputs, held);
+  }
+  const bool moves = inputs(nc_) != 0.0 || inputs(nc_ + 1) != 0.0;
+  Eigen::VectorXd stretch_rate = Eigen::VectorXd::Zero(nc_);  // of springs, by what the ways hold, at V = 1
+  if (apart) {
     free = x - held;
     none = Eigen::VectorXd::Zero(inputs.size());
-    carried = integrating(r);
     for (int c = 0; c < nc_; ++c)
       for (int k = 0; k < nc_; ++k)
         if (r.spring(c) > 0.0 && r.sticks(k)) stretch_rate(c) += r.steady_force(k, c) / r.spring(c);
@@ -117,7 +101,10 @@ StayWork ClosedFormFlow::integrate(double t, Eigen::VectorXd x, Eigen::VectorXd 
     if (moves) {
       at_free = free;
       move(at_free);
-      at_free(carried) = x_then(carried);
+      // What merely integrates the inputs is none that these hold.
+      const auto np = r.pairs.np;
+      at_free.head(np) = (r.scale1.array() == 0.0).select(x_then.head(np), at_free.head(np)).eval();
+      at_free.tail(np) = (r.scale2.array() == 0.0).select(x_then.tail(np), at_free.tail(np)).eval();
     } else {
       at_free = x_then - held;
     }

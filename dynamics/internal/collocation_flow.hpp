@@ -187,7 +187,7 @@ class CollocationFlow {
   [[nodiscard]] bool too_early(const Guarded& guard) const;
   [[nodiscard]] double deepest_overshoot() const;
   void refine_event(const Guarded& guard, double& tau, Eigen::VectorXd& x);
-  /// The same of the first, which the second becomes if the first lies beyond it.
+  /// The same of the first; where that lies beyond the second, whichever is first when both are refined becomes it.
   void refine_first(FirstGuards& guards, double& tau, Eigen::VectorXd& x);
   [[nodiscard]] double stick_force(int c, const Eigen::VectorXd& x, double tau) const;
   /// wᵀq̈ at `begin_ + tau` but for what contacts' forces add.

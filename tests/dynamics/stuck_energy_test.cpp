@@ -112,15 +112,22 @@ TEST(StuckEnergy, SeveralContactsBalanceUnderAShakerAndUnderForces) {
   }
 }
 
+/// Three masses in a row on springs, and dampers of theirs that are no share of mass or stiffness.
+struct ThreeMasses {
+  Eigen::MatrixXd M = Eigen::Vector3d(0.9, 0.3, 0.5).asDiagonal();
+  Eigen::MatrixXd K{{3.0, -1.0, 0.0}, {-1.0, 2.5, -1.2}, {0.0, -1.2, 1.6}};
+  Eigen::MatrixXd C = Eigen::Vector3d(0.3, 0.9, 1.3).asDiagonal();
+
+  [[nodiscard]] fem::Structure structure() const { return {fem::Matrix(M), fem::Matrix(C), fem::Matrix(K)}; }
+};
+
 TEST(StuckEnergy, AStiffSpringOnAStructureWithDampersIsToldByTheStructure) {
-  // Dampers that are no share of mass or stiffness: complex modes. A belt pulls the spring of one mass for good. Once
-  // free motion has died, q = a t + b with (K + K_c wwᵀ) a = K_c w V, (K + K_c wwᵀ) b = −C a, and w λ = K q + C a.
+  // Complex modes. A belt pulls the spring of one mass for good. Once free motion has died, q = a t + b with
+  // (K + K_c wwᵀ) a = K_c w V, (K + K_c wwᵀ) b = −C a, and w λ = K q + C a.
   const double V = 0.7;
-  Eigen::MatrixXd K(3, 3), C = Eigen::MatrixXd::Zero(3, 3);
-  K << 3.0, -1.0, 0.0, -1.0, 2.5, -1.2, 0.0, -1.2, 1.6;
-  C.diagonal() << 0.3, 0.9, 1.3;
-  const Eigen::VectorXd m = (Eigen::VectorXd(3) << 0.9, 0.3, 0.5).finished();
-  const fem::Structure structure(fem::Matrix(Eigen::MatrixXd(m.asDiagonal())), fem::Matrix(C), fem::Matrix(K));
+  const ThreeMasses three;
+  const Eigen::MatrixXd &K = three.K, &C = three.C;
+  const fem::Structure structure = three.structure();
   for (const double spring : {1e3, 1e5, 1e7, 1e9})
     for (const friction::Belt& belt : {friction::Belt::constant(V), friction::Belt::ramp(0.5 * V, V, 0.0, 1.0)}) {
       SCOPED_TRACE(spring);
@@ -143,13 +150,12 @@ TEST(StuckEnergy, OneOrTwoContactsThatABeltPullsFarBalanceUnderAnyDamping) {
   // 63 m of way behind springs up to 1e8 times the structure's, beside a rigid contact too; modes that are damped each
   // by itself, that damping couples, that hardly decay (the audit is by quadrature then). Rounding of such springs'
   // rows by all of the way left up to 2e-9.
-  Eigen::MatrixXd K(3, 3);
-  K << 3.0, -1.0, 0.0, -1.0, 2.5, -1.2, 0.0, -1.2, 1.6;
-  const Eigen::MatrixXd of_masses = Eigen::Vector3d(0.3, 0.9, 1.3).asDiagonal(),
+  ThreeMasses three;
+  const Eigen::MatrixXd by_springs = 0.1 * three.K, of_masses = three.C,
                         hardly = Eigen::Vector3d(3e-8, 0.0, 1e-8).asDiagonal();
-  const Eigen::MatrixXd M = Eigen::Vector3d(0.9, 0.3, 0.5).asDiagonal();
-  for (const Eigen::MatrixXd& C : {Eigen::MatrixXd(0.1 * K), of_masses, hardly}) {
-    const fem::Structure structure{fem::Matrix(M), fem::Matrix(C), fem::Matrix(K)};
+  for (const Eigen::MatrixXd& C : {by_springs, of_masses, hardly}) {
+    three.C = C;
+    const fem::Structure structure = three.structure();
     for (const double spring : {1e4, 1e6, 1e8}) {
       SCOPED_TRACE(testing::Message() << "K_c = " << spring << ", C =\n" << C);
       const friction::Contact third{unit(3, 2), friction::CompliantCoulomb{1.0, 1.0, spring}, 1e12},
@@ -172,11 +178,9 @@ TEST(StuckEnergy, ANormalOscillatorBesideAStiffSpringLeavesItItsDigits) {
   // The same with a block that slides on the first mass under the load of an oscillator, N = N₀ + s (k y + c ẏ) − k ζ −
   // c ζ̇, which adds to K, C and the steady force of (q, ζ). Without friction it is only carried along.
   const double V = 0.7, T = 150.0, N0 = 40.0;
-  Eigen::MatrixXd K(3, 3), C = Eigen::MatrixXd::Zero(3, 3);
-  K << 3.0, -1.0, 0.0, -1.0, 2.5, -1.2, 0.0, -1.2, 1.6;
-  C.diagonal() << 0.3, 0.9, 1.3;
-  const Eigen::VectorXd m = (Eigen::VectorXd(3) << 0.9, 0.3, 0.5).finished();
-  const fem::Structure structure(fem::Matrix(Eigen::MatrixXd(m.asDiagonal())), fem::Matrix(C), fem::Matrix(K));
+  const ThreeMasses three;
+  const Eigen::MatrixXd &K = three.K, &C = three.C;
+  const fem::Structure structure = three.structure();
   const friction::NormalOscillator own{.mass = 0.4,
                                        .support_stiffness = 1.3,
                                        .support_damping = 0.7,
