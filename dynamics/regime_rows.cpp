@@ -348,7 +348,6 @@ void RegimeBuilder::make_steady_forces(Regime& out) const {
     for (Eigen::Index c = 0; c < nc_; ++c)
       if (!out.follows[static_cast<std::size_t>(c)]) add(-out.steady_force(k, c) * modal_.directions.col(c));
     if (k == one_) add(-modal_.load);
-    if (!(size.maxCoeff() > 0.0)) continue;
     // With them what the rows say, each with its error: that of a soft spring on a stiff structure is the smaller one.
     missing = (missing.array().abs() > kRoundsBy * size.array()).select(missing, 0.0).eval();
     Eigen::VectorXd by_row(count), by_row_size(count);
@@ -360,6 +359,7 @@ void RegimeBuilder::make_steady_forces(Regime& out) const {
     // Each in its own unit: forces of modes beside those of contacts.
     const double least = kLeast * std::max(size.maxCoeff(), by_row_size.cwiseProduct(reach).maxCoeff()),
                  least_row = kLeast * std::max(by_row_size.maxCoeff(), size.maxCoeff() / reach.maxCoeff());
+    if (!(least > 0.0)) continue;
     improve(holding, {k}, least_squares(b, missing, size.array() + least, by_row, by_row_size.array() + least_row),
             by_row_size, kNearest, out.steady_force);
   }

@@ -52,7 +52,7 @@ bool held_near(const Regime& r, const Eigen::VectorXd& x, const Eigen::VectorXd&
 
 void ClosedFormFlow::account(double tau, bool ends) {
   const auto add = [this](const StayWork& work) { work_.add(work.contact, work.drive, work.viscous, work.force); };
-  if (!has_forms()) return add(integrate(begin_, x_begin_, inputs_begin_, tau));
+  if (!has_forms()) return add(integrate(begin_, x_begin_, free_begin_, inputs_begin_, tau));
   if (!ends) return;
   if (!measured_) measure_amplitudes();
   const StayPlace now{point_.time, x_, free_, point_.x};
@@ -60,7 +60,8 @@ void ClosedFormFlow::account(double tau, bool ends) {
   const bool little = little_left(accounted_, x_accounted_) || !told_alike(tables_->regime(), x_, inputs_);
   if (little ||
       work.rounding > kLostInForms * (work_.exchanged + std::abs(work.contact) + std::abs(work.force) + work.viscous)) {
-    const StayWork summed = integrate(accounted_, x_accounted_, inputs_accounted_, point_.time - accounted_);
+    const StayWork summed =
+        integrate(accounted_, x_accounted_, free_accounted_, inputs_accounted_, point_.time - accounted_);
     if (little || summed.rounding < work.rounding) work = summed;
   }
   add(work);
@@ -73,7 +74,8 @@ bool ClosedFormFlow::little_left(double t, const Eigen::VectorXd& x) const {
   return cancels(*regime_, t, x) && cancels(*regime_, point_.time, x_);
 }
 
-StayWork ClosedFormFlow::integrate(double t, Eigen::VectorXd x, Eigen::VectorXd inputs, double tau) const {
+StayWork ClosedFormFlow::integrate(double t, Eigen::VectorXd x, Eigen::VectorXd free, Eigen::VectorXd inputs,
+                                   double tau) const {
   const RegimeTables& tables = *tables_;
   const Regime& r = tables.regime();
   const DriveOverlay* const drive = regime_->overlay;
@@ -82,15 +84,12 @@ StayWork ClosedFormFlow::integrate(double t, Eigen::VectorXd x, Eigen::VectorXd 
   // apart from it, where it moves once, to go on by itself: a spring's force and its end's velocity by the same motion,
   // so that what this is off by swings, or is constant, without work.
   bool apart = !whole && (r.spring.array() > 0.0).any() && told_alike(r, x, inputs);
-  Eigen::VectorXd held, free, at_free, none;
-  if (apart) {
-    held = r.particular * inputs;
-    apart = held_near(r, x, inputs, held);
-  }
+  const Eigen::VectorXd held = x - free;
+  apart = apart && held_near(r, x, inputs, held);
+  Eigen::VectorXd at_free, none;
   const bool moves = inputs(nc_) != 0.0 || inputs(nc_ + 1) != 0.0;
   Eigen::VectorXd stretch_rate = Eigen::VectorXd::Zero(nc_);  // of springs, by what the ways hold, at V = 1
   if (apart) {
-    free = x - held;
     none = Eigen::VectorXd::Zero(inputs.size());
     for (int c = 0; c < nc_; ++c)
       for (int k = 0; k < nc_; ++k)

@@ -23,6 +23,12 @@ constexpr double kSameInstant = 1e-6;
 /// A sum of which no more than this share of its terms is left is made anew.
 constexpr double kLittleLeft = 1e-2;
 
+/// x += what follows the inputs, by their change.
+void add_held(const Regime& r, const Eigen::VectorXd& from, const Eigen::VectorXd& to, Eigen::VectorXd& x) {
+  for (Eigen::Index k = 0; k <= r.speed_input(); ++k)
+    if (const double change = to(k) - from(k); change != 0.0) x += change * r.particular.col(k);
+}
+
 }  // namespace
 
 double squared_size(const Regime& r, const Eigen::VectorXd& x) {
@@ -155,6 +161,7 @@ void ClosedFormFlow::mark_accounted() {
   if (!has_forms()) return;
   accounted_ = point_.time;
   x_accounted_ = x_;
+  free_accounted_ = free_;
   inputs_accounted_ = inputs_;
 }
 
@@ -174,6 +181,10 @@ void ClosedFormFlow::measure_amplitudes() {
   amplitude_.array() =
       r.scale1.array() * free_.head(np).array().abs() + r.scale2.array() * free_.tail(np).array().abs();
   measured_ = true;
+  windows_from_.time = point_.time;
+  windows_from_.x = x_;
+  windows_from_.inputs = inputs_;
+  windows_from_.moved.setZero(x_.size());
 }
 
 void ClosedFormFlow::move(double tau) {
@@ -192,29 +203,29 @@ void ClosedFormFlow::move(const Visited& in, double tau, const Eigen::VectorXd& 
   const Regime& r = in.tables->regime();
   if (r.motion.available()) {
     r.motion.add(tau, free.data(), x.data());
-    follow_inputs(in, tau, x, inputs);
+    if (!in.overlay) {
+      r.advance_inputs(inputs, tau);
+      add_held(r, inputs_begin_, inputs, x);
+    }
   } else {
     advance(*in.tables, tau, x, inputs);
   }
   if (in.overlay) in.overlay->move_resonances(r, tau, phase_, x);
 }
 
-void ClosedFormFlow::follow_inputs(const Visited& in, double tau, Eigen::VectorXd& x, Eigen::VectorXd& inputs) const {
-  if (in.overlay) return;  // then all inputs are constant
-  const Regime& r = in.tables->regime();
-  r.advance_inputs(inputs, tau);
-  for (Eigen::Index k = 0; k <= r.speed_input(); ++k)
-    if (const double change = inputs(k) - inputs_begin_(k); change != 0.0) x += change * r.particular.col(k);
-}
-
 void ClosedFormFlow::pass_window() {
   const Regime& r = tables_->regime();
-  if (!r.motion.available() || swells()) return move(tables_->length(level_));
+  const double h = tables_->length(level_);
+  if (!r.motion.available() || swells()) return move(h);
   const RegimeChange& d = tables_->change(level_);
   kernels::kernels().pass(
-      {r.pairs.np, d.d11.data(), d.d12.data(), d.d21.data(), d.d22.data(), r.scale1.data(), r.scale2.data()}, x_.data(),
-      free_.data(), amplitude_.data());
-  follow_inputs(*regime_, tables_->length(level_), x_, inputs_);
+      {r.pairs.np, d.d11.data(), d.d12.data(), d.d21.data(), d.d22.data(), r.scale1.data(), r.scale2.data()},
+      windows_from_.moved.data(), free_.data(), amplitude_.data());
+  x_ = windows_from_.x + windows_from_.moved;
+  if (regime_->overlay) return;
+  inputs_ = windows_from_.inputs;
+  r.advance_inputs(inputs_, begin_ + h - windows_from_.time);
+  add_held(r, windows_from_.inputs, inputs_, x_);
 }
 
 bool ClosedFormFlow::step(double t_limit) {

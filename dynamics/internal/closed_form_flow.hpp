@@ -149,8 +149,6 @@ class ClosedFormFlow {
             Eigen::VectorXd& inputs) const;
   /// The same over a whole window of the level.
   void pass_window();
-  /// Inputs that vary, and the state with them.
-  void follow_inputs(const Visited& in, double tau, Eigen::VectorXd& x, Eigen::VectorXd& inputs) const;
   void foresee_starts();
   [[nodiscard]] GuardStart start_of(const Guard& guard) const;
   /// At the end of guards' exemptions: whether they have left zero.
@@ -201,7 +199,9 @@ class ClosedFormFlow {
   /// Up to the point and its state.
   void mark_accounted();
   /// Work of a time tau from a state on, by quadrature.
-  [[nodiscard]] StayWork integrate(double t, Eigen::VectorXd x, Eigen::VectorXd inputs, double tau) const;
+  /// @param free  of x
+  [[nodiscard]] StayWork integrate(double t, Eigen::VectorXd x, Eigen::VectorXd free, Eigen::VectorXd inputs,
+                                   double tau) const;
   /// Under an overlay: whether x and the steady response at t, each far larger than their sum, leave it few digits. The
   /// sum is then made `anew`: from where the stay began, with what the drive alone has moved since.
   [[nodiscard]] bool cancels(const Visited& in, double t, const Eigen::VectorXd& x) const;
@@ -263,8 +263,15 @@ class ClosedFormFlow {
   Eigen::VectorXd free_begin_;        ///< that of x_begin_
   Eigen::VectorXd free_entered_;      ///< that of the state in which the regime was entered
   Eigen::VectorXd resting_;           ///< what follows the inputs, where those are constant: under a periodic drive
-  bool measured_ = false;             ///< free_ and amplitude_ belong to x_
-  std::vector<Recall> recall_;        ///< of each contact
+  /// Where free_ was told from x_ last, and what it has moved over whole windows since. What a window adds to the
+  /// inputs, and to the places that follow them, rounds to one side, and of those that a stiff spring holds together
+  /// the difference has a force: ways are by the clock, and places by these.
+  struct {
+    double time = 0.0;
+    Eigen::VectorXd x{}, inputs{}, moved{};
+  } windows_from_;
+  bool measured_ = false;       ///< free_ and amplitude_ belong to x_
+  std::vector<Recall> recall_;  ///< of each contact
   double begin_ = 0.0;
   DrivePhase phase_;                                    ///< at begin_, of a periodic drive
   mutable Eigen::VectorXd x_then_, inputs_then_, sum_;  ///< worked in: samples are asked for by the thousand
@@ -283,8 +290,8 @@ class ClosedFormFlow {
   double tangent_time_ = 0.0;
 
   AuditForms::Stay stay_;
-  double accounted_ = 0.0;                          ///< where forms integrate: up to here,
-  Eigen::VectorXd x_accounted_, inputs_accounted_;  ///< and from there
+  double accounted_ = 0.0;                                           ///< where forms integrate: up to here,
+  Eigen::VectorXd x_accounted_, free_accounted_, inputs_accounted_;  ///< and from there
   WorkSums work_;
   bool blind_start_ = false;  ///< a guard starts at zero, and no bound says that it rises
   FlowStatistics statistics_;

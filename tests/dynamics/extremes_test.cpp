@@ -1,6 +1,7 @@
 // The ends of every range: belt speeds 0, 1e-9 and huge, no friction, one and two masses, rigid-body modes, critical
 // and heavy damping, simultaneous events, event storms.
 #include <slipmode/core/errors.hpp>
+#include <slipmode/fem/masses.hpp>
 #include "fixtures/against_reference.hpp"
 #include "fixtures/uniform_chain.hpp"
 
@@ -244,6 +245,28 @@ TEST(Extremes, AStickOnAMassOfAStiffPairHoldsUntilASoftSpringReachesItsLimit) {
     EXPECT_EQ(run.events[0].kind, EventKind::kRelease);
     EXPECT_NEAR(run.events[0].time, release, 1e-8);  // K's rounding: 2e-16 · stiff/soft of the time
     EXPECT_LT(run.statistics.steps, 50'000);
+  }
+}
+
+TEST(Extremes, AMassThatHardlyAnythingHoldsLosesNothing) {
+  // Friction 1 moves a mass 1 on a spring k for 50 units, by 2/k sin²(wt/2), w² = k: little of the 1/k at which the
+  // spring would hold it. As the sum of that and of free motion, both 10¹² m, the place would be off by 1e-4. A second
+  // mass that all but moves with the belt makes windows short.
+  const double duration = 50.0;
+  for (const double k : {1e-6, 1e-9, 1e-12}) {
+    SCOPED_TRACE(k);
+    const HybridSystem system(
+        fem::masses({.mass = {1.0, 1.0}, .links = {{0, 1, k, 0.0}, {0, 2, 1.0, 0.0}}}),
+        {{Eigen::VectorXd::Unit(2, 0), Coulomb{1.0, 1.0}, 1.0}, {Eigen::VectorXd::Unit(2, 1), Coulomb{0.5, 0.5}, 1.0}},
+        Belt::constant(60.0));
+    const Trajectory run =
+        simulate(system, state(Eigen::Vector2d(0.0, 0.5), Eigen::Vector2d(0.0, 59.9)), {.duration = duration});
+    EXPECT_TRUE(run.events.empty());
+    EXPECT_GT(run.statistics.steps, 10);
+    const double w = std::sqrt(k), half = std::sin(w * duration / 2.0);
+    EXPECT_NEAR(run.final_state.q(0), 2.0 / k * half * half, 1e-11);
+    EXPECT_NEAR(run.final_state.v(0), std::sin(w * duration) / w, 1e-12);
+    EXPECT_LT(std::abs(run.audit.residual()), 1e-13);
   }
 }
 

@@ -214,6 +214,27 @@ TEST(ParallelContacts, SteadyForcesBesideAHeldMassAreThoseOfTheStructure) {
   }
 }
 
+TEST(ParallelContacts, SteadyForcesOfSpringsThatCarryAFloatingMassAddUpToNone) {
+  // Springs k_i on one mass that nothing else holds, K of them all: along the way of k_j the mass goes by k_j / K, and
+  // each exerts k_i (δ_ij − k_j / K). By its row, the stiff one's force was 3e-17 of its stiffness out.
+  for (const double stiff : {1e3, 1e5, 1e8}) {
+    SCOPED_TRACE(stiff);
+    const Eigen::Vector3d k(79.0, 0.7, stiff);
+    std::vector<friction::Contact> contacts;
+    for (const double stiffness : k)
+      contacts.push_back({Eigen::VectorXd::Ones(1), friction::CompliantCoulomb{1.0, 1.0, stiffness}, 1.0});
+    const HybridSystem system(fem::masses({.mass = {0.317}, .links = {{.damping = 0.0137}}}), contacts,
+                              friction::Belt::constant(1.0));
+    const Regime regime(system, system.cache().tables(system, false).model,
+                        std::vector<ContactRole>(3, ContactRole::kSprung));
+    for (int j = 0; j < 3; ++j)
+      for (int i = 0; i < 3; ++i) {
+        const double moved = i == j ? k((j + 1) % 3) + k((j + 2) % 3) : -k(j), force = k(i) / k.sum() * moved;
+        EXPECT_NEAR(regime.steady_force(j, i), force, 2e-13 * std::abs(force)) << j << " " << i;
+      }
+  }
+}
+
 TEST(ParallelContacts, OfStiffSpringsTurnOnceWhereTheMassDoes) {
   // Elements that stretch by 1e-10 m down to 1e-15 m before they slide, under a mass that moves by metres: where the
   // speed turns, each ceases to slide and begins to, once. By collocation as in the closed form, and as by hand. Where
