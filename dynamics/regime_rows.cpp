@@ -22,8 +22,13 @@ Eigen::MatrixXd damped(const auto& D, bool diagonal, const auto& speeds) {
   return D * speeds;
 }
 
-double rate_of(const Eigen::Matrix2d& G) {
-  return std::sqrt(std::max(std::abs(G.determinant()), G.squaredNorm() * 1e-16));
+/// Of motion along either coordinate of a pair.
+Eigen::RowVector2d rates_of(const Eigen::Matrix2d& G) {
+  Eigen::RowVector2d rates = G.diagonal().cwiseAbs().transpose();
+  if (G(1, 0) != 0.0) rates.setConstant(std::sqrt(std::abs(G.determinant())));
+  // A place that floats moves at the rate at which its speed decays.
+  if (rates.minCoeff() == 0.0) rates.setConstant(rates.maxCoeff());
+  return rates.cwiseMax(1e-8 * G.norm());
 }
 
 /// x of along · x = known, each equation with its error, beside x = own with its, 0 where that is exact: least squares,
@@ -66,9 +71,13 @@ Eigen::MatrixXd RegimeBuilder::of_mode_rates(const Eigen::MatrixXd& columns) con
   return out;
 }
 
-Eigen::VectorXd RegimeBuilder::mode_errors(double rate) const {
-  const Eigen::VectorXd own = modal_.omega.cwiseAbs2() / std::max(rate, 1e-300) + most_damped_;
-  return (rate + own.array()).max(1e-300).replicate(2, 1);
+Eigen::MatrixXd RegimeBuilder::mode_errors(const Eigen::RowVector2d& rates, const Eigen::RowVector2d& moves) const {
+  Eigen::MatrixXd out(2 * n_, 2);
+  for (Eigen::Index j = 0; j < 2; ++j) {
+    const Eigen::VectorXd own = modal_.omega.cwiseAbs2() / std::max(rates(j), 1e-300) + most_damped_;
+    out.col(j) = ((rates(j) + own.array()).max(1e-300) * moves(j)).replicate(2, 1);
+  }
+  return out;
 }
 
 void RegimeBuilder::make_inputs(Regime& out) const {
@@ -234,13 +243,13 @@ void RegimeBuilder::refine_stick_rows(Regime& out) const {
       size(k) = out.force_row(Eigen::all, same).rowwise().sum().cwiseAbs().maxCoeff();
       by_row.row(k) = out.force_row(pair, same).rowwise().sum().transpose();
     }
-    const double rate = rate_of(G);
-    const Eigen::RowVector2d moves = (rate * t.topRows(n_).cwiseAbs())
+    const Eigen::RowVector2d rates = rates_of(G),
+                             moves = (t.topRows(n_).cwiseAbs() * rates.asDiagonal())
                                          .colwise()
                                          .maxCoeff()
                                          .cwiseMax(t.bottomRows(n_).cwiseAbs().colwise().maxCoeff());
     improve(holding, pair,
-            least_squares(b, missing, mode_errors(rate) * moves, by_row, row_size(pair, Eigen::all).transpose()), size,
+            least_squares(b, missing, mode_errors(rates, moves), by_row, row_size(pair, Eigen::all).transpose()), size,
             kNear, out.force_row);
   }
 }
@@ -281,11 +290,11 @@ void RegimeBuilder::refine_spring_inputs(Regime& out) const {
       by_itself.row(k) = out.B(pair, sprung.together[place]).rowwise().sum().transpose();
       size.row(k) = sprung.stiffness[place] * terms(pair, sprung.first[place]).transpose();
     }
-    const double rate = rate_of(G);
-    const Eigen::RowVector2d moves = f.topRows(n_).cwiseAbs().colwise().maxCoeff().cwiseMax(
-        (rate * f.bottomRows(n_).cwiseAbs()).colwise().maxCoeff());
+    const Eigen::RowVector2d rates = rates_of(G),
+                             moves = f.topRows(n_).cwiseAbs().colwise().maxCoeff().cwiseMax(
+                                 (f.bottomRows(n_).cwiseAbs() * rates.asDiagonal()).colwise().maxCoeff());
     improve(sprung, pair,
-            least_squares(e, missing, mode_errors(rate) * moves + lift_sizes(Eigen::all, pair), by_itself, size),
+            least_squares(e, missing, mode_errors(rates, moves) + lift_sizes(Eigen::all, pair), by_itself, size),
             size.rowwise().maxCoeff(), kNearer, out.B);
   }
 }

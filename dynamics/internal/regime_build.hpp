@@ -71,8 +71,8 @@ class RegimeBuilder {
   [[nodiscard]] Eigen::MatrixXd of_forces(const Eigen::MatrixXd& along) const;
   [[nodiscard]] Eigen::MatrixXd mode_rates(const Eigen::MatrixXd& states) const;
   [[nodiscard]] Eigen::MatrixXd of_mode_rates(const Eigen::MatrixXd& columns) const;
-  /// What their equations round by at a rate, of what moves [2n].
-  [[nodiscard]] Eigen::VectorXd mode_errors(double rate) const;
+  /// What their equations round by, each at its rate and of what moves [2n x 2].
+  [[nodiscard]] Eigen::MatrixXd mode_errors(const Eigen::RowVector2d& rates, const Eigen::RowVector2d& moves) const;
   /// Of contacts that stick, without the cancellation behind a stiff spring or on a fine mesh.
   void refine_stick_rows(Regime& out) const;
   /// The same of what a spring that the drive pulls does to the pairs.
