@@ -296,6 +296,8 @@ CollocationFlow::Ending CollocationFlow::ending(const double* values) const {
 }
 
 double CollocationFlow::force_error() const {
+  constexpr double kOfBegin = 0.5;  // there the first polynomial left out is at its largest
+  static const RadauTables::Vector8 at_begin = radau().lagrange(0.0);
   double worst = 0.0;
   for (int c = 0; c < nc_; ++c) {
     const auto i = static_cast<std::size_t>(c);
@@ -303,6 +305,11 @@ double CollocationFlow::force_error() const {
     // The first coefficient left out, if the sequence keeps falling as it does.
     const auto [last, ratio] = ending(forces_.data() + kNodes * c);
     worst = std::max(worst, std::max(0.0, last * ratio - rounding_of_stop(c)) * over_scale(c));
+    // What a force does before the first node no coefficient sees: it begins where its law has it.
+    if (fresh_ && point_.modes[i] != ContactMode::kStick && !bristled(c) && !elaborate(c))
+      worst = std::max(
+          worst, kOfBegin * over_scale(c) *
+                     std::abs(kernels_.dot(at_begin.data(), forces_.data() + kNodes * c, kNodes) - point_.force(c)));
     if (bristled(c)) worst = std::max(worst, bristle_error(c, halfway()) * acting_ / tables_.step(step_level_));
     if (laws()[i].characteristic != nullptr && point_.modes[i] != ContactMode::kStick)
       worst = std::max(worst, characteristic_error(c));

@@ -1,4 +1,5 @@
 // Friction by measured points on the collocation flow: a force whose curvature jumps at each point.
+#include <slipmode/fem/masses.hpp>
 #include "fixtures/runge_kutta_reference.hpp"
 #include "fixtures/scenes.hpp"
 
@@ -54,6 +55,31 @@ TEST(Measured, FollowsRungeKuttaAtEveryTolerance) {
                       (run.final_state.v - reference.v()).cwiseAbs().maxCoeff()});
     EXPECT_LT(worst, 30.0 * tolerance) << tolerance;
   }
+}
+
+// A force so large that the law has changed before a step's first node: no coefficient of the step shows it, and the
+// speed was off by 2e-7, by Stribeck's law 3e-8, at any tolerance. Both by v' = F − N μ(v) alone.
+TEST(Measured, WhatChangesBeforeAStepsFirstNodeIsSeen) {
+  constexpr double F = 1e5, N = 1.3, duration = 1e-3, tolerance = 1e-11;
+  const auto speed = [&](const friction::Law& law) {
+    const HybridSystem system(fem::masses({.mass = {1.0}, .links = {{0, 1, 0.0, 0.0}}}),
+                              {{Eigen::VectorXd::Ones(1), law, N}}, Belt::constant(0.0),
+                              Eigen::VectorXd::Constant(1, F));
+    return simulate(system, system.rest(), {.duration = duration, .flow = {.tolerance = tolerance}}).final_state.v(0);
+  };
+  const Measured line{.mu_s = 2.0, .speeds = {0.0, 0.155}, .coefficients = {0.1, 0.42}};
+  double reach = 0.0;  // when the last point is: of dv / (F − N μ), by Simpson's rule
+  constexpr int parts = 64;
+  for (int k = 0; k <= 2 * parts; ++k)
+    reach += (k == 0 || k == 2 * parts ? 1.0
+              : k % 2 == 0             ? 2.0
+                                       : 4.0) *
+             line.speeds[1] / (6.0 * parts) / (F - N * line.kinetic_coefficient(line.speeds[1] * k / (2.0 * parts)));
+  EXPECT_NEAR(speed(line), line.speeds[1] + (F - N * line.coefficients[1]) * (duration - reach), 30.0 * tolerance);
+  const Stribeck steep{0.7, 0.1, 200.0};
+  const double away = F - N * steep.mu_k;
+  EXPECT_NEAR(speed(steep), away * duration + std::log1p(-N * (steep.mu_s - steep.mu_k) / away) / steep.alpha,
+              30.0 * tolerance);
 }
 
 // Without static friction, the points of a straight line are a dashpot, whose motion is known; a program's own line
