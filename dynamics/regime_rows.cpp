@@ -15,6 +15,8 @@ namespace {
 constexpr double kNear = 1e-8;
 /// The same of what springs do to the pairs, and of steady forces once that is known.
 constexpr double kNearer = 1e-11, kNearest = 1e-13;
+/// Rounding, of what a sum is made of.
+constexpr double kRoundsBy = 64.0 * std::numeric_limits<double>::epsilon();
 
 /// D speeds; of a diagonal D in O(n).
 Eigen::MatrixXd damped(const auto& D, bool diagonal, const auto& speeds) {
@@ -240,7 +242,10 @@ void RegimeBuilder::refine_stick_rows(Regime& out) const {
     Eigen::MatrixXd by_row(b.cols(), 2);
     for (Eigen::Index k = 0; k < size.size(); ++k) {
       const std::vector<Eigen::Index>& same = holding.together[static_cast<std::size_t>(k)];
-      size(k) = out.force_row(Eigen::all, same).rowwise().sum().cwiseAbs().maxCoeff();
+      // What a row rounds by of the place of a part that floats, all of its way in it, is no small share of the
+      // largest.
+      size(k) = std::max(out.force_row(Eigen::all, same).rowwise().sum().cwiseAbs().maxCoeff(),
+                         kRoundsBy / kNear * row_size(pair, k).maxCoeff());
       by_row.row(k) = out.force_row(pair, same).rowwise().sum().transpose();
     }
     const Eigen::RowVector2d rates = rates_of(G),
@@ -301,7 +306,7 @@ void RegimeBuilder::refine_spring_inputs(Regime& out) const {
 
 void RegimeBuilder::make_steady_forces(Regime& out) const {
   // Behind a stiff spring, what a contact exerts on the motion that follows the inputs is a small difference as well.
-  constexpr double kRoundsBy = 64.0 * std::numeric_limits<double>::epsilon(), kLeast = 1e-8;
+  constexpr double kLeast = 1e-8;
   const Eigen::MatrixXd by_rows = out.particular.transpose() * out.force_row + out.force_coefficient;
   out.steady_force = by_rows;
   out.beside_rows = Eigen::MatrixXd::Zero(ni_, nc_);

@@ -261,6 +261,37 @@ TEST(ParallelContacts, WhatGoesAlongWithTheWaysOfSpringsMovesNothing) {
   }
 }
 
+TEST(ParallelContacts, PlacesOfWhatFloatsHaveNoForceOfSprings) {
+  // Three parts that hang on dampers alone beside one that a spring holds: their places are nothing to it. As K_c times
+  // what its own row rounds by, the force was 3e-16 K_c of the place, and left so where that is no small share of the
+  // row's largest entry, of a coordinate in other units.
+  const fem::Structure structure = fem::masses({.mass = {0.387, 2.138, 0.455, 1.669, 0.673, 0.894, 1.437},
+                                                .links = {{0, 1, 1.578, 0.055},
+                                                          {1, 2, 0.631, 0.074},
+                                                          {0, 2, 0.444, 0.080},
+                                                          {1, 3, 0.0, 0.131},
+                                                          {3, 4, 0.0, 0.102},
+                                                          {3, 5, 1.842, 0.101},
+                                                          {2, 6, 0.0, 0.136},
+                                                          {3, 7, 0.0, 0.0022}}});
+  for (double spring = 30.0; spring < 1e8; spring *= 1.3) {
+    SCOPED_TRACE(spring);
+    const HybridSystem system(structure,
+                              {{Eigen::VectorXd::Unit(7, 4), friction::CompliantCoulomb{1.0, 1.0, spring}, 1.0}},
+                              friction::Belt::constant(1.0));
+    const ModalModel& slipping = system.cache().tables(system, false).model;
+    const Regime regime(system, slipping, {ContactRole::kSprung});
+    int places = 0;
+    for (Eigen::Index i = 0; i < regime.pairs.n; ++i) {
+      if (regime.pairs.g11(i) != 0.0 || regime.pairs.g21(i) != 0.0) continue;
+      ++places;
+      const double far = (slipping.to_q * regime.to_slipping.col(i)).cwiseAbs().maxCoeff();
+      EXPECT_LT(std::abs(regime.force_row(i, 0)), 1e-16 * std::sqrt(spring) * far) << i;
+    }
+    EXPECT_EQ(places, 3);
+  }
+}
+
 TEST(ParallelContacts, OfStiffSpringsTurnOnceWhereTheMassDoes) {
   // Elements that stretch by 1e-10 m down to 1e-15 m before they slide, under a mass that moves by metres: where the
   // speed turns, each ceases to slide and begins to, once. By collocation as in the closed form, and as by hand. Where
