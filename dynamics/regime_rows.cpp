@@ -73,11 +73,15 @@ Eigen::MatrixXd RegimeBuilder::of_mode_rates(const Eigen::MatrixXd& columns) con
   return out;
 }
 
-Eigen::MatrixXd RegimeBuilder::mode_errors(const Eigen::RowVector2d& rates, const Eigen::RowVector2d& moves) const {
+Eigen::MatrixXd RegimeBuilder::mode_errors(const Eigen::Matrix2d& G, const Eigen::MatrixXd& at_rate,
+                                           const Eigen::MatrixXd& beside) const {
+  const Eigen::RowVector2d rates = rates_of(G);
   Eigen::MatrixXd out(2 * n_, 2);
   for (Eigen::Index j = 0; j < 2; ++j) {
-    const Eigen::VectorXd own = modal_.omega.cwiseAbs2() / std::max(rates(j), 1e-300) + most_damped_;
-    out.col(j) = ((rates(j) + own.array()).max(1e-300) * moves(j)).replicate(2, 1);
+    const double rate = rates(j),
+                 moves = std::max(rate * at_rate.col(j).cwiseAbs().maxCoeff(), beside.col(j).cwiseAbs().maxCoeff());
+    const Eigen::VectorXd own = modal_.omega.cwiseAbs2() / std::max(rate, 1e-300) + most_damped_;
+    out.col(j) = ((rate + own.array()).max(1e-300) * moves).replicate(2, 1);
   }
   return out;
 }
@@ -248,14 +252,10 @@ void RegimeBuilder::refine_stick_rows(Regime& out) const {
                          kRoundsBy / kNear * row_size(pair, k).maxCoeff());
       by_row.row(k) = out.force_row(pair, same).rowwise().sum().transpose();
     }
-    const Eigen::RowVector2d rates = rates_of(G),
-                             moves = (t.topRows(n_).cwiseAbs() * rates.asDiagonal())
-                                         .colwise()
-                                         .maxCoeff()
-                                         .cwiseMax(t.bottomRows(n_).cwiseAbs().colwise().maxCoeff());
     improve(holding, pair,
-            least_squares(b, missing, mode_errors(rates, moves), by_row, row_size(pair, Eigen::all).transpose()), size,
-            kNear, out.force_row);
+            least_squares(b, missing, mode_errors(G, t.topRows(n_), t.bottomRows(n_)), by_row,
+                          row_size(pair, Eigen::all).transpose()),
+            size, kNear, out.force_row);
   }
 }
 
@@ -295,11 +295,9 @@ void RegimeBuilder::refine_spring_inputs(Regime& out) const {
       by_itself.row(k) = out.B(pair, sprung.together[place]).rowwise().sum().transpose();
       size.row(k) = sprung.stiffness[place] * terms(pair, sprung.first[place]).transpose();
     }
-    const Eigen::RowVector2d rates = rates_of(G),
-                             moves = f.topRows(n_).cwiseAbs().colwise().maxCoeff().cwiseMax(
-                                 (f.bottomRows(n_).cwiseAbs() * rates.asDiagonal()).colwise().maxCoeff());
     improve(sprung, pair,
-            least_squares(e, missing, mode_errors(rates, moves) + lift_sizes(Eigen::all, pair), by_itself, size),
+            least_squares(e, missing, mode_errors(G, f.bottomRows(n_), f.topRows(n_)) + lift_sizes(Eigen::all, pair),
+                          by_itself, size),
             size.rowwise().maxCoeff(), kNearer, out.B);
   }
 }

@@ -74,7 +74,7 @@ bool ClosedFormFlow::little_left(double t, const Eigen::VectorXd& x) const {
   return cancels(*regime_, t, x) && cancels(*regime_, point_.time, x_);
 }
 
-StayWork ClosedFormFlow::integrate(double t, Eigen::VectorXd x, Eigen::VectorXd free, Eigen::VectorXd inputs,
+StayWork ClosedFormFlow::integrate(double t, Eigen::VectorXd x, const Eigen::VectorXd& x_free, Eigen::VectorXd inputs,
                                    double tau) const {
   const RegimeTables& tables = *tables_;
   const Regime& r = tables.regime();
@@ -84,12 +84,15 @@ StayWork ClosedFormFlow::integrate(double t, Eigen::VectorXd x, Eigen::VectorXd 
   // apart from it, where it moves once, to go on by itself: a spring's force and its end's velocity by the same motion,
   // so that what this is off by swings, or is constant, without work.
   bool apart = !whole && (r.spring.array() > 0.0).any() && told_alike(r, x, inputs);
-  const Eigen::VectorXd held = x - free;
-  apart = apart && held_near(r, x, inputs, held);
-  Eigen::VectorXd at_free, none;
+  Eigen::VectorXd held, free, at_free, none;
+  if (apart) {
+    held = x - x_free;
+    apart = held_near(r, x, inputs, held);
+  }
   const bool moves = inputs(nc_) != 0.0 || inputs(nc_ + 1) != 0.0;
   Eigen::VectorXd stretch_rate = Eigen::VectorXd::Zero(nc_);  // of springs, by what the ways hold, at V = 1
   if (apart) {
+    free = x_free;
     none = Eigen::VectorXd::Zero(inputs.size());
     for (int c = 0; c < nc_; ++c)
       for (int k = 0; k < nc_; ++k)

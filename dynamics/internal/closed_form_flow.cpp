@@ -23,12 +23,6 @@ constexpr double kSameInstant = 1e-6;
 /// A sum of which no more than this share of its terms is left is made anew.
 constexpr double kLittleLeft = 1e-2;
 
-/// x += what follows the inputs, by their change.
-void add_held(const Regime& r, const Eigen::VectorXd& from, const Eigen::VectorXd& to, Eigen::VectorXd& x) {
-  for (Eigen::Index k = 0; k <= r.speed_input(); ++k)
-    if (const double change = to(k) - from(k); change != 0.0) x += change * r.particular.col(k);
-}
-
 }  // namespace
 
 double squared_size(const Regime& r, const Eigen::VectorXd& x) {
@@ -203,14 +197,21 @@ void ClosedFormFlow::move(const Visited& in, double tau, const Eigen::VectorXd& 
   const Regime& r = in.tables->regime();
   if (r.motion.available()) {
     r.motion.add(tau, free.data(), x.data());
-    if (!in.overlay) {
-      r.advance_inputs(inputs, tau);
-      add_held(r, inputs_begin_, inputs, x);
-    }
+    follow_inputs(in, inputs_begin_, tau, x, inputs);
   } else {
     advance(*in.tables, tau, x, inputs);
   }
   if (in.overlay) in.overlay->move_resonances(r, tau, phase_, x);
+}
+
+void ClosedFormFlow::follow_inputs(const Visited& in, const Eigen::VectorXd& from, double tau, Eigen::VectorXd& x,
+                                   Eigen::VectorXd& out_inputs) const {
+  if (in.overlay) return;  // then all inputs are constant
+  const Regime& r = in.tables->regime();
+  out_inputs = from;
+  r.advance_inputs(out_inputs, tau);
+  for (Eigen::Index k = 0; k <= r.speed_input(); ++k)
+    if (const double change = out_inputs(k) - from(k); change != 0.0) x += change * r.particular.col(k);
 }
 
 void ClosedFormFlow::pass_window() {
@@ -222,10 +223,7 @@ void ClosedFormFlow::pass_window() {
       {r.pairs.np, d.d11.data(), d.d12.data(), d.d21.data(), d.d22.data(), r.scale1.data(), r.scale2.data()},
       windows_from_.moved.data(), free_.data(), amplitude_.data());
   x_ = windows_from_.x + windows_from_.moved;
-  if (regime_->overlay) return;
-  inputs_ = windows_from_.inputs;
-  r.advance_inputs(inputs_, begin_ + h - windows_from_.time);
-  add_held(r, windows_from_.inputs, inputs_, x_);
+  follow_inputs(*regime_, windows_from_.inputs, begin_ + h - windows_from_.time, x_, inputs_);
 }
 
 bool ClosedFormFlow::step(double t_limit) {

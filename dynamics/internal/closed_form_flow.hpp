@@ -149,6 +149,9 @@ class ClosedFormFlow {
             Eigen::VectorXd& inputs) const;
   /// The same over a whole window of the level.
   void pass_window();
+  /// Inputs that vary, a time tau after these, and x with them, which is what has moved freely by then.
+  void follow_inputs(const Visited& in, const Eigen::VectorXd& from, double tau, Eigen::VectorXd& x,
+                     Eigen::VectorXd& out_inputs) const;
   void foresee_starts();
   [[nodiscard]] GuardStart start_of(const Guard& guard) const;
   /// At the end of guards' exemptions: whether they have left zero.
@@ -199,8 +202,8 @@ class ClosedFormFlow {
   /// Up to the point and its state.
   void mark_accounted();
   /// Work of a time tau from a state on, by quadrature.
-  /// @param free  of x
-  [[nodiscard]] StayWork integrate(double t, Eigen::VectorXd x, Eigen::VectorXd free, Eigen::VectorXd inputs,
+  /// @param x_free  what moves freely of x
+  [[nodiscard]] StayWork integrate(double t, Eigen::VectorXd x, const Eigen::VectorXd& x_free, Eigen::VectorXd inputs,
                                    double tau) const;
   /// Under an overlay: whether x and the steady response at t, each far larger than their sum, leave it few digits. The
   /// sum is then made `anew`: from where the stay began, with what the drive alone has moved since.

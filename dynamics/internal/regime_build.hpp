@@ -71,8 +71,11 @@ class RegimeBuilder {
   [[nodiscard]] Eigen::MatrixXd of_forces(const Eigen::MatrixXd& along) const;
   [[nodiscard]] Eigen::MatrixXd mode_rates(const Eigen::MatrixXd& states) const;
   [[nodiscard]] Eigen::MatrixXd of_mode_rates(const Eigen::MatrixXd& columns) const;
-  /// What their equations round by, each at its rate and of what moves [2n x 2].
-  [[nodiscard]] Eigen::MatrixXd mode_errors(const Eigen::RowVector2d& rates, const Eigen::RowVector2d& moves) const;
+  /// What their equations round by of a pair's two coordinates, each at its own rate [2n x 2].
+  /// @param at_rate, beside  of the pair's columns (or rows) in modes: what moves of each is the largest entry of the
+  ///                         one times that rate and of the other [n x 2]
+  [[nodiscard]] Eigen::MatrixXd mode_errors(const Eigen::Matrix2d& G, const Eigen::MatrixXd& at_rate,
+                                            const Eigen::MatrixXd& beside) const;
   /// Of contacts that stick, without the cancellation behind a stiff spring or on a fine mesh.
   void refine_stick_rows(Regime& out) const;
   /// The same of what a spring that the drive pulls does to the pairs.

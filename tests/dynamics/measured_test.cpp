@@ -1,4 +1,5 @@
 // Friction by measured points on the collocation flow: a force whose curvature jumps at each point.
+#include <slipmode/dynamics/nodes.hpp>
 #include <slipmode/fem/masses.hpp>
 #include "fixtures/runge_kutta_reference.hpp"
 #include "fixtures/scenes.hpp"
@@ -68,13 +69,10 @@ TEST(Measured, WhatChangesBeforeAStepsFirstNodeIsSeen) {
     return simulate(system, system.rest(), {.duration = duration, .flow = {.tolerance = tolerance}}).final_state.v(0);
   };
   const Measured line{.mu_s = 2.0, .speeds = {0.0, 0.155}, .coefficients = {0.1, 0.42}};
-  double reach = 0.0;  // when the last point is: of dv / (F − N μ), by Simpson's rule
-  constexpr int parts = 64;
-  for (int k = 0; k <= 2 * parts; ++k)
-    reach += (k == 0 || k == 2 * parts ? 1.0
-              : k % 2 == 0             ? 2.0
-                                       : 4.0) *
-             line.speeds[1] / (6.0 * parts) / (F - N * line.kinetic_coefficient(line.speeds[1] * k / (2.0 * parts)));
+  const GaussRule rule = gauss_rule(16);
+  double reach = 0.0;  // when the speed of the last point is: ∫ dv / (F − N μ)
+  for (Eigen::Index k = 0; k < rule.node.size(); ++k)
+    reach += rule.weight(k) * line.speeds[1] / (F - N * line.kinetic_coefficient(rule.node(k) * line.speeds[1]));
   EXPECT_NEAR(speed(line), line.speeds[1] + (F - N * line.coefficients[1]) * (duration - reach), 30.0 * tolerance);
   const Stribeck steep{0.7, 0.1, 200.0};
   const double away = F - N * steep.mu_k;

@@ -33,6 +33,17 @@ HybridSystem on_elements(const std::vector<std::pair<double, double>>& elements,
           Eigen::MatrixXd::Ones(1, 1)};
 }
 
+const ModalModel& slipping_of(const HybridSystem& system) { return system.cache().tables(system, false).model; }
+
+Regime regime_of(const HybridSystem& system, const std::vector<ContactRole>& roles) {
+  return {system, slipping_of(system), roles};
+}
+
+/// A contact spring at one of so many degrees of freedom.
+friction::Contact spring_at(Eigen::Index size, Eigen::Index at, double stiffness) {
+  return {Eigen::VectorXd::Unit(size, at), friction::CompliantCoulomb{1.0, 1.0, stiffness}, 1.0};
+}
+
 TEST(ParallelContacts, PartsOfAnElementMoveAsTheWhole) {
   for (const int stops : {0, 1, 2}) {
     const HybridSystem whole = on_elements({{0.3, 1.0}}, std::min(stops, 1)),
@@ -108,13 +119,11 @@ TEST(ParallelContacts, StretchAlikeUnderADriveHoweverSoft) {
   const friction::Force force{1.3, {{.amplitude = 0.7, .phase = 0.3}}};
   const auto spread = [](const std::vector<double>& stiffness, const friction::Drive& drive) {
     std::vector<friction::Contact> contacts;
-    for (const double k : stiffness)
-      contacts.push_back({Eigen::VectorXd::Unit(8, 2), friction::CompliantCoulomb{1.0, 1.0, k}, 1.0});
+    for (const double k : stiffness) contacts.push_back(spring_at(8, 2, k));
     const HybridSystem system(fem::chain({.masses = 8, .damping = 0.01}), contacts, drive, {},
                               drive.shaker() ? Eigen::MatrixXd() : Eigen::MatrixXd(Eigen::MatrixXd::Ones(8, 1)));
-    const ModalModel& slipping = system.cache().tables(system, false).model;
-    const Regime regime(system, slipping, std::vector<ContactRole>(stiffness.size(), ContactRole::kSprung));
-    const DriveOverlay overlay(regime, slipping, drive);
+    const Regime regime = regime_of(system, std::vector<ContactRole>(stiffness.size(), ContactRole::kSprung));
+    const DriveOverlay overlay(regime, slipping_of(system), drive);
     const Eigen::ArrayXd k = Eigen::Map<const Eigen::ArrayXd>(stiffness.data(), std::ssize(stiffness));
     double worst = 0.0;
     for (const Eigen::MatrixXd* part : {&overlay.force.c, &overlay.force.s}) {
@@ -139,7 +148,7 @@ TEST(ParallelContacts, ASoftSpringBesideAHeldContactIsItsStretch) {
         {beam.displacement_row(0.31), friction::Coulomb{0.5, 0.5}, 1.0},
         {beam.displacement_row(0.2), friction::CompliantCoulomb{0.5, 0.5, K}, 1.0}};
     const HybridSystem system(beam.structure(), contacts, friction::Belt{});
-    const Regime regime(system, system.cache().tables(system, false).model, {ContactRole::kHeld, ContactRole::kSprung});
+    const Regime regime = regime_of(system, {ContactRole::kHeld, ContactRole::kSprung});
     const Eigen::VectorXd own = -K * regime.displacement_row.col(1);
     EXPECT_LT((regime.force_row.col(1) - own).norm(), 1e-12 * own.norm()) << K;
   }
@@ -165,8 +174,8 @@ TEST(ParallelContacts, RowsOnBothSidesOfAHeldMassAreExact) {
         {Eigen::VectorXd::Unit(8, 6), friction::CompliantCoulomb{0.5, 0.5, first}, 1.0},
         {Eigen::VectorXd::Unit(8, 7), friction::CompliantCoulomb{0.5, 0.5, second}, 1.0}};
     const HybridSystem system(structure, contacts, friction::Belt{});
-    const ModalModel& slipping = system.cache().tables(system, false).model;
-    const Regime regime(system, slipping, {ContactRole::kHeld, ContactRole::kSprung, ContactRole::kSprung});
+    const ModalModel& slipping = slipping_of(system);
+    const Regime regime = regime_of(system, {ContactRole::kHeld, ContactRole::kSprung, ContactRole::kSprung});
     const Eigen::MatrixXd q = slipping.to_q * regime.to_slipping, v = slipping.to_v * regime.to_slipping;
     const Eigen::VectorXd held =
         (fem::to_dense(structure.K()).row(2) * q + fem::to_dense(structure.C()).row(2) * v).transpose();
@@ -191,11 +200,10 @@ TEST(ParallelContacts, SteadyForcesBesideAHeldMassAreThoseOfTheStructure) {
   const fem::Structure structure(fem::Matrix(Eigen::MatrixXd(m.asDiagonal())), fem::Matrix(C), fem::Matrix(K));
   for (const double spring : {1e-3, 1.0, 1e3, 1e5, 1e7, 1e9}) {
     SCOPED_TRACE(spring);
-    const HybridSystem system(structure,
-                              {{Eigen::VectorXd::Unit(3, 0), friction::Coulomb{1.0, 1.0}, 1.0},
-                               {Eigen::VectorXd::Unit(3, 2), friction::CompliantCoulomb{1.0, 1.0, spring}, 1.0}},
-                              friction::Belt::constant(1.0));
-    const Regime regime(system, system.cache().tables(system, false).model, {ContactRole::kHeld, ContactRole::kSprung});
+    const HybridSystem system(
+        structure, {{Eigen::VectorXd::Unit(3, 0), friction::Coulomb{1.0, 1.0}, 1.0}, spring_at(3, 2, spring)},
+        friction::Belt::constant(1.0));
+    const Regime regime = regime_of(system, {ContactRole::kHeld, ContactRole::kSprung});
     Eigen::Matrix<Long, 2, 2> free = K.bottomRightCorner(2, 2).cast<Long>();
     free(1, 1) += spring;
     const auto places = [&](const Two& forces) -> Two { return free.fullPivLu().solve(forces); };
@@ -220,13 +228,10 @@ TEST(ParallelContacts, SteadyForcesOfSpringsThatCarryAFloatingMassAddUpToNone) {
   for (const double stiff : {1e3, 1e5, 1e8}) {
     SCOPED_TRACE(stiff);
     const Eigen::Vector3d k(79.0, 0.7, stiff);
-    std::vector<friction::Contact> contacts;
-    for (const double stiffness : k)
-      contacts.push_back({Eigen::VectorXd::Ones(1), friction::CompliantCoulomb{1.0, 1.0, stiffness}, 1.0});
-    const HybridSystem system(fem::masses({.mass = {0.317}, .links = {{.damping = 0.0137}}}), contacts,
+    const HybridSystem system(fem::masses({.mass = {0.317}, .links = {{.damping = 0.0137}}}),
+                              {spring_at(1, 0, k(0)), spring_at(1, 0, k(1)), spring_at(1, 0, k(2))},
                               friction::Belt::constant(1.0));
-    const Regime regime(system, system.cache().tables(system, false).model,
-                        std::vector<ContactRole>(3, ContactRole::kSprung));
+    const Regime regime = regime_of(system, std::vector<ContactRole>(3, ContactRole::kSprung));
     for (int j = 0; j < 3; ++j)
       for (int i = 0; i < 3; ++i) {
         const double moved = i == j ? k((j + 1) % 3) + k((j + 2) % 3) : -k(j), force = k(i) / k.sum() * moved;
@@ -243,15 +248,11 @@ TEST(ParallelContacts, WhatGoesAlongWithTheWaysOfSpringsMovesNothing) {
     SCOPED_TRACE(damper);
     const fem::Structure structure = fem::masses(
         {.mass = {1.75, 2.46, 0.96, 0.57}, .links = {{1, 2, 0.0, damper}, {2, 3, 1.56, 0.069}, {1, 4, 2.81, 0.144}}});
-    const auto spring = [](Eigen::Index at, double stiffness) {
-      return friction::Contact{Eigen::VectorXd::Unit(4, at), friction::CompliantCoulomb{1.0, 1.0, stiffness}, 1.0};
-    };
-    const HybridSystem system(structure, {spring(0, 12.1), spring(3, 2.19), spring(0, 4.38)},
+    const HybridSystem system(structure, {spring_at(4, 0, 12.1), spring_at(4, 3, 2.19), spring_at(4, 0, 4.38)},
                               friction::Belt::constant(1.0));
-    const ModalModel& slipping = system.cache().tables(system, false).model;
-    const Regime regime(system, slipping, std::vector<ContactRole>(3, ContactRole::kSprung));
+    const Regime regime = regime_of(system, std::vector<ContactRole>(3, ContactRole::kSprung));
     const auto np = regime.pairs.np;
-    const Eigen::VectorXd x = regime.from_slipping * (slipping.from_q * Eigen::Vector4d(1.0, 0.0, 0.0, 1.0)),
+    const Eigen::VectorXd x = regime.from_slipping * (slipping_of(system).from_q * Eigen::Vector4d(1.0, 0.0, 0.0, 1.0)),
                           by_ways = regime.B.leftCols(3).rowwise().sum();
     const ModalModel& g = regime.pairs;
     const Eigen::VectorXd first = g.g11.cwiseProduct(x.head(np)) + g.g12.cwiseProduct(x.tail(np)),
@@ -276,16 +277,13 @@ TEST(ParallelContacts, PlacesOfWhatFloatsHaveNoForceOfSprings) {
                                                           {3, 7, 0.0, 0.0022}}});
   for (double spring = 30.0; spring < 1e8; spring *= 1.3) {
     SCOPED_TRACE(spring);
-    const HybridSystem system(structure,
-                              {{Eigen::VectorXd::Unit(7, 4), friction::CompliantCoulomb{1.0, 1.0, spring}, 1.0}},
-                              friction::Belt::constant(1.0));
-    const ModalModel& slipping = system.cache().tables(system, false).model;
-    const Regime regime(system, slipping, {ContactRole::kSprung});
+    const HybridSystem system(structure, {spring_at(7, 4, spring)}, friction::Belt::constant(1.0));
+    const Regime regime = regime_of(system, {ContactRole::kSprung});
     int places = 0;
     for (Eigen::Index i = 0; i < regime.pairs.n; ++i) {
       if (regime.pairs.g11(i) != 0.0 || regime.pairs.g21(i) != 0.0) continue;
       ++places;
-      const double far = (slipping.to_q * regime.to_slipping.col(i)).cwiseAbs().maxCoeff();
+      const double far = (slipping_of(system).to_q * regime.to_slipping.col(i)).cwiseAbs().maxCoeff();
       EXPECT_LT(std::abs(regime.force_row(i, 0)), 1e-16 * std::sqrt(spring) * far) << i;
     }
     EXPECT_EQ(places, 3);
