@@ -10,12 +10,12 @@ constexpr double kHardlyOscillates = 1e-2;
 
 }  // namespace
 
-PairMotion::PairMotion(const ModalModel& m) {
+PairMotion::PairMotion(const ModalModel& m, double slowest) {
   decay_ = frequency_ = a11_ = a12_ = a21_ = Eigen::VectorXd::Zero(m.np);
   for (Eigen::Index i = 0; i < m.n; ++i) {
     const double half = (m.g11(i) - m.g22(i)) / 2.0, square = -m.g12(i) * m.g21(i) - half * half;
     const double decay = (m.g11(i) + m.g22(i)) / 2.0;
-    if (!(square > kHardlyOscillates * kHardlyOscillates * decay * decay)) {
+    if (!(square > kHardlyOscillates * kHardlyOscillates * decay * decay) || square <= slowest * slowest) {
       others_.push_back(i);
       continue;
     }

@@ -15,15 +15,16 @@ namespace slipmode::dynamics {
 class PairMotion {
  public:
   PairMotion() = default;
-  explicit PairMotion(const ModalModel& pairs);
+  /// @param slowest  frequency at and below which a pair is none of them [1/s]
+  explicit PairMotion(const ModalModel& pairs, double slowest = 0.0);
 
-  /// False when a pair does not oscillate, or hardly: then there is no such formula.
+  /// All pairs oscillate.
   [[nodiscard]] bool available() const { return decay_.size() > 0 && others_.empty(); }
-  /// Those pairs, in ascending order.
+  /// Pairs that do not oscillate, or hardly, for which there is no such formula, in ascending order.
   [[nodiscard]] const std::vector<Eigen::Index>& others() const { return others_; }
   /// e^{Gt} − I of the pairs that do oscillate, a column for each time: entries 11, 12, 21 and 22 of all [4np x times].
   [[nodiscard]] Eigen::MatrixXd changes(const Eigen::VectorXd& times) const;
-  /// x += (e^{Gt} − I) free, if available. @param x, free  [2np], not the same
+  /// x += (e^{Gt} − I) free of the pairs that do oscillate. @param x, free  [2np], not the same
   void add(double t, const double* free, double* x) const;
 
  private:

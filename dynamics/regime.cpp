@@ -27,7 +27,7 @@ Regime::Regime(const HybridSystem& system, const ModalModel& slipping, const std
     const double determinant = std::abs(pairs.g11(i) * pairs.g22(i) - pairs.g12(i) * pairs.g21(i));
     told_from_rounding &= std::sqrt(determinant) > kPerhapsZero * slipping.fastest;
   }
-  if (told_from_rounding) motion = PairMotion(pairs);
+  motion = PairMotion(pairs, kPerhapsZero * slipping.fastest);
   rate = pairs.fastest > 0 ? pairs.fastest : slipping.fastest;
   if (slipping.floats()) rate = std::max(rate, slipping.pace());
 

@@ -65,7 +65,7 @@ struct Regime {
   std::vector<RegimeOutput> outputs;
   ModalModel pairs;                ///< only its pairs are used: no contacts
   bool told_from_rounding = true;  ///< no pair is so slow that its frequency may be rounding of zero
-  PairMotion motion;               ///< their free motion, if so
+  PairMotion motion;               ///< free motion of those that oscillate
   double rate = 0.0;    ///< fastest rate of the pairs, or of the slipping structure if nothing is left to move [1/s]
   double growth = 0.0;  ///< largest rate at which free motion grows, 0 if none does [1/s]
   Eigen::MatrixXd B;    ///< [2np x ni]; the drive's columns act through ι as described above
@@ -198,8 +198,7 @@ class RegimeTables {
 /// x(h); `out_x` may be `x` itself. `inputs` stay as they are.
 void apply(const RegimeStep& step, const double* x, const Eigen::VectorXd& inputs, double* out_x);
 
-/// State after a time t from (x, inputs): tabulated steps, then a short Taylor series. In place. A negative t may be no
-/// longer than that series reaches (a quarter of the fastest radian).
+/// State after a time t from (x, inputs): tabulated steps, then a short Taylor series. In place.
 void advance(const RegimeTables& tables, double t, Eigen::VectorXd& x, Eigen::VectorXd& inputs);
 
 }  // namespace slipmode::dynamics

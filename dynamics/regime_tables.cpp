@@ -222,7 +222,7 @@ void advance(const RegimeTables& tables, double t, Eigen::VectorXd& x, Eigen::Ve
   if (t == 0.0) return;
   // f = B ι, ḟ = B_follows V + B_V a, f̈ = B_follows a.
   const double speed = inputs(V), acceleration = inputs(V + 1);
-  const double phase = r.rate * std::abs(t);
+  const double phase = r.rate * t;
   int terms = 3;
   for (double size = phase * phase * phase / 6.0; size > 1e-17 && terms < kernels::kMostTerms;)
     size *= phase * kInverse[static_cast<std::size_t>(++terms)];

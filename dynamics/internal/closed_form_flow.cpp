@@ -23,6 +23,13 @@ constexpr double kSameInstant = 1e-6;
 /// A sum of which no more than this share of its terms is left is made anew.
 constexpr double kLittleLeft = 1e-2;
 
+/// Of pairs that do not oscillate: they go by tables, each time from where they are. Others go by what has moved freely
+/// and by the ways, so that what a stiff spring holds together rounds alike.
+void take_others(const Regime& r, const Eigen::VectorXd& from, Eigen::VectorXd& out_x) {
+  for (const Eigen::Index i : r.motion.others())
+    for (const Eigen::Index k : {i, r.pairs.np + i}) out_x(k) = from(k);
+}
+
 }  // namespace
 
 double squared_size(const Regime& r, const Eigen::VectorXd& x) {
@@ -195,12 +202,13 @@ void ClosedFormFlow::move_from_begin(double tau) {
 void ClosedFormFlow::move(const Visited& in, double tau, const Eigen::VectorXd& free, Eigen::VectorXd& x,
                           Eigen::VectorXd& inputs) const {
   const Regime& r = in.tables->regime();
-  if (r.motion.available()) {
-    r.motion.add(tau, free.data(), x.data());
-    follow_inputs(in, inputs_begin_, tau, x, inputs);
-  } else {
-    advance(*in.tables, tau, x, inputs);
+  if (!r.motion.available()) {
+    others_ = x;
+    advance(*in.tables, tau, others_, inputs);
   }
+  r.motion.add(tau, free.data(), x.data());
+  follow_inputs(in, inputs_begin_, tau, x, inputs);
+  take_others(r, others_, x);
   if (in.overlay) in.overlay->move_resonances(r, tau, phase_, x);
 }
 
@@ -217,13 +225,25 @@ void ClosedFormFlow::follow_inputs(const Visited& in, const Eigen::VectorXd& fro
 void ClosedFormFlow::pass_window() {
   const Regime& r = tables_->regime();
   const double h = tables_->length(level_);
-  if (!r.motion.available() || swells()) return move(h);
+  if (swells()) return move(h);
+  if (!r.motion.available()) {
+    others_.resize(x_.size());
+    apply(tables_->step(level_), x_.data(), inputs_, others_.data());
+  }
   const RegimeChange& d = tables_->change(level_);
   kernels::kernels().pass(
       {r.pairs.np, d.d11.data(), d.d12.data(), d.d21.data(), d.d22.data(), r.scale1.data(), r.scale2.data()},
       windows_from_.moved.data(), free_.data(), amplitude_.data());
   x_ = windows_from_.x + windows_from_.moved;
   follow_inputs(*regime_, windows_from_.inputs, begin_ + h - windows_from_.time, x_, inputs_);
+  if (r.motion.available()) return;
+  take_others(r, others_, x_);
+  const auto np = r.pairs.np;
+  for (const Eigen::Index i : r.motion.others()) {
+    for (const Eigen::Index k : {i, np + i})
+      free_(k) = x_(k) - (regime_->overlay ? resting_(k) : r.particular.row(k).dot(inputs_));
+    amplitude_(i) = r.scale1(i) * std::abs(free_(i)) + r.scale2(i) * std::abs(free_(np + i));
+  }
 }
 
 bool ClosedFormFlow::step(double t_limit) {

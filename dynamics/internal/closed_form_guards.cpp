@@ -28,8 +28,6 @@ constexpr int kNewtonSteps = 20;
 /// A root is found in a window to better than this share of it; from there to another root a guard changes by more than
 /// this many times what it is told from zero to.
 constexpr double kRootLeaves = 1e-5, kOtherRoot = 8.0;
-/// Newton steps of less than this phase of the fastest pair go on from where the last one led.
-constexpr double kClose = 0.25;
 constexpr int kHalvings = 3;
 constexpr int kLargestRefinement = 9;
 
@@ -393,10 +391,7 @@ bool ClosedFormFlow::approach(const Guard& guard, double from, double& tau) {
     const double shift = -now.value / slope;
     if (!(slope < 0.0) || !(std::abs(shift) * fastest_ < 2.0) || tau + shift < 0.0) return give_up();
     tau += shift;
-    if (!tables_->regime().motion.available() && !swells() && std::abs(shift) * fastest_ < kClose)
-      advance(*tables_, shift, x_, inputs_);
-    else
-      move_from_begin(tau);
+    move_from_begin(tau);
     // Newton squares its error, with a factor of about the guard's curvature by its slope. It is done where that is
     // beyond the clock, or leaves of the guard no more than its rounding.
     if (std::abs(shift) * fastest_ < kClock ||
