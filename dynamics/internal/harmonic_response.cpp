@@ -1,12 +1,12 @@
 #include "dynamics/internal/harmonic_response.hpp"
 
+#include <slipmode/core/decompositions.hpp>
 #include <slipmode/dynamics/receptance.hpp>
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <utility>
 #include <vector>
 
 namespace slipmode::dynamics {
@@ -40,28 +40,79 @@ Complex impedance(const ContactAnswer& answer, double omega) {
   return own - answer.friction * Complex(load.z, omega * load.z_rate) * oscillator_gain(load, omega);
 }
 
-/// A direction along that of a held contact.
-struct Carried {
-  Eigen::Index by = -1;  ///< the held one; -1: none
-  double share = 0.0;    ///< its displacement over that of the held one
+/// Directions differ by no more than rounding to this share of their size.
+constexpr double kSame = 1e-13;
+
+/// A direction along that of a contact.
+struct Along {
+  Eigen::Index of = -1;  ///< the contact; -1: none
+  double share = 0.0;    ///< its displacement over that of the contact
 };
 
-/// @param direction  as a column, with those of the contacts in `of_contacts`
-Carried carried(const Regime& r, const Eigen::MatrixXd& of_contacts, const Eigen::VectorXd& direction) {
-  constexpr double kSame = 1e-13;
-  for (Eigen::Index d = 0; d < r.speed_input(); ++d) {
-    if (!r.held(static_cast<int>(d))) continue;
+/// @param direction  as a column, with those of the contacts in `of_contacts` @param among  the contacts asked about
+Along along(const Eigen::MatrixXd& of_contacts, const std::vector<Eigen::Index>& among,
+            const Eigen::VectorXd& direction) {
+  for (const Eigen::Index d : among) {
     const double share = of_contacts.col(d).dot(direction) / of_contacts.col(d).squaredNorm();
     if ((direction - share * of_contacts.col(d)).norm() <= kSame * direction.norm()) return {d, share};
   }
   return {};
 }
 
-std::vector<Carried> carried_contacts(const Regime& r, const ModalModel& slipping) {
-  std::vector<Carried> out(static_cast<std::size_t>(r.speed_input()));
+/// Of contacts that are not held, those that a held one carries.
+std::vector<Along> carried_contacts(const Regime& r, const ModalModel& slipping) {
+  std::vector<Eigen::Index> held;
+  for (Eigen::Index c = 0; c < r.speed_input(); ++c)
+    if (r.held(static_cast<int>(c))) held.push_back(c);
+  std::vector<Along> out(static_cast<std::size_t>(r.speed_input()));
   for (Eigen::Index c = 0; c < r.speed_input(); ++c)
     if (!r.held(static_cast<int>(c)))
-      out[static_cast<std::size_t>(c)] = carried(r, slipping.displacement_row, slipping.displacement_row.col(c));
+      out[static_cast<std::size_t>(c)] = along(slipping.displacement_row, held, slipping.displacement_row.col(c));
+  return out;
+}
+
+/// Forces along given directions as some on contacts, which hold against them, and what is left beside these.
+struct Pressing {
+  Eigen::MatrixXd on;    ///< per force [nc x nk]
+  Eigen::MatrixXd rest;  ///< directions of what is left [2np x nk]
+};
+
+/// @param stiff  the contacts that hold @param impedances  of those that are not held: those at one place share
+/// what presses on it by their stiffnesses
+Pressing pressing_on(const Regime& r, const ModalModel& slipping, const std::vector<Eigen::Index>& stiff,
+                     const Eigen::VectorXcd& impedances) {
+  Pressing out{Eigen::MatrixXd::Zero(r.speed_input(), r.forces), slipping.force_input};
+  if (stiff.empty() || r.forces == 0) return out;
+  std::vector<Eigen::Index> places;  // the first contact at each
+  std::vector<Along> place_of;
+  Eigen::VectorXd borne = Eigen::VectorXd::Zero(r.speed_input());
+  const auto bears = [&](Eigen::Index c) { return r.held(static_cast<int>(c)) ? 1.0 : std::abs(impedances(c)); };
+  for (const Eigen::Index c : stiff) {
+    Along place = along(slipping.input, places, slipping.input.col(c));
+    if (place.of < 0) {
+      places.push_back(c);
+      place = {c, 1.0};
+    }
+    place_of.push_back(place);
+    borne(place.of) += bears(c) * place.share * place.share;
+  }
+  const Eigen::MatrixXd directions = slipping.input(Eigen::all, places);
+  Eigen::MatrixXd shares =
+      Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(directions).solve(slipping.force_input);
+  // What is rounding would move things that rest.
+  const Eigen::VectorXd sizes = kSame * slipping.force_input.colwise().norm();
+  for (Eigen::Index k = 0; k < r.forces; ++k)
+    for (Eigen::Index j = 0; j < shares.rows(); ++j)
+      if (std::abs(shares(j, k)) * directions.col(j).norm() <= sizes(k)) shares(j, k) = 0.0;
+  Eigen::MatrixXd at = Eigen::MatrixXd::Zero(r.speed_input(), r.forces);
+  at(places, Eigen::all) = shares;
+  for (std::size_t k = 0; k < stiff.size(); ++k) {
+    const Along& place = place_of[k];
+    out.on.row(stiff[k]) = (bears(stiff[k]) * place.share / borne(place.of)) * at.row(place.of);
+  }
+  out.rest -= directions * shares;
+  for (Eigen::Index k = 0; k < r.forces; ++k)
+    if (out.rest.col(k).norm() <= sizes(k)) out.rest.col(k).setZero();
   return out;
 }
 
@@ -83,34 +134,32 @@ bool any_oscillator_resonates(const Regime& r, double omega, double share) {
 HarmonicResponse harmonic_response(const Regime& r, const ModalModel& slipping, double omega, Complex way,
                                    const Eigen::VectorXcd& forces) {
   const Eigen::Index nc = r.speed_input(), np = slipping.np;
-  // What presses on a held contact moves nothing, and its force may be far larger than what does: the unknown there is
-  // the sum of both.
-  Eigen::VectorXcd on_held = Eigen::VectorXcd::Zero(nc), moving = forces;
-  for (Eigen::Index k = 0; k < forces.size(); ++k)
-    if (const Carried at = carried(r, slipping.input, slipping.force_input.col(k)); at.by >= 0)
-      on_held(at.by) += at.share * std::exchange(moving(k), 0.0);
-  const Eigen::VectorXcd forced = slipping.force_input * moving;
-  const std::vector<Carried> contacts = carried_contacts(r, slipping);
+  const std::vector<Along> contacts = carried_contacts(r, slipping);
   Eigen::MatrixXd input = slipping.input;
   Eigen::VectorXcd impedances(nc);
   const auto acts = [&](Eigen::Index c) {
-    return r.held(static_cast<int>(c)) || (contacts[static_cast<std::size_t>(c)].by < 0 && impedances(c) != 0.0);
+    return r.held(static_cast<int>(c)) || (contacts[static_cast<std::size_t>(c)].of < 0 && impedances(c) != 0.0);
   };
   for (Eigen::Index c = 0; c < nc; ++c) {
     impedances(c) = impedance(r.answers[static_cast<std::size_t>(c)], omega);
     if (!acts(c)) input.col(c).setZero();
   }
-  Eigen::MatrixXcd by_contacts = pair_receptances(slipping, omega, input.cast<Complex>());
-  Eigen::MatrixXcd by_forces = pair_receptances(slipping, omega, forced);
   std::vector<Eigen::Index> own;  // states that are unknowns of their own
   for (Eigen::Index i = 0; i < slipping.n; ++i)
-    if (resonates(slipping, i, omega, kOwnUnknown))
-      for (const Eigen::Index k : {i, np + i}) {
-        own.push_back(k);
-        by_contacts.row(k).setZero();
-        by_forces.row(k).setZero();
-      }
+    if (resonates(slipping, i, omega, kOwnUnknown)) own.insert(own.end(), {i, np + i});
+  Eigen::MatrixXcd by_contacts = pair_receptances(slipping, omega, input.cast<Complex>());
+  by_contacts(own, Eigen::all).setZero();
   const Eigen::MatrixXcd H = slipping.displacement_row.transpose() * by_contacts;
+
+  // What presses on a held contact, or on one stiffer than the structure, moves little of what it would move without,
+  // and its force may be far larger than what does: the unknown there is the sum of both.
+  std::vector<Eigen::Index> stiff;
+  for (Eigen::Index c = 0; c < nc; ++c)
+    if (r.held(static_cast<int>(c)) || std::abs(impedances(c) * H(c, c)) > 1.0) stiff.push_back(c);
+  const Pressing pressing = pressing_on(r, slipping, stiff, impedances);
+  const Eigen::VectorXcd pressed = pressing.on * forces, forced = pressing.rest * forces;
+  Eigen::VectorXcd by_forces = pair_receptances(slipping, omega, forced);
+  by_forces(own).setZero();
   const Eigen::VectorXcd moved = slipping.displacement_row.transpose() * by_forces;
 
   const auto unknowns = nc + std::ssize(own);
@@ -121,9 +170,9 @@ HarmonicResponse harmonic_response(const Regime& r, const ModalModel& slipping, 
   for (Eigen::Index c = 0; c < nc; ++c) {
     const Complex own_way = r.sticks(static_cast<int>(c)) ? way : 0.0;
     if (!acts(c)) {
-      const Carried& at = contacts[static_cast<std::size_t>(c)];
+      const Along& at = contacts[static_cast<std::size_t>(c)];
       A(c, c) = 1.0;
-      if (at.by >= 0) b(c) = impedances(c) * (own_way - at.share * way);
+      if (at.of >= 0) b(c) = impedances(c) * (own_way - at.share * way);
       continue;
     }
     const bool held = r.held(static_cast<int>(c));
@@ -137,6 +186,7 @@ HarmonicResponse harmonic_response(const Regime& r, const ModalModel& slipping, 
       if (own.empty()) unit(c) = 1.0 / reach;  // else what is left of H may be rounding
     } else {
       A(c, c) += 1.0 / stiffness;
+      b(c) += pressed(c) / stiffness;
       unit(c) = stiffness / std::max(1.0, stiffness * reach);
     }
   }
@@ -157,9 +207,9 @@ HarmonicResponse harmonic_response(const Regime& r, const ModalModel& slipping, 
   out.slipping(own) = solved.tail(unknowns - nc);
   out.place_size = H.cwiseAbs() * out.force.cwiseAbs() + moved.cwiseAbs();
   for (Eigen::Index c = 0; c < nc; ++c)
-    if (const Carried& at = contacts[static_cast<std::size_t>(c)]; at.by >= 0)
-      out.force(at.by) -= at.share * out.force(c);
-  out.force -= on_held;
+    if (const Along& at = contacts[static_cast<std::size_t>(c)]; at.of >= 0)
+      out.force(at.of) -= at.share * out.force(c);
+  out.force -= pressed;
   out.oscillators.resize(r.from_oscillators.cols());
   Eigen::Index j = 0;
   for (Eigen::Index c = 0; c < nc; ++c) {

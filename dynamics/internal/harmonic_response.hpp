@@ -28,7 +28,8 @@ struct HarmonicResponse {
 ///     λ_c / Z_c + Σ_d H_cd λ_d = d_c − (response to the forces)_c.
 ///
 /// Where a contact is much stiffer than the structure, d − y is a small difference of large numbers, and what is left
-/// of λ in phase with the velocity, the power, smaller still. Here nothing cancels. Pairs of the slipping structure
+/// of λ in phase with the velocity, the power, smaller still. Here nothing cancels: of forces on stiff contacts' places
+/// the unknown is the sum with λ, which is what moves the structure. Pairs of the slipping structure
 /// next to ω, whose share of H has no bound, are kept as unknowns beside λ: (iω − G_i) X_i = (B λ)_i + …
 /// @param way     of the counterpart, d of the contacts that follow it
 /// @param forces  along the directions of a force drive [nk]
