@@ -160,6 +160,13 @@ double Regime::output(Eigen::Index k, const Eigen::VectorXd& x, const Eigen::Vec
   return kernels::kernels().dot(row.col(k).data(), x.data(), x.size()) + coefficient.col(k).dot(inputs);
 }
 
+double Regime::held_force(Eigen::Index c, const Eigen::VectorXd& inputs) const {
+  double sum = steady_together(c) * inputs(c);
+  for (Eigen::Index k = 0; k < inputs.size(); ++k)
+    sum += steady_force(k, c) * (k < speed_input() && sticks(static_cast<int>(k)) ? inputs(k) - inputs(c) : inputs(k));
+  return sum;
+}
+
 void Regime::differentiate(Eigen::VectorXd& r, Eigen::VectorXd& k) const {
   const auto np = pairs.np;
   const Eigen::Index V = speed_input();

@@ -54,6 +54,8 @@ struct Regime {
   void lift(const Eigen::VectorXd& x, const Eigen::VectorXd& inputs, Eigen::VectorXd& out_slipping) const;
   /// Value of output k.
   [[nodiscard]] double output(Eigen::Index k, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs) const;
+  /// λ of a contact that follows on x_p. Ways, each with a spring's stiffness, count by what they differ.
+  [[nodiscard]] double held_force(Eigen::Index contact, const Eigen::VectorXd& inputs) const;
   /// Time derivative of (row, coefficients): again of that form.
   void differentiate(Eigen::VectorXd& row, Eigen::VectorXd& coefficient) const;
   /// q̇ᵀCq̇ of a state [W].
@@ -81,6 +83,7 @@ struct Regime {
   /// What adds up to wᵀq and wᵀq̇, see ModalModel::place_row: of sizes |x| and |ι| [2np x 2nc], [ni x 2nc].
   Eigen::MatrixXd place_row, place_coefficient;
   Eigen::MatrixXd steady_force;                  ///< λ of each contact on x_p [ni x nc]
+  Eigen::VectorXd steady_together;               ///< that of the ways of all contacts that follow at once [nc]
   Eigen::MatrixXd beside_rows;                   ///< what that is beside what the rows make of x_p [ni x nc]
   Eigen::MatrixXd drive_row, drive_coefficient;  ///< d_kᵀq̇ of each force direction [2np x nk], [ni x nk]
   Eigen::VectorXd spring;                        ///< K_c of sprung contacts, else 0 [nc]

@@ -307,13 +307,21 @@ void RegimeBuilder::make_steady_forces(Regime& out) const {
   constexpr double kLeast = 1e-8;
   const Eigen::MatrixXd by_rows = out.particular.transpose() * out.force_row + out.force_coefficient;
   out.steady_force = by_rows;
+  const auto of_followers = [&](const Eigen::MatrixXd& of_contacts) -> Eigen::VectorXd {
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(of_contacts.rows());
+    for (Eigen::Index c = 0; c < nc_; ++c)
+      if (out.follows[static_cast<std::size_t>(c)]) sum += of_contacts.col(c);
+    return sum;
+  };
+  out.steady_together = of_followers(by_rows.transpose());
   out.beside_rows = Eigen::MatrixXd::Zero(ni_, nc_);
   Eigen::MatrixXd sizes =
       out.particular.cwiseAbs().transpose() * out.force_row.cwiseAbs() + out.force_coefficient.cwiseAbs();
   if (refinable_springs(out).first.empty()) return;  // works are those of the forces there are
   // A spring's force rounds by its stiffness times all that moves its end, a held contact's by what springs do at it.
-  const Eigen::MatrixXd to_places = to_modes_.topRows(n_), place = to_places * out.particular + P_,
+  const Eigen::MatrixXd to_places = to_modes_.topRows(n_),
                         terms = to_places.cwiseAbs() * out.particular.cwiseAbs() + P_.cwiseAbs();
+  Eigen::MatrixXd place = to_places * out.particular + P_;
   for (Eigen::Index c = 0; c < nc_; ++c) {
     const Eigen::VectorXd w = modal_.directions.col(c).cwiseAbs();
     sizes.col(c) += out.spring(c) * (terms.transpose() * w);
@@ -334,8 +342,7 @@ void RegimeBuilder::make_steady_forces(Regime& out) const {
   const Eigen::MatrixXd moves_on = to_modes_ * on;
   Eigen::MatrixXd speed = moves_on.topRows(n_), rate = moves_on.bottomRows(n_);
   const auto add_rates = [&](const Eigen::MatrixXd& moved, Eigen::MatrixXd& rates) {
-    for (Eigen::Index c = 0; c < nc_; ++c)
-      if (out.follows[static_cast<std::size_t>(c)]) rates.col(V_) += moved.col(c);
+    rates.col(V_) += of_followers(moved);
     rates.col(V_ + 1) += moved.col(V_);
   };
   add_rates(place, speed);
@@ -346,8 +353,20 @@ void RegimeBuilder::make_steady_forces(Regime& out) const {
   // Where a mode should not follow a contact's way, it does so by rounding of what others do.
   const Eigen::RowVectorXd largest = sizes.topRows(nc_).colwise().maxCoeff();
   sizes.topRows(nc_).rowwise() = largest;
+  // All ways at once are one more motion.
+  const Eigen::Index together = ni_;
+  for (Eigen::MatrixXd* of : {&place, &speed, &rate}) {
+    const Eigen::VectorXd sum = of_followers(*of);
+    of->conservativeResize(Eigen::NoChange, ni_ + 1);
+    of->col(together) = sum;
+  }
+  out.steady_force.conservativeResize(ni_ + 1, Eigen::NoChange);
+  out.steady_force.row(together) = out.steady_together;
+  sizes.conservativeResize(ni_ + 1, Eigen::NoChange);
+  sizes.row(together) = largest;
   const Eigen::VectorXd squared = modal_.omega.cwiseAbs2(), reach = b.colwise().norm().transpose();
-  for (Eigen::Index k = 0; k <= one_; ++k) {
+  for (Eigen::Index k = 0; k <= together; ++k) {
+    if (k > one_ && k < together) continue;
     Eigen::VectorXd missing =
         squared.cwiseProduct(place.col(k)) + damped(modal_.damping, slipping_.proportional, speed.col(k));
     Eigen::VectorXd size =
@@ -375,6 +394,8 @@ void RegimeBuilder::make_steady_forces(Regime& out) const {
     improve(holding, {k}, least_squares(b, missing, size.array() + least, by_row, by_row_size.array() + least_row),
             by_row_size, kNearest, out.steady_force);
   }
+  out.steady_together = out.steady_force.row(together);
+  out.steady_force.conservativeResize(ni_, Eigen::NoChange);
   out.beside_rows = out.steady_force - by_rows;
 }
 

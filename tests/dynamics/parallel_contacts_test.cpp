@@ -262,6 +262,32 @@ TEST(ParallelContacts, WhatGoesAlongWithTheWaysOfSpringsMovesNothing) {
   }
 }
 
+TEST(ParallelContacts, AllWaysAtOnceStretchSpringsByWhatTheStructureResists) {
+  // Each mass behind a spring: λ = K q, q = 1 − λ_c / K_c for ends that have all come by 1, so (I + K diag(1/K_c)) λ =
+  // K 1. Way by way the force is the sum of columns of size K_c: 1e-7 of the structure's out at 1e9. A belt that pulls
+  // ends of 5 m by that was off by as much in each of thousands of short stays, to one side.
+  Eigen::MatrixXd K(3, 3);
+  K << 2.3, -1.1, -0.4, -1.1, 1.9, -0.5, -0.4, -0.5, 0.9;
+  const fem::Structure structure{fem::Matrix(Eigen::MatrixXd(Eigen::Vector3d(1.2, 0.7, 2.1).asDiagonal())),
+                                 fem::Matrix(Eigen::MatrixXd(0.03 * K)), fem::Matrix(K)};
+  for (const double spring : {1.0, 1e3, 1e6, 1e9}) {
+    SCOPED_TRACE(spring);
+    const Eigen::Vector3d springs(3.0, spring, 0.4 * spring);
+    const HybridSystem system(structure,
+                              {spring_at(3, 0, springs(0)), spring_at(3, 1, springs(1)), spring_at(3, 2, springs(2))},
+                              friction::Belt::constant(1.0));
+    const Regime regime = regime_of(system, std::vector<ContactRole>(3, ContactRole::kSprung));
+    const Eigen::Vector3d force =
+        (Eigen::Matrix3d::Identity() + K * springs.cwiseInverse().asDiagonal()).inverse() * K.rowwise().sum();
+    Eigen::VectorXd inputs = Eigen::VectorXd::Zero(regime.inputs());
+    inputs.head(3).setConstant(5.0);
+    for (Eigen::Index c = 0; c < 3; ++c) {
+      EXPECT_NEAR(regime.steady_together(c), force(c), 1e-13);
+      EXPECT_NEAR(regime.held_force(c, inputs), 5.0 * force(c), 5e-13);
+    }
+  }
+}
+
 TEST(ParallelContacts, PlacesOfWhatFloatsHaveNoForceOfSprings) {
   // Three parts that hang on dampers alone beside one that a spring holds: their places are nothing to it. As K_c times
   // what its own row rounds by, the force was 3e-16 K_c of the place, and left so where that is no small share of the
