@@ -85,34 +85,42 @@ void ClosedFormFlow::begin_step() {
   inputs_begin_ = inputs_;
 }
 
+ClosedFormFlow::Visited& ClosedFormFlow::visit(const std::vector<ContactRole>& roles, bool from_rest) {
+  const auto known = std::find_if(visited_.begin(), visited_.end(), [&](const auto& v) {
+    return v.roles == roles && (v.steady != nullptr) == from_rest;
+  });
+  if (known != visited_.end()) return *known;
+  const RegimeTables& tables = system_.cache().regime(system_, roles);
+  visited_.push_back({.roles = roles, .tables = &tables, .belt = nullptr, .maps = nullptr});
+  Visited& now = visited_.back();
+  ++statistics_.regimes_built;
+  if (resolver_.drive().belt() == nullptr) {
+    const DrivenRegime& driven = system_.drive_cache().regime(tables, slipping_, system_.drive(), from_rest);
+    now.overlay = &driven.overlay;
+    if (options_.audit) now.forms = driven.forms();
+  } else if (options_.audit) {
+    now.belt = BeltWork::make(tables, slipping_);
+  }
+  return now;
+}
+
+bool ClosedFormFlow::has_just_begun(const DriveOverlay& steady) const {
+  if (carries_ || !resolver_.drive().force()) return false;
+  sum_.setZero(x_.size());
+  steady.state.add(steady.phase(point_.time), 1.0, sum_);
+  return squared_size(tables_->regime(), x_) < kLittleLeft * kLittleLeft * squared_size(tables_->regime(), sum_);
+}
+
 void ClosedFormFlow::enter_regime() {
   const std::vector<ContactRole> roles = resolver_.roles(point_.modes);
-  const auto known = std::find_if(visited_.begin(), visited_.end(), [&](const auto& v) { return v.roles == roles; });
-  if (known == visited_.end()) {
-    const RegimeTables& tables = system_.cache().regime(system_, roles);
-    visited_.push_back({.roles = roles, .tables = &tables, .belt = nullptr, .maps = nullptr});
-    Visited& now = visited_.back();
-    if (resolver_.drive().belt() == nullptr) {
-      const DrivenRegime& driven = system_.drive_cache().regime(tables, slipping_, system_.drive());
-      now.overlay = &driven.overlay;
-      if (options_.audit) now.forms = driven.forms();
-    } else if (options_.audit) {
-      now.belt = BeltWork::make(tables, slipping_);
-    }
-    regime_ = &now;
-    ++statistics_.regimes_built;
-  } else {
-    regime_ = &*known;
-  }
+  regime_ = &visit(roles, false);
   tables_ = regime_->tables;
   fastest_ = std::max(tables_->regime().rate, resolver_.drive().omega());
   const Regime& r = tables_->regime();
-  const DriveOverlay* overlay = regime_->overlay;
-  const DrivePhase phase = overlay ? phase_at(point_.time) : DrivePhase{};
 
   inputs_ = Eigen::VectorXd::Zero(r.inputs());
   for (int c = 0; c < nc_; ++c) inputs_(c) = resolver_.regime_input(point_, c);
-  if (!overlay) {
+  if (!regime_->overlay) {
     inputs_(r.speed_input()) = resolver_.drive().velocity(point_.time);
     inputs_(r.speed_input() + 1) = resolver_.drive().acceleration(point_.time);
   }
@@ -123,6 +131,13 @@ void ClosedFormFlow::enter_regime() {
   if (!oscillator_states_.empty())
     x_.noalias() += r.from_oscillators * Eigen::VectorXd(point_.internal(oscillator_states_));
   hold_springs(x_, nullptr, inputs_);
+  if (regime_->overlay && has_just_begun(*regime_->overlay)) {
+    const DriveOverlay* const steady = regime_->overlay;
+    regime_ = &visit(roles, true);
+    regime_->steady = steady;
+  }
+  const DriveOverlay* overlay = regime_->overlay;
+  const DrivePhase phase = overlay ? phase_at(point_.time) : DrivePhase{};
   if (overlay) {
     regime_->entered = point_.time;
     regime_->x_entered = x_;
@@ -248,6 +263,10 @@ void ClosedFormFlow::pass_window() {
 
 bool ClosedFormFlow::step(double t_limit) {
   resolver_.clear();
+  if (regime_->steady && !has_just_begun(*regime_->steady)) {
+    lift_point();
+    enter_regime();
+  }
   begin_step();
   double limit = t_limit;
   bool corner = false;

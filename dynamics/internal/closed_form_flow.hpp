@@ -86,6 +86,7 @@ class ClosedFormFlow {
     std::vector<ContactRole> roles;
     const RegimeTables* tables;
     const DriveOverlay* overlay = nullptr;  ///< null for a belt
+    const DriveOverlay* steady = nullptr;   ///< of a motion that has just begun: the overlay of what it becomes
     double entered = 0.0;                   ///< under an overlay: when last,
     Eigen::VectorXd x_entered{};            ///< and its state then, the steady response included,
     Eigen::VectorXd inputs_entered{};       ///< and inputs, of contacts with the drive's
@@ -128,6 +129,9 @@ class ClosedFormFlow {
   };
 
   void enter_regime();
+  [[nodiscard]] Visited& visit(const std::vector<ContactRole>& roles, bool from_rest);
+  /// Whether the state, held whole, is next to none beside the steady response to forces.
+  [[nodiscard]] bool has_just_begun(const DriveOverlay& steady) const;
   /// Moves the ends of contact springs, among the inputs, to where the regime's own rows find the forces that they
   /// have: its coordinates round otherwise than those of the slipping structure, and each return to them would stretch
   /// a spring anew. @param beside  the drive, where x and the inputs are beside its steady response

@@ -71,6 +71,7 @@ void ClosedFormFlow::set_tangents(Eigen::MatrixXd tangents, Eigen::MatrixXd forc
     for (Visited& visited : visited_) visited.maps.reset();  // made for other orders
   force_tangents_ = std::move(forces);
   carries_ = true;
+  if (regime_->steady) enter_regime();
   enter_tangents();
   tangents_current_ = false;
 }

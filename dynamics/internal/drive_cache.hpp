@@ -6,14 +6,15 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <utility>
 
 namespace slipmode::dynamics {
 
 /// A regime under a periodic drive: its steady response, and the audit's forms once they are asked for.
 class DrivenRegime {
  public:
-  DrivenRegime(const RegimeTables& tables, const ModalModel& slipping, const friction::Drive& drive)
-      : overlay(tables.regime(), slipping, drive), tables_(tables), slipping_(slipping) {}
+  DrivenRegime(const RegimeTables& tables, const ModalModel& slipping, const friction::Drive& drive, bool from_rest)
+      : overlay(tables.regime(), slipping, drive, from_rest), tables_(tables), slipping_(slipping) {}
 
   const DriveOverlay overlay;
   /// Null where there are none.
@@ -33,18 +34,18 @@ class DrivenRegime {
 /// visited.
 class DriveCache {
  public:
-  /// @param tables, slipping  from the system's own cache
+  /// @param tables, slipping  from the system's own cache @param from_rest  see DriveOverlay
   [[nodiscard]] const DrivenRegime& regime(const RegimeTables& tables, const ModalModel& slipping,
-                                           const friction::Drive& drive) {
+                                           const friction::Drive& drive, bool from_rest = false) {
     const std::lock_guard lock(making_);
-    auto& slot = regimes_[&tables];
-    if (!slot) slot = std::make_unique<DrivenRegime>(tables, slipping, drive);
+    auto& slot = regimes_[{&tables, from_rest}];
+    if (!slot) slot = std::make_unique<DrivenRegime>(tables, slipping, drive, from_rest);
     return *slot;
   }
 
  private:
   std::mutex making_;
-  std::map<const RegimeTables*, std::unique_ptr<DrivenRegime>> regimes_;
+  std::map<std::pair<const RegimeTables*, bool>, std::unique_ptr<DrivenRegime>> regimes_;
 };
 
 }  // namespace slipmode::dynamics

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <utility>
 
 namespace slipmode::dynamics {
@@ -123,7 +124,8 @@ void Amplitudes::add(DrivePhase first, double factor, Eigen::VectorXd& out) cons
   }
 }
 
-DriveOverlay::DriveOverlay(const Regime& r, const ModalModel& slipping_model, const friction::Drive& drive)
+DriveOverlay::DriveOverlay(const Regime& r, const ModalModel& slipping_model, const friction::Drive& drive,
+                           bool from_rest)
     : inputs(driven_inputs(r, drive)),
       place_size(Eigen::VectorXd::Zero(2 * r.speed_input())),
       swell(Eigen::VectorXd::Zero(r.pairs.np)) {
@@ -136,7 +138,8 @@ DriveOverlay::DriveOverlay(const Regime& r, const ModalModel& slipping_model, co
   for (Eigen::Index j = 0; j < used; ++j) {
     const double w = static_cast<double>(j + 1) * omega_;
     const Eigen::VectorXcd J = inputs.c.col(j) - Complex(0.0, 1.0) * inputs.s.col(j), load = r.B * J;
-    if (find_resonances(r, j + 1, load) || any_oscillator_resonates(r, w, kResonance) || told_apart) {
+    if (find_resonances(r, j + 1, load, from_rest ? std::numeric_limits<double>::infinity() : kResonance) ||
+        any_oscillator_resonates(r, w, kResonance) || told_apart) {
       own.col(j) = pair_receptances(r.pairs, w, load);
       for (const Resonance& of : resonances)
         if (of.order == j + 1) own(of.pair, j) = own(r.pairs.np + of.pair, j) = 0.0;
@@ -151,6 +154,7 @@ DriveOverlay::DriveOverlay(const Regime& r, const ModalModel& slipping_model, co
     forces.col(j) = response.force;
     place_size.head(r.speed_input()) += response.place_size;
   }
+  if (from_rest) measure_pushes(r, slipping_model);
   place_size += slipping_model.place_row.transpose() * lifted.cwiseAbs().rowwise().sum();
   state = amplitudes(own);
   slipping = amplitudes(lifted);
@@ -174,12 +178,24 @@ DriveOverlay::DriveOverlay(const Regime& r, const ModalModel& slipping_model, co
   differentiate(r);
 }
 
-bool DriveOverlay::find_resonances(const Regime& r, Eigen::Index order, const Eigen::VectorXcd& load) {
+void DriveOverlay::measure_pushes(const Regime& r, const ModalModel& slipping_model) {
+  const auto np = r.pairs.np;
+  for (const Resonance& of : resonances) {
+    const std::vector<Eigen::Index> pair{of.pair, np + of.pair};
+    const Eigen::Matrix2d G{{r.pairs.g11(of.pair), r.pairs.g12(of.pair)}, {r.pairs.g21(of.pair), r.pairs.g22(of.pair)}};
+    const Eigen::Vector2d push = of.push.cwiseAbs(), reach = push / r.rate + G.cwiseAbs() * push / (r.rate * r.rate);
+    place_size.head(r.speed_input()) += r.displacement_row(pair, Eigen::all).cwiseAbs().transpose() * reach;
+    place_size += slipping_model.place_row.transpose() * (r.to_slipping(Eigen::all, pair).cwiseAbs() * reach);
+  }
+}
+
+bool DriveOverlay::find_resonances(const Regime& r, Eigen::Index order, const Eigen::VectorXcd& load, double share) {
   const auto np = r.pairs.np, known = std::ssize(resonances);
   const double w = static_cast<double>(order) * omega_;
   for (Eigen::Index i = 0; i < r.pairs.n; ++i) {
     const Eigen::Vector2cd push(load(i), load(np + i));
-    if (push.isZero(0.0) || !resonates(r.pairs, i, w, kResonance)) continue;
+    // What only integrates is bounded by no scale.
+    if (push.isZero(0.0) || r.scale1(i) == 0.0 || r.scale2(i) == 0.0 || !resonates(r.pairs, i, w, share)) continue;
     resonances.push_back({i, order, push});
     swell(i) += r.scale1(i) * std::abs(push(0)) + r.scale2(i) * std::abs(push(1));
   }

@@ -33,7 +33,10 @@ struct DrivePhase {
 /// is held whole, and the drive moves it on, see `Resonance`. Theory: docs/theory/compliant-contacts.md, section 3.
 class DriveOverlay {
  public:
-  DriveOverlay(const Regime& regime, const ModalModel& slipping, const friction::Drive& drive);
+  /// @param from_rest  of forces: no pair has a steady response, all are as resonant ones. Of a motion that has just
+  /// begun
+  ///                   what is steady and what is free are each far larger than both together.
+  DriveOverlay(const Regime& regime, const ModalModel& slipping, const friction::Drive& drive, bool from_rest = false);
 
   /// A pair on the frequency of a harmonic, or next to it: ẋ_i = G_i x_i + Re(push e^{ijθ}) beside what else drives it.
   struct Resonance {
@@ -101,7 +104,10 @@ class DriveOverlay {
 
  private:
   /// Whether any pair resonates with a harmonic of this order; keeps those that do. @param load  B J
-  bool find_resonances(const Regime& regime, Eigen::Index order, const Eigen::VectorXcd& load);
+  /// @param share  see `resonates`
+  bool find_resonances(const Regime& regime, Eigen::Index order, const Eigen::VectorXcd& load, double share);
+  /// What pushes make of places within a radian of the fastest pair, which these round by.
+  void measure_pushes(const Regime& regime, const ModalModel& slipping);
   void differentiate(const Regime& regime);
   void swell_window(const Regime& regime, Eigen::Index order, double h, Window& out) const;
 
