@@ -161,9 +161,10 @@ double Regime::output(Eigen::Index k, const Eigen::VectorXd& x, const Eigen::Vec
 }
 
 double Regime::held_force(Eigen::Index c, const Eigen::VectorXd& inputs) const {
-  double sum = steady_together(c) * inputs(c);
+  const double way = sticks(static_cast<int>(c)) ? inputs(c) : 0.0;
+  double sum = steady_together(c) * way;
   for (Eigen::Index k = 0; k < inputs.size(); ++k)
-    sum += steady_force(k, c) * (k < speed_input() && sticks(static_cast<int>(k)) ? inputs(k) - inputs(c) : inputs(k));
+    sum += steady_force(k, c) * (k < speed_input() && sticks(static_cast<int>(k)) ? inputs(k) - way : inputs(k));
   return sum;
 }
 

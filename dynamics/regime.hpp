@@ -54,7 +54,7 @@ struct Regime {
   void lift(const Eigen::VectorXd& x, const Eigen::VectorXd& inputs, Eigen::VectorXd& out_slipping) const;
   /// Value of output k.
   [[nodiscard]] double output(Eigen::Index k, const Eigen::VectorXd& x, const Eigen::VectorXd& inputs) const;
-  /// λ of a contact that follows on x_p. Ways, each with a spring's stiffness, count by what they differ.
+  /// λ of a contact on x_p. Ways, each with a spring's stiffness, count by what they differ from its own.
   [[nodiscard]] double held_force(Eigen::Index contact, const Eigen::VectorXd& inputs) const;
   /// Time derivative of (row, coefficients): again of that form.
   void differentiate(Eigen::VectorXd& row, Eigen::VectorXd& coefficient) const;

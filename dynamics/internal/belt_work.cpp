@@ -96,7 +96,7 @@ void BeltWork::measure(const StayPlace& at, const Eigen::VectorXd& inputs, End& 
   for (Eigen::VectorXd* of_contacts : {&out.impulse, &out.steady, &out.exchange, &out.way}) of_contacts->setZero(nc);
   for (Eigen::Index c = 0; c < nc; ++c) {
     const Exchange by = exchange_[static_cast<std::size_t>(c)];
-    out.steady(c) = r.sticks(static_cast<int>(c)) ? r.held_force(c, inputs) : r.steady_force.col(c).dot(inputs);
+    out.steady(c) = r.held_force(c, inputs);
     if (by != Exchange::kPotential || r.slope(c) != 0.0) out.impulse(c) = impulse_.col(c).dot(at.free);
     if (by == Exchange::kForms) {
       out.exchange(c) = r.displacement_row.col(c).dot(at.free);

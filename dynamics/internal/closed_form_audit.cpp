@@ -92,12 +92,9 @@ StayWork ClosedFormFlow::integrate(double t, Eigen::VectorXd x, const Eigen::Vec
     apart = held_near(r, x, inputs, held);
   }
   const bool moves = inputs(nc_) != 0.0 || inputs(nc_ + 1) != 0.0;
-  Eigen::VectorXd stretch_rate = Eigen::VectorXd::Zero(nc_);  // of springs, by what the ways hold, at V = 1
   if (apart) {
     free = x_free;
     none = Eigen::VectorXd::Zero(inputs.size());
-    for (int c = 0; c < nc_; ++c)
-      if (r.spring(c) > 0.0) stretch_rate(c) = r.steady_together(c) / r.spring(c);
   }
   const auto tell_free = [&](const Eigen::VectorXd& x_then, const auto& move) {
     if (!apart) return;
@@ -129,7 +126,8 @@ StayWork ClosedFormFlow::integrate(double t, Eigen::VectorXd x, const Eigen::Vec
       else if (r.roles[static_cast<std::size_t>(c)] != ContactRole::kSliding)
         force = r.force_row.col(c).dot(x_then) + r.force_coefficient.col(c).dot(inputs_then);
       if (apart && r.spring(c) > 0.0)
-        velocity = r.velocity_row.col(c).dot(at_free) + (1.0 - stretch_rate(c)) * inputs_then(nc_) -
+        // The counterpart's less the rate at which what the inputs hold stretches the spring.
+        velocity = r.velocity_row.col(c).dot(at_free) + (1.0 - r.steady_together(c) / r.spring(c)) * inputs_then(nc_) -
                    r.steady_force(nc_, c) / r.spring(c) * inputs_then(nc_ + 1);
       else if (!r.held(c))
         velocity = r.velocity_row.col(c).dot(x_then) + r.velocity_coefficient.col(c).dot(inputs_then);

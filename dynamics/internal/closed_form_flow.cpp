@@ -85,17 +85,16 @@ void ClosedFormFlow::begin_step() {
   inputs_begin_ = inputs_;
 }
 
-ClosedFormFlow::Visited& ClosedFormFlow::visit(const std::vector<ContactRole>& roles, bool from_rest) {
-  const auto known = std::find_if(visited_.begin(), visited_.end(), [&](const auto& v) {
-    return v.roles == roles && (v.steady != nullptr) == from_rest;
-  });
+ClosedFormFlow::Visited& ClosedFormFlow::visit(const std::vector<ContactRole>& roles, const DriveOverlay* steady) {
+  const auto known = std::find_if(visited_.begin(), visited_.end(),
+                                  [&](const auto& v) { return v.roles == roles && v.steady == steady; });
   if (known != visited_.end()) return *known;
   const RegimeTables& tables = system_.cache().regime(system_, roles);
-  visited_.push_back({.roles = roles, .tables = &tables, .belt = nullptr, .maps = nullptr});
+  visited_.push_back({.roles = roles, .tables = &tables, .steady = steady, .belt = nullptr, .maps = nullptr});
   Visited& now = visited_.back();
   ++statistics_.regimes_built;
   if (resolver_.drive().belt() == nullptr) {
-    const DrivenRegime& driven = system_.drive_cache().regime(tables, slipping_, system_.drive(), from_rest);
+    const DrivenRegime& driven = system_.drive_cache().regime(tables, slipping_, system_.drive(), steady != nullptr);
     now.overlay = &driven.overlay;
     if (options_.audit) now.forms = driven.forms();
   } else if (options_.audit) {
@@ -113,7 +112,7 @@ bool ClosedFormFlow::has_just_begun(const DriveOverlay& steady) const {
 
 void ClosedFormFlow::enter_regime() {
   const std::vector<ContactRole> roles = resolver_.roles(point_.modes);
-  regime_ = &visit(roles, false);
+  regime_ = &visit(roles);
   tables_ = regime_->tables;
   fastest_ = std::max(tables_->regime().rate, resolver_.drive().omega());
   const Regime& r = tables_->regime();
@@ -131,11 +130,7 @@ void ClosedFormFlow::enter_regime() {
   if (!oscillator_states_.empty())
     x_.noalias() += r.from_oscillators * Eigen::VectorXd(point_.internal(oscillator_states_));
   hold_springs(x_, nullptr, inputs_);
-  if (regime_->overlay && has_just_begun(*regime_->overlay)) {
-    const DriveOverlay* const steady = regime_->overlay;
-    regime_ = &visit(roles, true);
-    regime_->steady = steady;
-  }
+  if (regime_->overlay && has_just_begun(*regime_->overlay)) regime_ = &visit(roles, regime_->overlay);
   const DriveOverlay* overlay = regime_->overlay;
   const DrivePhase phase = overlay ? phase_at(point_.time) : DrivePhase{};
   if (overlay) {

@@ -129,7 +129,8 @@ class ClosedFormFlow {
   };
 
   void enter_regime();
-  [[nodiscard]] Visited& visit(const std::vector<ContactRole>& roles, bool from_rest);
+  /// The regime of these roles, made when first met. @param steady  see Visited
+  [[nodiscard]] Visited& visit(const std::vector<ContactRole>& roles, const DriveOverlay* steady = nullptr);
   /// Whether the state, held whole, is next to none beside the steady response to forces.
   [[nodiscard]] bool has_just_begun(const DriveOverlay& steady) const;
   /// Moves the ends of contact springs, among the inputs, to where the regime's own rows find the forces that they
