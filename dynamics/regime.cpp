@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace slipmode::dynamics {
 namespace {
@@ -15,6 +16,8 @@ namespace {
 constexpr double kPerhapsZero = 1e-12;
 /// Rates of displacements, as rows of their own and by the pairs' motion, are the same to this share of a column.
 constexpr double kSameRates = 1e-12;
+/// A product of two columns is zero below this share of their sizes.
+constexpr double kNone = 64.0 * std::numeric_limits<double>::epsilon();
 /// Of a state, that need no heap.
 constexpr Eigen::Index kFewComponents = 64;
 
@@ -171,7 +174,14 @@ double Regime::held_force(Eigen::Index c, const Eigen::VectorXd& inputs) const {
 void Regime::differentiate(Eigen::VectorXd& r, Eigen::VectorXd& k) const {
   const auto np = pairs.np;
   const Eigen::Index V = speed_input();
+  // What an input does not move at once, it moves by what modes round by, beside which all else is nothing in a motion
+  // that has just begun.
   Eigen::VectorXd next = B.transpose() * r;
+  for (Eigen::Index i = 0; i < next.size(); ++i) {
+    const auto of = B.col(i);
+    const double size = of.head(np).norm() * r.head(np).norm() + of.tail(np).norm() * r.tail(np).norm();
+    if (std::abs(next(i)) <= kNone * size) next(i) = 0.0;
+  }
   for (std::size_t c = 0; c < follows.size(); ++c)
     if (follows[c]) next(V) += k(static_cast<Eigen::Index>(c));
   next(V + 1) += k(V);

@@ -223,9 +223,10 @@ void advance(const RegimeTables& tables, double t, Eigen::VectorXd& x, Eigen::Ve
   // f = B ι, ḟ = B_follows V + B_V a, f̈ = B_follows a.
   const double speed = inputs(V), acceleration = inputs(V + 1);
   const double phase = r.rate * t;
-  int terms = 3;
-  for (double size = phase * phase * phase / 6.0; size > 1e-17 && terms < kernels::kMostTerms;)
-    size *= phase * kInverse[static_cast<std::size_t>(++terms)];
+  // The first term of a motion that begins on a belt is at most the fourth, of a place that its acceleration moves.
+  int terms = 4;
+  for (double left = 1.0; left > 1e-17 && terms < kernels::kMostTerms;)
+    left *= phase * kInverse[static_cast<std::size_t>(++terms)];
   alignas(64) double few[kNodes * kFewInputs];
   Eigen::VectorXd many;
   double* coefficient = few;

@@ -23,11 +23,9 @@ constexpr double kSameInstant = 1e-6;
 /// A sum of which no more than this share of its terms is left is made anew.
 constexpr double kLittleLeft = 1e-2;
 
-/// Of pairs that do not oscillate: they go by tables, each time from where they are. Others go by what has moved freely
-/// and by the ways, so that what a stiff spring holds together rounds alike.
-void take_others(const Regime& r, const Eigen::VectorXd& from, Eigen::VectorXd& out_x) {
-  for (const Eigen::Index i : r.motion.others())
-    for (const Eigen::Index k : {i, r.pairs.np + i}) out_x(k) = from(k);
+/// Whether x is next to none beside the parts that it is a sum of.
+bool little_beside(const Regime& r, const Eigen::VectorXd& x, const Eigen::VectorXd& part) {
+  return squared_size(r, x) < kLittleLeft * kLittleLeft * squared_size(r, part);
 }
 
 }  // namespace
@@ -80,6 +78,7 @@ void ClosedFormFlow::begin_step() {
   step_regime_ = regime_;
   if (regime_->overlay) phase_ = phase_at(begin_);
   if (!measured_) measure_amplitudes();
+  whole_ = !regime_->overlay && (whole_ || regime_->entered == begin_) && little_beside(tables_->regime(), x_, free_);
   x_begin_ = x_;
   free_begin_ = free_;
   inputs_begin_ = inputs_;
@@ -107,7 +106,7 @@ bool ClosedFormFlow::has_just_begun(const DriveOverlay& steady) const {
   if (carries_ || !resolver_.drive().force()) return false;
   sum_.setZero(x_.size());
   steady.state.add(steady.phase(point_.time), 1.0, sum_);
-  return squared_size(tables_->regime(), x_) < kLittleLeft * kLittleLeft * squared_size(tables_->regime(), sum_);
+  return little_beside(tables_->regime(), x_, sum_);
 }
 
 void ClosedFormFlow::enter_regime() {
@@ -133,8 +132,8 @@ void ClosedFormFlow::enter_regime() {
   if (regime_->overlay && has_just_begun(*regime_->overlay)) regime_ = &visit(roles, regime_->overlay);
   const DriveOverlay* overlay = regime_->overlay;
   const DrivePhase phase = overlay ? phase_at(point_.time) : DrivePhase{};
+  regime_->entered = point_.time;
   if (overlay) {
-    regime_->entered = point_.time;
     regime_->x_entered = x_;
     regime_->inputs_entered = inputs_;
     for (Eigen::Index c = 0; c < nc_; ++c) inputs_(c) -= overlay->inputs.at(c, phase);
@@ -192,7 +191,11 @@ void ClosedFormFlow::measure_amplitudes() {
   amplitude_.array() =
       r.scale1.array() * free_.head(np).array().abs() + r.scale2.array() * free_.tail(np).array().abs();
   measured_ = true;
-  windows_from_.time = point_.time;
+  begin_windows(point_.time);
+}
+
+void ClosedFormFlow::begin_windows(double t) {
+  windows_from_.time = t;
   windows_from_.x = x_;
   windows_from_.inputs = inputs_;
   windows_from_.moved.setZero(x_.size());
@@ -212,14 +215,23 @@ void ClosedFormFlow::move_from_begin(double tau) {
 void ClosedFormFlow::move(const Visited& in, double tau, const Eigen::VectorXd& free, Eigen::VectorXd& x,
                           Eigen::VectorXd& inputs) const {
   const Regime& r = in.tables->regime();
-  if (!r.motion.available()) {
+  if (needs_tables(r)) {
     others_ = x;
     advance(*in.tables, tau, others_, inputs);
   }
   r.motion.add(tau, free.data(), x.data());
   follow_inputs(in, inputs_begin_, tau, x, inputs);
-  take_others(r, others_, x);
+  take_tables(r, x);
   if (in.overlay) in.overlay->move_resonances(r, tau, phase_, x);
+}
+
+void ClosedFormFlow::take_tables(const Regime& r, Eigen::VectorXd& out_x) const {
+  if (whole_) {
+    out_x = others_;
+    return;
+  }
+  for (const Eigen::Index i : r.motion.others())
+    for (const Eigen::Index k : {i, r.pairs.np + i}) out_x(k) = others_(k);
 }
 
 void ClosedFormFlow::follow_inputs(const Visited& in, const Eigen::VectorXd& from, double tau, Eigen::VectorXd& x,
@@ -236,7 +248,7 @@ void ClosedFormFlow::pass_window() {
   const Regime& r = tables_->regime();
   const double h = tables_->length(level_);
   if (swells()) return move(h);
-  if (!r.motion.available()) {
+  if (needs_tables(r)) {
     others_.resize(x_.size());
     apply(tables_->step(level_), x_.data(), inputs_, others_.data());
   }
@@ -246,8 +258,9 @@ void ClosedFormFlow::pass_window() {
       windows_from_.moved.data(), free_.data(), amplitude_.data());
   x_ = windows_from_.x + windows_from_.moved;
   follow_inputs(*regime_, windows_from_.inputs, begin_ + h - windows_from_.time, x_, inputs_);
-  if (r.motion.available()) return;
-  take_others(r, others_, x_);
+  if (!needs_tables(r)) return;
+  take_tables(r, x_);
+  if (whole_) begin_windows(begin_ + h);
   const auto np = r.pairs.np;
   for (const Eigen::Index i : r.motion.others()) {
     for (const Eigen::Index k : {i, np + i})

@@ -87,8 +87,8 @@ class ClosedFormFlow {
     const RegimeTables* tables;
     const DriveOverlay* overlay = nullptr;  ///< null for a belt
     const DriveOverlay* steady = nullptr;   ///< of a motion that has just begun: the overlay of what it becomes
-    double entered = 0.0;                   ///< under an overlay: when last,
-    Eigen::VectorXd x_entered{};            ///< and its state then, the steady response included,
+    double entered = 0.0;                   ///< when last,
+    Eigen::VectorXd x_entered{};            ///< under an overlay: its state then, the steady response included,
     Eigen::VectorXd inputs_entered{};       ///< and inputs, of contacts with the drive's
     const AuditForms* forms = nullptr;      ///< for a shaker or a force; null where the audit integrates by quadrature
     std::unique_ptr<BeltWork> belt;         ///< for a belt, while its speed is constant; the same
@@ -154,6 +154,13 @@ class ClosedFormFlow {
             Eigen::VectorXd& inputs) const;
   /// The same over a whole window of the level.
   void pass_window();
+  /// Pairs that do not oscillate go by tables, each time from where they are, and so do all of a motion held whole.
+  /// Others go by what has moved freely and by the ways, so that what a stiff spring holds together rounds alike.
+  [[nodiscard]] bool needs_tables(const Regime& r) const { return whole_ || !r.motion.available(); }
+  /// Of those, where tables have led.
+  void take_tables(const Regime& r, Eigen::VectorXd& out_x) const;
+  /// Windows follow from the state, which is that of t.
+  void begin_windows(double t);
   /// Inputs that vary, a time tau after these, and x with them, which is what has moved freely by then.
   void follow_inputs(const Visited& in, const Eigen::VectorXd& from, double tau, Eigen::VectorXd& x,
                      Eigen::VectorXd& out_inputs) const;
@@ -278,6 +285,9 @@ class ClosedFormFlow {
     double time = 0.0;
     Eigen::VectorXd x{}, inputs{}, moved{};
   } windows_from_;
+  /// The last step's motion is held whole: on a belt, next to none as yet beside what moves freely and what follows the
+  /// inputs, whose sum it is.
+  bool whole_ = false;
   bool measured_ = false;       ///< free_ and amplitude_ belong to x_
   std::vector<Recall> recall_;  ///< of each contact
   double begin_ = 0.0;

@@ -88,8 +88,8 @@ void ClosedFormFlow::add_clearance_guards(const Guard& of_output, RegimeOutput::
 double ClosedFormFlow::moving_size(const Guard& guard) const {
   const Regime& r = tables_->regime();
   const auto row = r.row.col(guard.output).cwiseAbs();
-  double size = row.dot(x_.cwiseAbs()) + row.dot((free_ - free_entered_).cwiseAbs()) +
-                r.coefficient.col(guard.output).cwiseAbs().dot(inputs_.cwiseAbs());
+  double size = row.dot(x_.cwiseAbs()) + r.coefficient.col(guard.output).cwiseAbs().dot(inputs_.cwiseAbs());
+  if (!whole_) size += row.dot((free_ - free_entered_).cwiseAbs());
   if (const DriveOverlay* overlay = regime_->overlay) size += overlay->outputs[0].size(guard.output);
   return size;
 }
@@ -191,14 +191,15 @@ ClosedFormFlow::GuardStart ClosedFormFlow::start_of(const Guard& guard) const {
   const double harmonic3 = overlay ? overlay->outputs[3].size(guard.output) : 0.0;
   const double third = std::abs(r.polynomial3.col(guard.output).dot(inputs_));
   const auto [value, rate] = evaluate(guard, point_.time);
-  // Of what rests where the guard is zero, what moves from now on is the size.
+  const double most_second = room * most(r.weight2.col(guard.output), 1.0 / fastest_) +
+                             std::abs(r.polynomial2.col(guard.output).dot(inputs_)) + third / fastest_ + harmonic2;
+  // Of what rests where the guard is zero, what moves from now on, for as long as the bounds hold, is the size.
   GuardSize size = size_of(guard);
-  if (size.told() == 0.0) size.own = most(r.weight.col(guard.output), 0.0);
+  if (size.told() == 0.0) size.own = most_second / (fastest_ * fastest_);
   return {.value = value,
           .rate = rate,
           .second = second_derivative(guard, point_.time),
-          .most_second = room * most(r.weight2.col(guard.output), 1.0 / fastest_) +
-                         std::abs(r.polynomial2.col(guard.output).dot(inputs_)) + third / fastest_ + harmonic2,
+          .most_second = most_second,
           .most_third = room * most(r.weight3.col(guard.output), 1.0 / fastest_) + third + harmonic3,
           .size = size,
           .lasting = r.growth == 0.0 && third == 0.0 && !swells()};

@@ -157,6 +157,45 @@ TEST_P(ClosedForms, WhatFloatsAndHardlyFeelsADamperIsPulledAlong) {
   }
 }
 
+TEST(ClosedFormFlow, WhatABeltHasJustBegunToPullIsItsPowerSeries) {
+  // Three masses at rest, the last on a spring K that a belt of speed V pulls from t = 0: q = Σ a_n tⁿ with M a_{n+2}
+  // (n + 2)(n + 1) = K V e₃ [n = 1] − C a_{n+1} (n + 1) − (K + K e₃e₃ᵀ) a_n, of which q is of the order t³. As the sum
+  // of what is free and what follows the belt, it was 1e-5 of itself off at ωt = 1e-5, and 500 times itself at 1e-9.
+  constexpr double kSpeed = 0.7;
+  constexpr int kTerms = 60;
+  const Eigen::Vector3d place = Eigen::Vector3d::UnitZ();
+  for (const double damper : {0.0, 0.3, 50.0})
+    for (const double spring : {2.0, 1e6}) {
+      const fem::Structure structure =
+          fem::masses({.mass = {1.2, 0.8, 1.0},
+                       .links = {{0, 1, 1.3, damper}, {1, 2, 0.9, 0.1 * damper}, {2, 3, 1.1, 0.2 * damper}}});
+      const HybridSystem system(structure, {{place, friction::CompliantCoulomb{1.0, 1.0, spring}, 1e12}},
+                                friction::Belt::constant(kSpeed));
+      const Eigen::Matrix3d M = fem::to_dense(structure.M()), C = fem::to_dense(structure.C()),
+                            K = fem::to_dense(structure.K()) + spring * place * place.transpose();
+      std::vector<Eigen::Vector3d> a(kTerms, Eigen::Vector3d::Zero());
+      for (std::size_t n = 0; n + 2 < kTerms; ++n) {
+        const double order = static_cast<double>(n);
+        const Eigen::Vector3d pull = n == 1 ? Eigen::Vector3d(spring * kSpeed * place) : Eigen::Vector3d::Zero();
+        a[n + 2] = M.inverse() * (pull - (order + 1.0) * C * a[n + 1] - K * a[n]) / ((order + 2.0) * (order + 1.0));
+      }
+      for (const double phase : {1e-9, 1e-7, 1e-5, 1e-3, 1e-2, 0.1, 0.5}) {
+        SCOPED_TRACE(testing::Message() << "damper " << damper << ", spring " << spring << ", phase " << phase);
+        const double t = phase / std::sqrt(spring + 1.0);
+        Eigen::Vector3d q = Eigen::Vector3d::Zero(), v = q;
+        for (std::size_t n = kTerms - 1; n > 0; --n) {
+          q = q * t + a[n];
+          v = v * t + static_cast<double>(n) * a[n];
+        }
+        q *= t;
+        const State end = simulate(system, system.rest(), {.duration = t}).final_state;
+        EXPECT_LT((end.v - v).norm(), 3e-14 * v.norm());
+        // Complex modes hold speeds and places in one: these round by a radian of those.
+        EXPECT_LT((end.q - q).norm(), 3e-14 * (q.norm() + (damper == 0.0 ? 0.0 : v.norm())));
+      }
+    }
+}
+
 TEST_P(ClosedForms, UndampedChainWithoutFrictionKeepsItsEnergy) {
   Draws random(5);
   const HybridSystem system = belt_chain(friction::Coulomb{0.0, 0.0}, friction::Belt::constant(0.2), 25, 0.0);
