@@ -216,8 +216,8 @@ void ClosedFormFlow::move(const Visited& in, double tau, const Eigen::VectorXd& 
                           Eigen::VectorXd& inputs) const {
   const Regime& r = in.tables->regime();
   if (needs_tables(r)) {
-    others_ = x;
-    advance(*in.tables, tau, others_, inputs);
+    by_tables_ = x;
+    advance(*in.tables, tau, by_tables_, inputs);
   }
   r.motion.add(tau, free.data(), x.data());
   follow_inputs(in, inputs_begin_, tau, x, inputs);
@@ -227,11 +227,11 @@ void ClosedFormFlow::move(const Visited& in, double tau, const Eigen::VectorXd& 
 
 void ClosedFormFlow::take_tables(const Regime& r, Eigen::VectorXd& out_x) const {
   if (whole_) {
-    out_x = others_;
+    out_x = by_tables_;
     return;
   }
   for (const Eigen::Index i : r.motion.others())
-    for (const Eigen::Index k : {i, r.pairs.np + i}) out_x(k) = others_(k);
+    for (const Eigen::Index k : {i, r.pairs.np + i}) out_x(k) = by_tables_(k);
 }
 
 void ClosedFormFlow::follow_inputs(const Visited& in, const Eigen::VectorXd& from, double tau, Eigen::VectorXd& x,
@@ -249,8 +249,8 @@ void ClosedFormFlow::pass_window() {
   const double h = tables_->length(level_);
   if (swells()) return move(h);
   if (needs_tables(r)) {
-    others_.resize(x_.size());
-    apply(tables_->step(level_), x_.data(), inputs_, others_.data());
+    by_tables_.resize(x_.size());
+    apply(tables_->step(level_), x_.data(), inputs_, by_tables_.data());
   }
   const RegimeChange& d = tables_->change(level_);
   kernels::kernels().pass(

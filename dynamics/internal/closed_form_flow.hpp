@@ -291,8 +291,9 @@ class ClosedFormFlow {
   bool measured_ = false;       ///< free_ and amplitude_ belong to x_
   std::vector<Recall> recall_;  ///< of each contact
   double begin_ = 0.0;
-  DrivePhase phase_;                                             ///< at begin_, of a periodic drive
-  mutable Eigen::VectorXd x_then_, inputs_then_, sum_, others_;  ///< worked in: samples are asked for by the thousand
+  DrivePhase phase_;  ///< at begin_, of a periodic drive
+  /// Worked in: samples are asked for by the thousand.
+  mutable Eigen::VectorXd x_then_, inputs_then_, sum_, by_tables_;
   mutable double phase_time_ = std::numeric_limits<double>::quiet_NaN();
   mutable DrivePhase phase_then_;
   int level_ = 0;
