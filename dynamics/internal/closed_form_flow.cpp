@@ -102,11 +102,18 @@ ClosedFormFlow::Visited& ClosedFormFlow::visit(const std::vector<ContactRole>& r
   return now;
 }
 
-bool ClosedFormFlow::has_just_begun(const DriveOverlay& steady) const {
+bool ClosedFormFlow::has_just_begun(const DriveOverlay& steady, const Eigen::VectorXd& whole) const {
   if (carries_ || !resolver_.drive().force()) return false;
-  sum_.setZero(x_.size());
+  sum_.setZero(whole.size());
   steady.state.add(steady.phase(point_.time), 1.0, sum_);
-  return little_beside(tables_->regime(), x_, sum_);
+  return little_beside(tables_->regime(), whole, sum_);
+}
+
+bool ClosedFormFlow::has_grown() const {
+  if (!regime_->steady) return false;
+  Eigen::VectorXd whole = x_;
+  regime_->overlay->state.add(phase_at(point_.time), 1.0, whole);  // pairs that do not oscillate are beside theirs
+  return !has_just_begun(*regime_->steady, whole);
 }
 
 void ClosedFormFlow::enter_regime() {
@@ -129,7 +136,7 @@ void ClosedFormFlow::enter_regime() {
   if (!oscillator_states_.empty())
     x_.noalias() += r.from_oscillators * Eigen::VectorXd(point_.internal(oscillator_states_));
   hold_springs(x_, nullptr, inputs_);
-  if (regime_->overlay && has_just_begun(*regime_->overlay)) regime_ = &visit(roles, regime_->overlay);
+  if (regime_->overlay && has_just_begun(*regime_->overlay, x_)) regime_ = &visit(roles, regime_->overlay);
   const DriveOverlay* overlay = regime_->overlay;
   const DrivePhase phase = overlay ? phase_at(point_.time) : DrivePhase{};
   regime_->entered = point_.time;
@@ -271,7 +278,7 @@ void ClosedFormFlow::pass_window() {
 
 bool ClosedFormFlow::step(double t_limit) {
   resolver_.clear();
-  if (regime_->steady && !has_just_begun(*regime_->steady)) {
+  if (has_grown()) {
     lift_point();
     enter_regime();
   }

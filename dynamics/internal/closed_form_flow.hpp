@@ -131,8 +131,10 @@ class ClosedFormFlow {
   void enter_regime();
   /// The regime of these roles, made when first met. @param steady  see Visited
   [[nodiscard]] Visited& visit(const std::vector<ContactRole>& roles, const DriveOverlay* steady = nullptr);
-  /// Whether the state, held whole, is next to none beside the steady response to forces.
-  [[nodiscard]] bool has_just_begun(const DriveOverlay& steady) const;
+  /// Whether a state that holds all there is, is next to none beside the steady response to forces.
+  [[nodiscard]] bool has_just_begun(const DriveOverlay& steady, const Eigen::VectorXd& whole) const;
+  /// Whether what had just begun no longer has.
+  [[nodiscard]] bool has_grown() const;
   /// Moves the ends of contact springs, among the inputs, to where the regime's own rows find the forces that they
   /// have: its coordinates round otherwise than those of the slipping structure, and each return to them would stretch
   /// a spring anew. @param beside  the drive, where x and the inputs are beside its steady response

@@ -240,12 +240,10 @@ void ClosedFormFlow::foresee_starts() {
     const ContactForces& law = resolver_.laws()[i];
     const bool rigid_speed =
         r.outputs[k].kind == RegimeOutput::Kind::kSpeed && law.kind == LawKind::kConstant && !law.varies;
-    if (rigid_speed) {
-      if (point_.multiplicity[i] == 0) continue;
-    } else if (const GuardValue now = evaluate(guard, point_.time);
-               now.value > std::max(size_of(guard).starting(), kClock / fastest_ * std::abs(now.rate))) {
+    if (rigid_speed && point_.multiplicity[i] == 0) continue;
+    if (const GuardValue now = evaluate(guard, point_.time);
+        now.value > std::max(size_of(guard).starting(), kClock / fastest_ * std::abs(now.rate)))
       continue;
-    }
     const GuardStart start = start_of(guard);
     const double g1 = start.rate, g2 = start.second, size = start.size.told(), near = near_zero(start);
     if (guard.kind == GuardKind::kStop && near >= 1.0 / fastest_) {  // at rest on the limit
