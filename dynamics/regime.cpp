@@ -177,10 +177,10 @@ void Regime::differentiate(Eigen::VectorXd& r, Eigen::VectorXd& k) const {
   // What an input does not move at once, it moves by what modes round by, beside which all else is nothing in a motion
   // that has just begun.
   Eigen::VectorXd next = B.transpose() * r;
+  const double first = r.head(np).norm(), second = r.tail(np).norm();
   for (Eigen::Index i = 0; i < next.size(); ++i) {
     const auto of = B.col(i);
-    const double size = of.head(np).norm() * r.head(np).norm() + of.tail(np).norm() * r.tail(np).norm();
-    if (std::abs(next(i)) <= kNone * size) next(i) = 0.0;
+    if (std::abs(next(i)) <= kNone * (of.head(np).norm() * first + of.tail(np).norm() * second)) next(i) = 0.0;
   }
   for (std::size_t c = 0; c < follows.size(); ++c)
     if (follows[c]) next(V) += k(static_cast<Eigen::Index>(c));

@@ -36,7 +36,7 @@ class DriveCache {
  public:
   /// @param tables, slipping  from the system's own cache @param from_rest  see DriveOverlay
   [[nodiscard]] const DrivenRegime& regime(const RegimeTables& tables, const ModalModel& slipping,
-                                           const friction::Drive& drive, bool from_rest = false) {
+                                           const friction::Drive& drive, bool from_rest) {
     const std::lock_guard lock(making_);
     auto& slot = regimes_[{&tables, from_rest}];
     if (!slot) slot = std::make_unique<DrivenRegime>(tables, slipping, drive, from_rest);

@@ -33,9 +33,8 @@ struct DrivePhase {
 /// is held whole, and the drive moves it on, see `Resonance`. Theory: docs/theory/compliant-contacts.md, section 3.
 class DriveOverlay {
  public:
-  /// @param from_rest  of forces: no pair has a steady response, all are as resonant ones. Of a motion that has just
-  /// begun
-  ///                   what is steady and what is free are each far larger than both together.
+  /// @param from_rest  of forces: no pair that oscillates has a steady response, all are as resonant ones. Steady and
+  ///                   free parts of a motion that has just begun are each far larger than both together.
   DriveOverlay(const Regime& regime, const ModalModel& slipping, const friction::Drive& drive, bool from_rest = false);
 
   /// A pair on the frequency of a harmonic, or next to it: ẋ_i = G_i x_i + Re(push e^{ijθ}) beside what else drives it.

@@ -290,15 +290,24 @@ TEST(RestOnAStop, AnyStartIsLeft) {
   EXPECT_GT(moved, 250);
 }
 
+/// Four masses of one in a row, on springs of one but to the ground.
+fem::Structure row_of_four(double to_ground, double damping) {
+  return fem::masses(
+      {.mass = {1.0, 1.0, 1.0, 1.0},
+       .links = {{0, 1, to_ground, damping}, {1, 2, 1.0, damping}, {2, 3, 1.0, damping}, {3, 4, 1.0, damping}}});
+}
+
+/// Stops without a gap on the first of them.
+Contact stops_on_the_first() {
+  const Stop stop{.stiffness = 4e4};
+  return {Eigen::Vector4d::UnitX(), Clearance{.left = stop, .right = stop}};
+}
+
 TEST(RestOnAStop, AMotionThatHasJustBegunIsToldBesideItself) {
   // A force on the last of four masses presses the first one on a stop as t^7 through the others. Beside its steady
   // answer of half a metre and what is free, which cancel, the stop was met 6e-13 m deep, and bounced sixteen times.
-  const Stop stop{.stiffness = 4e4};
-  const HybridSystem system(
-      fem::masses({.mass = {1.0, 1.0, 1.0, 1.0},
-                   .links = {{0, 1, 1.0, 0.02}, {1, 2, 1.0, 0.02}, {2, 3, 1.0, 0.02}, {3, 4, 1.0, 0.02}}}),
-      {{Eigen::Vector4d::UnitX(), Clearance{.left = stop, .right = stop}}}, friction::Force{0.9, {{.amplitude = 0.5}}},
-      Eigen::VectorXd(), Eigen::MatrixXd(Eigen::Vector4d::UnitW()));
+  const HybridSystem system(row_of_four(1.0, 0.02), {stops_on_the_first()}, friction::Force{0.9, {{.amplitude = 0.5}}},
+                            Eigen::VectorXd(), Eigen::MatrixXd(Eigen::Vector4d::UnitW()));
   const Trajectory run = simulate(system, system.rest(), {.duration = 2.0});
   ASSERT_FALSE(run.events.empty());
   EXPECT_LT(std::abs(run.events.front().displacement), 1e-14);
@@ -309,14 +318,10 @@ TEST(RestOnAStop, AMotionThatHasJustBegunIsToldBesideItself) {
 TEST(RestOnAStop, AMotionThatABeltHasJustBegunIsToldBesideItself) {
   // A belt pulls the last of four masses by a spring, and presses the first one on a stop as t⁹. Beside what follows
   // the belt and what is free, which cancel, the stop was met 4e-14 m deep after 0.13 s, and bounced eight times.
-  const Stop stop{.stiffness = 4e4};
   for (const double damping : {0.0, 0.02}) {
     const HybridSystem system(
-        fem::masses(
-            {.mass = {1.0, 1.0, 1.0, 1.0},
-             .links = {{0, 1, 1.0, damping}, {1, 2, 1.0, damping}, {2, 3, 1.0, damping}, {3, 4, 1.0, damping}}}),
-        {{Eigen::Vector4d::UnitX(), Clearance{.left = stop, .right = stop}},
-         {Eigen::Vector4d::UnitW(), friction::CompliantCoulomb{1.0, 1.0, 2.0}, 1e12}},
+        row_of_four(1.0, damping),
+        {stops_on_the_first(), {Eigen::Vector4d::UnitW(), friction::CompliantCoulomb{1.0, 1.0, 2.0}, 1e12}},
         friction::Belt::constant(0.5));
     const Trajectory run = simulate(system, system.rest(), {.duration = 2.0});
     ASSERT_EQ(run.events.size(), 1U);
@@ -329,13 +334,9 @@ TEST(RestOnAStop, AMotionThatABeltHasJustBegunIsToldBesideItself) {
 TEST(RestOnAStop, WhatHardlyAnythingHoldsIsToldByWhatMovesNow) {
   // Sliding friction pulls the third of four masses, which a spring of 1e-8 holds, and presses the first one on a stop
   // as t⁶. Beside how far friction will have moved them in the end, 3e7 m, the stop was met 3e-11 m deep.
-  const Stop stop{.stiffness = 4e4};
-  const HybridSystem system(
-      fem::masses({.mass = {1.0, 1.0, 1.0, 1.0},
-                   .links = {{0, 1, 1e-8, 0.0}, {1, 2, 1.0, 0.0}, {2, 3, 1.0, 0.0}, {3, 4, 1.0, 0.0}}}),
-      {{Eigen::Vector4d::UnitX(), Clearance{.left = stop, .right = stop}},
-       {Eigen::Vector4d::UnitZ(), friction::Coulomb{0.5, 0.4}, 1.0}},
-      friction::Belt::constant(0.5));
+  const HybridSystem system(row_of_four(1e-8, 0.0),
+                            {stops_on_the_first(), {Eigen::Vector4d::UnitZ(), friction::Coulomb{0.5, 0.4}, 1.0}},
+                            friction::Belt::constant(0.5));
   const Trajectory run = simulate(system, system.rest(), {.duration = 0.5});
   ASSERT_EQ(run.events.size(), 1U);
   EXPECT_EQ(run.events.front().after, ContactMode::kRightStop);
