@@ -133,6 +133,34 @@ void fill_general(ModalModel& m, const fem::Modes& modes, const Eigen::MatrixXd&
   m.modal.from_eta_rate = spread_rows(from_eta_dot);
 }
 
+/// e^{Gt} = whole I + rest, e^{Gt} − I = less_one I + rest.
+struct PairExponential {
+  double whole, less_one;
+  Eigen::Matrix2d rest;
+
+  PairExponential(const ModalModel& m, Eigen::Index i, double t) {
+    const double tau = (m.g11(i) + m.g22(i)) / 2.0, det = m.g11(i) * m.g22(i) - m.g12(i) * m.g21(i);
+    const double delta = det - tau * tau;  // > 0: oscillating
+    const Eigen::Matrix2d I = Eigen::Matrix2d::Identity(), G{{m.g11(i), m.g12(i)}, {m.g21(i), m.g22(i)}};
+    if (delta > 0.0) {
+      const double w = std::sqrt(delta), growth = std::exp(tau * t), half = std::sin(w * t / 2.0);
+      whole = growth * std::cos(w * t);
+      less_one = std::expm1(tau * t) - 2.0 * growth * half * half;
+      rest = growth * std::sin(w * t) / w * (G - tau * I);
+      return;
+    }
+    // Newton's form by two decaying exponentials, the slow one first: what rests of a rigid body rests exactly, and a
+    // fast decay does not multiply 0 by infinity.
+    const double w = std::sqrt(-delta), fast = tau - w;
+    const double slow = tau < 0.0 ? det / fast : tau + w;  // no cancellation
+    whole = std::exp(slow * t);
+    less_one = std::expm1(slow * t);
+    const double apart = std::abs(w * t) > 1.0 ? (whole - std::exp(fast * t)) / (2.0 * w)
+                                               : std::exp(tau * t) * (w > 0.0 ? std::sinh(w * t) / w : t);
+    rest = apart * (G - slow * I);
+  }
+};
+
 }  // namespace
 
 Eigen::MatrixXd square_root(const Eigen::MatrixXd& A) {
@@ -216,31 +244,13 @@ Eigen::VectorXd ModalModel::rate(const Eigen::VectorXd& x, const Eigen::VectorXd
 }
 
 Eigen::Matrix2d ModalModel::exponential(Eigen::Index i, double t) const {
-  // e^{Gt} = e^{τt}(c I + s (G − τI)), τ = tr/2, c and s the (hyperbolic) cosine and sine of sqrt(|Δ|) t.
-  const double tau = (g11(i) + g22(i)) / 2.0;
-  const double delta = g11(i) * g22(i) - g12(i) * g21(i) - tau * tau;  // > 0: oscillating
-  const double z = delta * t * t;
-  double c = 1.0, s = 0.0, growth = std::exp(tau * t);
-  if (std::abs(z) < 1e-4) {
-    c = 1.0 - z / 2.0 * (1.0 - z / 12.0 * (1.0 - z / 30.0 * (1.0 - z / 56.0)));
-    s = t * (1.0 - z / 6.0 * (1.0 - z / 20.0 * (1.0 - z / 42.0 * (1.0 - z / 72.0))));
-  } else if (z > 0) {
-    const double w = std::sqrt(delta);
-    c = std::cos(w * t);
-    s = std::sin(w * t) / w;
-  } else {
-    // Two decaying exponentials, so that a fast decay does not multiply 0 by infinity.
-    const double w = std::sqrt(-delta);
-    const double det = g11(i) * g22(i) - g12(i) * g21(i);
-    const double slow_rate = tau < 0.0 ? det / (tau - w) : tau + w;  // no cancellation in the slow rate
-    const double slow = std::exp(slow_rate * t), fast = std::exp((tau - w) * t);
-    growth = 1.0;
-    c = (slow + fast) / 2.0;
-    s = (slow - fast) / (2.0 * w);
-  }
-  Eigen::Matrix2d G;
-  G << g11(i) - tau, g12(i), g21(i), g22(i) - tau;
-  return growth * (c * Eigen::Matrix2d::Identity() + s * G);
+  const PairExponential e(*this, i, t);
+  return e.whole * Eigen::Matrix2d::Identity() + e.rest;
+}
+
+Eigen::Matrix2d ModalModel::change(Eigen::Index i, double t) const {
+  const PairExponential e(*this, i, t);
+  return e.less_one * Eigen::Matrix2d::Identity() + e.rest;
 }
 
 ModalModel build_modal_model(const HybridSystem& system, bool rows_only) {

@@ -79,8 +79,10 @@ struct ModalModel {
   /// damping makes a motion decay is no measure of what happens in it [1/s].
   [[nodiscard]] double pace() const { return floats() ? std::max(fastest, 1.0) : fastest; }
   [[nodiscard]] bool has_shapes() const { return to_q.size() > 0; }
-  /// e^{G_i t} of pair i as {a, b; c, d}: stable for oscillating, critical, overdamped and rigid-body pairs.
+  /// e^{G_i t} of pair i as {a, b; c, d}, of oscillating, critical, overdamped and rigid-body pairs.
   [[nodiscard]] Eigen::Matrix2d exponential(Eigen::Index pair, double t) const;
+  /// e^{G_i t} − I, to rounding of what its rates make of a state in that time, however short and far from the origin.
+  [[nodiscard]] Eigen::Matrix2d change(Eigen::Index pair, double t) const;
 };
 
 /// R with RᵀR = (A + Aᵀ)/2, for an A that is positive semi-definite.

@@ -51,7 +51,7 @@ Eigen::MatrixXd StepTables::changes(const Eigen::VectorXd& times) const {
   Eigen::MatrixXd E = motion_.changes(times);
   for (const Eigen::Index i : motion_.others())
     for (Eigen::Index k = 0; k < times.size(); ++k) {
-      const Eigen::Matrix2d own = model_.exponential(i, times(k)) - Eigen::Matrix2d::Identity();
+      const Eigen::Matrix2d own = model_.change(i, times(k));
       E.col(k)({i, np + i, 2 * np + i, 3 * np + i}) << own(0, 0), own(0, 1), own(1, 0), own(1, 1);
     }
   return E;

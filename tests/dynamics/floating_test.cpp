@@ -1,6 +1,7 @@
 // What floats has no rate of its own: a damper or a spring too weak to be felt, whose rate is no measure of anything,
 // leaves its motion as it is.
 #include <slipmode/dynamics/simulate.hpp>
+#include <slipmode/dynamics/step_tables.hpp>
 
 #include <gtest/gtest.h>
 #include <cmath>
@@ -42,6 +43,25 @@ TEST(WhatFloats, MovesOnUnderADamperOrASpringThatIsNotFelt) {
     EXPECT_LT((run.final_state.q - expected.final_state.q).norm(), 1e-9) << where();
     EXPECT_LT((run.final_state.v - expected.final_state.v).norm(), 1e-9) << where();
     EXPECT_LT(std::abs(run.audit.residual()), 1e-12) << where();
+  }
+}
+
+TEST(WhatFloats, HasGoneNowhereInAShortStepFarFromTheOrigin) {
+  // Three masses at rest 1,000 m out, the first in oil. What they move by in a step was the difference of two states:
+  // 10^-13 m however short the step, of which a spring of 10^6 N/m made forces (random scene 1423: 1007).
+  const Eigen::Matrix3d K{{1.3, -1.3, 0.0}, {-1.3, 1.8, -0.5}, {0.0, -0.5, 0.5}};
+  const Eigen::Matrix3d C{{0.15, -0.05, 0.0}, {-0.05, 0.06, -0.01}, {0.0, -0.01, 0.01}};
+  const fem::Structure structure(fem::Matrix(Eigen::MatrixXd(Eigen::Vector3d(1.0, 1.4, 0.6).asDiagonal())),
+                                 fem::Matrix(Eigen::MatrixXd(C)), fem::Matrix(Eigen::MatrixXd(K)));
+  const HybridSystem system(structure, {{Eigen::Vector3d(0.0, 1.0, 0.0), friction::Coulomb{0.6, 0.3}, 1.5}},
+                            friction::Belt::constant(0.0));
+  const ModalModel model = build_modal_model(system, false);
+  const StepTables tables(model);
+  const Eigen::VectorXd x = model.from_q * Eigen::Vector3d::Constant(1e3);
+  for (int level = 0; level < 30; ++level) {
+    Eigen::VectorXd moved(kNodes);
+    tables.displacements(level).without_forces(x.data(), 1, moved.data());
+    EXPECT_LT(moved.cwiseAbs().maxCoeff(), 1e-12 * model.fastest * tables.step(level)) << "level " << level;
   }
 }
 
