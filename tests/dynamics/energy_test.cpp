@@ -58,6 +58,25 @@ TEST(Energy, ClosesWithALoadARampAndGeneralDamping) {
   expect_closed(system, random_state(random, 6, 1.0), 500.0, {});
 }
 
+TEST(Energy, ClosesUnderAShakerThatHardlyPulls) {
+  // Speeds of 10^-6 m/s beside the shaker's of 7 and 240. A contact that turned was put at the shaker's speed, which is
+  // off by what the event's time rounds by: 5e-9 of the energy, 2e-7 under the larger one.
+  const friction::Coulomb weak{0.7, 0.5};
+  for (const double amplitude : {2.7, 100.0})
+    for (const int contacts : {1, 2}) {
+      SCOPED_TRACE(testing::Message() << "amplitude " << amplitude << ", contacts " << contacts);
+      std::vector<friction::Contact> pulled{{Eigen::Vector3d(0.0, 1.0, 0.0), weak, 2e-6},
+                                            {Eigen::Vector3d(0.0, 0.0, 1.0), weak, 1e-6}};
+      pulled.resize(static_cast<std::size_t>(contacts));
+      const HybridSystem system(fem::chain({.masses = 3, .ground_stiffness = {0.4}, .damping = 0.012}), pulled,
+                                friction::Shaker{amplitude, 0.389, 3.0});
+      const Trajectory run = simulate(system, system.rest(), {.duration = 40.0});
+      EXPECT_GT(run.events.size(), 25U);
+      EXPECT_LT(run.final_state.q.cwiseAbs().maxCoeff(), 1e-4);
+      EXPECT_LT(std::abs(run.audit.residual()), 1e-12);
+    }
+}
+
 TEST(Energy, ClosesWhereClockAndMotionHaveLongToPart) {
   // Undamped masses under a force beside a natural frequency (0.7092) beat for ever. Work is of the force's phase at
   // the clock's times: were these off by roundings of the time at each step, by 1e-7 after 60,000 units, the balance
