@@ -157,12 +157,12 @@ void CollocationFlow::refine_event(const Guarded& guard, double& tau, Eigen::Vec
       const double sign = forces_.segment<kNodes>(kNodes * c).dot(basis) > 0 ? 1.0 : -1.0;
       value = laws()[i].static_limit - sign * stick_force(c, x, tau);
       rate = -sign * forces_.segment<kNodes>(kNodes * c).dot(nodes_.lagrange_slope(tau / h)) / h;
-      usual_rate = laws()[i].most() / h;
+      usual_rate = forces_.segment<kNodes>(kNodes * c).cwiseAbs().maxCoeff() / h;
     } else {
       const double sign = sign_of(point_.modes[i]);
       value = sign * (V - resolver_.contact_velocity(c, x.data()));
       rate = sign * (a - contact_acceleration(c, x, tau, basis));
-      usual_rate = model_.mobility(c, c) * laws()[i].most();
+      usual_rate = std::max(model_.mobility(c, c) * laws()[i].most(), balanced(c));
     }
     const double shift = -value / rate;
     if (!(std::abs(shift) < 1e-2 * h) || tau + shift <= 0.0) return;
@@ -173,7 +173,8 @@ void CollocationFlow::refine_event(const Guarded& guard, double& tau, Eigen::Vec
     within_.shift(tau, shift, x.data());
     tau += shift;
     // Newton squares its error; the factor shows in two shifts, and before that is bounded by a usual curvature.
-    const double factor = previous > 0.0 ? std::abs(shift) / (previous * previous) : std::abs(usual_rate / rate) / h;
+    const double factor =
+        previous > 0.0 ? std::abs(shift) / (previous * previous) : std::max(1.0, std::abs(usual_rate / rate)) / h;
     if (factor * shift * shift <= kNegligibleShift * h) return;
     previous = std::abs(shift);
   }
