@@ -35,13 +35,14 @@ bool place(SceneDraft& d, int own) {
 }
 
 /// @param varying  it may; with an oscillator of its own beside piecewise-linear laws only
-void load(SceneDraft& d, bool varying) {
-  const double constant = d.stiffness * d.size * d.uniform(0.2, 3.0);
+/// @param share  of the usual
+void load(SceneDraft& d, bool varying, double share) {
+  const double constant = share * d.stiffness * d.size * d.uniform(0.2, 3.0);
   const double kind = varying ? d.uniform(0.0, d.linear ? 1.0 : 0.85) : 0.0;
   if (kind < 0.6) return d.key("normal_load", constant);
   d.varying = true;
   if (kind < 0.85)
-    return d.fill("normal_load = { constant = #, slope = # }", {constant, d.stiffness * d.uniform(-1.5, 1.5)});
+    return d.fill("normal_load = { constant = #, slope = # }", {constant, share * d.stiffness * d.uniform(-1.5, 1.5)});
   d.oscillates = true;
   d.fill(
       "normal_load = { constant = #, oscillator = { mass = #, support_stiffness = #, support_damping = #, "
@@ -121,12 +122,14 @@ void friction(SceneDraft& d, std::string_view word, bool linear) {
   if (word != "dahl") d.key("mu_s", std::max(mu_s, least));
   if (word != "dahl" && word != "table") d.key("mu_k", std::max(mu_k, least));
   if (linear && mu_k > 0.1 && d.chance(0.2)) d.key("tilt_deg", d.uniform(-5.0, 5.0));
-  load(d, linear);
+  // Bristles and laws of the speed have times of their own, which would shrink with their load.
+  load(d, linear, linear || d.coulomb_alone ? d.pressed : 1.0);
 }
 
 void joint(SceneDraft& d) {
   d.line("law = \"iwan\"\nelements = {}", d.integer(2, 6));
-  d.fill("slip_force = #\nstiffness = #", {d.stiffness * d.size * d.uniform(0.05, 1.0), d.contact_spring(200.0, 1e6)});
+  d.fill("slip_force = #\nstiffness = #",
+         {d.pressed * d.stiffness * d.size * d.uniform(0.05, 1.0), d.contact_spring(200.0, 1e6)});
   d.fill("chi = #\nbeta = #", {d.uniform(-0.9, 2.0), d.chance(0.5) ? 0.0 : d.uniform(0.0, 2.0)});
 }
 

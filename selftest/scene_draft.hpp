@@ -25,7 +25,8 @@ struct SceneDraft {
   /// Typical spring, rate and displacement. They make friction matter: forces of the order of a spring times a
   /// displacement.
   double stiffness = 1.0, rate = 1.0, size = 1.0;
-  bool mixed = false;  ///< stiff and slow: springs up to a million times one another
+  double pressed = 1.0;  ///< normal loads and joints' limits, as a share of such forces
+  bool mixed = false;    ///< stiff and slow: springs up to a million times one another
 
   bool linear = false;                          ///< of piecewise-linear laws alone
   bool varying = false, oscillates = false;     ///< a normal load is not constant; has an oscillator
