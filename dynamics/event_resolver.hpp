@@ -116,6 +116,9 @@ class EventResolver {
   [[nodiscard]] Resolution decide(const HybridPoint& point, std::vector<bool> at_rest,
                                   const std::vector<bool>& released) const;
   void settle_single(HybridPoint& point);
+  /// What turns under a shaker without sticking is not put at its speed, which rounds with the event's time, however
+  /// little of it reaches the structure.
+  [[nodiscard]] bool keeps_speed(ContactMode before, ContactMode after) const;
   void settle_stop(HybridPoint& point, const Reached& reached);
   /// One contact behind a contact spring: its force is a function of the state, there is nothing to resolve.
   void settle_spring(HybridPoint& point, const Reached& reached);

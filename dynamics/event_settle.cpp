@@ -67,20 +67,21 @@ void EventResolver::settle(HybridPoint& point, Reached reached) {
 
 void EventResolver::settle_single(HybridPoint& point) {
   const ContactMode before = point.modes[0];
-  const bool stuck = before == ContactMode::kStick;
-  // What turns without sticking keeps its speed: at the drive's it would be off by what the event's time rounds by.
-  const auto hold = [&] {
-    const double gap = drive_.velocity(point.time) - contact_velocity(0, point.x.data());
-    kernels::kernels().add_scaled(gap / model_.mobility(0, 0), model_.input.data(), point.x.data(), 2 * model_.np);
-  };
-  if (stuck) hold();
+  const double force_before = point.force(0), gap = drive_.velocity(point.time) - contact_velocity(0, point.x.data());
+  const double impulse = gap / model_.mobility(0, 0);
+  const double* input = model_.input.data();
+  kernels::kernels().add_scaled(impulse, input, point.x.data(), 2 * model_.np);
   const SingleResolution next =
-      resolve_single(instant(point.time, point.x.data()), stuck, point.force(0) > 0 ? 1.0 : -1.0);
+      resolve_single(instant(point.time, point.x.data()), before == ContactMode::kStick, force_before > 0 ? 1.0 : -1.0);
   point.modes[0] = next.mode;
   point.multiplicity[0] = next.multiplicity;
   point.force(0) = next.force;
-  if (!stuck && next.mode == ContactMode::kStick) hold();
+  if (keeps_speed(before, next.mode)) kernels::kernels().add_scaled(-impulse, input, point.x.data(), 2 * model_.np);
   record_change(point, 0, before);
+}
+
+bool EventResolver::keeps_speed(ContactMode before, ContactMode after) const {
+  return drive_.shaker() != nullptr && before != after && before != ContactMode::kStick && after != ContactMode::kStick;
 }
 
 void EventResolver::settle_stop(HybridPoint& point, const Reached& reached) {
@@ -177,15 +178,25 @@ void EventResolver::settle_coupled(HybridPoint& point, const Reached& reached) {
     turn_together(point, contact);
 
   // Rigid contacts at rest on the drive, to be decided together: those that stick and the one whose guard was reached.
-  // Of others at zero speed decide() tells whether they slide on.
+  // Others at zero speed are held there too; decide() tells whether they slide on.
   std::vector<bool> at_rest(point.modes.size());
-  for (std::size_t c = 0; c < point.modes.size(); ++c)
-    at_rest[c] =
-        decides_by_acceleration(point, c) &&
-        (point.modes[c] == ContactMode::kStick || (static_cast<int>(c) == contact && kind == GuardKind::kFriction));
-  hold(point.time, before, point.x.data());
+  std::vector<Eigen::Index> resting;
+  for (std::size_t c = 0; c < point.modes.size(); ++c) {
+    const auto i = static_cast<int>(c);
+    if (!decides_by_acceleration(point, c)) continue;
+    at_rest[c] = point.modes[c] == ContactMode::kStick || (i == contact && kind == GuardKind::kFriction);
+    if (at_rest[c] || at_belt_speed(point.time, i, point.x.data())) resting.push_back(i);
+  }
+  const Eigen::VectorXd reached_at = point.x;
+  hold(point.time, resting, point.x.data());
   point.assign(decide(point, at_rest, released));
-  hold(point.time, point.modes, point.x.data());  // of what slides on, only what has stuck: see settle_single
+  if (std::erase_if(resting, [&](Eigen::Index c) {
+        const auto i = static_cast<std::size_t>(c);
+        return keeps_speed(before[i], point.modes[i]);
+      }) > 0) {
+    point.x = reached_at;
+    hold(point.time, resting, point.x.data());
+  }
 
   if (contact < 0) record(point, -1, EventKind::kDriveCorner, ContactMode::kStick);
   for (std::size_t c = 0; c < point.modes.size(); ++c)

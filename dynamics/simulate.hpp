@@ -21,7 +21,8 @@ enum class EventKind : std::uint8_t {
   kJump,         ///< behind a contact spring: the contact point slipped from μ_s N to μ_k N and sticks again
 };
 
-/// An event belongs to the half-open window (t0, t1]; after it the state lies on the guard to rounding.
+/// An event belongs to the half-open window (t0, t1]; after it the state lies on the guard to rounding, of the
+/// time's too where it turns under a shaker.
 struct Event {
   double time = 0.0;
   int contact = -1;
