@@ -165,8 +165,7 @@ std::vector<ContactMode> start_modes(const HybridSystem& system, const ModalMode
     const double sliding = V - contact.direction.dot(start.v);
     const double scale =
         system.drive().velocity_scale(start.time) + contact.direction.cwiseAbs().dot(start.v.cwiseAbs());
-    const double motion = motion_size(contact, start.v, x, m.velocity_row, c);
-    const double at_rest = 1e-12 * scale + kModalRounding * motion;
+    const double at_rest = 1e-12 * scale + kModalRounding * motion_size(contact, start.v, x, m.velocity_row, c);
     const ContactMode by_sign = std::abs(sliding) <= at_rest ? ContactMode::kStick
                                 : sliding > 0                ? ContactMode::kSlipPositive
                                                              : ContactMode::kSlipNegative;
@@ -179,7 +178,7 @@ std::vector<ContactMode> start_modes(const HybridSystem& system, const ModalMode
     if (compliant || modes[c] == ContactMode::kSeparated) continue;  // decided by the force and the normal load
     // A run that ended at an event leaves a sliding speed of rounding, of either sign.
     const bool agrees = by_sign == ContactMode::kStick || modes[c] == by_sign ||
-                        std::abs(sliding) <= 1e-9 * (scale + speed_of_force(contact, c, m)) + kToldTo * motion;
+                        std::abs(sliding) <= 1e-9 * (scale + speed_of_force(contact, c, m));
     require_or_say(agrees && modes[c] != ContactMode::kSmooth, [&] {
       return "start state says contact " + std::to_string(c + 1) + " is in mode " +
              std::to_string(static_cast<int>(modes[c])) + ", but its relative velocity is " + std::to_string(sliding) +

@@ -2,6 +2,7 @@
 // leaves its motion as it is.
 #include <slipmode/dynamics/simulate.hpp>
 #include <slipmode/dynamics/step_tables.hpp>
+#include <slipmode/fem/masses.hpp>
 
 #include <gtest/gtest.h>
 #include <cmath>
@@ -49,10 +50,8 @@ TEST(WhatFloats, MovesOnUnderADamperOrASpringThatIsNotFelt) {
 TEST(WhatFloats, HasGoneNowhereInAShortStepFarFromTheOrigin) {
   // Three masses at rest 1,000 m out, the first in oil. What they move by in a step was the difference of two states:
   // 10^-13 m however short the step, of which a spring of 10^6 N/m made forces (random scene 1423: 1007).
-  const Eigen::Matrix3d K{{1.3, -1.3, 0.0}, {-1.3, 1.8, -0.5}, {0.0, -0.5, 0.5}};
-  const Eigen::Matrix3d C{{0.15, -0.05, 0.0}, {-0.05, 0.06, -0.01}, {0.0, -0.01, 0.01}};
-  const fem::Structure structure(fem::Matrix(Eigen::MatrixXd(Eigen::Vector3d(1.0, 1.4, 0.6).asDiagonal())),
-                                 fem::Matrix(Eigen::MatrixXd(C)), fem::Matrix(Eigen::MatrixXd(K)));
+  const fem::Structure structure =
+      fem::masses({.mass = {1.0, 1.4, 0.6}, .links = {{0, 1, 0.0, 0.1}, {1, 2, 1.3, 0.05}, {2, 3, 0.5, 0.01}}});
   const HybridSystem system(structure, {{Eigen::Vector3d(0.0, 1.0, 0.0), friction::Coulomb{0.6, 0.3}, 1.5}},
                             friction::Belt::constant(0.0));
   const ModalModel model = build_modal_model(system, false);
