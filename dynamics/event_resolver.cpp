@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace slipmode::dynamics {
@@ -14,6 +15,8 @@ namespace {
 
 /// Sliding slower than this share of the velocities at play is no sliding.
 constexpr double kAtRest = 1e-13;
+/// A time, and the phase of a drive then, round by this share of themselves.
+constexpr double kClockRounds = 4.0 * std::numeric_limits<double>::epsilon();
 /// A spring stretched beyond its limit by this share is at it: where sliding has ended, it is but for rounding.
 constexpr double kAtLimit = 1e-12;
 
@@ -243,8 +246,7 @@ bool EventResolver::at_belt_speed(double time, int c, const double* x) const {
   const double V = drive_.velocity(time);
   const Eigen::Map<const Eigen::VectorXd> state(x, 2 * model_.np);
   const auto row = model_.velocity_row.col(c).cwiseAbs();
-  // V as computed errs by the rounding of its phase, and of the time.
-  double scale = row.dot(state.cwiseAbs()) + drive_.velocity_scale(time) + std::abs(drive_.acceleration(time) * time);
+  double scale = row.dot(state.cwiseAbs()) + drive_.velocity_scale(time);
   // Where all is at rest, speeds round by what the displacements would become.
   const auto np = model_.np;
   if (model_.proportional)
@@ -253,7 +255,9 @@ bool EventResolver::at_belt_speed(double time, int c, const double* x) const {
     scale += (row.head(np).cwiseAbs2() + row.tail(np).cwiseAbs2())
                  .cwiseSqrt()
                  .dot((state.head(np).cwiseAbs2() + state.tail(np).cwiseAbs2()).cwiseSqrt());
-  return std::abs(V - contact_velocity(c, x)) <= kAtRest * scale;
+  // V as computed errs by the rounding of its phase, and of the time.
+  return std::abs(V - contact_velocity(c, x)) <=
+         kAtRest * scale + kClockRounds * std::abs(drive_.acceleration(time) * time);
 }
 
 void EventResolver::start(HybridPoint& point) const {

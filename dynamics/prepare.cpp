@@ -147,6 +147,9 @@ double speed_of_force(const friction::Contact& contact, std::size_t c, const Mod
   return contact_forces(contact).most() * m.mobility(i, i) / m.pace();
 }
 
+/// A run that ended at an event leaves a sliding speed of rounding, of either sign: this share of the speeds at play.
+constexpr double kOffGuard = 1e-9;
+
 /// Modes at the start: as given, or by the sign of the sliding speed with zero speed left to consistency.
 std::vector<ContactMode> start_modes(const HybridSystem& system, const ModalModel& m, const State& start,
                                      const Eigen::VectorXd& x) {
@@ -176,9 +179,8 @@ std::vector<ContactMode> start_modes(const HybridSystem& system, const ModalMode
     }
     modes[c] = start.modes[c];
     if (compliant || modes[c] == ContactMode::kSeparated) continue;  // decided by the force and the normal load
-    // A run that ended at an event leaves a sliding speed of rounding, of either sign.
     const bool agrees = by_sign == ContactMode::kStick || modes[c] == by_sign ||
-                        std::abs(sliding) <= 1e-9 * (scale + speed_of_force(contact, c, m));
+                        std::abs(sliding) <= kOffGuard * (scale + speed_of_force(contact, c, m));
     require_or_say(agrees && modes[c] != ContactMode::kSmooth, [&] {
       return "start state says contact " + std::to_string(c + 1) + " is in mode " +
              std::to_string(static_cast<int>(modes[c])) + ", but its relative velocity is " + std::to_string(sliding) +
@@ -295,7 +297,9 @@ State end_state(const HybridSystem& system, const ModalModel& m, const HybridPoi
     const double scale = std::abs(belt) + contact.direction.cwiseAbs().dot(end.v.cwiseAbs());
     const bool sticks = end.modes[c] == ContactMode::kStick, slips = std::abs(sign) == 1.0;
     const bool rigid = friction::kind(contact.law) != LawKind::kCompliant;
-    const bool off_guard = rigid && (sticks || (slips && sliding * sign < 0.0));
+    // Under a shaker, whose speed rounds with the time, what slides has kept its own (EventResolver::keeps_speed).
+    const double kept = system.drive().shaker() ? kOffGuard * system.drive().velocity_scale(end.time) : 0.0;
+    const bool off_guard = rigid && (sticks || (slips && sliding * sign < -kept));
     if (off_guard && std::abs(sliding) <= kLargestRepair * (scale + speed_of_force(contact, c, m)))
       held.push_back(static_cast<Eigen::Index>(c));
   }

@@ -201,6 +201,9 @@ class ClosedFormFlow {
   /// Takes the state on to where the guard vanishes, near tau, which follows; where that is no root, or that of a
   /// window which has one at tau is another, tau stays. True if the root is proved to be the first after `from`.
   [[nodiscard]] bool approach(const Guard& guard, double from, double& tau);
+  /// Whether one of the guards that the window has vanish about there too does so before, by their exact values: the
+  /// first of them is taken, and the state to where it vanishes.
+  [[nodiscard]] bool take_earlier(Search& found, double from, double& root);
   /// A harmonic drives a pair at its own frequency, or next to it.
   [[nodiscard]] bool swells() const { return regime_->overlay && !regime_->overlay->resonances.empty(); }
   /// The most that pairs of these weights add up to within a time h, but for what free motion grows by.

@@ -383,7 +383,7 @@ bool ClosedFormFlow::approach(const Guard& guard, double from, double& tau) {
     return false;
   };
   double slope = 0.0;
-  move(tau);
+  move_from_begin(tau);
   for (int k = 0; k < kNewtonSteps; ++k) {
     const GuardValue now = evaluate(guard, begin_ + tau);
     slope = now.rate;
@@ -404,6 +404,25 @@ bool ClosedFormFlow::approach(const Guard& guard, double from, double& tau) {
     return give_up();
   // The guard falls all the way from `from`: it vanishes here for the first time.
   return tau <= from || (tau - from) * bend < std::abs(slope);
+}
+
+bool ClosedFormFlow::take_earlier(Search& found, double from, double& root) {
+  if (root <= (found.others - kRootLeaves) * tables_->length(level_)) return false;
+  const int reached = found.guard;
+  for (std::size_t g = 0; g < guards_.size(); ++g) {
+    const Guard& other = guards_[g];
+    if (static_cast<int>(g) == found.guard || other.exempt_until > begin_ ||
+        !(evaluate(other, begin_ + root).value < -kTouching * size_of(other).told()))
+      continue;
+    double before = root;
+    if (approach(other, from, before) && before < root) {
+      found.guard = static_cast<int>(g);
+      root = before;
+    } else {
+      move_from_begin(root);
+    }
+  }
+  return found.guard != reached;
 }
 
 double ClosedFormFlow::most(const Eigen::Ref<const Eigen::VectorXd>& weight, double h) const {

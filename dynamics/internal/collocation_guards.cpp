@@ -15,6 +15,8 @@ namespace {
 constexpr double kNegligibleShift = 1e-15;
 /// Events that are less than this share of a step apart come in either order.
 constexpr double kEitherOrder = 1e-12;
+/// A guard may vanish this share of a step before its form does.
+constexpr double kAnnounced = 1e-3;
 /// Right after sliding has begun, a guard that vanishes within this share of a step is an error of interpolation.
 constexpr double kEarly = 1.0 / 64.0;
 /// A step that starts with more than this share of its largest speed does not start at rest.
@@ -182,9 +184,10 @@ void CollocationFlow::refine_event(const Guarded& guard, double& tau, Eigen::Vec
 
 void CollocationFlow::refine_first(FirstGuards& guards, double& tau, Eigen::VectorXd& x) {
   refine_event(guards.first, tau, x);
-  // A bristle's speed that is rounding announces its zero by a share of a step off.
+  // Its form announces a guard's zero a little off, and that of a bristle's speed that is rounding by a share of a
+  // step.
   const double h = tables_.step(step_level_);
-  if (guards.second.contact < 0 || guards.second.theta * h >= tau || too_early(guards.second)) return;
+  if (guards.second.contact < 0 || guards.second.theta * h >= tau + kAnnounced * h || too_early(guards.second)) return;
   double before = guards.second.theta * h;
   Eigen::VectorXd x_before(x.size());
   within_.state(before, x_before.data());
