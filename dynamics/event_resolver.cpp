@@ -15,8 +15,6 @@ namespace {
 
 /// Sliding slower than this share of the velocities at play is no sliding.
 constexpr double kAtRest = 1e-13;
-/// A time, and the phase of a drive then, round by this share of themselves.
-constexpr double kClockRounds = 4.0 * std::numeric_limits<double>::epsilon();
 /// A spring stretched beyond its limit by this share is at it: where sliding has ended, it is but for rounding.
 constexpr double kAtLimit = 1e-12;
 
@@ -34,6 +32,10 @@ void WorkSums::add(double contact, double drive, double viscous, double force) {
   viscous_loss += viscous;
   force_work += force;
   exchanged += std::abs(contact) + std::abs(force) + viscous;
+}
+
+double clock_rounding(const friction::Drive& drive, double time) {
+  return 4.0 * std::numeric_limits<double>::epsilon() * std::abs(drive.acceleration(time) * time);
 }
 
 EventResolver::EventResolver(const HybridSystem& system, const ModalModel& model, const FlowOptions& options)
@@ -255,9 +257,7 @@ bool EventResolver::at_belt_speed(double time, int c, const double* x) const {
     scale += (row.head(np).cwiseAbs2() + row.tail(np).cwiseAbs2())
                  .cwiseSqrt()
                  .dot((state.head(np).cwiseAbs2() + state.tail(np).cwiseAbs2()).cwiseSqrt());
-  // V as computed errs by the rounding of its phase, and of the time.
-  return std::abs(V - contact_velocity(c, x)) <=
-         kAtRest * scale + kClockRounds * std::abs(drive_.acceleration(time) * time);
+  return std::abs(V - contact_velocity(c, x)) <= kAtRest * scale + clock_rounding(drive_, time);
 }
 
 void EventResolver::start(HybridPoint& point) const {

@@ -44,6 +44,9 @@ struct Reached {
   ContactMode next = ContactMode::kStick;  ///< of a clearance whose guard was crossed
 };
 
+/// What the rounding of a time, and of a drive's phase then, makes of the drive's velocity [m/s].
+double clock_rounding(const friction::Drive& drive, double time);
+
 /// Turns a guard that was reached into events: puts the state onto the guard, lets consistency decide the new modes,
 /// keeps the record. The same for either flow.
 class EventResolver {
@@ -116,8 +119,8 @@ class EventResolver {
   [[nodiscard]] Resolution decide(const HybridPoint& point, std::vector<bool> at_rest,
                                   const std::vector<bool>& released) const;
   void settle_single(HybridPoint& point);
-  /// What turns under a shaker without sticking is not put at its speed, which rounds with the event's time, however
-  /// little of it reaches the structure.
+  /// What turns or slides on under a shaker is not put at its speed, which rounds with the event's time, however little
+  /// of it reaches the structure.
   [[nodiscard]] bool keeps_speed(ContactMode before, ContactMode after) const;
   void settle_stop(HybridPoint& point, const Reached& reached);
   /// One contact behind a contact spring: its force is a function of the state, there is nothing to resolve.

@@ -81,7 +81,7 @@ void EventResolver::settle_single(HybridPoint& point) {
 }
 
 bool EventResolver::keeps_speed(ContactMode before, ContactMode after) const {
-  return drive_.shaker() != nullptr && before != after && before != ContactMode::kStick && after != ContactMode::kStick;
+  return drive_.shaker() != nullptr && before != ContactMode::kStick && after != ContactMode::kStick;
 }
 
 void EventResolver::settle_stop(HybridPoint& point, const Reached& reached) {

@@ -180,7 +180,8 @@ std::vector<ContactMode> start_modes(const HybridSystem& system, const ModalMode
     modes[c] = start.modes[c];
     if (compliant || modes[c] == ContactMode::kSeparated) continue;  // decided by the force and the normal load
     const bool agrees = by_sign == ContactMode::kStick || modes[c] == by_sign ||
-                        std::abs(sliding) <= kOffGuard * (scale + speed_of_force(contact, c, m));
+                        std::abs(sliding) <= kOffGuard * (scale + speed_of_force(contact, c, m)) +
+                                                 clock_rounding(system.drive(), start.time);
     require_or_say(agrees && modes[c] != ContactMode::kSmooth, [&] {
       return "start state says contact " + std::to_string(c + 1) + " is in mode " +
              std::to_string(static_cast<int>(modes[c])) + ", but its relative velocity is " + std::to_string(sliding) +
@@ -298,7 +299,9 @@ State end_state(const HybridSystem& system, const ModalModel& m, const HybridPoi
     const bool sticks = end.modes[c] == ContactMode::kStick, slips = std::abs(sign) == 1.0;
     const bool rigid = friction::kind(contact.law) != LawKind::kCompliant;
     // Under a shaker, whose speed rounds with the time, what slides has kept its own (EventResolver::keeps_speed).
-    const double kept = system.drive().shaker() ? kOffGuard * system.drive().velocity_scale(end.time) : 0.0;
+    const double kept = system.drive().shaker() ? kOffGuard * system.drive().velocity_scale(end.time) +
+                                                      clock_rounding(system.drive(), end.time)
+                                                : 0.0;
     const bool off_guard = rigid && (sticks || (slips && sliding * sign < -kept));
     if (off_guard && std::abs(sliding) <= kLargestRepair * (scale + speed_of_force(contact, c, m)))
       held.push_back(static_cast<Eigen::Index>(c));

@@ -323,7 +323,7 @@ bool ClosedFormFlow::step(double t_limit) {
     double root = (found.guess > 0.0 ? found.guess : found.at) * h;
     bool proved =
         (found.resolved || found.guess > 0.0) && approach(guards_[static_cast<std::size_t>(found.guard)], tau, root);
-    const bool earlier = proved && found.resolved && take_earlier(found, tau, root);
+    const bool earlier = proved && take_earlier(found, tau, root);
     if (!earlier && found.resolved && root > (found.others + kSameInstant) * h) {
       // A guard that is all rounding led past another's event: it is taken where the window has it.
       proved = false;

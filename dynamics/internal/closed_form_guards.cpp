@@ -240,9 +240,12 @@ void ClosedFormFlow::foresee_starts() {
     const ContactForces& law = resolver_.laws()[i];
     const bool rigid_speed =
         r.outputs[k].kind == RegimeOutput::Kind::kSpeed && law.kind == LawKind::kConstant && !law.varies;
-    if (rigid_speed && point_.multiplicity[i] == 0) continue;
-    if (const GuardValue now = evaluate(guard, point_.time);
-        now.value > std::max(size_of(guard).starting(), kClock / fastest_ * std::abs(now.rate)))
+    const bool by_order = rigid_speed && point_.multiplicity[i] > 0;
+    const GuardValue now = evaluate(guard, point_.time);
+    const GuardSize measure = size_of(guard);
+    // A speed that is said not to start at zero does only where its contact has turned a moment before.
+    if (rigid_speed && !by_order ? std::abs(now.value) > 2.0 * kTouching * measure.told()
+                                 : now.value > std::max(measure.starting(), kClock / fastest_ * std::abs(now.rate)))
       continue;
     const GuardStart start = start_of(guard);
     const double g1 = start.rate, g2 = start.second, size = start.size.told(), near = near_zero(start);
@@ -250,9 +253,9 @@ void ClosedFormFlow::foresee_starts() {
       guard.exempt_until = point_.time + near;
       continue;
     }
-    const bool simple = rigid_speed ? point_.multiplicity[i] == 1 : g1 > kRising * fastest_ * size;
+    const bool simple = by_order ? point_.multiplicity[i] == 1 : g1 > kRising * fastest_ * size;
     // Flat, too, where it falls by rounding, and no further below zero than can be told.
-    const bool flat = rigid_speed
+    const bool flat = by_order
                           ? point_.multiplicity[i] == 2
                           : std::abs(g1) <= fastest_ * start.size.starting() || g1 * g1 <= 2.0 * g2 * kTouching * size;
     double clear = 0.0;
@@ -261,7 +264,7 @@ void ClosedFormFlow::foresee_starts() {
     // A guard that falls through zero is an event at once; one of which neither slope nor curvature can be told may
     // rise.
     const bool told = !flat || std::abs(g2) > fastest_ * fastest_ * start.size.starting();
-    if (!rigid_speed && clear == 0.0 && told) {
+    if (!by_order && clear == 0.0 && told) {
       const bool at_rest =
           flat && std::abs(g1) <= kRising * fastest_ * size && std::abs(start.value) <= kPlaceRounding * size;
       guard.at_once = guard.kind == GuardKind::kStop && at_rest;

@@ -231,22 +231,28 @@ bool CollocationFlow::step(double t_limit) {
     }
     step_modes_ = point_.modes;
   }
-  const bool at_guard = guard.contact >= 0 && guard.theta * h <= remaining;
-  if (!at_guard) guard = {};  // what lies beyond the step is nothing of its end's
-  if (at_guard && point_.modes[static_cast<std::size_t>(guard.contact)] != ContactMode::kStick)
-    stop_level_ = error < tolerance * kGrowth ? level - 1 : level;
-
+  // Whether a guard vanishes before the step is to end is said by its exact time, not by its form.
+  bool at_guard = guard.contact >= 0 && guard.theta * h <= remaining + (guard.touching ? 0.0 : kAnnounced * h);
   if (tau < h) {
     within_.begin(x_begin_.data(), forces_.data(), level);
-    within_.state(tau, point_.x.data());
-    if (at_guard)
+    if (at_guard) {
+      tau = guard.theta * h;
+      within_.state(tau, point_.x.data());
       refine_first(guards, tau, point_.x);
-    else
-      resolver_.hold(begin_ + tau, point_.modes, point_.x.data());  // between nodes a stick is only nearly held
+      at_guard = tau <= remaining;
+    }
+    if (!at_guard) {  // between nodes a stick is only nearly held
+      tau = std::min(tau, remaining);
+      within_.state(tau, point_.x.data());
+      resolver_.hold(begin_ + tau, point_.modes, point_.x.data());
+    }
   } else {
     kernels_.propagate(tables_.propagator(level).arrays(tables_.loaded()), x_begin_.data(), forces_.data(),
                        point_.x.data());
   }
+  if (!at_guard) guard = {};  // what lies beyond the step is nothing of its end's
+  if (at_guard && point_.modes[static_cast<std::size_t>(guard.contact)] != ContactMode::kStick)
+    stop_level_ = error < tolerance * kGrowth ? level - 1 : level;
   point_.time = tau == remaining ? limit : begin_ + tau;
   // A shaker's velocity feels the rounding of the time.
   if (tau == h && drive().shaker() != nullptr) resolver_.hold(point_.time, point_.modes, point_.x.data());

@@ -59,6 +59,8 @@ class CollocationFlow {
   static constexpr double kAtLimit = 1e-10;
   /// Speeds below this share of the velocities at play are rounding.
   static constexpr double kUnmoved = 1e-14;
+  /// A guard may vanish this share of a step before its form does, or after.
+  static constexpr double kAnnounced = 1e-3;
 
   /// A scalar of an elaborate contact that must stay positive: constant + y wᵀq + v wᵀq̇ + force λ + drive V.
   struct OwnGuard {
@@ -78,17 +80,14 @@ class CollocationFlow {
     std::optional<OwnGuard> own = {};  ///< of an elaborate contact
     int order = 0;                     ///< of the zero that guard starts with
   };
-  /// The two that a step's polynomials reach first: the exact time of the one may lie beyond the other's.
+  /// Those that a step's polynomials reach: the exact time of the first may lie beyond that of others.
   struct FirstGuards {
-    Guarded first, second;
+    Guarded first;
+    std::vector<Guarded> others = {};
 
-    void add(const Guarded& reached) {
-      if (reached.theta < first.theta) {
-        second = first;
-        first = reached;
-      } else if (reached.theta < second.theta) {
-        second = reached;
-      }
+    void add(Guarded reached) {
+      if (reached.theta < first.theta) std::swap(first, reached);
+      if (reached.contact >= 0) others.push_back(std::move(reached));
     }
   };
 

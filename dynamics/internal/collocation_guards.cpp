@@ -15,8 +15,6 @@ namespace {
 constexpr double kNegligibleShift = 1e-15;
 /// Events that are less than this share of a step apart come in either order.
 constexpr double kEitherOrder = 1e-12;
-/// A guard may vanish this share of a step before its form does.
-constexpr double kAnnounced = 1e-3;
 /// Right after sliding has begun, a guard that vanishes within this share of a step is an error of interpolation.
 constexpr double kEarly = 1.0 / 64.0;
 /// A step that starts with more than this share of its largest speed does not start at rest.
@@ -187,15 +185,17 @@ void CollocationFlow::refine_first(FirstGuards& guards, double& tau, Eigen::Vect
   // Its form announces a guard's zero a little off, and that of a bristle's speed that is rounding by a share of a
   // step.
   const double h = tables_.step(step_level_);
-  if (guards.second.contact < 0 || guards.second.theta * h >= tau + kAnnounced * h || too_early(guards.second)) return;
-  double before = guards.second.theta * h;
-  Eigen::VectorXd x_before(x.size());
-  within_.state(before, x_before.data());
-  refine_event(guards.second, before, x_before);
-  if (!(before < tau - kEitherOrder * h)) return;
-  guards.first = guards.second;
-  tau = before;
-  x.swap(x_before);
+  for (const Guarded& other : guards.others) {
+    double before = other.theta * h;
+    if (before >= tau + kAnnounced * h || too_early(other)) continue;
+    Eigen::VectorXd x_before(x.size());
+    within_.state(before, x_before.data());
+    refine_event(other, before, x_before);
+    if (!(before < tau - kEitherOrder * h)) continue;
+    guards.first = other;
+    tau = before;
+    x.swap(x_before);
+  }
 }
 
 double CollocationFlow::acceleration_without_contacts(int c, const Eigen::VectorXd& x, double tau) const {

@@ -154,34 +154,68 @@ TEST(EventTimes, AtALateClockWhatAGuardRoundsByIsNoFurtherEvent) {
 }
 
 TEST(EventTimes, ContactsThatAShakerTurnsAlmostAtOnceTurnInTheirOrder) {
-  // Next to no friction: both turn where the shaker does, 1e-11 to 1e-7 s apart. At any event, none is past its own
-  // turn by more than the clock's rounding makes of the shaker's speed.
+  // Next to no friction: two to five contacts turn where the shaker does, 1e-11 to 1e-7 s apart; on a chain, or on
+  // masses of their own of which the last rings on a spring of up to 10^5. At any event, none is past its own turn by
+  // more than what speeds of this size, and a shaker's at this time, are told from zero to.
   Draws random(11);
   for (int trial = 0; trial < 300; ++trial) {
     SCOPED_TRACE(trial);
     const auto power = [&](double least, double most) { return std::pow(10.0, random.uniform(least, most)); };
-    const auto masses = static_cast<Eigen::Index>(random.uniform(2.0, 7.0));
-    const Coulomb law{random.uniform(0.3, 0.8), random.uniform(0.1, 0.3)};
-    const double load = power(-9.0, -3.0);
-    const std::vector<friction::Contact> contacts{{Eigen::VectorXd::Unit(masses, masses - 1), law, load},
-                                                  {Eigen::VectorXd::Unit(masses, 0), law, 0.7 * load}};
+    const auto masses = static_cast<Eigen::Index>(random.uniform(2.0, 6.0));
+    const bool rings = trial % 2 == 1;
+    const double load = power(-9.0, rings ? -5.0 : -3.0);
+    std::vector<friction::Contact> contacts;
+    for (Eigen::Index c = 0; c < masses; ++c)
+      contacts.push_back({Eigen::VectorXd::Unit(masses, c), Coulomb{random.uniform(0.3, 0.8), random.uniform(0.1, 0.3)},
+                          load * random.uniform(0.5, 1.5)});
     const friction::Shaker shaker{power(-3.0, 2.0), random.uniform(0.05, 0.5), 2.0};
-    const HybridSystem system(
-        fem::chain({.masses = static_cast<int>(masses), .ground_stiffness = {0.4}, .damping = power(-4.0, -1.0)}),
-        contacts, shaker);
+    Eigen::VectorXd springs = Eigen::VectorXd::Constant(masses, 1.0) + random.vector(masses, 0.8);
+    springs(masses - 1) = power(1.0, 5.0);
+    const fem::Structure structure =
+        rings
+            ? fem::Structure{fem::Matrix(Eigen::MatrixXd::Identity(masses, masses)),
+                             fem::Matrix(1e-3 * Eigen::MatrixXd::Identity(masses, masses)),
+                             fem::Matrix(springs.asDiagonal().toDenseMatrix())}
+            : fem::chain({.masses = static_cast<int>(masses), .ground_stiffness = {0.4}, .damping = power(-4.0, -1.0)});
+    const HybridSystem system(structure, contacts, shaker);
     State start = system.rest();
-    if (trial % 3 > 0) start.time = power(0.0, 5.0);
+    if (rings) start.v = shaker.amplitude * random.vector(masses, power(-9.0, -5.0));
+    if (!rings && trial % 3 > 0) start.time = power(0.0, 5.0);
+    std::size_t events = 0;
     for (const FlowMethod method : {FlowMethod::kClosedForm, FlowMethod::kCollocation}) {
-      const TakenUp again(system, start, {.duration = 10.0, .flow = {.method = method}}, 3);
+      const TakenUp again(system, start, {.duration = 10.0, .flow = {.method = method, .tolerance = 1e-12}}, 3);
       EXPECT_LT(again.apart, 1e-9 * again.run.final_state.q.norm());
+      EXPECT_TRUE(events == 0 || events == again.states.size()) << events << " and " << again.states.size();
+      events = again.states.size();
       for (const State& at : again.states)
         for (std::size_t c = 0; c < contacts.size(); ++c) {
-          const double rounding = 1e-15 * std::abs(shaker.acceleration(at.time)) * (1.0 + at.time);
+          const double rounding =
+              2e-12 * shaker.amplitude * shaker.omega() + 1e-15 * std::abs(shaker.acceleration(at.time)) * at.time;
           const double sliding = shaker.velocity(at.time) - contacts[c].direction.dot(at.v);
           EXPECT_GE(sign_of(at.modes[c]) * sliding, -rounding) << "contact " << c << " at t = " << at.time;
         }
     }
   }
+}
+
+TEST(EventTimes, ARunThatEndsBesideAnEventHasItOrNot) {
+  for (const int masses : {1, 2, 3})
+    for (const FlowOptions& flow : {kExact, FlowOptions{.method = FlowMethod::kCollocation, .tolerance = 1e-9}}) {
+      SCOPED_TRACE(masses);
+      const HybridSystem chain = belt_chain(Coulomb{0.4, 0.2}, Belt::constant(0.3), masses, 0.006, 0.5);
+      const State start = swinging(masses, 7, 1.0);
+      const Trajectory run = simulate(chain, start, {.duration = 10.0, .flow = flow});
+      ASSERT_GE(run.events.size(), 2u);
+      for (std::size_t k = 0; k < run.events.size(); ++k)
+        for (const double beside : {-1e-6, -1e-7, -1e-8, 1e-8, 1e-7, 1e-6}) {
+          const double end = run.events[k].time + beside;
+          const Trajectory part = simulate(chain, start, {.duration = end, .flow = flow});
+          EXPECT_EQ(part.events.size(), beside < 0.0 ? k : k + 1) << beside << " beside t = " << run.events[k].time;
+          EXPECT_EQ(part.final_state.time, end);
+          const Trajectory rest = simulate(chain, part.final_state, {.duration = 10.0 - end, .flow = flow});
+          EXPECT_LT((rest.final_state.q - run.final_state.q).norm(), 1e-8);
+        }
+    }
 }
 
 TEST(EventTimes, TanhLawAgreesWithTheReference) {
