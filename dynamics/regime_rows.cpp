@@ -350,9 +350,13 @@ void RegimeBuilder::make_steady_forces(Regime& out) const {
   const Places holding = holding_places(out);
   const auto count = static_cast<Eigen::Index>(holding.first.size());
   const Eigen::MatrixXd b = modal_.directions(Eigen::all, holding.first);
-  // Where a mode should not follow a contact's way, it does so by rounding of what others do.
-  const Eigen::RowVectorXd largest = sizes.topRows(nc_).colwise().maxCoeff();
-  sizes.topRows(nc_).rowwise() = largest;
+  // Where a mode should not follow a contact's way, it does so by rounding of what others do. (Inputs of contacts that
+  // do not follow are forces.)
+  Eigen::RowVectorXd largest = Eigen::RowVectorXd::Zero(nc_);
+  for (Eigen::Index c = 0; c < nc_; ++c)
+    if (out.follows[static_cast<std::size_t>(c)]) largest = largest.cwiseMax(sizes.row(c));
+  for (Eigen::Index c = 0; c < nc_; ++c)
+    if (out.follows[static_cast<std::size_t>(c)]) sizes.row(c) = largest;
   // All ways at once are one more motion.
   const Eigen::Index together = ni_;
   for (Eigen::MatrixXd* of : {&place, &speed, &rate}) {
