@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace slipmode::dynamics {
@@ -35,7 +34,7 @@ void WorkSums::add(double contact, double drive, double viscous, double force) {
 }
 
 double clock_rounding(const friction::Drive& drive, double time) {
-  return 4.0 * std::numeric_limits<double>::epsilon() * std::abs(drive.acceleration(time) * time);
+  return kClockRounds * std::abs(drive.acceleration(time) * time);
 }
 
 EventResolver::EventResolver(const HybridSystem& system, const ModalModel& model, const FlowOptions& options)
@@ -293,6 +292,7 @@ void EventResolver::start(HybridPoint& point) const {
     if (sign * slide_velocity(point, static_cast<int>(c), sign) < 0.0) point.modes[c] = ContactMode::kStick;
   }
   point.assign(decide(point, at_rest, std::vector<bool>(at_rest.size())));
+  hold(point.time, point.modes, point.x.data());
 }
 
 Resolution EventResolver::decide(const HybridPoint& point, std::vector<bool> at_rest,

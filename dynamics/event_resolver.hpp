@@ -6,6 +6,7 @@
 #include <slipmode/friction/load_form.hpp>
 
 #include <Eigen/Core>
+#include <limits>
 #include <vector>
 
 namespace slipmode::dynamics {
@@ -44,7 +45,9 @@ struct Reached {
   ContactMode next = ContactMode::kStick;  ///< of a clearance whose guard was crossed
 };
 
-/// What the rounding of a time, and of a drive's phase then, makes of the drive's velocity [m/s].
+/// A time, and the phase of a drive then, round by this share of themselves.
+inline constexpr double kClockRounds = 4.0 * std::numeric_limits<double>::epsilon();
+/// What that makes of the drive's velocity [m/s].
 double clock_rounding(const friction::Drive& drive, double time);
 
 /// Turns a guard that was reached into events: puts the state onto the guard, lets consistency decide the new modes,
@@ -74,7 +77,8 @@ class EventResolver {
   /// Takes the velocity error of sticking contacts out of a state, by the impulse that their friction would exert.
   void hold(double time, const std::vector<ContactMode>& modes, double* x) const;
 
-  /// Decides the modes of contacts that start at rest on the drive, behind a contact spring, or without load. Like
+  /// Decides the modes of contacts that start at rest on the drive, behind a contact spring, or without load, and puts
+  /// those that stick at its speed. Like
   /// `settle`, takes the forces of contacts with bristles from the point.
   void start(HybridPoint& point) const;
   /// @throws NumericalFailure  Zeno, or no consistent modes
@@ -119,9 +123,9 @@ class EventResolver {
   [[nodiscard]] Resolution decide(const HybridPoint& point, std::vector<bool> at_rest,
                                   const std::vector<bool>& released) const;
   void settle_single(HybridPoint& point);
-  /// What turns or slides on under a shaker is not put at its speed, which rounds with the event's time, however little
-  /// of it reaches the structure.
-  [[nodiscard]] bool keeps_speed(ContactMode before, ContactMode after) const;
+  /// What turns or slides on through another's event under a shaker is not put at its speed, which rounds with the
+  /// event's time, however little of it reaches the structure.
+  [[nodiscard]] bool keeps_speed(ContactMode before, ContactMode after, bool reached) const;
   void settle_stop(HybridPoint& point, const Reached& reached);
   /// One contact behind a contact spring: its force is a function of the state, there is nothing to resolve.
   void settle_spring(HybridPoint& point, const Reached& reached);

@@ -76,12 +76,14 @@ void EventResolver::settle_single(HybridPoint& point) {
   point.modes[0] = next.mode;
   point.multiplicity[0] = next.multiplicity;
   point.force(0) = next.force;
-  if (keeps_speed(before, next.mode)) kernels::kernels().add_scaled(-impulse, input, point.x.data(), 2 * model_.np);
+  if (keeps_speed(before, next.mode, true))
+    kernels::kernels().add_scaled(-impulse, input, point.x.data(), 2 * model_.np);
   record_change(point, 0, before);
 }
 
-bool EventResolver::keeps_speed(ContactMode before, ContactMode after) const {
-  return drive_.shaker() != nullptr && before != ContactMode::kStick && after != ContactMode::kStick;
+bool EventResolver::keeps_speed(ContactMode before, ContactMode after, bool reached) const {
+  return drive_.shaker() != nullptr && before != ContactMode::kStick && after != ContactMode::kStick &&
+         (!reached || before != after);
 }
 
 void EventResolver::settle_stop(HybridPoint& point, const Reached& reached) {
@@ -192,7 +194,7 @@ void EventResolver::settle_coupled(HybridPoint& point, const Reached& reached) {
   point.assign(decide(point, at_rest, released));
   if (std::erase_if(resting, [&](Eigen::Index c) {
         const auto i = static_cast<std::size_t>(c);
-        return keeps_speed(before[i], point.modes[i]);
+        return keeps_speed(before[i], point.modes[i], c == contact);
       }) > 0) {
     point.x = reached_at;
     hold(point.time, resting, point.x.data());

@@ -147,6 +147,12 @@ double speed_of_force(const friction::Contact& contact, std::size_t c, const Mod
   return contact_forces(contact).most() * m.mobility(i, i) / m.pace();
 }
 
+/// What a contact is accelerated by at most [m/s²], but for contacts' own forces.
+double most_acceleration(std::size_t c, const ModalModel& m, const Eigen::VectorXd& x) {
+  const auto i = static_cast<Eigen::Index>(c);
+  return m.acceleration_row.col(i).cwiseAbs().dot(x.cwiseAbs()) + std::abs(m.load_acceleration(i));
+}
+
 /// A run that ended at an event leaves a sliding speed of rounding, of either sign: this share of the speeds at play.
 constexpr double kOffGuard = 1e-9;
 
@@ -181,7 +187,8 @@ std::vector<ContactMode> start_modes(const HybridSystem& system, const ModalMode
     if (compliant || modes[c] == ContactMode::kSeparated) continue;  // decided by the force and the normal load
     const bool agrees = by_sign == ContactMode::kStick || modes[c] == by_sign ||
                         std::abs(sliding) <= kOffGuard * (scale + speed_of_force(contact, c, m)) +
-                                                 clock_rounding(system.drive(), start.time);
+                                                 clock_rounding(system.drive(), start.time) +
+                                                 kClockRounds * std::abs(start.time) * most_acceleration(c, m, x);
     require_or_say(agrees && modes[c] != ContactMode::kSmooth, [&] {
       return "start state says contact " + std::to_string(c + 1) + " is in mode " +
              std::to_string(static_cast<int>(modes[c])) + ", but its relative velocity is " + std::to_string(sliding) +

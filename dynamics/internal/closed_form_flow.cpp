@@ -305,7 +305,9 @@ bool ClosedFormFlow::step(double t_limit) {
     h = tables_->length(level_);
     found = search(level_);
     finest = level_ + 1 >= RegimeTables::kLevels || !(begin_ + h > begin_);
-    if (found.guard < 0 || found.at * h >= remaining) {
+    // Whether a guard vanishes before the step is to end is said by its exact time, not by the window's root.
+    const double announced = found.resolved && !found.touching ? kRootLeaves : 0.0;
+    if (found.guard < 0 || (found.at - announced) * h >= remaining) {
       found.guard = -1;
       tau = std::min(h, remaining);
       break;
@@ -336,9 +338,10 @@ bool ClosedFormFlow::step(double t_limit) {
     const double clear = begin_ + kUsed * root;
     const bool now = finest && !(clear > begin_);
     certain &= proved ? root <= found.others * h : !found.resolved;
-    if (proved ? now || (root <= std::min(h, remaining) && first) : found.resolved) {
+    if (proved ? now || (root <= std::min(h, remaining) && first) : found.resolved && root <= remaining) {
       tau = root;
     } else {
+      tau = std::min(tau, remaining);
       move_from_begin(tau);
       if (proved && finest) guards_[static_cast<std::size_t>(found.guard)].exempt_until = clear;
       found.guard = -1;

@@ -94,6 +94,8 @@ class ClosedFormFlow {
     std::unique_ptr<BeltWork> belt;         ///< for a belt, while its speed is constant; the same
     std::unique_ptr<TangentMaps> maps;      ///< null until tangents are carried
   };
+  /// A root is found in a window to better than this share of it.
+  static constexpr double kRootLeaves = 1e-5;
   /// What a search of one window found.
   struct Search {
     int guard = -1;         ///< which may vanish first; −1: none in this window

@@ -25,9 +25,9 @@ constexpr double kRising = 1e-13;
 /// A root is located to this phase of the fastest pair.
 constexpr double kClock = 1e-15;
 constexpr int kNewtonSteps = 20;
-/// A root is found in a window to better than this share of it; from there to another root a guard changes by more than
-/// this many times what it is told from zero to.
-constexpr double kRootLeaves = 1e-5, kOtherRoot = 8.0;
+/// From where a window has a guard's root to another root a guard changes by more than this many times what it is told
+/// from zero to.
+constexpr double kOtherRoot = 8.0;
 constexpr int kHalvings = 3;
 constexpr int kLargestRefinement = 9;
 

@@ -213,7 +213,8 @@ bool CollocationFlow::step(double t_limit) {
       continue;
     }
     proved = proves(guard, tau / h);
-    if (!proved && halving_proves_ && halved < kProofHalvings && !smallest) {
+    if (!proved && halving_proves_ && halved < kProofHalvings && !smallest &&
+        begin_ + tables_.step(level + 1) > begin_) {
       ++halved;
       ++level;
       continue;
