@@ -159,6 +159,7 @@ bool CollocationFlow::step(double t_limit) {
   for (std::size_t c = 0; c < slow_start_level_.size(); ++c)
     if (point_.multiplicity[c] > 0) level = std::max(level, slow_start_level_[c]);
   while (level + 1 < StepTables::kLevels && tables_.step(level + 1) >= remaining) ++level;
+  const auto advances = [&](int at) { return begin_ + tables_.step(at) > begin_; };
   FirstGuards guards;
   Guarded& guard = guards.first;
   double h = 0.0, tau = 0.0, error = 0.0, tolerance = 0.0;
@@ -169,6 +170,9 @@ bool CollocationFlow::step(double t_limit) {
       throw NumericalFailure(
           "the contact forces could not be resolved by any step size at t = " + std::to_string(begin_), begin_,
           x_begin_, error);
+    // A step that ends where it begins leads nowhere.
+    while (level > 0 && !advances(level)) --level;
+    const bool smallest = level + 1 == StepTables::kLevels || !advances(level + 1);
     h = tables_.step(level);
     guess_forces(level, retry);
     if (given_ > 0) give_forces(level);
@@ -176,12 +180,11 @@ bool CollocationFlow::step(double t_limit) {
     step_level_ = level;
     if (any_bristle_ && solved_ && turn_resting_bristles()) solved_ = solve_forces(level);
     if (!solved_) {
-      ++level;
+      level = smallest ? StepTables::kLevels : level + 1;
       continue;
     }
     error = force_error() * (h / acting_);
     if (error > options_.tolerance) error = std::max(options_.tolerance, error - rounding_of_sticks());
-    const bool smallest = level + 1 == StepTables::kLevels;
     if (!(error <= options_.tolerance / kEndNodeGain) && !smallest) {
       level += halvings(error * kEndNodeGain / options_.tolerance);
       continue;
@@ -208,13 +211,16 @@ bool CollocationFlow::step(double t_limit) {
     if (guard.contact >= 0 && deepest_overshoot() > kLargestOvershoot) {
       // Of forces so far beyond their law the guard says when, or nothing at all: a few halvings at a time.
       const int most = std::min(level + kMostHalvings, StepTables::kLevels - 1);
-      do ++level;
-      while (level < most && tables_.step(level + 1) > guard.theta * h);
+      if (smallest) {
+        level = StepTables::kLevels;
+      } else {
+        do ++level;
+        while (level < most && tables_.step(level + 1) > guard.theta * h);
+      }
       continue;
     }
     proved = proves(guard, tau / h);
-    if (!proved && halving_proves_ && halved < kProofHalvings && !smallest &&
-        begin_ + tables_.step(level + 1) > begin_) {
+    if (!proved && halving_proves_ && halved < kProofHalvings && !smallest) {
       ++halved;
       ++level;
       continue;
