@@ -194,7 +194,7 @@ void EventResolver::settle_coupled(HybridPoint& point, const Reached& reached) {
   point.assign(decide(point, at_rest, released));
   if (std::erase_if(resting, [&](Eigen::Index c) {
         const auto i = static_cast<std::size_t>(c);
-        return keeps_speed(before[i], point.modes[i], c == contact);
+        return keeps_speed(before[i], point.modes[i], c == reached.contact);
       }) > 0) {
     point.x = reached_at;
     hold(point.time, resting, point.x.data());
