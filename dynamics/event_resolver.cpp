@@ -14,6 +14,8 @@ namespace {
 
 /// Sliding slower than this share of the velocities at play is no sliding.
 constexpr double kAtRest = 1e-13;
+/// A speed rounds by this share of them.
+constexpr double kSpeedRounds = 8.0 * std::numeric_limits<double>::epsilon();
 /// A spring stretched beyond its limit by this share is at it: where sliding has ended, it is but for rounding.
 constexpr double kAtLimit = 1e-12;
 
@@ -243,8 +245,7 @@ double EventResolver::contact_velocity(int c, const double* x) const {
   return kernels::kernels().dot(model_.velocity_row.col(c).data(), x, 2 * model_.np);
 }
 
-bool EventResolver::at_belt_speed(double time, int c, const double* x) const {
-  const double V = drive_.velocity(time);
+double EventResolver::speed_size(double time, int c, const double* x) const {
   const Eigen::Map<const Eigen::VectorXd> state(x, 2 * model_.np);
   const auto row = model_.velocity_row.col(c).cwiseAbs();
   double scale = row.dot(state.cwiseAbs()) + drive_.velocity_scale(time);
@@ -256,7 +257,12 @@ bool EventResolver::at_belt_speed(double time, int c, const double* x) const {
     scale += (row.head(np).cwiseAbs2() + row.tail(np).cwiseAbs2())
                  .cwiseSqrt()
                  .dot((state.head(np).cwiseAbs2() + state.tail(np).cwiseAbs2()).cwiseSqrt());
-  return std::abs(V - contact_velocity(c, x)) <= kAtRest * scale + clock_rounding(drive_, time);
+  return scale;
+}
+
+bool EventResolver::at_belt_speed(double time, int c, const double* x) const {
+  return std::abs(drive_.velocity(time) - contact_velocity(c, x)) <=
+         kAtRest * speed_size(time, c, x) + clock_rounding(drive_, time);
 }
 
 void EventResolver::start(HybridPoint& point) const {
@@ -292,7 +298,16 @@ void EventResolver::start(HybridPoint& point) const {
     if (sign * slide_velocity(point, static_cast<int>(c), sign) < 0.0) point.modes[c] = ContactMode::kStick;
   }
   point.assign(decide(point, at_rest, std::vector<bool>(at_rest.size())));
-  hold(point.time, point.modes, point.x.data());
+  // A stick that is off by no more than its speed rounds by is left as it is: a run goes on in the same bytes.
+  const double V = drive_.velocity(point.time);
+  for (std::size_t c = 0; c < laws_.size(); ++c) {
+    const auto i = static_cast<int>(c);
+    if (point.modes[c] != ContactMode::kStick || laws_[c].kind == LawKind::kCompliant) continue;
+    const double rounding =
+        kSpeedRounds * speed_size(point.time, i, point.x.data()) + clock_rounding(drive_, point.time);
+    if (std::abs(V - contact_velocity(i, point.x.data())) > rounding)
+      return hold(point.time, point.modes, point.x.data());
+  }
 }
 
 Resolution EventResolver::decide(const HybridPoint& point, std::vector<bool> at_rest,

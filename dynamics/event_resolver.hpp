@@ -114,6 +114,8 @@ class EventResolver {
   [[nodiscard]] Eigen::VectorXd limit_sizes(const HybridPoint& point) const;
   /// Rigid and in contact: between stick and slip accelerations decide.
   [[nodiscard]] bool decides_by_acceleration(const HybridPoint& point, std::size_t c) const;
+  /// What a contact's speed is measured by where it may be the drive's: all that it is, and will be, a sum of [m/s].
+  [[nodiscard]] double speed_size(double time, int c, const double* x) const;
   [[nodiscard]] bool at_belt_speed(double time, int c, const double* x) const;
   /// The contact whose limit was reached, and every other that reaches its own at the same instant.
   [[nodiscard]] std::vector<bool> released_together(const HybridPoint& point, int contact) const;
