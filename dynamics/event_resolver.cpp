@@ -245,7 +245,11 @@ double EventResolver::contact_velocity(int c, const double* x) const {
   return kernels::kernels().dot(model_.velocity_row.col(c).data(), x, 2 * model_.np);
 }
 
-double EventResolver::speed_size(double time, int c, const double* x) const {
+bool EventResolver::at_belt_speed(double time, int c, const double* x) const {
+  return at_belt_speed(time, c, x, kAtRest);
+}
+
+bool EventResolver::at_belt_speed(double time, int c, const double* x, double share) const {
   const Eigen::Map<const Eigen::VectorXd> state(x, 2 * model_.np);
   const auto row = model_.velocity_row.col(c).cwiseAbs();
   double scale = row.dot(state.cwiseAbs()) + drive_.velocity_scale(time);
@@ -257,12 +261,7 @@ double EventResolver::speed_size(double time, int c, const double* x) const {
     scale += (row.head(np).cwiseAbs2() + row.tail(np).cwiseAbs2())
                  .cwiseSqrt()
                  .dot((state.head(np).cwiseAbs2() + state.tail(np).cwiseAbs2()).cwiseSqrt());
-  return scale;
-}
-
-bool EventResolver::at_belt_speed(double time, int c, const double* x) const {
-  return std::abs(drive_.velocity(time) - contact_velocity(c, x)) <=
-         kAtRest * speed_size(time, c, x) + clock_rounding(drive_, time);
+  return std::abs(drive_.velocity(time) - contact_velocity(c, x)) <= share * scale + clock_rounding(drive_, time);
 }
 
 void EventResolver::start(HybridPoint& point) const {
@@ -299,13 +298,10 @@ void EventResolver::start(HybridPoint& point) const {
   }
   point.assign(decide(point, at_rest, std::vector<bool>(at_rest.size())));
   // A stick that is off by no more than its speed rounds by is left as it is: a run goes on in the same bytes.
-  const double V = drive_.velocity(point.time);
   for (std::size_t c = 0; c < laws_.size(); ++c) {
-    const auto i = static_cast<int>(c);
-    if (point.modes[c] != ContactMode::kStick || laws_[c].kind == LawKind::kCompliant) continue;
-    const double rounding =
-        kSpeedRounds * speed_size(point.time, i, point.x.data()) + clock_rounding(drive_, point.time);
-    if (std::abs(V - contact_velocity(i, point.x.data())) > rounding)
+    const bool rigid = laws_[c].kind != LawKind::kCompliant;
+    if (rigid && point.modes[c] == ContactMode::kStick &&
+        !at_belt_speed(point.time, static_cast<int>(c), point.x.data(), kSpeedRounds))
       return hold(point.time, point.modes, point.x.data());
   }
 }

@@ -78,8 +78,7 @@ class EventResolver {
   void hold(double time, const std::vector<ContactMode>& modes, double* x) const;
 
   /// Decides the modes of contacts that start at rest on the drive, behind a contact spring, or without load, and puts
-  /// those that stick at its speed. Like
-  /// `settle`, takes the forces of contacts with bristles from the point.
+  /// those that stick at its speed. Like `settle`, takes the forces of contacts with bristles from the point.
   void start(HybridPoint& point) const;
   /// @throws NumericalFailure  Zeno, or no consistent modes
   void settle(HybridPoint& point, Reached reached);
@@ -114,9 +113,9 @@ class EventResolver {
   [[nodiscard]] Eigen::VectorXd limit_sizes(const HybridPoint& point) const;
   /// Rigid and in contact: between stick and slip accelerations decide.
   [[nodiscard]] bool decides_by_acceleration(const HybridPoint& point, std::size_t c) const;
-  /// What a contact's speed is measured by where it may be the drive's: all that it is, and will be, a sum of [m/s].
-  [[nodiscard]] double speed_size(double time, int c, const double* x) const;
   [[nodiscard]] bool at_belt_speed(double time, int c, const double* x) const;
+  /// @param share  of all that the speed is, and will be, a sum of
+  [[nodiscard]] bool at_belt_speed(double time, int c, const double* x, double share) const;
   /// The contact whose limit was reached, and every other that reaches its own at the same instant.
   [[nodiscard]] std::vector<bool> released_together(const HybridPoint& point, int contact) const;
   /// z of the contacts with bristles, 0 of the others [nc].

@@ -297,7 +297,11 @@ State end_state(const HybridSystem& system, const ModalModel& m, const HybridPoi
   State end = physical(m, point);
   if (end.v.size() == 0) return end;
   constexpr double kLargestRepair = 1e-6;  // more is no error of a step: left for the next run to refuse
-  const double belt = system.drive().velocity(end.time);
+  const friction::Drive& drive = system.drive();
+  const double belt = drive.velocity(end.time);
+  // Under a shaker, whose speed rounds with the time, what slides has kept its own (EventResolver::keeps_speed).
+  const double kept =
+      drive.shaker() ? kOffGuard * drive.velocity_scale(end.time) + clock_rounding(drive, end.time) : 0.0;
   std::vector<Eigen::Index> held;
   for (std::size_t c = 0; c < end.modes.size(); ++c) {
     const friction::Contact& contact = system.contacts()[c];
@@ -305,10 +309,6 @@ State end_state(const HybridSystem& system, const ModalModel& m, const HybridPoi
     const double scale = std::abs(belt) + contact.direction.cwiseAbs().dot(end.v.cwiseAbs());
     const bool sticks = end.modes[c] == ContactMode::kStick, slips = std::abs(sign) == 1.0;
     const bool rigid = friction::kind(contact.law) != LawKind::kCompliant;
-    // Under a shaker, whose speed rounds with the time, what slides has kept its own (EventResolver::keeps_speed).
-    const double kept = system.drive().shaker() ? kOffGuard * system.drive().velocity_scale(end.time) +
-                                                      clock_rounding(system.drive(), end.time)
-                                                : 0.0;
     const bool off_guard = rigid && (sticks || (slips && sliding * sign < -kept));
     if (off_guard && std::abs(sliding) <= kLargestRepair * (scale + speed_of_force(contact, c, m)))
       held.push_back(static_cast<Eigen::Index>(c));

@@ -211,12 +211,8 @@ bool CollocationFlow::step(double t_limit) {
     if (guard.contact >= 0 && deepest_overshoot() > kLargestOvershoot) {
       // Of forces so far beyond their law the guard says when, or nothing at all: a few halvings at a time.
       const int most = std::min(level + kMostHalvings, StepTables::kLevels - 1);
-      if (smallest) {
-        level = StepTables::kLevels;
-      } else {
-        do ++level;
-        while (level < most && tables_.step(level + 1) > guard.theta * h);
-      }
+      level = smallest ? StepTables::kLevels : level + 1;
+      while (level < most && tables_.step(level + 1) > guard.theta * h) ++level;
       continue;
     }
     proved = proves(guard, tau / h);
