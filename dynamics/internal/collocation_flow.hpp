@@ -87,7 +87,7 @@ class CollocationFlow {
 
     void add(Guarded reached) {
       if (reached.theta < first.theta) std::swap(first, reached);
-      if (reached.contact >= 0) others.push_back(std::move(reached));
+      if (reached.contact >= 0) others.push_back(reached);
     }
   };
 
