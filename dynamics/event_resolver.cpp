@@ -264,11 +264,12 @@ bool EventResolver::at_belt_speed(double time, int c, const double* x, double sh
   return std::abs(drive_.velocity(time) - contact_velocity(c, x)) <= share * scale + clock_rounding(drive_, time);
 }
 
-void EventResolver::start(HybridPoint& point) const {
+void EventResolver::start(HybridPoint& point) {
   if (clearances_only_) {
     applied_forces(point, point.force);
     return;
   }
+  const std::vector<ContactMode> given = point.modes;
   for (std::size_t c = 0; c < laws_.size(); ++c) {
     const auto i = static_cast<int>(c);
     if (laws_[c].varies && normal_load(point, i) < 0.0) point.modes[c] = ContactMode::kSeparated;
@@ -296,13 +297,28 @@ void EventResolver::start(HybridPoint& point) const {
     const double sign = sign_of(point.modes[c]);
     if (sign * slide_velocity(point, static_cast<int>(c), sign) < 0.0) point.modes[c] = ContactMode::kStick;
   }
+  const Eigen::VectorXd force = point.force;
   point.assign(decide(point, at_rest, std::vector<bool>(at_rest.size())));
+  if (point.goes_on && point.modes != given) record_start(point, given, force);
   // A stick that is off by no more than its speed rounds by is left as it is: a run goes on in the same bytes.
   for (std::size_t c = 0; c < laws_.size(); ++c) {
     const bool rigid = laws_[c].kind != LawKind::kCompliant;
     if (rigid && point.modes[c] == ContactMode::kStick &&
         !at_belt_speed(point.time, static_cast<int>(c), point.x.data(), kSpeedRounds))
       return hold(point.time, point.modes, point.x.data());
+  }
+}
+
+void EventResolver::record_start(const HybridPoint& point, const std::vector<ContactMode>& before,
+                                 const Eigen::VectorXd& force_before) {
+  for (std::size_t c = 0; c < before.size(); ++c) {
+    const auto i = static_cast<int>(c);
+    if (point.modes[c] == before[c]) continue;
+    record_change(point, i, before[c]);
+    if (turn_at_start_.contact >= 0 || !decides_by_acceleration(point, c) || before[c] == ContactMode::kStick) continue;
+    const Instant now = instant(point.time, point.x.data());
+    turn_at_start_ = {i, now.belt_acceleration - contact_acceleration(now, i, force_before),
+                      point.force - force_before};
   }
 }
 

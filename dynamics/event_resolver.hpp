@@ -19,6 +19,7 @@ struct HybridPoint {
   std::vector<int> multiplicity;  ///< order of the zero of each sliding speed right at `time`: 0, 1 or 2
   Eigen::VectorXd force;          ///< λ at `time`, right limit [nc]
   Eigen::VectorXd internal = {};  ///< contacts' own states, as State::internal
+  bool goes_on = false;           ///< of a start: its modes are those of a run that goes on
 
   void assign(Resolution resolution);
 };
@@ -43,6 +44,13 @@ struct Reached {
   bool touching = false;  ///< the guard was touched and not crossed: a grazing
   GuardKind kind = GuardKind::kFriction;
   ContactMode next = ContactMode::kStick;  ///< of a clearance whose guard was crossed
+};
+
+/// A rigid contact that turns or ceases to slide where a run goes on: what that makes of changes of the start.
+struct TurnAtStart {
+  int contact = -1;              ///< −1: none does
+  double acceleration = 0.0;     ///< of V − wᵀq̇, before [m/s²]
+  Eigen::VectorXd force_change;  ///< of all contacts [nc]
 };
 
 /// A time, and the phase of a drive then, round by this share of themselves.
@@ -78,8 +86,10 @@ class EventResolver {
   void hold(double time, const std::vector<ContactMode>& modes, double* x) const;
 
   /// Decides the modes of contacts that start at rest on the drive, behind a contact spring, or without load, and puts
-  /// those that stick at its speed. Like `settle`, takes the forces of contacts with bristles from the point.
-  void start(HybridPoint& point) const;
+  /// those that stick at its speed. Like `settle`, takes the forces of contacts with bristles from the point. Where a
+  /// run goes on, a mode that changes is an event.
+  void start(HybridPoint& point);
+  [[nodiscard]] const TurnAtStart& turn_at_start() const { return turn_at_start_; }
   /// @throws NumericalFailure  Zeno, or no consistent modes
   void settle(HybridPoint& point, Reached reached);
 
@@ -102,6 +112,7 @@ class EventResolver {
   /// Forgets what came before, for a new start.
   void forget() {
     events_.clear();
+    turn_at_start_ = {};
     recent_.clear();
   }
 
@@ -150,6 +161,9 @@ class EventResolver {
   [[nodiscard]] const double* own_states(const HybridPoint& point, int c) const;
   void record(const HybridPoint& point, int contact, EventKind kind, ContactMode before);
   void record_change(const HybridPoint& point, int contact, ContactMode before);
+  /// @param force_before  of all contacts, in these modes [nc]
+  void record_start(const HybridPoint& point, const std::vector<ContactMode>& before,
+                    const Eigen::VectorXd& force_before);
   void guard_against_zeno(const HybridPoint& point);
 
   const ModalModel& model_;
@@ -165,6 +179,7 @@ class EventResolver {
   int max_events_per_window_;
   double zeno_window_;
   std::vector<Event> events_;
+  TurnAtStart turn_at_start_;
   std::vector<double> recent_;
 };
 

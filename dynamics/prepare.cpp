@@ -168,7 +168,8 @@ std::vector<ContactMode> start_modes(const HybridSystem& system, const ModalMode
       continue;
     }
     if (!contact_forces(contact).sticks()) {
-      modes[c] = ContactMode::kSmooth;
+      const bool given = !start.modes.empty() && std::abs(sign_of(start.modes[c])) == 1.0;
+      modes[c] = given && friction::kind(contact.law) == LawKind::kBristle ? start.modes[c] : ContactMode::kSmooth;
       continue;
     }
     const double sliding = V - contact.direction.dot(start.v);
@@ -284,7 +285,8 @@ Prepared prepare(const HybridSystem& system, const State& start, FlowOptions opt
                     std::move(modes),
                     std::vector<int>(static_cast<std::size_t>(nc), 0),
                     Eigen::VectorXd::Zero(nc),
-                    start_internal(system, start)};
+                    start_internal(system, start),
+                    !start.modes.empty()};
   return {tables, std::move(point), options};
 }
 

@@ -151,16 +151,7 @@ void run(AnyFlow& flow, const HybridSystem& system, const ModalModel& m, const S
   Eigen::VectorXd x(2 * m.np), force(m.contacts);
   std::vector<Eigen::VectorXd> event_q, event_v;
   bool going = true;
-  while (going && flow.point().time < end) {
-    const bool event = advance_flow(flow, m, end);
-    while (recorder.next_time() <= flow.point().time) {
-      const double t = recorder.next_time();
-      flow.evaluate(t, x, force);
-      recorder.sample(t, x, force);
-    }
-    if (!event) continue;
-    // By the balance: it only scales the residual, and a state need not be turned back at every event for that.
-    if (options.flow.audit) largest_energy = std::max(largest_energy, std::abs(balance(flow.work())));
+  const auto tell_events = [&] {
     for (const Event& e : flow.events()) {
       if (options.on_event && !options.on_event(e, end_state(system, m, flow.point()))) going = false;
       if (e.time < keep_from) continue;
@@ -171,6 +162,19 @@ void run(AnyFlow& flow, const HybridSystem& system, const ModalModel& m, const S
         event_v.push_back(s.v);
       }
     }
+  };
+  tell_events();
+  while (going && flow.point().time < end) {
+    const bool event = advance_flow(flow, m, end);
+    while (recorder.next_time() <= flow.point().time) {
+      const double t = recorder.next_time();
+      flow.evaluate(t, x, force);
+      recorder.sample(t, x, force);
+    }
+    if (!event) continue;
+    // By the balance: it only scales the residual, and a state need not be turned back at every event for that.
+    if (options.flow.audit) largest_energy = std::max(largest_energy, std::abs(balance(flow.work())));
+    tell_events();
   }
   while (recorder.next_time() <= end && going) {  // the last sample may lie a rounding error past the last step
     flow.evaluate(flow.point().time, x, force);

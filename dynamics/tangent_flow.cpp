@@ -22,7 +22,20 @@ struct TangentFlow::Implementation {
   TangentResult run(AnyFlow& flow, const ModalModel& m, double end, const std::vector<double>& times,
                     const TangentSample& sample);
   void check(const Tangents& tangents) const;
+  /// What tangents in (q, q̇, internal) are once a contact has turned at the start: it would have, a little earlier or
+  /// later.
+  [[nodiscard]] Eigen::MatrixXd turned(Eigen::MatrixXd tangents, const TurnAtStart& turn, const ModalModel& m) const;
 };
+
+Eigen::MatrixXd TangentFlow::Implementation::turned(Eigen::MatrixXd tangents, const TurnAtStart& turn,
+                                                    const ModalModel& m) const {
+  if (turn.contact < 0) return tangents;
+  auto speeds = tangents.middleRows(m.n, m.n);
+  const Eigen::VectorXd& direction = system.contacts()[static_cast<std::size_t>(turn.contact)].direction;
+  const Eigen::RowVectorXd delay = -direction.transpose() * speeds / turn.acceleration;
+  speeds += m.to_v * (m.input * turn.force_change) * delay;
+  return tangents;
+}
 
 void TangentFlow::Implementation::set_coordinates(const ModalModel& m) {
   // The closed-form flow's tangents are without padding.
@@ -59,6 +72,7 @@ template <class AnyFlow>
 TangentResult TangentFlow::Implementation::run(AnyFlow& flow, const ModalModel& m, double end,
                                                const std::vector<double>& times, const TangentSample& sample) {
   TangentResult out;
+  out.events = flow.events();
   const auto go_on = [&](double until) {
     while (flow.point().time < until)
       if (advance_flow(flow, m, until)) out.events.insert(out.events.end(), flow.events().begin(), flow.events().end());
@@ -100,14 +114,15 @@ TangentResult TangentFlow::run(const State& start, double duration, const Tangen
   if (own.enter.size() == 0) own.set_coordinates(m);
   if (own.method == FlowMethod::kCollocation) {
     CollocationFlow flow(own.system, p.tables.steps, std::move(p.start), p.options);
-    flow.set_tangents(own.enter * tangents.start);
+    flow.set_tangents(own.enter * own.turned(tangents.start, flow.turn_at_start(), m));
     return own.run(flow, m, end, times, sample);
   }
   if (own.closed_form)
     own.closed_form->restart(std::move(p.start));
   else
     own.closed_form = std::make_unique<ClosedFormFlow>(own.system, std::move(p.start), p.options);
-  own.closed_form->set_tangents(own.enter * tangents.start, tangents.forces);
+  const TurnAtStart& turn = own.closed_form->turn_at_start();
+  own.closed_form->set_tangents(own.enter * own.turned(tangents.start, turn, m), tangents.forces);
   return own.run(*own.closed_form, m, end, times, sample);
 }
 

@@ -54,6 +54,7 @@ ClosedFormFlow::ClosedFormFlow(const HybridSystem& system, HybridPoint start, co
     }
   }
   resolver_.start(point_);
+  statistics_.events = static_cast<std::int64_t>(resolver_.events().size());
   enter_regime();
   begin_step();
 }
@@ -69,6 +70,7 @@ void ClosedFormFlow::restart(HybridPoint start) {
   recall_.assign(static_cast<std::size_t>(nc_), {});
   level_ = 0;
   resolver_.start(point_);
+  statistics_.events = static_cast<std::int64_t>(resolver_.events().size());
   enter_regime();
   begin_step();
 }
@@ -305,8 +307,9 @@ bool ClosedFormFlow::step(double t_limit) {
     h = tables_->length(level_);
     found = search(level_);
     finest = level_ + 1 >= RegimeTables::kLevels || !(begin_ + h > begin_);
-    // Whether a guard vanishes before the step is to end is said by its exact time, not by the window's root.
-    const double announced = found.resolved && !found.touching ? kRootLeaves : 0.0;
+    // Whether a guard vanishes before the step is to end is said by its exact time, not by the window's root or by the
+    // end of what is proved clear.
+    const double announced = found.touching ? 0.0 : found.resolved ? kRootLeaves : (1.0 - kUsed) * found.at;
     if (found.guard < 0 || (found.at - announced) * h >= remaining) {
       found.guard = -1;
       tau = std::min(h, remaining);

@@ -46,7 +46,9 @@ class ClosedFormFlow {
 
   /// `x` and `force` are brought up to date at events and at the time asked, `time` and `modes` always.
   [[nodiscard]] const HybridPoint& point() const { return point_; }
+  /// Of the last step; before the first, of the start.
   [[nodiscard]] const std::vector<Event>& events() const { return resolver_.events(); }
+  [[nodiscard]] const TurnAtStart& turn_at_start() const { return resolver_.turn_at_start(); }
   [[nodiscard]] const WorkSums& work() const { return work_; }
   [[nodiscard]] const FlowStatistics& statistics() const { return statistics_; }
 

@@ -11,6 +11,7 @@ void CollocationFlow::start_bristles() {
     const auto i = static_cast<std::size_t>(c);
     if (!bristled(c)) continue;
     const double s = drive().velocity(begin_) - resolver_.contact_velocity(c, point_.x.data());
+    if (point_.modes[i] != ContactMode::kSmooth && std::abs(s) <= kUnmoved * velocity_scale(c, point_.x)) continue;
     point_.modes[i] = s < 0.0 ? ContactMode::kSlipNegative : ContactMode::kSlipPositive;
   }
   // What they pull with, the resolver takes for given.
@@ -98,7 +99,8 @@ bool CollocationFlow::turn_resting_bristles() {
 void CollocationFlow::record_reversals(const std::vector<ContactMode>& before) {
   for (int c = 0; c < nc_; ++c) {
     const auto i = static_cast<std::size_t>(c);
-    if (bristled(c) && point_.modes[i] != before[i]) record_bristle(c, EventKind::kReversal, before[i]);
+    if (bristled(c) && before[i] != ContactMode::kSmooth && point_.modes[i] != before[i])
+      record_bristle(c, EventKind::kReversal, before[i]);
   }
 }
 

@@ -120,15 +120,16 @@ BernsteinPolynomial CollocationFlow::interpolant(double start, const RadauTables
 RadauTables::Vector8 CollocationFlow::at_nodes(const OwnGuard& guard, int c) const {
   const double y = resolver_.contact_displacement(c, x_begin_.data());
   const auto own = [&](const Eigen::VectorXd& of) { return of.segment<kNodes>(kNodes * c).array(); };
-  return (guard.constant + guard.y * (y + own(moved_)) + guard.v * own(velocity_) + guard.force * own(forces_) +
-          guard.drive * own(drive_nodes_))
+  return (guard.constant + guard.y * (y + own(moved_)) + guard.v * own(velocity_) +
+          guard.force * told_forces(c).array() + guard.drive * own(drive_nodes_))
       .matrix();
 }
 
 BernsteinPolynomial CollocationFlow::form_of(const OwnGuard& guard, int c) const {
   const double y = resolver_.contact_displacement(c, x_begin_.data()),
                v = resolver_.contact_velocity(c, x_begin_.data()), V = drive_velocity(begin_, 0.0);
-  return interpolant(guard.value(y, v, point_.force(c), V), at_nodes(guard, c));
+  const double force = told_by_states_[static_cast<std::size_t>(c)] ? stick_force(c, x_begin_, 0.0) : point_.force(c);
+  return interpolant(guard.value(y, v, force, V), at_nodes(guard, c));
 }
 
 double CollocationFlow::moved_by(const OwnGuard& guard, double speed) const {
@@ -201,14 +202,12 @@ bool CollocationFlow::searched_from_rest(const OwnGuard& guard, int c, const Gua
 
 void CollocationFlow::search_own_guards(int c, FirstGuards& out) const {
   const auto i = static_cast<std::size_t>(c);
-  const bool untold = held(step_modes_, c) && tells_no_force(c);
   for (const OwnGuard& guard : own_guards(c, point_.modes[i])) {
     BernsteinPolynomial p = form_of(guard, c);
     const double start = p.coefficient[0];
     Eigen::Map<RadauTables::Vector8> form(p.coefficient.data() + 1);
     const GuardValue now = evaluate(guard, c, 0.0, x_begin_);
-    const bool by_start = untold && guard.force != 0.0;
-    if ((by_start ? now.value : start) > kStarting * now.size && (by_start || form.minCoeff() > 0.0)) continue;
+    if (start > kStarting * now.size && form.minCoeff() > 0.0) continue;
     const int order = start_order(guard, c, now);
     const bool known = order == 2 && now.second != 0.0 && touched_ != c;
     // At rest on its limit; also where rounding of forces in balance alone moves it, as beside a contact that sticks.
@@ -270,7 +269,7 @@ CollocationFlow::GuardValue CollocationFlow::evaluate(const OwnGuard& guard, int
   if (guard.force != 0.0) {
     if (held(step_modes_, c)) {
       force = stick_force(c, x, tau);
-      force_rate = forces_.segment<kNodes>(kNodes * c).dot(nodes_.lagrange_slope(tau / h)) / h;
+      force_rate = told_forces(c).dot(nodes_.lagrange_slope(tau / h)) / h;
     } else {
       force = own_force(c, tau, x.data());
       force_rate = own.rate(V, v, acceleration);

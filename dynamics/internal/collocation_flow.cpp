@@ -31,9 +31,8 @@ constexpr double kLargestDrivePhase = 2.0;
 constexpr double kLeastForceShare = 1e-4;
 /// Of a step at once.
 constexpr int kMostHalvings = 4;
-/// Where rounding may be this share of a stick's force, the force at the step's start says more than those at its
-/// nodes.
-constexpr double kUntold = 1e-2;
+/// Where rounding may be this share of a stick's largest force, states say more of it than what the step solved for.
+constexpr double kUntold = 1e-11;
 
 /// How many times to halve a step whose eighth-order error is too large by this factor: at least once.
 int halvings(double excess) {
@@ -103,6 +102,8 @@ CollocationFlow::CollocationFlow(const HybridSystem& system, const StepTables& t
     *v = Eigen::VectorXd::Zero(kNodes * nc_);
   way_nodes_ = Eigen::VectorXd::Zero(kNodes);
   forces_ = Eigen::VectorXd::Zero(kNodes * (nc_ + given_));
+  told_ = Eigen::VectorXd::Zero(kNodes * nc_);
+  told_by_states_.assign(static_cast<std::size_t>(nc_), false);
   statistics_.stick_time.assign(static_cast<std::size_t>(nc_), 0.0);
   for (std::size_t c = 0; c < laws().size(); ++c) {
     const auto i = static_cast<Eigen::Index>(c);
@@ -125,9 +126,13 @@ CollocationFlow::CollocationFlow(const HybridSystem& system, const StepTables& t
   }
   if (point_.internal.size() == 0) point_.internal = Eigen::VectorXd::Zero(system.internal_size());
   internal_begin_ = point_.internal;
+  const std::vector<ContactMode> given = point_.modes;
   if (any_bristle_) start_bristles();
   resolver_.start(point_);
+  events_ = resolver_.events();
   if (any_bristle_) refresh_bristles();
+  if (any_bristle_ && point_.goes_on) record_reversals(given);
+  statistics_.events = static_cast<std::int64_t>(events_.size());
   guard_start_ = guard_least_ = Eigen::VectorXd::Zero(nc_);
   prepare_proof();
   step_modes_ = point_.modes;
@@ -347,8 +352,21 @@ double CollocationFlow::rounding_of_sticks() const {
   return most / acting_;
 }
 
-bool CollocationFlow::tells_no_force(int c) const {
-  return impulse_of_rounding(c) * over_scale(c) > kUntold * tables_.step(step_level_);
+void CollocationFlow::tell_by_states(int c) {
+  const double h = tables_.step(step_level_);
+  if (!(impulse_of_rounding(c) * over_scale(c) > kUntold * h)) return;
+  within_.begin(x_begin_.data(), forces_.data(), step_level_);
+  Eigen::VectorXd x(x_begin_.size());
+  for (int j = 0; j < kNodes; ++j) {
+    within_.state(h * nodes_.node(j), x.data());
+    told_(kNodes * c + j) = stick_force(c, x, h * nodes_.node(j));
+  }
+  told_by_states_[static_cast<std::size_t>(c)] = true;
+}
+
+Eigen::Map<const RadauTables::Vector8> CollocationFlow::told_forces(int c) const {
+  const bool by_states = told_by_states_[static_cast<std::size_t>(c)];
+  return Eigen::Map<const RadauTables::Vector8>((by_states ? told_ : forces_).data() + kNodes * c);
 }
 
 bool CollocationFlow::too_steep(int c, double speed, int level) const {

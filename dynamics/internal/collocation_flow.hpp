@@ -34,7 +34,9 @@ class CollocationFlow {
 
   [[nodiscard]] const HybridPoint& point() const { return point_; }
   /// Events that ended the last step (simultaneous ones together).
+  /// Of the last step; before the first, of the start.
   [[nodiscard]] const std::vector<Event>& events() const { return events_; }
+  [[nodiscard]] const TurnAtStart& turn_at_start() const { return resolver_.turn_at_start(); }
   [[nodiscard]] const WorkSums& work() const { return work_; }
   [[nodiscard]] const FlowStatistics& statistics() const { return statistics_; }
 
@@ -109,8 +111,10 @@ class CollocationFlow {
   [[nodiscard]] double rounding_of_sticks() const;
   /// The impulse that what speeds round by at a held contact takes [Ns].
   [[nodiscard]] double impulse_of_rounding(int c) const;
-  /// The step is so short that of a held contact's force at its nodes little but that is known.
-  [[nodiscard]] bool tells_no_force(int c) const;
+  /// Of a held contact in a step so short that this is much of its force at the nodes: what states there ask for, which
+  /// is what is looked at for its limit.
+  void tell_by_states(int c);
+  [[nodiscard]] Eigen::Map<const RadauTables::Vector8> told_forces(int c) const;
   /// Keeps the guards' Bernstein forms for the proof.
   [[nodiscard]] FirstGuards first_guards();
 
@@ -392,7 +396,9 @@ class CollocationFlow {
 
   // One step's scalars, contact after contact, eight nodes each.
   Eigen::VectorXd free_, velocity_, drive_nodes_, bristle_nodes_, free_way_, moved_, way_nodes_;
-  Eigen::VectorXd forces_;        ///< a drive's after the contacts'
+  Eigen::VectorXd forces_;  ///< a drive's after the contacts'
+  Eigen::VectorXd told_;    ///< of held contacts, where states tell more of them (told_by_states_)
+  std::vector<char> told_by_states_;
   Eigen::VectorXd given_speeds_;  ///< what a drive's forces and the load add to one contact's velocity
 
   // Of the proof: what has guards, and whether they are of laws it knows.

@@ -36,7 +36,9 @@ CollocationFlow::FirstGuards CollocationFlow::first_guards() {
   for (int c = 0; c < nc_; ++c) {
     const auto i = static_cast<std::size_t>(c);
     const ContactForces& law = laws()[i];
+    told_by_states_[i] = false;
     if (elaborate(c)) {
+      if (held(point_.modes, c)) tell_by_states(c);
       search_own_guards(c, out);
       continue;
     }
@@ -44,9 +46,11 @@ CollocationFlow::FirstGuards CollocationFlow::first_guards() {
     BernsteinPolynomial p;
     double* guard = guard_forms_.data() + kNodes * c;
     if (point_.modes[i] == ContactMode::kStick) {
-      const double most = kernels_.force_guard(t.bernstein7.data(), forces_.data() + kNodes * c, guard);
       const double below = law.static_limit * (1.0 - kAtLimit);
-      if (most < below || (tells_no_force(c) && std::abs(stick_force(c, x_begin_, 0.0)) <= below)) continue;
+      if (kernels_.force_guard(t.bernstein7.data(), forces_.data() + kNodes * c, guard) < below) continue;
+      tell_by_states(c);
+      if (told_by_states_[i] && kernels_.force_guard(t.bernstein7.data(), told_forces(c).data(), guard) < below)
+        continue;
       p.degree = kNodes - 1;
       for (const double sign : {1.0, -1.0}) {
         std::array<double, kNodes> margin;
@@ -66,8 +70,8 @@ CollocationFlow::FirstGuards CollocationFlow::first_guards() {
       continue;
     }
     double start = std::max(0.0, sign * (drive().velocity(begin_) - resolver_.contact_velocity(c, x_begin_.data())));
-    // A bristle's speed that was called rounding may be one: beside it, a start at zero would be a jump.
-    if (multiplicity > 0 && bristled(c) && start > kOwnStart * fastest_at_nodes(c)) multiplicity = 0;
+    // A speed that was called rounding may be one: beside it, a start at zero would be a jump.
+    if (multiplicity > 0 && start > kOwnStart * fastest_at_nodes(c)) multiplicity = 0;
     if (multiplicity > 0) start = 0.0;
     double least = kernels_.speed_guard(t.bernstein8.data(), t.bernstein8_start.data(), start, sign,
                                         drive_nodes_.data() + kNodes * c, velocity_.data() + kNodes * c, guard);
@@ -154,10 +158,11 @@ void CollocationFlow::refine_event(const Guarded& guard, double& tau, Eigen::Vec
       rate = now.rate;
       usual_rate = now.size / h;
     } else if (point_.modes[i] == ContactMode::kStick) {
-      const double sign = forces_.segment<kNodes>(kNodes * c).dot(basis) > 0 ? 1.0 : -1.0;
+      const auto forces = told_forces(c);
+      const double sign = forces.dot(basis) > 0 ? 1.0 : -1.0;
       value = laws()[i].static_limit - sign * stick_force(c, x, tau);
-      rate = -sign * forces_.segment<kNodes>(kNodes * c).dot(nodes_.lagrange_slope(tau / h)) / h;
-      usual_rate = forces_.segment<kNodes>(kNodes * c).cwiseAbs().maxCoeff() / h;
+      rate = -sign * forces.dot(nodes_.lagrange_slope(tau / h)) / h;
+      usual_rate = forces.cwiseAbs().maxCoeff() / h;
     } else {
       const double sign = sign_of(point_.modes[i]);
       value = sign * (V - resolver_.contact_velocity(c, x.data()));

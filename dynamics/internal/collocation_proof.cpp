@@ -349,8 +349,9 @@ bool CollocationFlow::proves(const Guarded& found, double end) {
     p.degree = kNodes;
     p.coefficient[0] = guard_start_(c);
     for (int k = 0; k < kNodes; ++k) p.coefficient[static_cast<std::size_t>(k) + 1] = form(k);
-    const double from = point_.multiplicity[i] == 2 ? clear_after_release(bounds, off, h, c) : 0.0;
-    if (point_.multiplicity[i] == 2 && from == 0.0) return false;
+    const bool released = point_.multiplicity[i] == 2 && guard_start_(c) == 0.0;
+    const double from = released ? clear_after_release(bounds, off, h, c) : 0.0;
+    if (released && from == 0.0) return false;
     if (!stays_clear(p, error, slope_error, from, reached, end)) return false;
   }
   return true;

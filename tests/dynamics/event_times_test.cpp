@@ -219,6 +219,34 @@ TEST(EventTimes, ARunThatEndsBesideAnEventHasItOrNot) {
     }
 }
 
+TEST(EventTimes, WhatTurnsWhereARunGoesOnIsAnEventThere) {
+  // Cut so shortly before a turn that the rest starts with it: told by neither part before, and in no monodromy.
+  int events = 0;
+  for (const friction::Law& law : std::vector<friction::Law>{Coulomb{0.4, 0.2}, Stribeck{0.4, 0.2, 8.0}})
+    for (const FlowOptions& flow : {kExact, kTightSteps}) {
+      if (flow.method == FlowMethod::kClosedForm && !std::holds_alternative<Coulomb>(law)) continue;
+      for (const std::uint64_t seed : {1u, 2u, 3u, 4u}) {
+        const HybridSystem chain = belt_chain(law, Belt::constant(0.3), 3, 0.02, 0.5);
+        const State start = swinging(3, seed, 1.0);
+        const TangentResult whole = tangent_flow(chain, start, 8.0, flow);
+        for (std::size_t k = 0; k < whole.events.size(); ++k) {
+          SCOPED_TRACE(whole.events[k].time);
+          if (whole.events[k].before == ContactMode::kStick) continue;  // a limit is reached, not turned at
+          ++events;
+          const double cut = whole.events[k].time - 1e-13;
+          const TangentResult first = tangent_flow(chain, start, cut, flow);
+          const TangentResult rest = tangent_flow(chain, first.end, 8.0 - cut, flow);
+          EXPECT_EQ(first.events.size(), k);
+          ASSERT_EQ(first.events.size() + rest.events.size(), whole.events.size());
+          EXPECT_NEAR(rest.events[0].time, whole.events[k].time, 2e-13);
+          EXPECT_EQ(rest.events[0].kind, whole.events[k].kind);
+          EXPECT_LT((rest.monodromy * first.monodromy - whole.monodromy).norm(), 1e-8 * whole.monodromy.norm());
+        }
+      }
+    }
+  EXPECT_GT(events, 20);
+}
+
 TEST(EventTimes, WhatStartsToStickOffTheBeltsSpeedIsPutOnIt) {
   // A step of 1e-14 s held it there by a force beyond its limit: a release that was none.
   for (const double load : {1.0, 1e-2})
