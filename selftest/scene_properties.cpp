@@ -39,6 +39,17 @@ constexpr double kSlowest = 1e-3;
 /// One scene in so many is run for as many radians of its slipping structure.
 constexpr double kRunLonger = 4.0;
 
+/// Other starts to rounding, of the motion's sizes.
+constexpr int kRounded = 16;
+constexpr double kRoundedBy = 1e-15;
+/// Of a run's time, what the time of an event in closed form rounds by, and what events of other starts are apart; the
+/// latter of what they are from where a run is cut, too.
+constexpr double kOfTime = 1e-14, kSameTime = 1e-9, kApart = 1e-2;
+/// Two events of a contact that graze are no further apart.
+constexpr double kGrazes = 1e-6;
+/// Powers of ten of its duration that a run is cut beside an event.
+constexpr double kNear = 5.0, kNearest = 12.0;
+
 /// Speeds up to this are rounding: forces that all contacts hold leave nothing that moves, and nothing to measure by.
 constexpr double kStill = 1e-9;
 
@@ -149,6 +160,7 @@ class SceneChecker {
     guarded("restart", [&] { take_up_again(); });
     guarded("reduction", [&] { reduce(); });
     guarded("longer run", [&] { run_longer(); });
+    guarded("cut", [&] { cut(); });
     return result_;
   }
 
@@ -232,6 +244,79 @@ class SceneChecker {
     const double rate = std::max(system_->cache().tables(*system_, false).model.fastest, kSlowest);
     options.duration = std::min(whole_, kMostSamples * kPhasePerSample / rate);
     if (options.duration > options_.duration) check_balance(dynamics::simulate(*system_, start_, options).audit);
+  }
+
+  /// In two pieces, the first of which ends anywhere, a little before or a little after an event: the same motion and
+  /// the same events.
+  void cut() {
+    cut_at(start_.time + random_.uniform() * options_.duration);
+    if (events_.empty()) return;
+    for (const double side : {-1.0, 1.0}) {
+      const auto pick = static_cast<std::size_t>(random_.uniform() * static_cast<double>(events_.size()));
+      const double beside = std::pow(10.0, -random_.uniform(kNear, kNearest)) * options_.duration;
+      cut_at(events_[pick].time + side * beside);
+    }
+  }
+
+  void cut_at(double end) {
+    const double last = start_.time + options_.duration;
+    if (!(end > start_.time && end < last)) return;
+    dynamics::SimulateOptions options = plain();
+    options.duration = end - start_.time;
+    const dynamics::Trajectory first = dynamics::simulate(*system_, start_, options);
+    options.duration = last - end;
+    const dynamics::Trajectory second = dynamics::simulate(*system_, first.final_state, options);
+    const double gap = distance(second.final_state, run_.final_state);
+    result_.cut = std::max(result_.cut, gap);
+    if (!(gap <= kSameMotion)) violate("cut", fmt::format("{:.2g} away at the end, cut at t = {:.17g}", gap, end));
+    // It has an event beside its end or not, but for what events' times are off by; and what the run starts with may be
+    // told when it goes on.
+    const double off = (tolerated_ > 0.0 ? kTolerance : kOfTime) * options_.duration;
+    const auto told_by = [&](double time) {
+      return std::count_if(run_.events.begin(), run_.events.end(), [&](const auto& e) { return e.time <= time; });
+    };
+    std::vector<dynamics::Event> events = first.events;
+    events.insert(events.end(), second.events.begin(), second.events.end());
+    const bool same = without_grazings(events).size() == without_grazings(run_.events).size() &&
+                      std::ssize(first.events) <= told_by(end + off) &&
+                      std::ssize(first.events) >= told_by(end - off) - told_by(start_.time);
+    if (!same && events_are_told(end))
+      violate("cut", fmt::format("{} and {} events instead of {}, cut at t = {:.17g}", first.events.size(),
+                                 second.events.size(), run_.events.size(), end));
+  }
+
+  /// Events but those of contacts that leave their mode for so short a time, or not at all, that rounding may tell.
+  [[nodiscard]] std::vector<dynamics::Event> without_grazings(const std::vector<dynamics::Event>& events) const {
+    std::vector<dynamics::Event> left;
+    for (const dynamics::Event& e : events) {
+      if (e.kind == dynamics::EventKind::kGrazing) continue;
+      const auto last = std::find_if(left.rbegin(), left.rend(), [&](const auto& o) { return o.contact == e.contact; });
+      const bool grazed = last != left.rend() && e.contact >= 0 && last->before == e.after &&
+                          e.time - last->time <= kGrazes * options_.duration;
+      if (grazed)
+        left.erase(std::next(last).base());
+      else
+        left.push_back(e);
+    }
+    return left;
+  }
+
+  /// Of contacts that graze, or that move by rounding alone, runs from starts rounded otherwise tell more or fewer, or
+  /// at other times, on this side of `end` or that.
+  bool events_are_told(double end) {
+    dynamics::SimulateOptions options = plain();
+    for (int trial = 0; trial < kRounded; ++trial) {
+      dynamics::State from = start_;
+      for (double& q : from.q) q += kRoundedBy * size_q_ * random_.normal();
+      for (double& v : from.v) v += kRoundedBy * size_v_ * random_.normal();
+      options.flow.tolerance = kTolerance * std::pow(10.0, random_.uniform(-1.0, 1.0));
+      const dynamics::Trajectory run = dynamics::simulate(*system_, from, options);
+      const auto as_before = [&](const dynamics::Event& a, const dynamics::Event& b) {
+        return std::abs(a.time - b.time) <= std::min(kSameTime * options_.duration, kApart * std::abs(b.time - end));
+      };
+      if (!std::ranges::equal(run.events, run_.events, as_before)) return false;
+    }
+    return true;
   }
 
   /// Distance of two final states, of the run's sizes.
@@ -359,6 +444,7 @@ SceneSurvey survey_random_scenes(std::uint64_t seed, std::uint64_t first, std::u
                     .scan = check.scan,
                     .energy = check.energy,
                     .restart = check.restart,
+                    .cut = check.cut,
                     .reduction = check.reduction,
                     .digest = 0,
                     .failed = {}};
@@ -378,6 +464,7 @@ void SceneSurvey::merge(SceneSurvey next) {
   scan.merge(next.scan);
   energy = std::max(energy, next.energy);
   restart = std::max(restart, next.restart);
+  cut = std::max(cut, next.cut);
   reduction = std::max(reduction, next.reduction);
   Digest both;
   both.add(digest);

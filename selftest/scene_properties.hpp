@@ -16,6 +16,7 @@ struct SceneCheck {
   ScanFigures scan;
   double energy = 0.0;       ///< |residual| of the energy audit
   double restart = 0.0;      ///< distance at the end between the run and one taken up at an event, mode and all
+  double cut = 0.0;          ///< the same of the run and one in two pieces
   double reduction = 0.0;    ///< distance at the end between full and all-modes reduced model, as a share of sizes
   std::string refused;       ///< why, in a word or two, where the method says with a message that this is beyond it
   bool still = false;        ///< nothing moved: not judged
@@ -28,6 +29,9 @@ struct SceneCheck {
 /// - the run, by scan_run with samples a hundredth of the flow's largest step apart;
 /// - the energy audit, and of one scene in four that of a longer run;
 /// - the run taken up again at one of its events, in the mode it is in (exactly on a guard);
+/// - the run in two pieces, cut anywhere, a little before and a little after an event: same state at the end, same
+/// events
+///   in either piece, but for those that runs from starts rounded otherwise have at other times;
 /// - the model reduced on all modes of a random basis with a random mean, and of one of the house's own (natural modes,
 ///   with static ones, proper orthogonal ones in either metric): same modes at the end, same state.
 /// Cost some milliseconds.
@@ -42,9 +46,9 @@ struct SceneSurvey {
   std::int64_t scenes = 0, still = 0;
   std::map<std::string, std::int64_t> refused;  ///< how many for each reason
   ScanFigures scan;
-  double energy = 0.0, restart = 0.0, reduction = 0.0;  ///< largest
-  std::uint64_t digest = 0;                             ///< of all scenes' digests in order: the same for any threads
-  std::vector<SceneCheck> failed;                       ///< those with violations, in order
+  double energy = 0.0, restart = 0.0, cut = 0.0, reduction = 0.0;  ///< largest
+  std::uint64_t digest = 0;        ///< of all scenes' digests in order: the same for any threads
+  std::vector<SceneCheck> failed;  ///< those with violations, in order
 
   /// Adds the scenes that follow. Digests depend on how a survey is cut into blocks.
   void merge(SceneSurvey next);
