@@ -137,7 +137,9 @@ Eigen::RowVectorXd EventResolver::slide_stretch_gradient(const HybridPoint& poin
   const friction::LoadForm& load = loads_[i];
   Eigen::RowVectorXd gradient = Eigen::RowVectorXd::Zero(2 * model_.np + point.internal.size());
   if (!load.varies()) return gradient;
-  const double sign = point.internal(internal_[i]) > 0 ? 1.0 : -1.0;
+  // A contact that was gained a moment ago slides, its stretch still nothing.
+  const ContactMode mode = point.modes[i];
+  const double sign = mode != ContactMode::kStick ? sign_of(mode) : point.internal(internal_[i]) > 0 ? 1.0 : -1.0;
   gradient.head(2 * model_.np) = load.y * model_.displacement_row.col(c) + load.v * model_.velocity_row.col(c);
   if (load.oscillates()) {
     gradient(2 * model_.np + oscillator_[i]) = load.z;

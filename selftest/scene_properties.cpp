@@ -45,8 +45,8 @@ constexpr double kRoundedBy = 1e-15;
 /// Of a run's time, what the time of an event in closed form rounds by, and what events of other starts are apart; the
 /// latter of what they are from where a run is cut, too.
 constexpr double kOfTime = 1e-14, kSameTime = 1e-9, kApart = 1e-2;
-/// Two events of a contact that graze are no further apart.
-constexpr double kGrazes = 1e-6;
+/// Two events of a contact that graze are no further apart; a bristle at rest pulls with no more than this share.
+constexpr double kGrazes = 1e-6, kAtRest = 1e-10;
 /// Powers of ten of its duration that a run is cut beside an event.
 constexpr double kNear = 5.0, kNearest = 12.0;
 
@@ -277,7 +277,7 @@ class SceneChecker {
     };
     std::vector<dynamics::Event> events = first.events;
     events.insert(events.end(), second.events.begin(), second.events.end());
-    const bool same = without_grazings(events).size() == without_grazings(run_.events).size() &&
+    const bool same = told_for_sure(events).size() == told_for_sure(run_.events).size() &&
                       std::ssize(first.events) <= told_by(end + off) &&
                       std::ssize(first.events) >= told_by(end - off) - told_by(start_.time);
     if (!same && events_are_told(end))
@@ -285,11 +285,15 @@ class SceneChecker {
                                  second.events.size(), run_.events.size(), end));
   }
 
-  /// Events but those of contacts that leave their mode for so short a time, or not at all, that rounding may tell.
-  [[nodiscard]] std::vector<dynamics::Event> without_grazings(const std::vector<dynamics::Event>& events) const {
+  /// Events but those that rounding may tell: of contacts that leave their mode for so short a time, or not at all, and
+  /// turns of bristles at rest.
+  [[nodiscard]] std::vector<dynamics::Event> told_for_sure(const std::vector<dynamics::Event>& events) const {
     std::vector<dynamics::Event> left;
     for (const dynamics::Event& e : events) {
       if (e.kind == dynamics::EventKind::kGrazing) continue;
+      const auto c = static_cast<std::size_t>(std::max(e.contact, 0));
+      const dynamics::ContactForces law = friction::contact_forces(system_->contacts()[c]);
+      if (law.kind == friction::LawKind::kBristle && std::abs(e.force) <= kAtRest * law.most()) continue;
       const auto last = std::find_if(left.rbegin(), left.rend(), [&](const auto& o) { return o.contact == e.contact; });
       const bool grazed = last != left.rend() && e.contact >= 0 && last->before == e.after &&
                           e.time - last->time <= kGrazes * options_.duration;

@@ -43,6 +43,23 @@ TEST(Tangent, WithoutFrictionItIsTheLinearFlow) {
   }
 }
 
+TEST(Tangent, AContactJustGainedSlidesWithItsLoad) {
+  // m = k = 1 from −2 without contact, N = 1 + q: q = −2 cos t, contact at π/3. Below a belt that is faster it slides
+  // at once, z = μ_k N/K, whose sign no stretch tells yet.
+  const double mu = 0.3, stiffness = 2.0, T = std::numbers::pi / 3.0 + 1e-9;
+  const HybridSystem system(
+      fem::chain({.masses = 1, .damping = 0.0}),
+      {{unit(1, 0), friction::CompliantCoulomb{mu, mu, stiffness}, friction::NormalLoad(1.0, 1.0)}},
+      Belt::constant(5.0));
+  const State start = state(Eigen::VectorXd::Constant(1, -2.0), Eigen::VectorXd::Zero(1));
+  for (const FlowMethod method : {FlowMethod::kClosedForm, FlowMethod::kCollocation}) {
+    const TangentResult tangent = tangent_flow(system, start, T, flow_of(method));
+    ASSERT_EQ(tangent.events.size(), 1u);
+    EXPECT_NEAR(tangent.monodromy(2, 0), mu / stiffness * std::cos(T), 1e-8);
+    EXPECT_NEAR(tangent.monodromy(2, 1), mu / stiffness * std::sin(T), 1e-8);
+  }
+}
+
 TEST(Tangent, SaltationAtAReversalOfOneMass) {
   // m = k = 1 on a belt at rest, let go at x = 5, F = 0.2: at the turning point −4.6 the acceleration jumps from
   // 4.6 + 0.2 to 4.6 − 0.2; saltation is diag(1, 4.4/4.8) between two rotations.
