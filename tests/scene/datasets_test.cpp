@@ -159,11 +159,14 @@ std::vector<double> orbit_slip_states(const Case& c) {
 }
 
 std::vector<double> largest_exponent(const Case& c) {
+  // Single records scatter by 2 %: of eight, a mean by 0.7 %.
+  Case many = c;
+  many.scene.ensemble.members *= 2;
   diagnostics::LyapunovOptions options;
   options.transient = c.scene.time.transient;
   options.duration = 200000.0;
   options.flow = c.scene.flow;
-  return mean_over_members(by_member(c, [&](const dynamics::State& start) -> Eigen::VectorXd {
+  return mean_over_members(by_member(many, [&](const dynamics::State& start) -> Eigen::VectorXd {
     return Eigen::VectorXd::Constant(1, diagnostics::largest_exponent(c.system, start, options).bits);
   }));
 }
