@@ -109,14 +109,27 @@ bool agrees(const friction::Clearance& law, ContactMode mode, const std::optiona
   }
 }
 
+/// What loads and a force drive accelerate a contact by at most, mode by mode: through a structure too, before it shows
+/// there [m/s²].
+double pushed(const HybridSystem& system, const ModalModel& m, std::size_t c) {
+  const auto row = m.velocity_row.col(static_cast<Eigen::Index>(c)).cwiseAbs();
+  double most = row.dot(m.load.cwiseAbs());
+  if (const friction::Force* force = system.drive().force())
+    for (const friction::ForceHarmonic& h : force->harmonics)
+      most += std::abs(h.amplitude) * row.dot(m.force_input.col(h.direction).cwiseAbs());
+  return most;
+}
+
 /// Where a clearance is at the start: as given, or by position and force; on a guard to rounding by the velocity.
-ContactMode start_mode(const friction::Clearance& law, const friction::Contact& contact, const State& start,
-                       std::size_t c, const ModalModel& m, const Eigen::VectorXd& x) {
+ContactMode start_mode(const friction::Clearance& law, const HybridSystem& system, const State& start, std::size_t c,
+                       const ModalModel& m, const Eigen::VectorXd& x) {
+  const friction::Contact& contact = system.contacts()[c];
   const auto i = static_cast<Eigen::Index>(c);
   const double speeds = motion_size(contact, start.v, x, m.velocity_row, c);
-  // What has only begun to move is placed by what its speed makes of it.
+  // What has only begun to move is placed by what its speed makes of it, and what pushes it.
   const double rate = std::max(m.fastest, std::sqrt(friction::engaged_stiffness(contact.law) * m.mobility(i, i)));
-  const double motion = motion_size(contact, start.q, x, m.displacement_row, c) + speeds / rate;
+  const double motion =
+      motion_size(contact, start.q, x, m.displacement_row, c) + (speeds + pushed(system, m, c) / rate) / rate;
   std::optional<AtStop> left, right;
   if (law.left) left.emplace(*law.left, -1.0, contact, start, motion, speeds);
   if (law.right) right.emplace(*law.right, 1.0, contact, start, motion, speeds);
@@ -164,7 +177,7 @@ std::vector<ContactMode> start_modes(const HybridSystem& system, const ModalMode
   for (std::size_t c = 0; c < modes.size(); ++c) {
     const auto& contact = system.contacts()[c];
     if (const auto* clearance = friction::clearance(contact.law)) {
-      modes[c] = start_mode(*clearance, contact, start, c, m, x);
+      modes[c] = start_mode(*clearance, system, start, c, m, x);
       continue;
     }
     if (!contact_forces(contact).sticks()) {

@@ -271,7 +271,7 @@ class SceneChecker {
     if (!(gap <= kSameMotion)) violate("cut", fmt::format("{:.2g} away at the end, cut at t = {:.17g}", gap, end));
     // It has an event beside its end or not, but for what events' times are off by; and what the run starts with may be
     // told when it goes on.
-    const double off = (tolerated_ > 0.0 ? 10.0 * kTolerance : kOfTime) * options_.duration;
+    const double off = (tolerated_ > 0.0 ? 100.0 * kTolerance : kOfTime) * options_.duration;
     const auto told_by = [&](double time) {
       return std::count_if(run_.events.begin(), run_.events.end(), [&](const auto& e) { return e.time <= time; });
     };

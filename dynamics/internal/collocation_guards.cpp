@@ -21,6 +21,8 @@ constexpr double kEarly = 1.0 / 64.0;
 constexpr double kOwnStart = 0.1;
 /// A guard's Bernstein form rounds by this share of the terms that are summed at the nodes.
 constexpr double kFormRounds = 1e-12;
+/// A stick's form below this share of its limit stays below, whatever a step's forces round by.
+constexpr double kFarBelow = 0.999;
 /// Halvings tried to show that a stick force stays below its limit.
 constexpr int kMarginHalvings = 2;
 constexpr int kRefinements = 20;
@@ -46,11 +48,11 @@ CollocationFlow::FirstGuards CollocationFlow::first_guards() {
     BernsteinPolynomial p;
     double* guard = guard_forms_.data() + kNodes * c;
     if (point_.modes[i] == ContactMode::kStick) {
-      const double below = law.static_limit * (1.0 - kAtLimit);
-      if (kernels_.force_guard(t.bernstein7.data(), forces_.data() + kNodes * c, guard) < below) continue;
+      double most = kernels_.force_guard(t.bernstein7.data(), forces_.data() + kNodes * c, guard);
+      if (most < law.static_limit * kFarBelow) continue;
       tell_by_states(c);
-      if (told_by_states_[i] && kernels_.force_guard(t.bernstein7.data(), told_forces(c).data(), guard) < below)
-        continue;
+      if (told_by_states_[i]) most = kernels_.force_guard(t.bernstein7.data(), told_forces(c).data(), guard);
+      if (most < law.static_limit * (1.0 - kAtLimit)) continue;
       p.degree = kNodes - 1;
       for (const double sign : {1.0, -1.0}) {
         std::array<double, kNodes> margin;
