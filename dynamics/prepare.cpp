@@ -109,14 +109,17 @@ bool agrees(const friction::Clearance& law, ContactMode mode, const std::optiona
   }
 }
 
-/// What loads and a force drive accelerate a contact by at most, mode by mode: through a structure too, before it shows
-/// there [m/s²].
+/// What loads, a force drive and friction accelerate a contact by at most, mode by mode: through a structure too,
+/// before it shows there [m/s²].
 double pushed(const HybridSystem& system, const ModalModel& m, std::size_t c) {
   const auto row = m.velocity_row.col(static_cast<Eigen::Index>(c)).cwiseAbs();
   double most = row.dot(m.load.cwiseAbs());
   if (const friction::Force* force = system.drive().force())
     for (const friction::ForceHarmonic& h : force->harmonics)
       most += std::abs(h.amplitude) * row.dot(m.force_input.col(h.direction).cwiseAbs());
+  for (std::size_t d = 0; d < system.contacts().size(); ++d)
+    if (const double limit = contact_forces(system.contacts()[d]).most(); std::isfinite(limit))
+      most += limit * row.dot(m.input.col(static_cast<Eigen::Index>(d)).cwiseAbs());
   return most;
 }
 

@@ -272,14 +272,15 @@ class SceneChecker {
     // It has an event beside its end or not, but for what events' times are off by; and what the run starts with may be
     // told when it goes on.
     const double off = (tolerated_ > 0.0 ? 100.0 * kTolerance : kOfTime) * options_.duration;
-    const auto told_by = [&](double time) {
-      return std::count_if(run_.events.begin(), run_.events.end(), [&](const auto& e) { return e.time <= time; });
-    };
     std::vector<dynamics::Event> events = first.events;
     events.insert(events.end(), second.events.begin(), second.events.end());
-    const bool same = told_for_sure(events).size() == told_for_sure(run_.events).size() &&
-                      std::ssize(first.events) <= told_by(end + off) &&
-                      std::ssize(first.events) >= told_by(end - off) - told_by(start_.time);
+    const std::vector<dynamics::Event> whole = told_for_sure(run_.events);
+    const auto told_by = [&](double time) {
+      return std::count_if(whole.begin(), whole.end(), [&](const auto& e) { return e.time <= time; });
+    };
+    const std::ptrdiff_t before = std::ssize(told_for_sure(first.events));
+    const bool same = told_for_sure(events).size() == whole.size() && before <= told_by(end + off) &&
+                      before >= told_by(end - off) - told_by(start_.time);
     if (!same && events_are_told(end))
       violate("cut", fmt::format("{} and {} events instead of {}, cut at t = {:.17g}", first.events.size(),
                                  second.events.size(), run_.events.size(), end));
