@@ -342,7 +342,8 @@ double CollocationFlow::over_scale(int c) const {
 
 double CollocationFlow::impulse_of_rounding(int c) const {
   constexpr double kRoundsBy = 64.0 * std::numeric_limits<double>::epsilon();
-  return kRoundsBy * velocity_scale(c, x_begin_) / model_.mobility(c, c);
+  // Where all is at rest, of what forces in balance would make of it in the step.
+  return kRoundsBy * (velocity_scale(c, x_begin_) + balanced(c) * tables_.step(step_level_)) / model_.mobility(c, c);
 }
 
 double CollocationFlow::rounding_of_sticks() const {
