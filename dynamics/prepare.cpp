@@ -131,8 +131,8 @@ ContactMode start_mode(const friction::Clearance& law, const HybridSystem& syste
   const double speeds = motion_size(contact, start.v, x, m.velocity_row, c);
   // What has only begun to move is placed by what its speed makes of it, and what pushes it.
   const double rate = std::max(m.fastest, std::sqrt(friction::engaged_stiffness(contact.law) * m.mobility(i, i)));
-  const double motion = motion_size(contact, start.q, x, m.displacement_row, c) + speeds / rate +
-                        pushed(system, m, c) / (m.pace() * m.pace());
+  const double by_force = start.modes.empty() ? 0.0 : pushed(system, m, c) / (m.pace() * m.pace());
+  const double motion = motion_size(contact, start.q, x, m.displacement_row, c) + speeds / rate + by_force;
   std::optional<AtStop> left, right;
   if (law.left) left.emplace(*law.left, -1.0, contact, start, motion, speeds);
   if (law.right) right.emplace(*law.right, 1.0, contact, start, motion, speeds);

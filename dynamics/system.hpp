@@ -32,7 +32,8 @@ struct State {
   double time = 0.0;
   Eigen::VectorXd q;  ///< displacement [n]
   Eigen::VectorXd v;  ///< velocity [n]
-  /// One per contact; empty: derived from q, v by consistency (Filippov) when the flow starts.
+  /// One per contact, as a run ended with: where one changes at once, that is an event. Empty: derived from q, v by
+  /// consistency (Filippov) when the flow starts.
   std::vector<ContactMode> modes = {};
   /// Contacts' own states, contact after contact (friction::internal_states). Empty: bristles and springs relaxed,
   /// normal oscillators at rest where y holds them.

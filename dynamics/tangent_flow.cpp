@@ -29,7 +29,7 @@ struct TangentFlow::Implementation {
 
 Eigen::MatrixXd TangentFlow::Implementation::turned(Eigen::MatrixXd tangents, const TurnAtStart& turn,
                                                     const ModalModel& m) const {
-  if (turn.contact < 0) return tangents;
+  if (turn.contact < 0 || turn.acceleration == 0.0) return tangents;  // reached at rest: when is nobody's
   auto speeds = tangents.middleRows(m.n, m.n);
   const Eigen::VectorXd& direction = system.contacts()[static_cast<std::size_t>(turn.contact)].direction;
   const Eigen::RowVectorXd delay = -direction.transpose() * speeds / turn.acceleration;

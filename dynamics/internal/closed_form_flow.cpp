@@ -53,10 +53,7 @@ ClosedFormFlow::ClosedFormFlow(const HybridSystem& system, HybridPoint start, co
       oscillator_states_.insert(oscillator_states_.end(), {end - 2, end - 1});
     }
   }
-  resolver_.start(point_);
-  statistics_.events = static_cast<std::int64_t>(resolver_.events().size());
-  enter_regime();
-  begin_step();
+  begin();
 }
 
 void ClosedFormFlow::restart(HybridPoint start) {
@@ -69,6 +66,10 @@ void ClosedFormFlow::restart(HybridPoint start) {
   statistics_.stick_time.assign(static_cast<std::size_t>(nc_), 0.0);
   recall_.assign(static_cast<std::size_t>(nc_), {});
   level_ = 0;
+  begin();
+}
+
+void ClosedFormFlow::begin() {
   resolver_.start(point_);
   statistics_.events = static_cast<std::int64_t>(resolver_.events().size());
   enter_regime();

@@ -143,6 +143,8 @@ class ClosedFormFlow {
   /// have: its coordinates round otherwise than those of the slipping structure, and each return to them would stretch
   /// a spring anew. @param beside  the drive, where x and the inputs are beside its steady response
   void hold_springs(const Eigen::VectorXd& x, const DriveOverlay* beside, Eigen::VectorXd& inputs) const;
+  /// A run, from a point whose modes are not decided yet.
+  void begin();
   /// What the step that begins at the point begins with: it is readable from here on.
   void begin_step();
   void set_guards();

@@ -130,8 +130,10 @@ CollocationFlow::CollocationFlow(const HybridSystem& system, const StepTables& t
   if (any_bristle_) start_bristles();
   resolver_.start(point_);
   events_ = resolver_.events();
-  if (any_bristle_) refresh_bristles();
-  if (any_bristle_ && point_.goes_on) record_reversals(given);
+  if (any_bristle_) {
+    refresh_bristles();
+    record_reversals(given);
+  }
   statistics_.events = static_cast<std::int64_t>(events_.size());
   guard_start_ = guard_least_ = Eigen::VectorXd::Zero(nc_);
   prepare_proof();

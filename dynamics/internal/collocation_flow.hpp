@@ -33,8 +33,7 @@ class CollocationFlow {
   bool step(double t_limit);
 
   [[nodiscard]] const HybridPoint& point() const { return point_; }
-  /// Events that ended the last step (simultaneous ones together).
-  /// Of the last step; before the first, of the start.
+  /// Events that ended the last step (simultaneous ones together); before the first step, of the start.
   [[nodiscard]] const std::vector<Event>& events() const { return events_; }
   [[nodiscard]] const TurnAtStart& turn_at_start() const { return resolver_.turn_at_start(); }
   [[nodiscard]] const WorkSums& work() const { return work_; }
@@ -57,7 +56,7 @@ class CollocationFlow {
   /// A trial step may follow the law past zero relative velocity this far (in units of 1/α): beyond, e^{−αv} runs away.
   /// A characteristic: until it has changed by this share of μ_s.
   static constexpr double kLargestOvershoot = 0.7;
-  /// A stick force starts at its limit when it is this close (relative).
+  /// A stick force starts at its limit when it is past it by no more than this (relative).
   static constexpr double kAtLimit = 1e-10;
   /// Speeds below this share of the velocities at play are rounding.
   static constexpr double kUnmoved = 1e-14;
@@ -115,6 +114,10 @@ class CollocationFlow {
   /// is what is looked at for its limit.
   void tell_by_states(int c);
   [[nodiscard]] Eigen::Map<const RadauTables::Vector8> told_forces(int c) const;
+  /// A stick's margin where a step starts: none where rounding alone has it past the limit; where to, shows next.
+  [[nodiscard]] static double or_at_limit(double margin, const ContactForces& law) {
+    return margin < 0.0 && margin >= -kAtLimit * law.static_limit ? 0.0 : margin;
+  }
   /// Keeps the guards' Bernstein forms for the proof.
   [[nodiscard]] FirstGuards first_guards();
 

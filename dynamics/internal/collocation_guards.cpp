@@ -57,8 +57,7 @@ CollocationFlow::FirstGuards CollocationFlow::first_guards() {
       for (const double sign : {1.0, -1.0}) {
         std::array<double, kNodes> margin;
         for (std::size_t k = 0; k < kNodes; ++k) margin[k] = law.static_limit - sign * guard[k];
-        // Past the guard by rounding: where to, shows next.
-        if (margin[0] < 0.0 && margin[0] >= -kAtLimit * law.static_limit) margin[0] = 0.0;
+        margin[0] = or_at_limit(margin[0], law);
         if (stays_above(margin, 0.0, kMarginHalvings)) continue;
         std::ranges::copy(margin, p.coefficient.begin());
         consider(p, c);

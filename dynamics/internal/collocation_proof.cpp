@@ -334,10 +334,10 @@ bool CollocationFlow::proves(const Guarded& found, double end) {
       p.degree = kNodes - 1;
       const double greatest = form.cwiseAbs().maxCoeff();
       if (reached == nullptr && greatest + off.force <= law.static_limit) continue;
-      const double at_event = nodes_.lagrange(found.theta).dot(forces_.segment<kNodes>(kNodes * c));
+      const double at_event = nodes_.lagrange(found.theta).dot(told_forces(c));
       for (const double sign : {1.0, -1.0}) {
         for (int k = 0; k < kNodes; ++k) p.coefficient[static_cast<std::size_t>(k)] = law.static_limit - sign * form(k);
-        if (p.coefficient[0] < 0.0 && p.coefficient[0] >= -kAtLimit * law.static_limit) p.coefficient[0] = 0.0;
+        p.coefficient[0] = or_at_limit(p.coefficient[0], law);
         const bool this_side = reached != nullptr && sign * at_event > 0.0;
         if (!stays_clear(p, off.force, off.force_slope, 0.0, this_side ? reached : nullptr, end)) return false;
       }

@@ -216,7 +216,7 @@ void CollocationFlow::salt_tangents(Eigen::VectorXd rate_before, const Guarded& 
   } else {
     gradient = -held_force_gradient(contact);
     const double h = tables_.step(step_level_);
-    rate = -forces_.segment<kNodes>(kNodes * contact).dot(nodes_.lagrange_slope(tau / h)) / h;
+    rate = -told_forces(contact).dot(nodes_.lagrange_slope(tau / h)) / h;
   }
   // Reached at rest: when is nobody's.
   const Eigen::RowVectorXd delay = gradient * tangents_ * (rate != 0.0 ? 1.0 / rate : 0.0);
