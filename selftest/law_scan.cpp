@@ -196,7 +196,7 @@ class Scan {
     const double error = kRounding + options_.flow.tolerance;
     // A state under a force is the sum of the free structure's answer and what contacts take from it, which may be all.
     const Eigen::MatrixXd answer = free_answer();
-    const Eigen::VectorXd tolerated = W_.cwiseAbs() * tolerated_impulses(system_, options_.flow.tolerance);
+    const Eigen::VectorXd tolerated = W_.cwiseAbs() * tolerated_impulses(system_, options_.flow);
     const Eigen::VectorXd momentum_rounding = error * swing * mass_.diagonal().cwiseSqrt() +
                                               4.0 * h * kRounding * force_sizes() + tolerated +
                                               mass_.cwiseAbs() * (4.0 * own_v + kRounding * answer.col(1)),
@@ -276,6 +276,15 @@ class Scan {
     return !corner || *corner > to;
   }
 
+  /// What the flow's tolerance may leave a contact's place off by: impulses, for as long as they act. One at contact d
+  /// gives c no more than √(m_c m_d) times as much of a speed, by the energy it brings.
+  [[nodiscard]] double tolerated_place(int c) const {
+    const Eigen::VectorXd reach = (rows_ * W_).diagonal().cwiseSqrt();
+    const double speed = reach(c) * reach.dot(tolerated_impulses(system_, options_.flow));
+    if (speed == 0.0) return 0.0;
+    return speed * system_.cache().tables(system_, false).steps.acting_time(system_.drive().omega());
+  }
+
   ContactScales scales_of(int c) const {
     const friction::Contact& law = contact(c);
     double drive = 0.0;
@@ -289,7 +298,7 @@ class Scan {
     const Eigen::VectorXd speeds = run_.v.cwiseAbs().rowwise().maxCoeff();
     const double fastest = system_.cache().tables(system_, false).model.fastest,
                  soon = fastest > 0.0 ? W_.col(c).cwiseAbs().dot(speeds) / fastest : 0.0;
-    scales.way = run_.contact_q.row(c).cwiseAbs().maxCoeff() +
+    scales.way = run_.contact_q.row(c).cwiseAbs().maxCoeff() + tolerated_place(c) / limits_.guard +
                  1e-3 * (run_.q.cwiseAbs().maxCoeff() + soon + std::sqrt(static_cast<double>(run_.q.rows())) * moved);
     // Where all is all but at rest, speeds round by what displacements would become.
     const double rounding =
@@ -453,14 +462,16 @@ void ScanFigures::merge(const ScanFigures& other) {
   events += other.events;
 }
 
-Eigen::VectorXd tolerated_impulses(const dynamics::HybridSystem& system, double tolerance, double longest) {
+Eigen::VectorXd tolerated_impulses(const dynamics::HybridSystem& system, const dynamics::FlowOptions& flow,
+                                   double longest) {
   const auto nc = static_cast<Index>(system.contacts().size());
   const dynamics::ModelTables& own = system.cache().tables(system, false);
   Eigen::VectorXd most = Eigen::VectorXd::Zero(nc);
-  if (own.model.fastest == 0.0) return most;
+  if (own.model.fastest == 0.0 || dynamics::choose_method(system, flow.method) == dynamics::FlowMethod::kClosedForm)
+    return most;
   for (Index c = 0; c < nc; ++c)
     most(c) = friction::contact_forces(system.contacts()[static_cast<std::size_t>(c)]).most();
-  return tolerance * std::min(own.steps.acting_time(system.drive().omega()), longest) * most;
+  return flow.tolerance * std::min(own.steps.acting_time(system.drive().omega()), longest) * most;
 }
 
 ScanFigures scan_run(const dynamics::HybridSystem& system, const dynamics::State& start,

@@ -39,10 +39,11 @@ struct ScanLimits {
   double spurious = 1e-4;
 };
 
-/// What the flow may leave the impulse of each contact off by in a step: its tolerance, of the law's largest force, not
-/// of a small motion's [nc, N s].
+/// What collocation may leave the impulse of each contact off by in a step: its tolerance, of the law's largest force,
+/// not of a small motion's [nc, N s]. Zero in closed form.
 /// @param longest  that steps are [s]; the flow's own largest is not exceeded
-[[nodiscard]] Eigen::VectorXd tolerated_impulses(const dynamics::HybridSystem& system, double tolerance,
+[[nodiscard]] Eigen::VectorXd tolerated_impulses(const dynamics::HybridSystem& system,
+                                                 const dynamics::FlowOptions& flow,
                                                  double longest = std::numeric_limits<double>::infinity());
 
 /// Certifies a run from its samples alone: that every contact obeys the law of its mode, that no guard was passed

@@ -30,8 +30,7 @@ struct SceneCheck {
 /// - the energy audit, and of one scene in four that of a longer run;
 /// - the run taken up again at one of its events, in the mode it is in (exactly on a guard);
 /// - the run in two pieces, cut anywhere, a little before and a little after an event: same state at the end, same
-/// events
-///   in either piece, but for those that runs from starts rounded otherwise have at other times;
+///   events in either piece, but for those that runs from starts rounded otherwise have at other times;
 /// - the model reduced on all modes of a random basis with a random mean, and of one of the house's own (natural modes,
 ///   with static ones, proper orthogonal ones in either metric): same modes at the end, same state.
 /// Cost some milliseconds.
