@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # Feeds the readers of scenes, CSV files and result files with mutated input: scripts/fuzz.sh [SECONDS EACH] [TARGET...]
-# Targets: scene csv store, all at once. A crash, hang or leak is an error; the input is kept in build/fuzz.
+# Targets: scene csv store records, all at once. A crash, hang or leak is an error; the input is kept in build/fuzz.
 # Installs clang if it is missing. Uses the release build; only the readers are compiled again, instrumented.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 seconds=${1:-60}
 targets=("${@:2}")
-[[ ${#targets[@]} -gt 0 ]] || targets=(scene csv store)
+[[ ${#targets[@]} -gt 0 ]] || targets=(scene csv store records)
 release=${SLIPMODE_BUILD:-build/release}
 out=build/fuzz
 scripts/install_packages.sh clang
@@ -25,8 +25,9 @@ sources_of() {
   case $1 in
     scene) ls scene/internal/*.cpp scene/scene_parse.cpp scene/parse_*.cpp scene/scene_write.cpp scene/write_*.cpp ;;
     csv) ls results/csv_series.cpp ;;
-    store) ls results/{store_reader,info,records}.cpp results/*_record*.cpp results/internal/*.cpp ;;
-    *) echo "no such target: $1 (scene, csv, store)" >&2; exit 2 ;;
+    store | records)
+      ls results/{store_reader,memory_store,info,records,branch_store,provenance}.cpp results/*_record*.cpp results/internal/*.cpp ;;
+    *) echo "no such target: $1 (scene, csv, store, records)" >&2; exit 2 ;;
   esac | sort -u
   echo "fuzz/$1_fuzz.cpp"
 }
@@ -35,10 +36,8 @@ object_of() { echo "$out/${1//\//_}.o"; }
 
 compile() {
   local target source
-  for target in "${targets[@]}"; do
-    for source in $(sources_of "$target"); do
-      printf '%s\0' "$(object_of "$source")" "$source"
-    done
+  for target in "${targets[@]}"; do sources_of "$target"; done | sort -u | while read -r source; do
+    printf '%s\0' "$(object_of "$source")" "$source"
   done | xargs -0 -n 2 -P "$(nproc)" "${compiler[@]}" "${flags[@]}" -fsanitize=fuzzer-no-link -c -o
 }
 
@@ -55,11 +54,15 @@ seed() {
   case $1 in
     scene) for scene in datasets/*/scene.toml; do cp "$scene" "$out/scene_seeds/$(basename "$(dirname "$scene")").toml"; done ;;
     csv) cp fuzz/corpus/csv/* "$out/csv_seeds/" ;;
-    store)
-      local slipmode=$release/cli/slipmode scene=fuzz/corpus/scene/two_masses.toml
-      "$slipmode" simulate "$scene" -o "$out/store_seeds/run.h5" --quiet
-      "$slipmode" pod "$out/store_seeds/run.h5" -o "$out/store_seeds/pod.h5" --quiet
-      "$slipmode" reduce "$scene" "$out/store_seeds/pod.h5" --modes 1 -o "$out/store_seeds/reduced.h5" --quiet
+    store | records)
+      local slipmode=$release/cli/slipmode scene=fuzz/corpus/scene/two_masses.toml results=$out/store_seeds
+      mkdir -p "$results"
+      "$slipmode" simulate "$scene" -o "$results/run.h5" --quiet
+      "$slipmode" pod "$results/run.h5" -o "$results/pod.h5" --quiet
+      "$slipmode" reduce "$scene" "$results/pod.h5" --modes 1 -o "$results/reduced.h5" --quiet
+      scene=datasets/backlash_sdof/scene.toml
+      "$slipmode" orbit find "$scene" -o "$results/orbit.h5" --quiet
+      "$slipmode" orbit continue "$scene" --over drive.omega=1.8:1.7 --start 2.5,0 -o "$results/branch.h5" --quiet
       ;;
   esac
   [[ $1 != scene ]] || cp fuzz/corpus/scene/* "$out/scene_seeds/"
