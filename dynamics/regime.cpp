@@ -14,9 +14,7 @@ namespace {
 
 /// Frequencies below this share of the structure's fastest may be rounding of zero: a rigid-body motion.
 constexpr double kPerhapsZero = 1e-12;
-/// Rates of displacements, as rows of their own and by the pairs' motion, are the same to this share of a column.
-constexpr double kSameRates = 1e-12;
-/// A product of two columns is zero below this share of their sizes.
+/// What sums of products round by, of their sizes.
 constexpr double kNone = 64.0 * std::numeric_limits<double>::epsilon();
 /// Of a state, that need no heap.
 constexpr Eigen::Index kFewComponents = 64;
@@ -64,7 +62,9 @@ void Regime::prepare_lift(const ModalModel& slipping) {
   rates.rightCols(np) += rows.rightCols(np) * pairs.g22.asDiagonal();
   for (Eigen::Index j = 0; j < 2 * np; ++j) {
     const auto own = to_slipping.col(j).tail(ns);
-    if (!((rates.col(j) - own).norm() <= kSameRates * own.norm())) return;
+    // A pair's coordinates are as large as its rate times a place: behind a stiff spring, far from the origin, they
+    // would make a speed of what rows round by.
+    if (!((rates.col(j) - own).norm() * pair_rate(j % np) <= kNone * slipping.fastest)) return;
   }
   to_displacements = rows;
 }

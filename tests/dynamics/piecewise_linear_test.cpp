@@ -2,6 +2,7 @@
 #include <slipmode/dynamics/modal_model.hpp>
 #include <slipmode/dynamics/regime.hpp>
 #include <slipmode/dynamics/simulate.hpp>
+#include <slipmode/fem/chain.hpp>
 #include <slipmode/fem/masses.hpp>
 #include "fixtures/runge_kutta_reference.hpp"
 #include "fixtures/shaken_scenes.hpp"
@@ -9,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <algorithm>
 #include <complex>
+#include <limits>
 #include <numbers>
 
 namespace slipmode::dynamics {
@@ -187,6 +189,29 @@ TEST(Compliant, TendsToRigidAtFirstOrderWhereItSticks) {
     const double error = distance_to_rigid(stiffness, 100.0, 0.8);
     EXPECT_NEAR(previous / error, 10.0, 0.5) << "K_c = " << stiffness;
     previous = error;
+  }
+}
+
+TEST(Compliant, AStateFarFromTheOriginIsGivenBack) {
+  // Beside a held contact damping couples the modes, and coordinates behind a stiff spring are its rate times a place.
+  // Speeds as rates of displacements made K ε times a place of them, at every event. Expected: the start, to what these
+  // coordinates round by.
+  constexpr Eigen::Index n = 5;
+  for (const double stiffness : {1e3, 1e5, 1e7}) {
+    SCOPED_TRACE(stiffness);
+    const HybridSystem system(fem::chain({.masses = n, .damping = 0.05}),
+                              {{fixtures::unit(n, 2), friction::CompliantCoulomb{0.5, 0.3, stiffness}, 1.0},
+                               {fixtures::unit(n, 4), friction::CompliantCoulomb{0.4, 0.4, stiffness}, 2.0},
+                               {fixtures::unit(n, 0), friction::Coulomb{0.5, 0.5}, 1e3}},
+                              friction::Belt::constant(0.0));
+    State start = fixtures::state(Eigen::VectorXd::LinSpaced(n, 1.0, 4.5), Eigen::VectorXd{{0.0, -0.5, 0.0, 0.3, 0.0}});
+    start.modes.assign(3, ContactMode::kStick);
+    start.internal = Eigen::VectorXd::Zero(2);
+    const State end =
+        simulate(system, start, {.duration = 1e-16, .flow = {.method = FlowMethod::kClosedForm}}).final_state;
+    const double rounds = 8.0 * std::numeric_limits<double>::epsilon() * start.q.norm();
+    EXPECT_LE((end.v - start.v).cwiseAbs().maxCoeff(), rounds * std::sqrt(stiffness));
+    EXPECT_LE((end.q - start.q).cwiseAbs().maxCoeff(), rounds);
   }
 }
 
