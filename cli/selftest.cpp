@@ -80,12 +80,13 @@ int add_scenes(const Session& session, const Request& request, Report& out) {
   }
   if (!reasons.empty()) reasons += ")";
   out.text += fmt::format(
-      "{} random scenes of seed {}: {} with a violation, {} refused with a message{}, {} in which nothing moves\n"
+      "{} random scenes of seed {}: {} with a violation, {} refused with a message{}, {} in which nothing moves, {} in "
+      "which rounding says what follows\n"
       "  {} events; guards looked at {} times, deepest {:.1g} below zero; forces off their law by {:.1g}\n"
       "  equations of motion to {:.1g}, energy to {:.1g}, runs taken up at an event to {:.1g}, cut in two to {:.1g}, "
       "all modes to {:.1g}\n"
       "  digest {:016x}, the same for any number of threads\n",
-      all.scenes, seed, all.failed.size(), refused, reasons, all.still, all.scan.events, all.scan.samples,
+      all.scenes, seed, all.failed.size(), refused, reasons, all.still, all.coasting, all.scan.events, all.scan.samples,
       all.scan.guard, all.scan.law, all.scan.motion, all.energy, all.restart, all.cut, all.reduction, all.digest);
   out.data["scenes"] = {{"seed", seed},
                         {"first", request.first},
@@ -93,6 +94,7 @@ int add_scenes(const Session& session, const Request& request, Report& out) {
                         {"refused", refused},
                         {"refusals", all.refused},
                         {"still", all.still},
+                        {"coasting", all.coasting},
                         {"events", all.scan.events},
                         {"samples", all.scan.samples},
                         {"guard", all.scan.guard},

@@ -76,7 +76,8 @@ LawCheck check_clearance(const friction::Clearance& law, ContactMode mode, const
     // Free, and so it stays within the gap, and beyond it where the stop, having let go, would pull. The end of a
     // flight changes no force and is no event.
     const auto free = [&](const Side& side) {
-      return lets_go_at_gap ? -side.x / scales.way : std::max(-side.x / scales.way, -side.press / scales.force);
+      const double inside = (scales.place - side.x) / scales.way;
+      return lets_go_at_gap ? inside : std::max(inside, -side.press / scales.force);
     };
     return {.guard = std::min(free(left), free(right)), .law = std::abs(now.lambda) / scales.force};
   }

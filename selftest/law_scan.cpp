@@ -23,6 +23,9 @@ using Eigen::Index;
 /// Rounding of a modal coordinate, of all of them together in the norm of energy.
 constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
 
+/// Of what the flow's tolerance may leave a place off by, what it tells a stop by.
+constexpr double kShows = 10.0;
+
 /// How far from its start a run may begin, of its sizes.
 constexpr double kGivenBack = 1e-9;
 
@@ -276,13 +279,15 @@ class Scan {
     return !corner || *corner > to;
   }
 
-  /// What the flow's tolerance may leave a contact's place off by: impulses, for as long as they act. One at contact d
-  /// gives c no more than √(m_c m_d) times as much of a speed, by the energy it brings.
+  /// How deep in a stop a contact's place may be before a flow tells: some times what its tolerance may leave the place
+  /// off by, impulses for a step. One at contact d gives c no more than √(m_c m_d) times as much of a speed, by the
+  /// energy it brings.
   [[nodiscard]] double tolerated_place(int c) const {
     const Eigen::VectorXd reach = (rows_ * W_).diagonal().cwiseSqrt();
     const double speed = reach(c) * reach.dot(tolerated_impulses(system_, options_.flow));
-    if (speed == 0.0) return 0.0;
-    return speed * system_.cache().tables(system_, false).steps.acting_time(system_.drive().omega());
+    const dynamics::StepTables& steps = system_.cache().tables(system_, false).steps;
+    return speed == 0.0 ? 0.0
+                        : kShows * speed * std::min(steps.acting_time(system_.drive().omega()), options_.duration);
   }
 
   ContactScales scales_of(int c) const {
@@ -298,7 +303,7 @@ class Scan {
     const Eigen::VectorXd speeds = run_.v.cwiseAbs().rowwise().maxCoeff();
     const double fastest = system_.cache().tables(system_, false).model.fastest,
                  soon = fastest > 0.0 ? W_.col(c).cwiseAbs().dot(speeds) / fastest : 0.0;
-    scales.way = run_.contact_q.row(c).cwiseAbs().maxCoeff() + tolerated_place(c) / limits_.guard +
+    scales.way = run_.contact_q.row(c).cwiseAbs().maxCoeff() +
                  1e-3 * (run_.q.cwiseAbs().maxCoeff() + soon + std::sqrt(static_cast<double>(run_.q.rows())) * moved);
     // Where all is all but at rest, speeds round by what displacements would become.
     const double rounding =
@@ -315,6 +320,7 @@ class Scan {
     }
     for (double* scale : {&scales.way, &scales.speed, &scales.force})
       if (!(*scale > 0.0)) *scale = 1.0;
+    scales.place = tolerated_place(c);
     scales.slack = kRounding * friction::spring_stiffness(law.law) * std::max(scales.way, moved);
     return scales;
   }
@@ -343,12 +349,22 @@ class Scan {
         const LawCheck check = check_law(contact(c), timeline.at(t), instants.back(), scales);
         guards(k) = check.guard;
         note(c, t, check);
+        figures_.coasts |= coasts(c, timeline.at(t), instants.back(), scales);
       }
       if (k >= 2) look_between(c, s, k, guards, recent.front(), scales);
       recent.push_back(load);
       if (recent.size() > 2) recent.erase(recent.begin());
     }
     check_event_guards(c, s, instants, scales);
+  }
+
+  /// What slides without friction ends at what sticks only if it comes to rest. By a damper alone it never does: once
+  /// its speed is rounding, that says whether it turns.
+  [[nodiscard]] bool coasts(int c, ContactMode mode, const ContactInstant& now, const ContactScales& scales) const {
+    const bool slides = mode == ContactMode::kSlipPositive || mode == ContactMode::kSlipNegative;
+    const friction::Law& law = contact(c).law;
+    return slides && std::abs(now.slip) <= kRounding * scales.speed && friction::static_coefficient(law) > 0.0 &&
+           friction::kinetic_coefficient(law, scales.speed) == 0.0;
   }
 
   void note(int c, double t, const LawCheck& check) {
@@ -460,6 +476,7 @@ void ScanFigures::merge(const ScanFigures& other) {
   samples += other.samples;
   minima += other.minima;
   events += other.events;
+  coasts |= other.coasts;
 }
 
 Eigen::VectorXd tolerated_impulses(const dynamics::HybridSystem& system, const dynamics::FlowOptions& flow,

@@ -28,6 +28,7 @@ struct SceneCheck {
 /// - its text: parse, write, parse again gives the same text and the same matrices;
 /// - the run, by scan_run with samples a hundredth of the flow's largest step apart;
 /// - the energy audit, and of one scene in four that of a longer run;
+/// and where rounding does not say what follows (ScanFigures::coasts):
 /// - the run taken up again at one of its events, in the mode it is in (exactly on a guard);
 /// - the run in two pieces, cut anywhere, a little before and a little after an event: same state at the end, same
 ///   events in either piece, but for those that runs from starts rounded otherwise have at other times;
@@ -43,6 +44,7 @@ struct SceneCheck {
 /// Many scenes together.
 struct SceneSurvey {
   std::int64_t scenes = 0, still = 0;
+  std::int64_t coasting = 0;                    ///< what slides by rounding alone: not compared with other runs
   std::map<std::string, std::int64_t> refused;  ///< how many for each reason
   ScanFigures scan;
   double energy = 0.0, restart = 0.0, cut = 0.0, reduction = 0.0;  ///< largest
