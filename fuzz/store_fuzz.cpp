@@ -71,8 +71,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string path = scratch_file(".h5", seed.bytes.data(), seed.bytes.size());
   {
     const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
-    for (int changes = 0; changes < 8 && !input.empty(); ++changes)
-      replace(file.id(), seed.datasets[input.byte() % seed.datasets.size()], Replacement(input));
+    for (int changes = 0; changes < 8 && !input.empty(); ++changes) {
+      const std::string& name = seed.datasets[input.byte() % seed.datasets.size()];
+      replace(file.id(), name, Replacement(input));
+    }
   }
   refused_or_read([&] { static_cast<void>(info(path, InfoFormat::kText)); });
   refused_or_read([&] { read_all(StoreReader(path)); });

@@ -8,7 +8,6 @@
 #include <slipmode/results/provenance.hpp>
 #include <slipmode/results/records.hpp>
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>

@@ -56,7 +56,7 @@ class CollocationFlow {
   /// A trial step may follow the law past zero relative velocity this far (in units of 1/α): beyond, e^{−αv} runs away.
   /// A characteristic: until it has changed by this share of μ_s.
   static constexpr double kLargestOvershoot = 0.7;
-  /// A stick force starts at its limit when it is past it by no more than this (relative).
+  /// A stick force is told from its limit by this (relative): a step that starts past it by less starts at it.
   static constexpr double kAtLimit = 1e-10;
   /// Speeds below this share of the velocities at play are rounding.
   static constexpr double kUnmoved = 1e-14;
