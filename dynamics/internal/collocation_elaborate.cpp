@@ -185,7 +185,8 @@ bool CollocationFlow::searched_from_rest(const OwnGuard& guard, int c, const Gua
   if (std::abs(leading) <= shows) {
     const auto showing = std::find_if(values.begin(), values.end(), [&](double v) { return std::abs(v) > shows; });
     if (*showing < 0.0) {
-      found.order = 1;  // falls through zero where the step begins
+      // Falls through zero where the step begins, unless it is known to rise there first: a shorter step tells.
+      if (leading <= 0.0) found.order = 1;
     } else if (std::all_of(showing, values.end(), [&](double v) { return v >= -shows; })) {
       return true;
     } else {
