@@ -22,6 +22,14 @@ Eigen::MatrixXd contact_directions(const HybridSystem& system) {
   return W;
 }
 
+/// Wᵀ Φ. What is left where a sum cancels is rounding, of which the spring between two masses that float would make a
+/// force on both together.
+Eigen::MatrixXd rows_of(const Eigen::MatrixXd& W, const Eigen::MatrixXd& shapes) {
+  constexpr double kRounds = 64.0 * std::numeric_limits<double>::epsilon();
+  const Eigen::MatrixXd rows = W.transpose() * shapes, sizes = W.cwiseAbs().transpose() * shapes.cwiseAbs();
+  return (rows.array().abs() > kRounds * sizes.array()).select(rows, 0.0);
+}
+
 /// The least-squares a + b ω² through the modal dampings, if it fits to rounding.
 std::optional<fem::Rayleigh> fit_rayleigh(const Eigen::VectorXd& omega, const Eigen::VectorXd& damping) {
   const double fastest = omega.size() > 0 && omega.maxCoeff() > 0.0 ? omega.maxCoeff() : 1.0;
@@ -292,7 +300,7 @@ ModalModel build_modal_model(const HybridSystem& system, bool rows_only) {
     if ((D - D.transpose()).norm() <= kProportionalTolerance * D.norm()) D = (D + D.transpose()).eval() / 2.0;
     separate_rigid_modes(modes.omega, modes.shapes, D, D.norm());
   }
-  const Eigen::MatrixXd rows = W.transpose() * modes.shapes;
+  const Eigen::MatrixXd rows = rows_of(W, modes.shapes);
   const Eigen::VectorXd load =
       loaded ? Eigen::VectorXd(modes.shapes.transpose() * system.load()) : Eigen::VectorXd::Zero(m.n);
   const Eigen::MatrixXd shapes_M = fem::multiply(structure.M(), modes.shapes);
