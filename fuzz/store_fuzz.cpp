@@ -7,6 +7,8 @@
 #include "scratch_file.hpp"
 #include "store_input.hpp"
 
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>

@@ -62,7 +62,7 @@ void refused_or_read(const Read& read) {
   }
 }
 
-/// Every reader of results on a store that holds anything.
+/// The readers of records, on a store that holds anything.
 inline void read_all(const slipmode::results::StoreReader& store) {
   using namespace slipmode::results;
   static_cast<void>(kind_of(store));

@@ -5,7 +5,6 @@
 #include <slipmode/core/random.hpp>
 #include <slipmode/dynamics/cache.hpp>
 #include <slipmode/dynamics/modal_model.hpp>
-#include <slipmode/dynamics/prepare.hpp>
 #include <slipmode/pod/pod.hpp>
 #include <slipmode/pod/pomf.hpp>
 #include <slipmode/pod/sensors.hpp>
@@ -237,7 +236,7 @@ class SceneChecker {
     for (const dynamics::Event& e : events) {
       if (e.kind == dynamics::EventKind::kGrazing) continue;
       const auto c = static_cast<std::size_t>(std::max(e.contact, 0));
-      const dynamics::ContactForces law = friction::contact_forces(system_->contacts()[c]);
+      const friction::ContactForces law = friction::contact_forces(system_->contacts()[c]);
       if (law.kind == friction::LawKind::kBristle && std::abs(e.force) <= kAtRest * law.most()) continue;
       const auto last = std::find_if(left.rbegin(), left.rend(), [&](const auto& o) { return o.contact == e.contact; });
       const bool grazed = last != left.rend() && e.contact >= 0 && last->before == e.after &&
