@@ -26,6 +26,9 @@ constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
 /// Of what the flow's tolerance may leave a place off by, what it tells a stop by.
 constexpr double kShows = 10.0;
 
+/// What the closed form tells a stop by, of what moves in its guard (docs/limits.md).
+constexpr double kTold = 1e-12;
+
 /// How far from its start a run may begin, of its sizes.
 constexpr double kGivenBack = 1e-9;
 
@@ -99,6 +102,7 @@ class Scan {
     mass_ = fem::to_dense(system.structure().M());
     inverse_ = mass_.llt().solve(Eigen::MatrixXd::Identity(system.size(), system.size()));
     rows_ = W_.transpose() * inverse_;
+    driven_ = driven();
     largest_place_ = largest(run.q);
     for (int c = 0; c < static_cast<int>(nc); ++c) timelines_.emplace_back(run, c);
     for (const dynamics::Event& e : run.events) event_times_.push_back(e.time);
@@ -197,14 +201,13 @@ class Scan {
     // From one step to the next a run may err by its tolerance, of the whole motion: that is a row's own that hardly
     // moves.
     const double error = kRounding + options_.flow.tolerance;
-    // A state under a force is the sum of the free structure's answer and what contacts take from it, which may be all.
-    const Eigen::MatrixXd answer = free_answer();
+    // A state is the sum of what the drive swings it by and of what contacts take from that, which may be all.
     const Eigen::VectorXd tolerated = W_.cwiseAbs() * tolerated_impulses(system_, options_.flow);
     const Eigen::VectorXd momentum_rounding = error * swing * mass_.diagonal().cwiseSqrt() +
                                               4.0 * h * kRounding * force_sizes() + tolerated +
-                                              mass_.cwiseAbs() * (4.0 * own_v + kRounding * answer.col(1)),
+                                              mass_.cwiseAbs() * (4.0 * own_v + kRounding * driven_.col(1)),
                           way_rounding = error * largest(whole.q) * inverse_.diagonal().cwiseSqrt() + 4.0 * own_q +
-                                         kRounding * answer.col(0) + 4.0 * h * (inverse_.cwiseAbs() * tolerated);
+                                         kRounding * driven_.col(0) + 4.0 * h * (inverse_.cwiseAbs() * tolerated);
     const auto excess = [&](const Eigen::MatrixXd& rate, const Eigen::MatrixXd& sum, Index k, Index apart,
                             const Eigen::VectorXd& rounding) -> Eigen::VectorXd {
       const double step = static_cast<double>(apart) * h;
@@ -236,9 +239,12 @@ class Scan {
     }
   }
 
-  /// Bounds on displacements and speeds of the steady answer to a force with all contacts free.
-  [[nodiscard]] Eigen::MatrixXd free_answer() const {
+  /// Sizes of displacements and speeds in the long run under a drive that swings: what follows a shaker, and the steady
+  /// answer to a force with all contacts free.
+  [[nodiscard]] Eigen::MatrixXd driven() const {
     Eigen::MatrixXd bound = Eigen::MatrixXd::Zero(system_.size(), 2);
+    if (const friction::Shaker* shaker = system_.drive().shaker())
+      bound.rowwise() = shaker->amplitude * Eigen::RowVector2d(1.0, shaker->omega());
     const friction::Force* drive = system_.drive().force();
     if (drive == nullptr) return bound;
     const fem::Structure& structure = system_.structure();
@@ -279,15 +285,16 @@ class Scan {
     return !corner || *corner > to;
   }
 
-  /// How deep in a stop a contact's place may be before a flow tells: some times what its tolerance may leave the place
-  /// off by, impulses for a step. One at contact d gives c no more than √(m_c m_d) times as much of a speed, by the
-  /// energy it brings.
+  /// How deep in a stop a contact's place may be before a flow tells. By collocation some times what its tolerance may
+  /// leave the place off by, impulses for a step: one at contact d gives c no more than √(m_c m_d) times as much of a
+  /// speed, by the energy it brings. In closed form a share of what the drive swings it by in the long run, of which a
+  /// motion from rest is the small difference with free motion.
   [[nodiscard]] double tolerated_place(int c) const {
     const Eigen::VectorXd reach = (rows_ * W_).diagonal().cwiseSqrt();
     const double speed = reach(c) * reach.dot(tolerated_impulses(system_, options_.flow));
+    if (speed == 0.0) return kTold * W_.col(c).cwiseAbs().dot(driven_.col(0));
     const dynamics::StepTables& steps = system_.cache().tables(system_, false).steps;
-    return speed == 0.0 ? 0.0
-                        : kShows * speed * std::min(steps.acting_time(system_.drive().omega()), options_.duration);
+    return kShows * speed * std::min(steps.acting_time(system_.drive().omega()), options_.duration);
   }
 
   ContactScales scales_of(int c) const {
@@ -460,6 +467,7 @@ class Scan {
   ScanLimits limits_;
   ScanFigures figures_;
   Eigen::MatrixXd W_, mass_, inverse_, rows_;
+  Eigen::MatrixXd driven_;      ///< of driven()
   double largest_place_ = 0.0;  ///< |M^½ q| of the run
   Eigen::VectorXd force_scale_;
   std::vector<Timeline> timelines_;

@@ -1,11 +1,11 @@
 // Tangents through Dahl's and the LuGre law: closed forms, differences of an independent integrator, volumes.
+#include <slipmode/core/decompositions.hpp>
 #include "fixtures/against_reference.hpp"
 #include "fixtures/bristle_scenes.hpp"
 #include "fixtures/differences.hpp"
 #include "fixtures/scenes.hpp"
 
 #include <gtest/gtest.h>
-#include <Eigen/Dense>
 #include <cmath>
 #include <unsupported/Eigen/MatrixFunctions>
 

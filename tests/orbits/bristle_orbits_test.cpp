@@ -1,12 +1,12 @@
 // Orbits on Dahl's and the LuGre law: multipliers against differences of the simulated map and against the growth of
 // small perturbations; a special point found without tangents.
+#include <slipmode/core/decompositions.hpp>
 #include <slipmode/orbits/branches/continuation.hpp>
 #include <slipmode/orbits/floquet.hpp>
 #include "fixtures/differences.hpp"
 #include "fixtures/scenes.hpp"
 
 #include <gtest/gtest.h>
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
@@ -66,7 +66,7 @@ TEST(BristleOrbits, SmallPerturbationsGrowByTheMultiplier) {
   const HybridSystem system = on_belt(0.1);
   const PeriodicOrbit orbit = belt_orbit(0.1);
   // Measured by the left eigenvector: a phase shift, of second order in the perturbation, stays for ever.
-  const Eigen::EigenSolver<Eigen::MatrixXd> right(orbit.monodromy), left(orbit.monodromy.transpose());
+  const Eigen::EigenSolver<Eigen::MatrixXd> right(orbit.monodromy), left(Eigen::MatrixXd(orbit.monodromy.transpose()));
   Eigen::Index at = 0, across = 0;
   right.eigenvalues().real().minCoeff(&at);
   left.eigenvalues().real().minCoeff(&across);

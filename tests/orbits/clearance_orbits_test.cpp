@@ -1,4 +1,5 @@
 // Orbits of systems with clearances: S0 (one and four masses), S2, closed forms, and an independent integrator.
+#include <slipmode/core/decompositions.hpp>
 #include <slipmode/core/errors.hpp>
 #include <slipmode/orbits/floquet.hpp>
 #include "backlash_reference.hpp"
@@ -93,7 +94,7 @@ TEST(ClearanceOrbits, PlayWithoutDampingIsBoundedAtItsOwnFrequency) {
     return Eigen::Matrix2d{{std::cos(w * t), std::sin(w * t) / w}, {-w * std::sin(w * t), std::cos(w * t)}};
   };
   const Eigen::Matrix2d half = turn(1.0, t1) * turn(own, 2.0 * (quarter - t1)) * turn(1.0, t1);
-  const Eigen::Vector2cd mu = (half * half).eigenvalues();
+  const Eigen::VectorXcd mu = Eigen::MatrixXd(half * half).eigenvalues();
   expect_multipliers(orbit, {mu(0), mu(1)}, 1e-9);
   EXPECT_NEAR(orbit.monodromy.determinant(), 1.0, 1e-11);
   const auto end_of = [&](const State& from) {
