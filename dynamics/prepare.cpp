@@ -123,16 +123,35 @@ double pushed(const HybridSystem& system, const ModalModel& m, std::size_t c) {
   return most;
 }
 
+/// How far a drive moves a contact in the long run: with a shaker, or as forces move its modes beside resonance [m].
+double swung(const HybridSystem& system, const ModalModel& m, std::size_t c) {
+  const friction::Drive& drive = system.drive();
+  if (const friction::Shaker* shaker = drive.shaker())
+    return shaker->amplitude * system.contacts()[c].direction.lpNorm<1>();
+  double most = 0.0;
+  if (const friction::Force* force = drive.force()) {
+    const auto row = m.velocity_row.col(static_cast<Eigen::Index>(c)).cwiseAbs();
+    const Eigen::ArrayXd own = (m.g11.cwiseProduct(m.g22) - m.g12.cwiseProduct(m.g21)).cwiseAbs();  // ω² of a pair
+    for (const friction::ForceHarmonic& h : force->harmonics) {
+      const Eigen::ArrayXd pushed = row.cwiseProduct(m.force_input.col(h.direction).cwiseAbs());
+      const double rate = h.order * force->omega;
+      most += std::abs(h.amplitude) * ((pushed.head(m.np) + pushed.tail(m.np)) / own.max(rate * rate)).sum();
+    }
+  }
+  return most;
+}
+
 /// Where a clearance is at the start: as given, or by position and force; on a guard to rounding by the velocity.
 ContactMode start_mode(const friction::Clearance& law, const HybridSystem& system, const State& start, std::size_t c,
                        const ModalModel& m, const Eigen::VectorXd& x) {
   const friction::Contact& contact = system.contacts()[c];
   const auto i = static_cast<Eigen::Index>(c);
   const double speeds = motion_size(contact, start.v, x, m.velocity_row, c);
-  // What has only begun to move is placed by what its speed makes of it, and what pushes it.
+  // What has only begun to move is placed by what its speed makes of it, what pushes it, and, as the small difference
+  // of free motion and where it swings in the long run, by that.
   const double rate = std::max(m.fastest, std::sqrt(friction::engaged_stiffness(contact.law) * m.mobility(i, i)));
-  const double by_force = start.modes.empty() ? 0.0 : pushed(system, m, c) / (m.pace() * m.pace());
-  const double motion = motion_size(contact, start.q, x, m.displacement_row, c) + speeds / rate + by_force;
+  const double driven = start.modes.empty() ? 0.0 : pushed(system, m, c) / (m.pace() * m.pace()) + swung(system, m, c);
+  const double motion = motion_size(contact, start.q, x, m.displacement_row, c) + speeds / rate + driven;
   std::optional<AtStop> left, right;
   if (law.left) left.emplace(*law.left, -1.0, contact, start, motion, speeds);
   if (law.right) right.emplace(*law.right, 1.0, contact, start, motion, speeds);

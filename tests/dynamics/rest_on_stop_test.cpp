@@ -331,6 +331,33 @@ TEST(RestOnAStop, AMotionThatABeltHasJustBegunIsToldBesideItself) {
   }
 }
 
+TEST(RestOnAStop, IsTakenUpBeforeItIsTold) {
+  // What swings by metres in the long run presses the first mass on its stop as a power of the time, and is told when
+  // that is 1e-12 of them. Until then the place is beyond the stop, at t = 0.15 by more than a share of what has moved.
+  const Contact pulled{Eigen::Vector4d::UnitW(), friction::CompliantCoulomb{1.0, 1.0, 2.0}, 1e12};
+  for (const double damping : {0.02, 3.0}) {
+    const fem::Structure row = row_of_four(1e-3, damping);
+    const std::vector<HybridSystem> systems{
+        {row,
+         {stops_on_the_first()},
+         friction::Force{0.1, {{.amplitude = 0.5, .phase = 1.0}}},
+         Eigen::VectorXd(),
+         Eigen::MatrixXd(Eigen::Vector4d::UnitW())},
+        {row, {stops_on_the_first(), pulled}, friction::Shaker{.amplitude = 10.0, .frequency_hz = 0.3}}};
+    for (const HybridSystem& system : systems) {
+      const Trajectory whole = simulate(system, system.rest(), {.duration = 2.0});
+      ASSERT_FALSE(whole.events.empty());
+      for (int k = 1; k < 40; ++k) {
+        const double cut = k / 40.0 * whole.events.front().time;
+        const State state = simulate(system, system.rest(), {.duration = cut}).final_state;
+        Trajectory rest;
+        ASSERT_NO_THROW(rest = simulate(system, state, {.duration = 2.0 - cut})) << damping << " " << cut;
+        EXPECT_LT((rest.final_state.q - whole.final_state.q).norm(), 1e-10 * whole.final_state.q.norm());
+      }
+    }
+  }
+}
+
 TEST(RestOnAStop, WhatHardlyAnythingHoldsIsToldByWhatMovesNow) {
   // Sliding friction pulls the third of four masses, which a spring of 1e-8 holds, and presses the first one on a stop
   // as t⁶. Beside how far friction will have moved them in the end, 3e7 m, the stop was met 3e-11 m deep.
