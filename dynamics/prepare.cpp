@@ -109,33 +109,23 @@ bool agrees(const friction::Clearance& law, ContactMode mode, const std::optiona
   }
 }
 
-/// What loads, a force drive and friction accelerate a contact by at most, mode by mode: through a structure too,
-/// before it shows there [m/s²].
+/// How far a contact is moved at most by loads and friction in a radian, mode by mode: through a structure too, before
+/// it shows there; and by a drive in the long run, with a shaker, or as forces move modes beside resonance [m].
 double pushed(const HybridSystem& system, const ModalModel& m, std::size_t c) {
+  const double pace = m.pace() * m.pace();
   const auto row = m.velocity_row.col(static_cast<Eigen::Index>(c)).cwiseAbs();
-  double most = row.dot(m.load.cwiseAbs());
-  if (const friction::Force* force = system.drive().force())
-    for (const friction::ForceHarmonic& h : force->harmonics)
-      most += std::abs(h.amplitude) * row.dot(m.force_input.col(h.direction).cwiseAbs());
+  double most = row.dot(m.load.cwiseAbs()) / pace;
   for (std::size_t d = 0; d < system.contacts().size(); ++d)
     if (const double limit = contact_forces(system.contacts()[d]).most(); std::isfinite(limit))
-      most += limit * row.dot(m.input.col(static_cast<Eigen::Index>(d)).cwiseAbs());
-  return most;
-}
-
-/// How far a drive moves a contact in the long run: with a shaker, or as forces move its modes beside resonance [m].
-double swung(const HybridSystem& system, const ModalModel& m, std::size_t c) {
-  const friction::Drive& drive = system.drive();
-  if (const friction::Shaker* shaker = drive.shaker())
-    return shaker->amplitude * system.contacts()[c].direction.lpNorm<1>();
-  double most = 0.0;
-  if (const friction::Force* force = drive.force()) {
-    const auto row = m.velocity_row.col(static_cast<Eigen::Index>(c)).cwiseAbs();
-    const Eigen::ArrayXd own = (m.g11.cwiseProduct(m.g22) - m.g12.cwiseProduct(m.g21)).cwiseAbs();  // ω² of a pair
+      most += limit * row.dot(m.input.col(static_cast<Eigen::Index>(d)).cwiseAbs()) / pace;
+  if (const friction::Shaker* shaker = system.drive().shaker())
+    most += shaker->amplitude * system.contacts()[c].direction.lpNorm<1>();
+  if (const friction::Force* force = system.drive().force()) {
+    const Eigen::ArrayXd own = (m.g11.cwiseProduct(m.g22) - m.g12.cwiseProduct(m.g21)).cwiseAbs();  // ω² of each pair
     for (const friction::ForceHarmonic& h : force->harmonics) {
-      const Eigen::ArrayXd pushed = row.cwiseProduct(m.force_input.col(h.direction).cwiseAbs());
+      const Eigen::ArrayXd each = row.cwiseProduct(m.force_input.col(h.direction).cwiseAbs());
       const double rate = h.order * force->omega;
-      most += std::abs(h.amplitude) * ((pushed.head(m.np) + pushed.tail(m.np)) / own.max(rate * rate)).sum();
+      most += std::abs(h.amplitude) * ((each.head(m.np) + each.tail(m.np)) / own.max(rate * rate).min(pace)).sum();
     }
   }
   return most;
@@ -150,8 +140,8 @@ ContactMode start_mode(const friction::Clearance& law, const HybridSystem& syste
   // What has only begun to move is placed by what its speed makes of it, what pushes it, and, as the small difference
   // of free motion and where it swings in the long run, by that.
   const double rate = std::max(m.fastest, std::sqrt(friction::engaged_stiffness(contact.law) * m.mobility(i, i)));
-  const double driven = start.modes.empty() ? 0.0 : pushed(system, m, c) / (m.pace() * m.pace()) + swung(system, m, c);
-  const double motion = motion_size(contact, start.q, x, m.displacement_row, c) + speeds / rate + driven;
+  const double by_force = start.modes.empty() ? 0.0 : pushed(system, m, c);
+  const double motion = motion_size(contact, start.q, x, m.displacement_row, c) + speeds / rate + by_force;
   std::optional<AtStop> left, right;
   if (law.left) left.emplace(*law.left, -1.0, contact, start, motion, speeds);
   if (law.right) right.emplace(*law.right, 1.0, contact, start, motion, speeds);
