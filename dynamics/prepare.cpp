@@ -109,23 +109,34 @@ bool agrees(const friction::Clearance& law, ContactMode mode, const std::optiona
   }
 }
 
-/// How far a contact is moved at most by loads and friction in a radian, mode by mode: through a structure too, before
-/// it shows there; and by a drive in the long run, with a shaker, or as forces move modes beside resonance [m].
+/// A drive that swings slower than this share of the pace has hardly begun to when a stop is told.
+constexpr double kSlowest = 1e-4;
+
+/// A size of how far loads and friction push a contact in a radian of the fastest mode, mode by mode, before it shows
+/// through the structure; and of how far the drive swings it in the long run: with a shaker, or as a force would each
+/// pair if there were no resonance, (iΩ − G)⁻¹ b with a determinant of no smaller than its terms [m].
 double pushed(const HybridSystem& system, const ModalModel& m, std::size_t c) {
-  const double pace = m.pace() * m.pace();
-  const auto row = m.velocity_row.col(static_cast<Eigen::Index>(c)).cwiseAbs();
-  double most = row.dot(m.load.cwiseAbs()) / pace;
+  const auto i = static_cast<Eigen::Index>(c);
+  const double fastest = m.pace() * m.pace();
+  const auto row = m.velocity_row.col(i).cwiseAbs();
+  double most = row.dot(m.load.cwiseAbs()) / fastest;
   for (std::size_t d = 0; d < system.contacts().size(); ++d)
     if (const double limit = contact_forces(system.contacts()[d]).most(); std::isfinite(limit))
-      most += limit * row.dot(m.input.col(static_cast<Eigen::Index>(d)).cwiseAbs()) / pace;
+      most += limit * row.dot(m.input.col(static_cast<Eigen::Index>(d)).cwiseAbs()) / fastest;
   if (const friction::Shaker* shaker = system.drive().shaker())
     most += shaker->amplitude * system.contacts()[c].direction.lpNorm<1>();
   if (const friction::Force* force = system.drive().force()) {
-    const Eigen::ArrayXd own = (m.g11.cwiseProduct(m.g22) - m.g12.cwiseProduct(m.g21)).cwiseAbs();  // ω² of each pair
+    const auto place = m.displacement_row.col(i).cwiseAbs();
+    const Eigen::ArrayXd det = (m.g11.cwiseProduct(m.g22) - m.g12.cwiseProduct(m.g21)).cwiseAbs(),
+                         trace = (m.g11 + m.g22).cwiseAbs();
     for (const friction::ForceHarmonic& h : force->harmonics) {
-      const Eigen::ArrayXd each = row.cwiseProduct(m.force_input.col(h.direction).cwiseAbs());
       const double rate = h.order * force->omega;
-      most += std::abs(h.amplitude) * ((each.head(m.np) + each.tail(m.np)) / own.max(rate * rate).min(pace)).sum();
+      const Eigen::ArrayXd least =
+          det.max(rate * rate).max(rate * trace).max(kSlowest * kSlowest * fastest).min(fastest);
+      const Eigen::ArrayXd b = m.force_input.col(h.direction).cwiseAbs(), b1 = b.head(m.np), b2 = b.tail(m.np);
+      const Eigen::ArrayXd x1 = m.g22.array().abs().max(rate) * b1 + m.g12.array().abs() * b2,
+                           x2 = m.g21.array().abs() * b1 + m.g11.array().abs().max(rate) * b2;
+      most += std::abs(h.amplitude) * ((place.head(m.np).array() * x1 + place.tail(m.np).array() * x2) / least).sum();
     }
   }
   return most;

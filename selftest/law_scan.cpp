@@ -23,7 +23,7 @@ using Eigen::Index;
 /// Rounding of a modal coordinate, of all of them together in the norm of energy.
 constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
 
-/// Of what the flow's tolerance may leave a place off by, what it tells a stop by.
+/// Of what the flow's tolerance may leave a place off by, or guards are held to, what it tells a stop by.
 constexpr double kShows = 10.0;
 
 /// What the closed form tells a stop by, of what moves in its guard (docs/limits.md).
@@ -287,14 +287,16 @@ class Scan {
 
   /// How deep in a stop a contact's place may be before a flow tells. By collocation some times what its tolerance may
   /// leave the place off by, impulses for a step: one at contact d gives c no more than √(m_c m_d) times as much of a
-  /// speed, by the energy it brings. In closed form a share of what the drive swings it by in the long run, of which a
-  /// motion from rest is the small difference with free motion.
-  [[nodiscard]] double tolerated_place(int c) const {
+  /// speed, by the energy it brings. In closed form a share of what the drive swings it by in the long run, which a
+  /// motion from rest is the small difference of with free motion; no more than some times what guards are held to.
+  [[nodiscard]] double tolerated_place(int c, double way) const {
+    if (dynamics::choose_method(system_, options_.flow.method) == dynamics::FlowMethod::kClosedForm)
+      return std::min(kTold * W_.col(c).cwiseAbs().dot(driven_.col(0)), kShows * limits_.guard * way);
     const Eigen::VectorXd reach = (rows_ * W_).diagonal().cwiseSqrt();
     const double speed = reach(c) * reach.dot(tolerated_impulses(system_, options_.flow));
-    if (speed == 0.0) return kTold * W_.col(c).cwiseAbs().dot(driven_.col(0));
     const dynamics::StepTables& steps = system_.cache().tables(system_, false).steps;
-    return kShows * speed * std::min(steps.acting_time(system_.drive().omega()), options_.duration);
+    return speed == 0.0 ? 0.0
+                        : kShows * speed * std::min(steps.acting_time(system_.drive().omega()), options_.duration);
   }
 
   ContactScales scales_of(int c) const {
@@ -327,7 +329,7 @@ class Scan {
     }
     for (double* scale : {&scales.way, &scales.speed, &scales.force})
       if (!(*scale > 0.0)) *scale = 1.0;
-    scales.place = tolerated_place(c);
+    scales.place = tolerated_place(c, scales.way);
     scales.slack = kRounding * friction::spring_stiffness(law.law) * std::max(scales.way, moved);
     return scales;
   }
