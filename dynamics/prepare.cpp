@@ -113,32 +113,31 @@ bool agrees(const friction::Clearance& law, ContactMode mode, const std::optiona
 constexpr double kSlowest = 1e-4;
 
 /// A size of how far loads and friction push a contact in a radian of the fastest mode, mode by mode, before it shows
-/// through the structure; and of how far the drive swings it in the long run: with a shaker, or as a force would each
-/// pair if there were no resonance, (iΩ − G)⁻¹ b with a determinant of no smaller than its terms [m].
+/// through the structure; and of how far the drive swings it in the long run: with a shaker, or as a force would at its
+/// frequency if there were no resonance [m].
 double pushed(const HybridSystem& system, const ModalModel& m, std::size_t c) {
   const auto i = static_cast<Eigen::Index>(c);
-  const double fastest = m.pace() * m.pace();
   const auto row = m.velocity_row.col(i).cwiseAbs();
-  double most = row.dot(m.load.cwiseAbs()) / fastest;
+  const auto in_a_radian = [&](const auto& input) { return row.dot(input.cwiseAbs()) / (m.pace() * m.pace()); };
+  double most = in_a_radian(m.load);
   for (std::size_t d = 0; d < system.contacts().size(); ++d)
     if (const double limit = contact_forces(system.contacts()[d]).most(); std::isfinite(limit))
-      most += limit * row.dot(m.input.col(static_cast<Eigen::Index>(d)).cwiseAbs()) / fastest;
+      most += limit * in_a_radian(m.input.col(static_cast<Eigen::Index>(d)));
   if (const friction::Shaker* shaker = system.drive().shaker())
     most += shaker->amplitude * system.contacts()[c].direction.lpNorm<1>();
-  if (const friction::Force* force = system.drive().force()) {
-    const auto place = m.displacement_row.col(i).cwiseAbs();
-    const Eigen::ArrayXd det = (m.g11.cwiseProduct(m.g22) - m.g12.cwiseProduct(m.g21)).cwiseAbs(),
-                         trace = (m.g11 + m.g22).cwiseAbs();
+  if (const friction::Force* force = system.drive().force())
     for (const friction::ForceHarmonic& h : force->harmonics) {
-      const double rate = h.order * force->omega;
-      const Eigen::ArrayXd least =
-          det.max(rate * rate).max(rate * trace).max(kSlowest * kSlowest * fastest).min(fastest);
-      const Eigen::ArrayXd b = m.force_input.col(h.direction).cwiseAbs(), b1 = b.head(m.np), b2 = b.tail(m.np);
-      const Eigen::ArrayXd x1 = m.g22.array().abs().max(rate) * b1 + m.g12.array().abs() * b2,
-                           x2 = m.g21.array().abs() * b1 + m.g11.array().abs().max(rate) * b2;
-      most += std::abs(h.amplitude) * ((place.head(m.np).array() * x1 + place.tail(m.np).array() * x2) / least).sum();
+      // (Ω − G)⁻¹ b, at a real frequency: of what decays the determinant is Ω² at least.
+      const double rate = std::max(h.order * force->omega, kSlowest * m.pace());
+      const auto input = m.force_input.col(h.direction);
+      const Eigen::ArrayXd a = rate - m.g11.array(), d = rate - m.g22.array(), b1 = input.head(m.np),
+                           b2 = input.tail(m.np);
+      const Eigen::ArrayXd det = (a * d - m.g12.array() * m.g21.array()).max(rate * rate);
+      Eigen::VectorXd x(2 * m.np);
+      x << (d * b1 + m.g12.array() * b2) / det, (m.g21.array() * b1 + a * b2) / det;
+      const double swings = m.displacement_row.col(i).cwiseAbs().dot(x.cwiseAbs());
+      most += std::abs(h.amplitude) * std::max(swings, in_a_radian(input));
     }
-  }
   return most;
 }
 

@@ -5,6 +5,7 @@
 #include <slipmode/dynamics/prepare.hpp>
 #include "selftest/contact_guards.hpp"
 #include "selftest/load_history.hpp"
+#include "selftest/timeline.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -39,43 +40,6 @@ struct Samples {
   Eigen::MatrixXd acceleration;  ///< wᵀq̈
 };
 
-/// The end of a flight beyond a stop is no event: flights count as the gap.
-ContactMode without_flight(ContactMode mode) {
-  return mode == ContactMode::kLeftFlight || mode == ContactMode::kRightFlight ? ContactMode::kGap : mode;
-}
-
-/// The modes of one contact over time, rebuilt from a run's events.
-class Timeline {
- public:
-  Timeline(const dynamics::Trajectory& run, int contact) {
-    const ContactMode last = without_flight(run.final_state.modes[static_cast<std::size_t>(contact)]);
-    modes_.push_back(last);
-    bool first = true;
-    for (const dynamics::Event& e : run.events) {
-      if (e.contact != contact || e.before == e.after) continue;
-      const ContactMode before = without_flight(e.before), after = without_flight(e.after);
-      if (first) modes_.front() = before;
-      if (modes_.back() != before) broken_ = true;
-      first = false;
-      times_.push_back(e.time);
-      modes_.push_back(after);
-    }
-    if (modes_.back() != last) broken_ = true;
-  }
-  [[nodiscard]] ContactMode at(double t) const {
-    return modes_[static_cast<std::size_t>(std::ranges::upper_bound(times_, t) - times_.begin())];
-  }
-  /// The mode that ends at times()[i].
-  [[nodiscard]] ContactMode before(std::size_t i) const { return modes_[i]; }
-  [[nodiscard]] bool broken() const { return broken_; }
-  [[nodiscard]] const std::vector<double>& times() const { return times_; }
-
- private:
-  std::vector<double> times_;
-  std::vector<ContactMode> modes_;
-  bool broken_ = false;
-};
-
 /// The polynomial through equidistant instants, `share` of their distance beyond the last.
 ContactInstant continued(std::span<const ContactInstant> samples, double share) {
   ContactInstant out{};
@@ -102,7 +66,7 @@ class Scan {
     mass_ = fem::to_dense(system.structure().M());
     inverse_ = mass_.llt().solve(Eigen::MatrixXd::Identity(system.size(), system.size()));
     rows_ = W_.transpose() * inverse_;
-    driven_ = driven();
+    answer_ = free_answer();
     largest_place_ = largest(run.q);
     for (int c = 0; c < static_cast<int>(nc); ++c) timelines_.emplace_back(run, c);
     for (const dynamics::Event& e : run.events) event_times_.push_back(e.time);
@@ -201,13 +165,13 @@ class Scan {
     // From one step to the next a run may err by its tolerance, of the whole motion: that is a row's own that hardly
     // moves.
     const double error = kRounding + options_.flow.tolerance;
-    // A state is the sum of what the drive swings it by and of what contacts take from that, which may be all.
+    // A state under a force is the sum of the free structure's answer and what contacts take from it, which may be all.
     const Eigen::VectorXd tolerated = W_.cwiseAbs() * tolerated_impulses(system_, options_.flow);
     const Eigen::VectorXd momentum_rounding = error * swing * mass_.diagonal().cwiseSqrt() +
                                               4.0 * h * kRounding * force_sizes() + tolerated +
-                                              mass_.cwiseAbs() * (4.0 * own_v + kRounding * driven_.col(1)),
+                                              mass_.cwiseAbs() * (4.0 * own_v + kRounding * answer_.col(1)),
                           way_rounding = error * largest(whole.q) * inverse_.diagonal().cwiseSqrt() + 4.0 * own_q +
-                                         kRounding * driven_.col(0) + 4.0 * h * (inverse_.cwiseAbs() * tolerated);
+                                         kRounding * answer_.col(0) + 4.0 * h * (inverse_.cwiseAbs() * tolerated);
     const auto excess = [&](const Eigen::MatrixXd& rate, const Eigen::MatrixXd& sum, Index k, Index apart,
                             const Eigen::VectorXd& rounding) -> Eigen::VectorXd {
       const double step = static_cast<double>(apart) * h;
@@ -239,12 +203,9 @@ class Scan {
     }
   }
 
-  /// Sizes of displacements and speeds in the long run under a drive that swings: what follows a shaker, and the steady
-  /// answer to a force with all contacts free.
-  [[nodiscard]] Eigen::MatrixXd driven() const {
+  /// Bounds on displacements and speeds of the steady answer to a force with all contacts free.
+  [[nodiscard]] Eigen::MatrixXd free_answer() const {
     Eigen::MatrixXd bound = Eigen::MatrixXd::Zero(system_.size(), 2);
-    if (const friction::Shaker* shaker = system_.drive().shaker())
-      bound.rowwise() = shaker->amplitude * Eigen::RowVector2d(1.0, shaker->omega());
     const friction::Force* drive = system_.drive().force();
     if (drive == nullptr) return bound;
     const fem::Structure& structure = system_.structure();
@@ -290,8 +251,12 @@ class Scan {
   /// speed, by the energy it brings. In closed form a share of what the drive swings it by in the long run, which a
   /// motion from rest is the small difference of with free motion; no more than some times what guards are held to.
   [[nodiscard]] double tolerated_place(int c, double way) const {
-    if (dynamics::choose_method(system_, options_.flow.method) == dynamics::FlowMethod::kClosedForm)
-      return std::min(kTold * W_.col(c).cwiseAbs().dot(driven_.col(0)), kShows * limits_.guard * way);
+    if (dynamics::choose_method(system_, options_.flow.method) == dynamics::FlowMethod::kClosedForm) {
+      const friction::Shaker* shaker = system_.drive().shaker();
+      const double swings = W_.col(c).cwiseAbs().dot(answer_.col(0)) +
+                            (shaker != nullptr ? shaker->amplitude * W_.col(c).lpNorm<1>() : 0.0);
+      return std::min(kTold * swings, kShows * limits_.guard * way);
+    }
     const Eigen::VectorXd reach = (rows_ * W_).diagonal().cwiseSqrt();
     const double speed = reach(c) * reach.dot(tolerated_impulses(system_, options_.flow));
     const dynamics::StepTables& steps = system_.cache().tables(system_, false).steps;
@@ -469,7 +434,7 @@ class Scan {
   ScanLimits limits_;
   ScanFigures figures_;
   Eigen::MatrixXd W_, mass_, inverse_, rows_;
-  Eigen::MatrixXd driven_;      ///< of driven()
+  Eigen::MatrixXd answer_;      ///< free_answer()
   double largest_place_ = 0.0;  ///< |M^½ q| of the run
   Eigen::VectorXd force_scale_;
   std::vector<Timeline> timelines_;
