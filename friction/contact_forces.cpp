@@ -34,16 +34,15 @@ double ContactForces::smooth(double v, double& slope) const {
 }
 
 double ContactForces::sliding(double direction, double v) const {
-  double slope = 0.0;
-  if (!sticks()) return smooth(v, slope);
-  if (kind != LawKind::kSpeedDependent) return direction * onset(direction);
-  if (characteristic != nullptr) return direction * load * characteristic->mu(std::abs(v));
-  return direction * (kinetic + drop * std::exp(-alpha * std::abs(v)));
+  return continued(direction, sticks() ? direction * std::abs(v) : v);
 }
 
 double ContactForces::continued(double direction, double v) const {
   double slope = 0.0;
-  return sticks() ? direction * load * characteristic->mu(direction * v) : smooth(v, slope);
+  if (!sticks()) return smooth(v, slope);
+  if (kind != LawKind::kSpeedDependent) return direction * onset(direction);
+  if (characteristic != nullptr) return direction * load * characteristic->mu(direction * v);
+  return direction * (kinetic + drop * std::exp(-alpha * (direction * v)));
 }
 
 double ContactForces::onset_slope() const {

@@ -59,6 +59,8 @@ struct ContactForces {
   }
   /// λ while sliding with relative velocity v in a direction (±1; not read by a law without stick).
   [[nodiscard]] double sliding(double direction, double v) const;
+  /// The same, which goes on as its formula does where v has passed zero against the direction.
+  [[nodiscard]] double continued(double direction, double v) const;
   /// |dλ/dv| of a speed-dependent law where sliding begins [N s/m].
   [[nodiscard]] double onset_slope() const;
   /// dλ/dv while sliding. Where v has passed zero against the direction, the law goes on as its formula does.
@@ -66,9 +68,6 @@ struct ContactForces {
   /// How λ depends on the speed in the direction of sliding, of the smooth law on v itself. None where nothing is known
   /// between speeds.
   [[nodiscard]] std::optional<LawBounds> bounds(double from, double to) const;
-  /// λ of a law of the sliding speed by functions, as it goes on where v has passed zero against the direction; of a
-  /// smooth law λ.
-  [[nodiscard]] double continued(double direction, double v) const;
   /// λ of the smooth law (0 for a free contact, and for a bristle, whose force is not a function of v) at relative
   /// velocity v, and dλ/dv.
   [[nodiscard]] double smooth(double v, double& slope) const;

@@ -60,7 +60,7 @@ void CollocationFlow::forces_at(const Instant& now, const std::vector<ContactMod
     if (bristled(c))
       out_force(c) = laws()[i].bristle.force(sign_of(modes[i]), s, internal(own_at_[i]));
     else if (!stuck[i] && !elaborate(c))
-      out_force(c) = laws()[i].sliding(sign_of(modes[i]), s);
+      out_force(c) = laws()[i].continued(sign_of(modes[i]), s);
   }
   stick_forces(now, stuck, out_force);
 }
