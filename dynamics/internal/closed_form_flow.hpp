@@ -118,8 +118,11 @@ class ClosedFormFlow {
   struct GuardSize {
     double own = 0.0;        ///< of its terms
     double cancelled = 0.0;  ///< in the same units, of a stop's: parts of its place that cancel
+    double share = 0.0;      ///< of `own`, below which it cannot be told from zero
     /// What it rounds by.
     [[nodiscard]] double told() const { return own + cancelled; }
+    /// Values that cannot be told from zero.
+    [[nodiscard]] double zero() const;
     /// Values below may be zero where a regime begins, and derivatives, in radians of the fastest pair.
     [[nodiscard]] double starting() const;
   };

@@ -11,11 +11,12 @@
 namespace slipmode::dynamics {
 namespace {
 
-/// A guard that cannot be told from zero beyond this share of its scale touches it.
+/// A guard that cannot be told from zero beyond this share of its scale touches it …
 constexpr double kTouching = 1e-12;
 /// Terms that cancel count by what they round by, 1e-14 of them.
 constexpr double kCancels = 1e-2;
-/// What a place rounds by, of its size.
+/// … and a stop's beyond what its place rounds by, of its size: a mass that is pushed into it from rest is deep in it
+/// before it is told, and bounces.
 constexpr double kPlaceRounding = 64.0 * std::numeric_limits<double>::epsilon();
 /// A guard below this share of its scale when a regime begins starts at zero; a slope below it times the fastest rate
 /// may be zero …
@@ -105,7 +106,11 @@ double ClosedFormFlow::cancelled(const Guard& guard) const {
   return kCancels * (parts(guard.contact) + parts(nc_ + guard.contact) / slipping_rate_) * per_place(guard);
 }
 
-ClosedFormFlow::GuardSize ClosedFormFlow::size_of(const Guard& guard) const { return {scale(guard), cancelled(guard)}; }
+ClosedFormFlow::GuardSize ClosedFormFlow::size_of(const Guard& guard) const {
+  return {scale(guard), cancelled(guard), guard.kind == GuardKind::kStop ? kPlaceRounding : kTouching};
+}
+
+double ClosedFormFlow::GuardSize::zero() const { return share * own + kTouching * cancelled; }
 
 double ClosedFormFlow::GuardSize::starting() const { return kStarting * own + kTouching * cancelled; }
 
@@ -209,7 +214,7 @@ double ClosedFormFlow::near_zero(const GuardStart& g) const {
   // |g| ≤ |g₀| + |g′|t + M₂t²/2, and ≤ |g₀| + |g′|t + |g″|t²/2 + M₃t³/6, of whose terms each is given its share.
   const double bounded = 1.0 / fastest_;
   const auto lasts = [&](double stays) { return g.lasting ? stays : std::min(stays, bounded); };
-  const double left = kTouching * g.size.told() - std::abs(g.value), slope = std::abs(g.rate);
+  const double left = g.size.zero() - std::abs(g.value), slope = std::abs(g.rate);
   if (g.size.told() == 0.0 && g.value == 0.0 && slope == 0.0 && g.most_second == 0.0)  // of what nothing moves
     return lasts(std::numeric_limits<double>::infinity());
   if (!(left > 0.0)) return 0.0;
@@ -223,7 +228,7 @@ void ClosedFormFlow::look_again() {
   for (Guard& guard : guards_) {
     if (guard.exempt_until != begin_) continue;
     const GuardStart now = start_of(guard);
-    if (std::abs(now.value) <= kTouching * now.size.told() / 2.0)
+    if (std::abs(now.value) <= now.size.zero() / 2.0)
       guard.exempt_until = std::max(begin_ + near_zero(now), std::nextafter(begin_, 1e300));
   }
 }
@@ -244,7 +249,7 @@ void ClosedFormFlow::foresee_starts() {
     const GuardValue now = evaluate(guard, point_.time);
     const GuardSize measure = size_of(guard);
     // A speed that is said not to start at zero does only where its contact has turned a moment before.
-    if (rigid_speed && !by_order ? std::abs(now.value) > 2.0 * kTouching * measure.told()
+    if (rigid_speed && !by_order ? std::abs(now.value) > 2.0 * measure.zero()
                                  : now.value > std::max(measure.starting(), kClock / fastest_ * std::abs(now.rate)))
       continue;
     const GuardStart start = start_of(guard);
@@ -257,7 +262,7 @@ void ClosedFormFlow::foresee_starts() {
     // Flat, too, where it falls by rounding, and no further below zero than can be told.
     const bool flat = by_order
                           ? point_.multiplicity[i] == 2
-                          : std::abs(g1) <= fastest_ * start.size.starting() || g1 * g1 <= 2.0 * g2 * kTouching * size;
+                          : std::abs(g1) <= fastest_ * start.size.starting() || g1 * g1 <= 2.0 * g2 * start.size.zero();
     double clear = 0.0;
     if (simple && g1 > 0) clear = g1 / start.most_second;
     if (flat && g2 > 0) clear = std::max(clear, 1.5 * g2 / start.most_third);
@@ -371,15 +376,16 @@ ClosedFormFlow::Search ClosedFormFlow::search(int level) const {
     BernsteinPolynomial polynomial;
     polynomial.degree = kNodes - 1;
     std::copy_n(values.begin(), kNodes, polynomial.coefficient.begin());
-    judge(polynomial, remainder, kTouching * size_of(guard).told(), static_cast<int>(g), found);
+    judge(polynomial, remainder, size_of(guard).zero(), static_cast<int>(g), found);
   }
   return found;
 }
 
 bool ClosedFormFlow::approach(const Guard& guard, double from, double& tau) {
   // Newton on the exact guard.
-  const double bend = curvature(guard.output), size = size_of(guard).told(), start = tau;
-  const double rounding = std::numeric_limits<double>::epsilon() / 2.0 * size;
+  const double bend = curvature(guard.output), start = tau;
+  const GuardSize size = size_of(guard);
+  const double rounding = std::numeric_limits<double>::epsilon() / 2.0 * size.told();
   const auto give_up = [&] {
     tau = start;
     move_from_begin(tau);
@@ -403,7 +409,7 @@ bool ClosedFormFlow::approach(const Guard& guard, double from, double& tau) {
   // A root that the window has is no other one: of a guard that is all but flat there, Newton's may be.
   const double shifted = std::abs(tau - start);
   if (start == from && shifted > kRootLeaves * tables_->length(level_) &&
-      std::abs(slope) * shifted > kOtherRoot * kTouching * size)
+      std::abs(slope) * shifted > kOtherRoot * size.zero())
     return give_up();
   // The guard falls all the way from `from`: it vanishes here for the first time.
   return tau <= from || (tau - from) * bend < std::abs(slope);
@@ -415,7 +421,7 @@ bool ClosedFormFlow::take_earlier(Search& found, double from, double& root) {
   for (std::size_t g = 0; g < guards_.size(); ++g) {
     const Guard& other = guards_[g];
     if (static_cast<int>(g) == found.guard || other.exempt_until > begin_ ||
-        !(evaluate(other, begin_ + root).value < -kTouching * size_of(other).told()))
+        !(evaluate(other, begin_ + root).value < -size_of(other).zero()))
       continue;
     double before = root;
     if (approach(other, from, before) && before < root) {

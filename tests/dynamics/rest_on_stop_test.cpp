@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -331,9 +332,24 @@ TEST(RestOnAStop, AMotionThatABeltHasJustBegunIsToldBesideItself) {
   }
 }
 
+TEST(RestOnAStop, IsToldByWhatItsPlaceRoundsBy) {
+  // A shaker of 10 m presses the first mass on its stop as t⁷, through four springs of 1 N/m: its place is the
+  // difference of the steady answer's parts and of free motion, 75 m, and rounds by 64 ε of them at most: it is told
+  // within twice that. Told from zero by 1e-12 of them, as other guards are, it was 2.3e-11 m deep, and told 18 times,
+  // as it bounced.
+  const HybridSystem system(
+      row_of_four(1.0, 0.02),
+      {stops_on_the_first(), {Eigen::Vector4d::UnitW(), friction::CompliantCoulomb{1.0, 1.0, 2.0}, 1e12}},
+      friction::Shaker{.amplitude = 10.0, .frequency_hz = 0.3, .phase = 1.0});
+  const Trajectory run = simulate(system, system.rest(), {.duration = 0.2});
+  ASSERT_FALSE(run.events.empty());
+  EXPECT_LE(run.events.size(), 3U);
+  EXPECT_LT(std::abs(run.events.front().displacement), 2.0 * 75.0 * 64.0 * std::numeric_limits<double>::epsilon());
+}
+
 TEST(RestOnAStop, IsTakenUpBeforeItIsTold) {
   // What swings by metres in the long run presses the first mass on its stop as a power of the time, and is told when
-  // that is 1e-12 of them. Until then the place is beyond the stop, at t = 0.15 by more than a share of what has moved.
+  // it can be told beside them. Until then the place is beyond the stop.
   const Contact pulled{Eigen::Vector4d::UnitW(), friction::CompliantCoulomb{1.0, 1.0, 2.0}, 1e2};
   for (const double damping : {0.02, 3.0}) {
     const fem::Structure row = row_of_four(1e-3, damping);
