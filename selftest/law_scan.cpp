@@ -263,7 +263,7 @@ class Scan {
     // A place is the sum of what all modes move it by: |terms|₁ ≤ √n |terms|₂.
     const double moved = largest_place_ * std::sqrt(rows_.row(c).dot(W_.col(c)));
     // What is held, or hardly moves, has a place that is told by the motion around it, and by what the speeds of its
-    // sides make of that within a radian of the fastest mode. A flow tells a stop from it to 1e-11 of these terms.
+    // sides make of that within a radian of the fastest mode. What rests on a stop is told from it to 1e-12 of these.
     const Eigen::VectorXd speeds = run_.v.cwiseAbs().rowwise().maxCoeff();
     const double fastest = system_.cache().tables(system_, false).model.fastest,
                  soon = fastest > 0.0 ? W_.col(c).cwiseAbs().dot(speeds) / fastest : 0.0;

@@ -179,8 +179,11 @@ class ClosedFormFlow {
   [[nodiscard]] GuardStart start_of(const Guard& guard) const;
   /// At the end of guards' exemptions: whether they have left zero.
   void look_again();
-  /// How long, by bounds, a guard stays so near to zero that it cannot be told from it.
-  [[nodiscard]] double near_zero(const GuardStart& guard) const;
+  /// How long, by bounds, a guard stays nearer to zero than this.
+  [[nodiscard]] double near_zero(const GuardStart& guard, double zero) const;
+  /// Values that cannot be told from zero where a guard starts: of a stop that is at rest on its limit more than of one
+  /// that a motion has reached.
+  [[nodiscard]] double unsure(const GuardStart& start) const;
   [[nodiscard]] GuardSize size_of(const Guard& guard) const;
   /// The size of an output's values, which its rounding error is measured by.
   [[nodiscard]] double scale(const Guard& guard) const;

@@ -210,11 +210,17 @@ ClosedFormFlow::GuardStart ClosedFormFlow::start_of(const Guard& guard) const {
           .lasting = r.growth == 0.0 && third == 0.0 && !swells()};
 }
 
-double ClosedFormFlow::near_zero(const GuardStart& g) const {
+double ClosedFormFlow::unsure(const GuardStart& g) const {
+  // Places of what rests differ from regime to regime by more than they round by, as fast modes amplify it.
+  const double wide = kTouching * g.size.told();
+  return near_zero(g, wide) >= 1.0 / fastest_ ? wide : g.size.zero();
+}
+
+double ClosedFormFlow::near_zero(const GuardStart& g, double zero) const {
   // |g| ≤ |g₀| + |g′|t + M₂t²/2, and ≤ |g₀| + |g′|t + |g″|t²/2 + M₃t³/6, of whose terms each is given its share.
   const double bounded = 1.0 / fastest_;
   const auto lasts = [&](double stays) { return g.lasting ? stays : std::min(stays, bounded); };
-  const double left = g.size.zero() - std::abs(g.value), slope = std::abs(g.rate);
+  const double left = zero - std::abs(g.value), slope = std::abs(g.rate);
   if (g.size.told() == 0.0 && g.value == 0.0 && slope == 0.0 && g.most_second == 0.0)  // of what nothing moves
     return lasts(std::numeric_limits<double>::infinity());
   if (!(left > 0.0)) return 0.0;
@@ -228,8 +234,9 @@ void ClosedFormFlow::look_again() {
   for (Guard& guard : guards_) {
     if (guard.exempt_until != begin_) continue;
     const GuardStart now = start_of(guard);
-    if (std::abs(now.value) <= now.size.zero() / 2.0)
-      guard.exempt_until = std::max(begin_ + near_zero(now), std::nextafter(begin_, 1e300));
+    const double zero = unsure(now);
+    if (std::abs(now.value) <= zero / 2.0)
+      guard.exempt_until = std::max(begin_ + near_zero(now, zero), std::nextafter(begin_, 1e300));
   }
 }
 
@@ -249,20 +256,20 @@ void ClosedFormFlow::foresee_starts() {
     const GuardValue now = evaluate(guard, point_.time);
     const GuardSize measure = size_of(guard);
     // A speed that is said not to start at zero does only where its contact has turned a moment before.
-    if (rigid_speed && !by_order ? std::abs(now.value) > 2.0 * measure.zero()
+    if (rigid_speed && !by_order ? std::abs(now.value) > 2.0 * kTouching * measure.told()
                                  : now.value > std::max(measure.starting(), kClock / fastest_ * std::abs(now.rate)))
       continue;
     const GuardStart start = start_of(guard);
-    const double g1 = start.rate, g2 = start.second, size = start.size.told(), near = near_zero(start);
+    const double g1 = start.rate, g2 = start.second, size = start.size.told(), zero = unsure(start),
+                 near = near_zero(start, zero);
     if (guard.kind == GuardKind::kStop && near >= 1.0 / fastest_) {  // at rest on the limit
       guard.exempt_until = point_.time + near;
       continue;
     }
     const bool simple = by_order ? point_.multiplicity[i] == 1 : g1 > kRising * fastest_ * size;
     // Flat, too, where it falls by rounding, and no further below zero than can be told.
-    const bool flat = by_order
-                          ? point_.multiplicity[i] == 2
-                          : std::abs(g1) <= fastest_ * start.size.starting() || g1 * g1 <= 2.0 * g2 * start.size.zero();
+    const bool flat = by_order ? point_.multiplicity[i] == 2
+                               : std::abs(g1) <= fastest_ * start.size.starting() || g1 * g1 <= 2.0 * g2 * zero;
     double clear = 0.0;
     if (simple && g1 > 0) clear = g1 / start.most_second;
     if (flat && g2 > 0) clear = std::max(clear, 1.5 * g2 / start.most_third);
@@ -271,7 +278,7 @@ void ClosedFormFlow::foresee_starts() {
     const bool told = !flat || std::abs(g2) > fastest_ * fastest_ * start.size.starting();
     if (!by_order && clear == 0.0 && told) {
       const bool at_rest =
-          flat && std::abs(g1) <= kRising * fastest_ * size && std::abs(start.value) <= kPlaceRounding * size;
+          flat && std::abs(g1) <= kRising * fastest_ * size && std::abs(start.value) <= start.size.zero();
       guard.at_once = guard.kind == GuardKind::kStop && at_rest;
       continue;
     }
@@ -383,9 +390,8 @@ ClosedFormFlow::Search ClosedFormFlow::search(int level) const {
 
 bool ClosedFormFlow::approach(const Guard& guard, double from, double& tau) {
   // Newton on the exact guard.
-  const double bend = curvature(guard.output), start = tau;
-  const GuardSize size = size_of(guard);
-  const double rounding = std::numeric_limits<double>::epsilon() / 2.0 * size.told();
+  const double bend = curvature(guard.output), size = size_of(guard).told(), start = tau;
+  const double rounding = std::numeric_limits<double>::epsilon() / 2.0 * size;
   const auto give_up = [&] {
     tau = start;
     move_from_begin(tau);
@@ -409,7 +415,7 @@ bool ClosedFormFlow::approach(const Guard& guard, double from, double& tau) {
   // A root that the window has is no other one: of a guard that is all but flat there, Newton's may be.
   const double shifted = std::abs(tau - start);
   if (start == from && shifted > kRootLeaves * tables_->length(level_) &&
-      std::abs(slope) * shifted > kOtherRoot * size.zero())
+      std::abs(slope) * shifted > kOtherRoot * kTouching * size)
     return give_up();
   // The guard falls all the way from `from`: it vanishes here for the first time.
   return tau <= from || (tau - from) * bend < std::abs(slope);
@@ -421,7 +427,7 @@ bool ClosedFormFlow::take_earlier(Search& found, double from, double& root) {
   for (std::size_t g = 0; g < guards_.size(); ++g) {
     const Guard& other = guards_[g];
     if (static_cast<int>(g) == found.guard || other.exempt_until > begin_ ||
-        !(evaluate(other, begin_ + root).value < -size_of(other).zero()))
+        !(evaluate(other, begin_ + root).value < -kTouching * size_of(other).told()))
       continue;
     double before = root;
     if (approach(other, from, before) && before < root) {

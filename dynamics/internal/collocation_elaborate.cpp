@@ -248,7 +248,9 @@ int CollocationFlow::start_order(const OwnGuard& guard, int c, const GuardValue&
   // An event's time is rounded, and what changes fast is that far from zero.
   const double clock = kOfTime * (std::abs(begin_) + tables_.step(step_level_));
   if (!touched && std::abs(now.value) > std::max(kStarting * now.size, clock * std::abs(now.rate))) return 0;
-  return touched || std::abs(now.rate) <= kFlat * now.rate_size ? 2 : 1;
+  if (touched || std::abs(now.rate) <= kFlat * now.rate_size) return 2;
+  // What falls to zero from where it can be told has yet to reach it.
+  return now.rate < 0.0 && now.value > kTouching * now.size ? 0 : 1;
 }
 
 CollocationFlow::GuardValue CollocationFlow::evaluate(const OwnGuard& guard, int c, double tau,

@@ -291,7 +291,7 @@ class CollocationFlow {
   /// The contacts' own states within the last step, at `begin_ + tau`.
   [[nodiscard]] Eigen::VectorXd internal_within(double tau, const double* x) const;
   /// λ of every contact, but for elaborate ones that are not held: theirs are there. A trial step may have passed zero
-  /// speed, beyond which laws go on as the step solves them, so that a stick's force between them stays smooth.
+  /// speed, beyond which laws go on as their formulas do and the step solves them: a stick's force stays smooth.
   void forces_at(const Instant& now, const std::vector<ContactMode>& modes, const Eigen::VectorXd& internal,
                  Eigen::VectorXd& out_force) const;
   /// λ of every contact within the last step, at `begin_ + tau`, as its law or its stick has it there. @param x  state

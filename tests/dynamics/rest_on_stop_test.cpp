@@ -3,6 +3,7 @@
 #include <slipmode/core/errors.hpp>
 #include <slipmode/core/random.hpp>
 #include <slipmode/dynamics/simulate.hpp>
+#include <slipmode/fem/chain.hpp>
 #include <slipmode/fem/masses.hpp>
 
 #include <gtest/gtest.h>
@@ -345,6 +346,23 @@ TEST(RestOnAStop, IsToldByWhatItsPlaceRoundsBy) {
   ASSERT_FALSE(run.events.empty());
   EXPECT_LE(run.events.size(), 3U);
   EXPECT_LT(std::abs(run.events.front().displacement), 2.0 * 75.0 * 64.0 * std::numeric_limits<double>::epsilon());
+}
+
+TEST(RestOnAStop, WhatALongChainRoundsByIsNoEvent) {
+  // Friction holds the middle of 200 masses off their rest; a stop is where the 50th one is then at rest. Its place
+  // comes back to that off by 1e-13 each time, as the fastest mode is 127 times as fast as the slowest: told from zero
+  // by 64 ε of the place, it would press and let go 300 times.
+  constexpr int kLong = 200, kHeld = 99, kStopped = 49;
+  const auto unit = [](int i) { return Eigen::VectorXd(Eigen::VectorXd::Unit(kLong, i)); };
+  const HybridSystem system(fem::chain({.masses = kLong, .right_fixed = true}),
+                            {{unit(kHeld), friction::Coulomb{1.0, 0.9}, 10.0},
+                             {unit(kStopped), Clearance{.left = {}, .right = Stop{10.0, 0.0, 0.3}}}},
+                            friction::Belt::constant(0.0));
+  State start = system.rest();
+  for (int i = 0; i < kLong; ++i) start.q(i) = 0.6 * (i <= kHeld ? (i + 1.0) / (kHeld + 1) : (kLong - i) / 101.0);
+  const Trajectory run = simulate(system, start, {.duration = 2000.0});
+  EXPECT_TRUE(run.events.empty());
+  EXPECT_EQ(run.statistics.certified, run.statistics.steps);
 }
 
 TEST(RestOnAStop, IsTakenUpBeforeItIsTold) {
