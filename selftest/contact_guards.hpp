@@ -21,7 +21,7 @@ struct ContactScales {
   double way = 1.0;    ///< [m]
   double speed = 1.0;  ///< [m/s]
   double force = 1.0;  ///< [N]
-  double place = 0.0;  ///< how deep in a stop a contact may be before a flow tells, by its tolerance [m]
+  double place = 0.0;  ///< how deep in a stop a contact may be before a flow tells [m]
   double slack = 0.0;  ///< what a stick's force behind a spring rounds by, as its places do [N]
 };
 

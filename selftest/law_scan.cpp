@@ -24,8 +24,11 @@ using Eigen::Index;
 /// Rounding of a modal coordinate, of all of them together in the norm of energy.
 constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
 
-/// Of what the flow's tolerance may leave a place off by, what it tells a stop by.
+/// Of what the flow's tolerance may leave a place off by, or guards are held to, what it tells a stop by.
 constexpr double kShows = 10.0;
+
+/// What the closed form tells a stop by, of what moves in its guard (docs/limits.md).
+constexpr double kTold = 1e-12;
 
 /// How far from its start a run may begin, of its sizes.
 constexpr double kGivenBack = 1e-9;
@@ -63,6 +66,7 @@ class Scan {
     mass_ = fem::to_dense(system.structure().M());
     inverse_ = mass_.llt().solve(Eigen::MatrixXd::Identity(system.size(), system.size()));
     rows_ = W_.transpose() * inverse_;
+    answer_ = free_answer();
     largest_place_ = largest(run.q);
     for (int c = 0; c < static_cast<int>(nc); ++c) timelines_.emplace_back(run, c);
     for (const dynamics::Event& e : run.events) event_times_.push_back(e.time);
@@ -162,13 +166,12 @@ class Scan {
     // moves.
     const double error = kRounding + options_.flow.tolerance;
     // A state under a force is the sum of the free structure's answer and what contacts take from it, which may be all.
-    const Eigen::MatrixXd answer = free_answer();
     const Eigen::VectorXd tolerated = W_.cwiseAbs() * tolerated_impulses(system_, options_.flow);
     const Eigen::VectorXd momentum_rounding = error * swing * mass_.diagonal().cwiseSqrt() +
                                               4.0 * h * kRounding * force_sizes() + tolerated +
-                                              mass_.cwiseAbs() * (4.0 * own_v + kRounding * answer.col(1)),
+                                              mass_.cwiseAbs() * (4.0 * own_v + kRounding * answer_.col(1)),
                           way_rounding = error * largest(whole.q) * inverse_.diagonal().cwiseSqrt() + 4.0 * own_q +
-                                         kRounding * answer.col(0) + 4.0 * h * (inverse_.cwiseAbs() * tolerated);
+                                         kRounding * answer_.col(0) + 4.0 * h * (inverse_.cwiseAbs() * tolerated);
     const auto excess = [&](const Eigen::MatrixXd& rate, const Eigen::MatrixXd& sum, Index k, Index apart,
                             const Eigen::VectorXd& rounding) -> Eigen::VectorXd {
       const double step = static_cast<double>(apart) * h;
@@ -243,10 +246,17 @@ class Scan {
     return !corner || *corner > to;
   }
 
-  /// How deep in a stop a contact's place may be before a flow tells: some times what its tolerance may leave the place
-  /// off by, impulses for a step. One at contact d gives c no more than √(m_c m_d) times as much of a speed, by the
-  /// energy it brings.
-  [[nodiscard]] double tolerated_place(int c) const {
+  /// How deep in a stop a contact's place may be before a flow tells. By collocation some times what its tolerance may
+  /// leave the place off by, impulses for a step: one at contact d gives c no more than √(m_c m_d) times as much of a
+  /// speed, by the energy it brings. In closed form a share of what the drive swings it by in the long run, which a
+  /// motion from rest is the small difference of with free motion; no more than some times what guards are held to.
+  [[nodiscard]] double tolerated_place(int c, double way) const {
+    if (dynamics::choose_method(system_, options_.flow.method) == dynamics::FlowMethod::kClosedForm) {
+      const friction::Shaker* shaker = system_.drive().shaker();
+      const double swings = W_.col(c).cwiseAbs().dot(answer_.col(0)) +
+                            (shaker != nullptr ? shaker->amplitude * W_.col(c).lpNorm<1>() : 0.0);
+      return std::min(kTold * swings, kShows * limits_.guard * way);
+    }
     const Eigen::VectorXd reach = (rows_ * W_).diagonal().cwiseSqrt();
     const double speed = reach(c) * reach.dot(tolerated_impulses(system_, options_.flow));
     const dynamics::StepTables& steps = system_.cache().tables(system_, false).steps;
@@ -263,7 +273,7 @@ class Scan {
     // A place is the sum of what all modes move it by: |terms|₁ ≤ √n |terms|₂.
     const double moved = largest_place_ * std::sqrt(rows_.row(c).dot(W_.col(c)));
     // What is held, or hardly moves, has a place that is told by the motion around it, and by what the speeds of its
-    // sides make of that within a radian of the fastest mode. What rests on a stop is told from it to 1e-12 of these.
+    // sides make of that within a radian of the fastest mode. A flow tells a stop from it to 1e-11 of these terms.
     const Eigen::VectorXd speeds = run_.v.cwiseAbs().rowwise().maxCoeff();
     const double fastest = system_.cache().tables(system_, false).model.fastest,
                  soon = fastest > 0.0 ? W_.col(c).cwiseAbs().dot(speeds) / fastest : 0.0;
@@ -284,7 +294,7 @@ class Scan {
     }
     for (double* scale : {&scales.way, &scales.speed, &scales.force})
       if (!(*scale > 0.0)) *scale = 1.0;
-    scales.place = tolerated_place(c);
+    scales.place = tolerated_place(c, scales.way);
     scales.slack = kRounding * friction::spring_stiffness(law.law) * std::max(scales.way, moved);
     return scales;
   }
@@ -424,6 +434,7 @@ class Scan {
   ScanLimits limits_;
   ScanFigures figures_;
   Eigen::MatrixXd W_, mass_, inverse_, rows_;
+  Eigen::MatrixXd answer_;      ///< free_answer()
   double largest_place_ = 0.0;  ///< |M^½ q| of the run
   Eigen::VectorXd force_scale_;
   std::vector<Timeline> timelines_;

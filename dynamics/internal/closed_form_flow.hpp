@@ -118,11 +118,8 @@ class ClosedFormFlow {
   struct GuardSize {
     double own = 0.0;        ///< of its terms
     double cancelled = 0.0;  ///< in the same units, of a stop's: parts of its place that cancel
-    double share = 0.0;      ///< of `own`, below which it cannot be told from zero
     /// What it rounds by.
     [[nodiscard]] double told() const { return own + cancelled; }
-    /// Values that cannot be told from zero.
-    [[nodiscard]] double zero() const;
     /// Values below may be zero where a regime begins, and derivatives, in radians of the fastest pair.
     [[nodiscard]] double starting() const;
   };
@@ -179,11 +176,8 @@ class ClosedFormFlow {
   [[nodiscard]] GuardStart start_of(const Guard& guard) const;
   /// At the end of guards' exemptions: whether they have left zero.
   void look_again();
-  /// How long, by bounds, a guard stays nearer to zero than this.
-  [[nodiscard]] double near_zero(const GuardStart& guard, double zero) const;
-  /// Values that cannot be told from zero where a guard starts: of a stop that is at rest on its limit more than of one
-  /// that a motion has reached.
-  [[nodiscard]] double unsure(const GuardStart& start) const;
+  /// How long, by bounds, a guard stays so near to zero that it cannot be told from it.
+  [[nodiscard]] double near_zero(const GuardStart& guard) const;
   [[nodiscard]] GuardSize size_of(const Guard& guard) const;
   /// The size of an output's values, which its rounding error is measured by.
   [[nodiscard]] double scale(const Guard& guard) const;

@@ -11,12 +11,11 @@
 namespace slipmode::dynamics {
 namespace {
 
-/// A guard that cannot be told from zero beyond this share of its scale touches it …
+/// A guard that cannot be told from zero beyond this share of its scale touches it.
 constexpr double kTouching = 1e-12;
 /// Terms that cancel count by what they round by, 1e-14 of them.
 constexpr double kCancels = 1e-2;
-/// … and a stop's beyond what its place rounds by, of its size: a mass that is pushed into it from rest is deep in it
-/// before it is told, and bounces.
+/// What a place rounds by, of its size.
 constexpr double kPlaceRounding = 64.0 * std::numeric_limits<double>::epsilon();
 /// A guard below this share of its scale when a regime begins starts at zero; a slope below it times the fastest rate
 /// may be zero …
@@ -106,11 +105,7 @@ double ClosedFormFlow::cancelled(const Guard& guard) const {
   return kCancels * (parts(guard.contact) + parts(nc_ + guard.contact) / slipping_rate_) * per_place(guard);
 }
 
-ClosedFormFlow::GuardSize ClosedFormFlow::size_of(const Guard& guard) const {
-  return {scale(guard), cancelled(guard), guard.kind == GuardKind::kStop ? kPlaceRounding : kTouching};
-}
-
-double ClosedFormFlow::GuardSize::zero() const { return share * own + kTouching * cancelled; }
+ClosedFormFlow::GuardSize ClosedFormFlow::size_of(const Guard& guard) const { return {scale(guard), cancelled(guard)}; }
 
 double ClosedFormFlow::GuardSize::starting() const { return kStarting * own + kTouching * cancelled; }
 
@@ -210,17 +205,11 @@ ClosedFormFlow::GuardStart ClosedFormFlow::start_of(const Guard& guard) const {
           .lasting = r.growth == 0.0 && third == 0.0 && !swells()};
 }
 
-double ClosedFormFlow::unsure(const GuardStart& g) const {
-  // Places of what rests differ from regime to regime by more than they round by, as fast modes amplify it.
-  const double wide = kTouching * g.size.told();
-  return near_zero(g, wide) >= 1.0 / fastest_ ? wide : g.size.zero();
-}
-
-double ClosedFormFlow::near_zero(const GuardStart& g, double zero) const {
+double ClosedFormFlow::near_zero(const GuardStart& g) const {
   // |g| ≤ |g₀| + |g′|t + M₂t²/2, and ≤ |g₀| + |g′|t + |g″|t²/2 + M₃t³/6, of whose terms each is given its share.
   const double bounded = 1.0 / fastest_;
   const auto lasts = [&](double stays) { return g.lasting ? stays : std::min(stays, bounded); };
-  const double left = zero - std::abs(g.value), slope = std::abs(g.rate);
+  const double left = kTouching * g.size.told() - std::abs(g.value), slope = std::abs(g.rate);
   if (g.size.told() == 0.0 && g.value == 0.0 && slope == 0.0 && g.most_second == 0.0)  // of what nothing moves
     return lasts(std::numeric_limits<double>::infinity());
   if (!(left > 0.0)) return 0.0;
@@ -234,9 +223,8 @@ void ClosedFormFlow::look_again() {
   for (Guard& guard : guards_) {
     if (guard.exempt_until != begin_) continue;
     const GuardStart now = start_of(guard);
-    const double zero = unsure(now);
-    if (std::abs(now.value) <= zero / 2.0)
-      guard.exempt_until = std::max(begin_ + near_zero(now, zero), std::nextafter(begin_, 1e300));
+    if (std::abs(now.value) <= kTouching * now.size.told() / 2.0)
+      guard.exempt_until = std::max(begin_ + near_zero(now), std::nextafter(begin_, 1e300));
   }
 }
 
@@ -260,16 +248,16 @@ void ClosedFormFlow::foresee_starts() {
                                  : now.value > std::max(measure.starting(), kClock / fastest_ * std::abs(now.rate)))
       continue;
     const GuardStart start = start_of(guard);
-    const double g1 = start.rate, g2 = start.second, size = start.size.told(), zero = unsure(start),
-                 near = near_zero(start, zero);
+    const double g1 = start.rate, g2 = start.second, size = start.size.told(), near = near_zero(start);
     if (guard.kind == GuardKind::kStop && near >= 1.0 / fastest_) {  // at rest on the limit
       guard.exempt_until = point_.time + near;
       continue;
     }
     const bool simple = by_order ? point_.multiplicity[i] == 1 : g1 > kRising * fastest_ * size;
     // Flat, too, where it falls by rounding, and no further below zero than can be told.
-    const bool flat = by_order ? point_.multiplicity[i] == 2
-                               : std::abs(g1) <= fastest_ * start.size.starting() || g1 * g1 <= 2.0 * g2 * zero;
+    const bool flat = by_order
+                          ? point_.multiplicity[i] == 2
+                          : std::abs(g1) <= fastest_ * start.size.starting() || g1 * g1 <= 2.0 * g2 * kTouching * size;
     double clear = 0.0;
     if (simple && g1 > 0) clear = g1 / start.most_second;
     if (flat && g2 > 0) clear = std::max(clear, 1.5 * g2 / start.most_third);
@@ -278,7 +266,7 @@ void ClosedFormFlow::foresee_starts() {
     const bool told = !flat || std::abs(g2) > fastest_ * fastest_ * start.size.starting();
     if (!by_order && clear == 0.0 && told) {
       const bool at_rest =
-          flat && std::abs(g1) <= kRising * fastest_ * size && std::abs(start.value) <= start.size.zero();
+          flat && std::abs(g1) <= kRising * fastest_ * size && std::abs(start.value) <= kPlaceRounding * size;
       guard.at_once = guard.kind == GuardKind::kStop && at_rest;
       continue;
     }
@@ -383,7 +371,7 @@ ClosedFormFlow::Search ClosedFormFlow::search(int level) const {
     BernsteinPolynomial polynomial;
     polynomial.degree = kNodes - 1;
     std::copy_n(values.begin(), kNodes, polynomial.coefficient.begin());
-    judge(polynomial, remainder, size_of(guard).zero(), static_cast<int>(g), found);
+    judge(polynomial, remainder, kTouching * size_of(guard).told(), static_cast<int>(g), found);
   }
   return found;
 }
