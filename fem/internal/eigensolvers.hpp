@@ -39,7 +39,7 @@ struct Tridiagonal {
 [[nodiscard]] std::optional<EigenPairs> solve_by_factors(const Eigen::MatrixXd& M, const Eigen::MatrixXd& K,
                                                          const Eigen::MatrixXd& springs);
 
-/// The lowest `count` pairs of a chain by LAPACK's dstemr (MRRR), O(n·count).
+/// The lowest `count` pairs of a chain by LAPACK's dstemr (MRRR), O(n·count); where it fails, by dstevr.
 [[nodiscard]] EigenPairs solve_tridiagonal(const Structure& structure, Eigen::Index count);
 
 /// The lowest `count` < n − m pairs by Spectra's shift-invert Lanczos, then one Rayleigh-Ritz step, which brings the
