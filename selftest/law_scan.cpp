@@ -323,7 +323,7 @@ class Scan {
         const LawCheck check = check_law(contact(c), timeline.at(t), instants.back(), scales);
         guards(k) = check.guard;
         note(c, t, check);
-        figures_.coasts |= coasts(c, timeline.at(t), instants.back(), scales);
+        figures_.coasts |= k > 0 && coasts(c, timeline.at(t), instants[instants.size() - 2], instants.back(), scales);
       }
       if (k >= 2) look_between(c, s, k, guards, recent.front(), scales);
       recent.push_back(load);
@@ -332,13 +332,13 @@ class Scan {
     check_event_guards(c, s, instants, scales);
   }
 
-  /// What slides without friction ends at what sticks only if it comes to rest. By a damper alone it never does: once
-  /// its speed is rounding, that says whether it turns.
-  [[nodiscard]] bool coasts(int c, ContactMode mode, const ContactInstant& now, const ContactScales& scales) const {
+  /// What slides to where sliding friction, or none, holds it ends at what sticks only if it comes to rest. By dampers
+  /// alone it never does: once its speed is rounding, from one sample to the next, that says whether it turns.
+  [[nodiscard]] bool coasts(int c, ContactMode mode, const ContactInstant& last, const ContactInstant& now,
+                            const ContactScales& scales) const {
     const bool slides = mode == ContactMode::kSlipPositive || mode == ContactMode::kSlipNegative;
-    const friction::Law& law = contact(c).law;
-    return slides && std::abs(now.slip) <= kRounding * scales.speed && friction::static_coefficient(law) > 0.0 &&
-           friction::kinetic_coefficient(law, scales.speed) == 0.0;
+    return slides && std::max(std::abs(last.slip), std::abs(now.slip)) <= kRounding * scales.speed &&
+           friction::static_coefficient(contact(c).law) > 0.0;
   }
 
   void note(int c, double t, const LawCheck& check) {

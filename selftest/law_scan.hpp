@@ -25,7 +25,7 @@ struct ScanFigures {
   std::int64_t samples = 0;
   std::int64_t minima = 0;  ///< minima of guards between samples that were looked at 256 times finer
   std::int64_t events = 0;  ///< changes of a contact's mode
-  bool coasts = false;      ///< a contact slid without friction at a speed of rounding
+  bool coasts = false;      ///< a contact slid on at a speed of rounding
 
   void merge(const ScanFigures& other);
 };

@@ -66,19 +66,36 @@ void start(SceneDraft& d) {
   d.line("\n[initial]\ndisplacement = {}\nvelocity = {}", SceneDraft::numbers(q), SceneDraft::numbers(v));
 }
 
+/// All masses at rest, or some that move by next to nothing.
+void resting_start(SceneDraft& d, const std::vector<double>& places) {
+  std::vector<double> v(places.size(), 0.0);
+  if (d.chance(0.4))
+    for (double& value : v)
+      if (d.chance(0.3)) value = d.uniform(-1.0, 1.0) * d.scatter(1e-16, 1e-6);
+  d.line("\n[initial]\ndisplacement = {}\nvelocity = {}", SceneDraft::numbers(places), SceneDraft::numbers(v));
+}
+
 }  // namespace
 
 std::string random_scene_text(std::uint64_t seed, std::uint64_t index) {
   SceneDraft draft{.random = Random::stream(seed, index)};
-  // Some friction is next to none. By a stream of its own: all other scenes stay as they were.
-  if (Random own = Random::stream(~seed, index); own.uniform() < 0.02)
-    draft.pressed = std::pow(10.0, own.uniform(-6.0, 0.0));
+  // Rare kinds, by a stream of their own: all other scenes stay as they were.
+  Random own = Random::stream(~seed, index);
+  const double rare = own.uniform();
+  if (rare < 0.02) draft.pressed = std::pow(10.0, own.uniform(-6.0, 0.0));  // friction that is next to none
+  draft.light = rare >= 0.02 && rare < 0.04;
   draft.line("title = \"Random scene {} of seed {}\"", index, seed);
-  write_structure(draft);
-  write_contacts(draft);
-  write_drive(draft);
-  time(draft);
-  start(draft);
+  if (rare >= 0.04 && rare < 0.045) {
+    const std::vector<double> places = write_resting_chain(draft);
+    time(draft);
+    resting_start(draft, places);
+  } else {
+    write_structure(draft);
+    write_contacts(draft);
+    write_drive(draft);
+    time(draft);
+    start(draft);
+  }
   // The other flow that can do it.
   const bool both = draft.linear ? !draft.oscillates && draft.chance(0.15) : draft.coulomb_alone;
   if (both) draft.line("\n[flow]\nmethod = \"collocation\"");

@@ -15,7 +15,7 @@ void chain(SceneDraft& d, int masses) {
          : left        ? "fixed-free"
          : right       ? "free-fixed"
                        : "free-free");
-  d.line("mass = {}", SceneDraft::numbers(d.values(masses, 0.3, 2.5)));
+  d.line("mass = {}", SceneDraft::numbers(d.masses_of(masses)));
   std::vector<double> springs;
   for (int i = 0; i < masses - 1 + (left ? 1 : 0) + (right ? 1 : 0); ++i) springs.push_back(d.spring(0.3, 3.0));
   d.line("stiffness = {}", SceneDraft::numbers(springs));
@@ -37,7 +37,7 @@ void link(SceneDraft& d, int mass, int other, double stiffness) {
 void linked_masses(SceneDraft& d, int masses) {
   d.dofs = masses;
   d.floats = true;  // perhaps
-  d.line("kind = \"masses\"\nmass = {}", SceneDraft::numbers(d.values(masses, 0.3, 2.5)));
+  d.line("kind = \"masses\"\nmass = {}", SceneDraft::numbers(d.masses_of(masses)));
   for (int i = 1; i <= masses; ++i) {
     if (i > 1 || d.chance(0.85)) {
       const int other = i == 1 ? 0 : d.integer(d.chance(0.2) ? 0 : 1, i - 1);

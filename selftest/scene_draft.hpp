@@ -27,6 +27,7 @@ struct SceneDraft {
   double stiffness = 1.0, rate = 1.0, size = 1.0;
   double pressed = 1.0;  ///< normal loads and joints' limits, as a share of such forces
   bool mixed = false;    ///< stiff and slow: springs up to a million times one another
+  bool light = false;    ///< masses down to a thousandth of one another
 
   bool linear = false;                          ///< of piecewise-linear laws alone
   bool varying = false, oscillates = false;     ///< a normal load is not constant; has an oscillator
@@ -47,6 +48,13 @@ struct SceneDraft {
   std::vector<double> values(int count, double low, double high) {
     std::vector<double> result(static_cast<std::size_t>(count));
     for (double& value : result) value = uniform(low, high);
+    return result;
+  }
+  std::vector<double> masses_of(int count) {
+    std::vector<double> result = values(count, 0.3, 2.5);
+    if (light)
+      for (double& mass : result)
+        if (chance(0.3)) mass *= scatter(1e-3, 1.0);
     return result;
   }
   /// A spring constant between these, or far from them where stiff and slow are mixed.
@@ -85,5 +93,9 @@ void write_structure(SceneDraft& draft);
 void write_contacts(SceneDraft& draft);
 /// [drive].
 void write_drive(SceneDraft& draft);
+/// Structure, contacts and drive of a chain at rest: friction holds one of its masses off, and stops of others are just
+/// where they are then.
+/// @return its displacements
+[[nodiscard]] std::vector<double> write_resting_chain(SceneDraft& draft);
 
 }  // namespace slipmode::selftest

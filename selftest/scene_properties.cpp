@@ -46,6 +46,8 @@ constexpr double kOfTime = 1e-14, kOfTolerance = 100.0;
 constexpr double kSameTime = 1e-9, kApart = 1e-2;
 /// Two events of a contact that graze are no further apart; a bristle at rest pulls with no more than this share.
 constexpr double kGrazes = 1e-6, kAtRest = 1e-10;
+/// What a stop's place is told from zero to, of a motion's size.
+constexpr double kStopsTold = 1e-12;
 /// Powers of ten of its duration that a run is cut beside an event.
 constexpr double kNear = 5.0, kNearest = 12.0;
 
@@ -140,6 +142,8 @@ class SceneChecker {
     start_ = scene::initial_state(scene, *system_);
     options_ = scene::simulate_options(scene);
     whole_ = options_.duration;
+    stops_ = std::ranges::any_of(system_->contacts(),
+                                 [](const auto& c) { return std::holds_alternative<friction::Clearance>(c.law); });
     options_.sample = std::min(kPhasePerSample / fastest_rate(*system_, start_), options_.duration / kFewest);
     options_.duration = std::min(options_.duration, kMostSamples * options_.sample);
     options_.transient = 0.0;
@@ -270,9 +274,12 @@ class SceneChecker {
   /// Distance of two final states, of the run's sizes.
   [[nodiscard]] double distance(const dynamics::State& a, const dynamics::State& b) const {
     // Speeds round by what displacements would become, which may be stretched far more than they move, and by what
-    // forces round by for as long as these push; and are off by what the flow's tolerance lets them.
+    // forces round by for as long as these push; by what a stop that is met from rest makes of the place it is told at;
+    // and are off by what the flow's tolerance lets them.
     const double rate = kPhasePerSample / options_.sample;
-    const double rounding = (64.0 + rate * options_.duration) * std::numeric_limits<double>::epsilon() * size_q_ * rate;
+    const double told =
+        (64.0 + rate * options_.duration) * std::numeric_limits<double>::epsilon() + (stops_ ? kStopsTold : 0.0);
+    const double rounding = told * size_q_ * rate;
     const double size_v = size_v_ + (rounding + tolerated_) / kSameMotion;
     return std::max((a.q - b.q).cwiseAbs().maxCoeff() / size_q_, (a.v - b.v).cwiseAbs().maxCoeff() / size_v);
   }
@@ -363,7 +370,7 @@ class SceneChecker {
   dynamics::State start_;
   dynamics::SimulateOptions options_;
   dynamics::Trajectory run_;
-  bool simulated_ = false;
+  bool simulated_ = false, stops_ = false;
   std::vector<dynamics::State> events_;
   double whole_ = 0.0;  ///< the scene's own duration [s]
   double size_q_ = 1.0, size_v_ = 1.0, tolerated_ = 0.0;

@@ -124,10 +124,16 @@ class ClosedFormFlow {
     [[nodiscard]] double starting() const;
   };
 
+  /// An output for as long as a stay lasts, where free motion does not grow and the inputs rest: within `reach` of
+  /// where they hold it.
+  struct Swing {
+    double held = 0.0, reach = std::numeric_limits<double>::infinity();
+  };
+
   /// A guard at the point, with bounds on its second and third derivative: for as long as the fastest pair takes, or
-  /// for good where they are `lasting`.
+  /// for good where they are `lasting`; and on itself for good.
   struct GuardStart {
-    double value = 0.0, rate = 0.0, second = 0.0, most_second = 0.0, most_third = 0.0;
+    double value = 0.0, rate = 0.0, second = 0.0, most = 0.0, most_second = 0.0, most_third = 0.0;
     GuardSize size;
     bool lasting = false;
   };
@@ -173,6 +179,7 @@ class ClosedFormFlow {
   void follow_inputs(const Visited& in, const Eigen::VectorXd& from, double tau, Eigen::VectorXd& x,
                      Eigen::VectorXd& out_inputs) const;
   void foresee_starts();
+  [[nodiscard]] Swing swing_of(const Guard& guard) const;
   [[nodiscard]] GuardStart start_of(const Guard& guard) const;
   /// At the end of guards' exemptions: whether they have left zero.
   void look_again();

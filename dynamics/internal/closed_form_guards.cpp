@@ -28,6 +28,8 @@ constexpr int kNewtonSteps = 20;
 /// From where a window has a guard's root to another root a guard changes by more than this many times what it is told
 /// from zero to.
 constexpr double kOtherRoot = 8.0;
+/// Radians of the slipping structure after which what never leaves its rounding is looked at again, as that may shrink.
+constexpr double kUnlooked = 1e3;
 constexpr int kHalvings = 3;
 constexpr int kLargestRefinement = 9;
 
@@ -167,18 +169,24 @@ double ClosedFormFlow::second_derivative(const Guard& guard, double t) const {
   return guard.sign * second;
 }
 
-void ClosedFormFlow::drop_idle_guards() {
-  // A load that varies by a hundredth of its mean need not be looked at: under constant inputs, with free motion that
-  // does not grow, an output stays within its amplitudes of where the inputs hold it for as long as the stay lasts.
+ClosedFormFlow::Swing ClosedFormFlow::swing_of(const Guard& guard) const {
   const Regime& r = tables_->regime();
   const DriveOverlay* overlay = regime_->overlay;
-  if (overlay == nullptr || !overlay->resonances.empty() || !r.motion.available() || r.growth > 0.0) return;
+  const auto k = guard.output;
+  const Eigen::Index speed = r.speed_input();
+  const bool inputs_rest = overlay ? overlay->resonances.empty() : inputs_(speed) == 0.0 && inputs_(speed + 1) == 0.0;
+  if (!inputs_rest || !r.motion.available() || r.growth > 0.0) return {};
+  const kernels::Kernels& vector = kernels::kernels();
+  return {r.output(k, x_, inputs_) - vector.dot(r.row.col(k).data(), free_.data(), free_.size()),
+          vector.dot(r.weight.col(k).data(), amplitude_.data(), amplitude_.size()) +
+              (overlay ? overlay->outputs[0].size(k) : 0.0)};
+}
+
+void ClosedFormFlow::drop_idle_guards() {
+  // A load that varies by a hundredth of its mean need not be looked at.
+  if (regime_->overlay == nullptr) return;
   std::erase_if(guards_, [&](const Guard& guard) {
-    const auto k = guard.output;
-    const double held =
-        r.output(k, x_, inputs_) - kernels::kernels().dot(r.row.col(k).data(), free_.data(), free_.size());
-    const double reach = kernels::kernels().dot(r.weight.col(k).data(), amplitude_.data(), amplitude_.size()) +
-                         overlay->outputs[0].size(k);
+    const auto [held, reach] = swing_of(guard);
     return guard.constant + guard.sign * held - reach > kStarting * (std::abs(guard.constant) + std::abs(held) + reach);
   });
 }
@@ -196,9 +204,11 @@ ClosedFormFlow::GuardStart ClosedFormFlow::start_of(const Guard& guard) const {
   // Of what rests where the guard is zero, what moves from now on, for as long as the bounds hold, is the size.
   GuardSize size = size_of(guard);
   if (size.told() == 0.0) size.own = most_second / (fastest_ * fastest_);
+  const auto [held, reach] = swing_of(guard);
   return {.value = value,
           .rate = rate,
           .second = second_derivative(guard, point_.time),
+          .most = std::abs(guard.constant + guard.sign * held) + reach,
           .most_second = most_second,
           .most_third = room * most(r.weight3.col(guard.output), 1.0 / fastest_) + third + harmonic3,
           .size = size,
@@ -212,6 +222,7 @@ double ClosedFormFlow::near_zero(const GuardStart& g) const {
   const double left = kTouching * g.size.told() - std::abs(g.value), slope = std::abs(g.rate);
   if (g.size.told() == 0.0 && g.value == 0.0 && slope == 0.0 && g.most_second == 0.0)  // of what nothing moves
     return lasts(std::numeric_limits<double>::infinity());
+  if (g.most <= kTouching * g.size.told()) return kUnlooked / slipping_rate_;
   if (!(left > 0.0)) return 0.0;
   const double by_second = 2.0 * left / (slope + std::sqrt(slope * slope + 2.0 * g.most_second * left));
   const double by_third = std::min(

@@ -365,18 +365,21 @@ TEST(RestOnAStop, WhatALongChainRoundsByIsNoEvent) {
 }
 
 TEST(RestOnAStop, WhatVibratesByLessThanCanBeToldTakesNoSteps) {
-  // Speeds of 1e-13 m/s beside places of 0.6 m, eleven masses of 0.01 kg among those of 1 kg: 87 steps, and 980,000
-  // when it was told by 64 ε.
+  // Speeds of 1e-13 m/s beside places of 0.6 m, eleven masses of 0.01 kg among those of 1 kg: 226 steps at most in
+  // forty runs, as long as the stop's force is known to stay below what can be told; in steps by bounds on its second
+  // and third derivative it took up to 1.8 million.
   fem::ChainOptions options{.masses = 40, .mass = std::vector<double>(40, 1.0)};
   for (const int light : {2, 9, 10, 15, 17, 18, 22, 27, 28, 32, 37})
     options.mass[static_cast<std::size_t>(light)] = 0.01;
   const HybridSystem system = held_chain(options, 5, 39, 1e8);
-  State start = held_start(system, 5);
-  start.v(10) = -2.4e-13;
-  start.v(16) = -6.5e-13;
-  const Trajectory run = simulate(system, start, {.duration = 300.0});
-  EXPECT_LT(run.events.size(), 100U);
-  EXPECT_LT(run.statistics.steps, 1000);
+  Random random = Random::stream(1, 0);
+  for (int trial = 0; trial < 20; ++trial) {
+    State start = held_start(system, 5);
+    for (const int i : {10, 16}) start.v(i) = -5e-13 * random.normal();
+    const Trajectory run = simulate(system, start, {.duration = 300.0});
+    EXPECT_LT(run.events.size(), 200U);
+    EXPECT_LT(run.statistics.steps, 1000);
+  }
 }
 
 TEST(RestOnAStop, IsTakenUpBeforeItIsTold) {
