@@ -382,7 +382,12 @@ ClosedFormFlow::Search ClosedFormFlow::search(int level) const {
     BernsteinPolynomial polynomial;
     polynomial.degree = kNodes - 1;
     std::copy_n(values.begin(), kNodes, polynomial.coefficient.begin());
-    judge(polynomial, remainder, kTouching * size_of(guard).told(), static_cast<int>(g), found);
+    // Of what grows from next to nothing on, a window has no more digits than its largest value leaves.
+    const double tolerance = kTouching * size_of(guard).told();
+    const double rounding =
+        kPlaceRounding * Eigen::Map<const Eigen::Array<double, kNodes, 1>>(values.data()).abs().maxCoeff();
+    judge(polynomial, rounding > tolerance ? std::max(remainder, rounding) : remainder, tolerance, static_cast<int>(g),
+          found);
   }
   return found;
 }
