@@ -109,12 +109,14 @@ Unstrained unstrained(const Eigen::MatrixXd& K, const Eigen::MatrixXd& M, const 
   return {modes.eigenvectors()(Eigen::all, found), std::min(kRounding * (1.0 + largest / softest), kMostTurned)};
 }
 
-/// A with nothing left along these shapes.
-Eigen::MatrixXd without(const Eigen::MatrixXd& A, const Eigen::MatrixXd& shapes, const Eigen::MatrixXd& M) {
+/// A with nothing left along these shapes. What no term of it couples stays apart, exactly.
+/// @param size  see sizes()
+Eigen::MatrixXd without(const Eigen::MatrixXd& A, const Eigen::MatrixXd& shapes, const Eigen::MatrixXd& M,
+                        const Eigen::MatrixXd& size) {
   // They are all there is: what rounding would leave has nothing beside it to be small to.
   if (shapes.cols() == A.cols()) return Eigen::MatrixXd::Zero(A.rows(), A.cols());
   const Eigen::MatrixXd inertia = M * shapes, right = A - (A * shapes) * inertia.transpose();
-  return right - inertia * (shapes.transpose() * right);
+  return (size.array() > 0.0).select(right - inertia * (shapes.transpose() * right), 0.0);
 }
 
 /// Those of the motions, turned among themselves, that nothing damps either.
@@ -136,9 +138,10 @@ Eigen::MatrixXd undamped(const Unstrained& free, const Eigen::MatrixXd& C, const
 fem::Structure project_structure(const fem::Structure& full, const Eigen::MatrixXd& Phi) {
   const Eigen::MatrixXd M = project_symmetric(full.M(), Phi);
   Eigen::MatrixXd K = project_symmetric(full.K(), Phi);
-  const Unstrained free = unstrained(K, M, sizes(full.K(), Phi));
+  const Eigen::MatrixXd stiffness_size = sizes(full.K(), Phi);
+  const Unstrained free = unstrained(K, M, stiffness_size);
   if (free.shapes.cols() > 0) {
-    K = without(K, free.shapes, M);
+    K = without(K, free.shapes, M, stiffness_size);
     K = (0.5 * (K + K.transpose())).eval();
   }
   const std::optional<fem::Rayleigh> rayleigh = full.rayleigh();
@@ -146,7 +149,8 @@ fem::Structure project_structure(const fem::Structure& full, const Eigen::Matrix
   const bool symmetric = full.has_symmetric_damping();
   Eigen::MatrixXd C = symmetric ? project_symmetric(full.C(), Phi) : project(full.C(), Phi);
   if (free.shapes.cols() > 0) {
-    C = without(C, undamped(free, C, sizes(full.C(), Phi)), M);
+    const Eigen::MatrixXd damping_size = sizes(full.C(), Phi);
+    C = without(C, undamped(free, C, damping_size), M, damping_size);
     if (symmetric) C = (0.5 * (C + C.transpose())).eval();
   }
   return {M, std::move(C), std::move(K), amplitude_names(Phi.cols()), full.units()};
