@@ -57,7 +57,7 @@ std::vector<double> write_resting_chain(SceneDraft& d) {
   for (int i = 0; i <= masses; ++i) springs.push_back(uniform ? 1.0 : d.uniform(0.3, 3.0));
   const int held = d.integer(0, masses - 1);
   const double off = d.uniform(-1.0, 1.0);
-  const std::vector<double> places = resting_places(springs, held, off);
+  std::vector<double> places = resting_places(springs, held, off);
   d.line("units = \"dimensionless\"\n\n[structure]\nkind = \"chain\"\nmasses = {}\nends = \"fixed-fixed\"", masses);
   d.line("mass = {}\nstiffness = {}", SceneDraft::numbers(d.masses_of(masses)), SceneDraft::numbers(springs));
   d.key("damping", d.chance(0.3) ? 0.0 : d.uniform(0.0, 0.05));
