@@ -19,8 +19,9 @@ namespace {
 constexpr double kOnGuard = 1e-12;
 /// The same where the state says its mode: it may come from a run that ended at an event, whose time was rounded.
 constexpr double kOnGuardAsGiven = 1e-9;
-/// And by this share of what its place is the sum of: flows tell a stop that is met from rest no sooner.
-constexpr double kToldTo = 1e-11;
+/// And by this share of what its place is the sum of: flows tell a stop that is met from rest no sooner; by collocation
+/// by so many tolerances, which are what contacts' forces may push it by.
+constexpr double kToldTo = 1e-11, kToldToTolerances = 100.0;
 constexpr double kModalRounding = 64.0 * std::numeric_limits<double>::epsilon();
 
 /// What the rounding of a contact's displacement, or speed, is a share of: states come from a projection or from modal
@@ -66,9 +67,9 @@ struct AtStop {
   double size, press_size;    ///< which rounding is measured by
   double on_guard, on_press;  ///< what may be off where the state says its mode
 
-  /// @param motion, speeds  see motion_size()
+  /// @param motion, speeds  see motion_size() @param told_to  what a flow tells, as a share of these
   AtStop(const friction::Stop& own, double side, const friction::Contact& contact, const State& start, double motion,
-         double speeds)
+         double speeds, double told_to)
       : stop(own) {
     const double y = contact.direction.dot(start.q) + contact.offset;
     rate = side * contact.direction.dot(start.v);
@@ -78,8 +79,8 @@ struct AtStop {
     size = contact.direction.cwiseAbs().dot(start.q.cwiseAbs() + std::abs(start.time) * start.v.cwiseAbs()) +
            std::abs(contact.offset) + std::abs(stop.gap);
     press_size = stop.stiffness * size + stop.damping * contact.direction.cwiseAbs().dot(start.v.cwiseAbs());
-    on_guard = kOnGuardAsGiven * size + kToldTo * motion;
-    on_press = kOnGuardAsGiven * press_size + kToldTo * (stop.stiffness * motion + stop.damping * speeds);
+    on_guard = kOnGuardAsGiven * size + told_to * motion;
+    on_press = kOnGuardAsGiven * press_size + told_to * (stop.stiffness * motion + stop.damping * speeds);
   }
 };
 
@@ -141,9 +142,15 @@ double pushed(const HybridSystem& system, const ModalModel& m, std::size_t c) {
   return most;
 }
 
+/// What the flow tells a stop that is met from rest to.
+double told_to(const HybridSystem& system, const FlowOptions& options) {
+  if (choose_method(system, options.method) == FlowMethod::kClosedForm) return kToldTo;
+  return std::max(kToldTo, kToldToTolerances * options.tolerance);
+}
+
 /// Where a clearance is at the start: as given, or by position and force; on a guard to rounding by the velocity.
 ContactMode start_mode(const friction::Clearance& law, const HybridSystem& system, const State& start, std::size_t c,
-                       const ModalModel& m, const Eigen::VectorXd& x) {
+                       const ModalModel& m, const Eigen::VectorXd& x, double told_to) {
   const friction::Contact& contact = system.contacts()[c];
   const auto i = static_cast<Eigen::Index>(c);
   const double speeds = motion_size(contact, start.v, x, m.velocity_row, c);
@@ -153,8 +160,8 @@ ContactMode start_mode(const friction::Clearance& law, const HybridSystem& syste
   const double by_force = start.modes.empty() ? 0.0 : pushed(system, m, c);
   const double motion = motion_size(contact, start.q, x, m.displacement_row, c) + speeds / rate + by_force;
   std::optional<AtStop> left, right;
-  if (law.left) left.emplace(*law.left, -1.0, contact, start, motion, speeds);
-  if (law.right) right.emplace(*law.right, 1.0, contact, start, motion, speeds);
+  if (law.left) left.emplace(*law.left, -1.0, contact, start, motion, speeds, told_to);
+  if (law.right) right.emplace(*law.right, 1.0, contact, start, motion, speeds, told_to);
   if (!start.modes.empty()) {
     const ContactMode given = start.modes[c];
     require_or_say(agrees(law, given, left, right), [&] {
@@ -193,13 +200,13 @@ constexpr double kOffGuard = 1e-9;
 
 /// Modes at the start: as given, or by the sign of the sliding speed with zero speed left to consistency.
 std::vector<ContactMode> start_modes(const HybridSystem& system, const ModalModel& m, const State& start,
-                                     const Eigen::VectorXd& x) {
+                                     const Eigen::VectorXd& x, const FlowOptions& options) {
   std::vector<ContactMode> modes(system.contacts().size());
   const double V = system.drive().velocity(start.time);
   for (std::size_t c = 0; c < modes.size(); ++c) {
     const auto& contact = system.contacts()[c];
     if (const auto* clearance = friction::clearance(contact.law)) {
-      modes[c] = start_mode(*clearance, system, start, c, m, x);
+      modes[c] = start_mode(*clearance, system, start, c, m, x, told_to(system, options));
       continue;
     }
     if (!contact_forces(contact).sticks()) {
@@ -314,7 +321,7 @@ Prepared prepare(const HybridSystem& system, const State& start, FlowOptions opt
   if (const double fastest = fastest_rate(system, m); options.zeno_window == 0.0 && fastest > 0.0)
     options.zeno_window = 0.01 * 2.0 * std::numbers::pi / fastest;
   const auto nc = static_cast<Eigen::Index>(system.contacts().size());
-  std::vector<ContactMode> modes = start_modes(system, m, start, x);
+  std::vector<ContactMode> modes = start_modes(system, m, start, x, options);
   HybridPoint point{start.time,
                     std::move(x),
                     std::move(modes),
