@@ -46,8 +46,8 @@ constexpr double kOfTime = 1e-14, kOfTolerance = 100.0;
 constexpr double kSameTime = 1e-9, kApart = 1e-2;
 /// Two events of a contact that graze are no further apart; a bristle at rest pulls with no more than this share.
 constexpr double kGrazes = 1e-6, kAtRest = 1e-10;
-/// What a stop's place is told from zero to, of a motion's size.
-constexpr double kStopsTold = 1e-12;
+/// What a stop's place is told from zero to, of a motion's size; what is there rests on it at this share of its speeds.
+constexpr double kStopsTold = 1e-12, kRests = 1e-9;
 /// Powers of ten of its duration that a run is cut beside an event.
 constexpr double kNear = 5.0, kNearest = 12.0;
 
@@ -222,26 +222,29 @@ class SceneChecker {
       events.push_back(e);
     }
     const std::vector<dynamics::Event> whole = told_for_sure(run_.events), pieces = told_for_sure(events);
-    const auto beside = [&](const dynamics::Event& e) {
-      return std::abs(e.time - end) <= off || rests_where(e, first.final_state);
+    const auto told_by = [](const std::vector<dynamics::Event>& told, double time) {
+      return std::count_if(told.begin(), told.end(), [&](const auto& e) { return e.time <= time; });
     };
-    const auto by_then = [&](const dynamics::Event& e) { return e.time <= end; };
-    const auto perhaps = [&](const dynamics::Event& e) { return by_then(e) || beside(e); };
-    const auto surely = [&](const dynamics::Event& e) { return e.time > start_.time && by_then(e) && !beside(e); };
-    const auto before = std::ranges::count_if(pieces, by_then);
-    const bool same = pieces.size() == whole.size() && before <= std::ranges::count_if(whole, perhaps) &&
-                      before >= std::ranges::count_if(whole, surely);
-    if (!same && events_are_told(end))
+    const std::ptrdiff_t before = told_by(pieces, end);
+    const bool same = pieces.size() == whole.size() && before <= told_by(whole, end + off) &&
+                      before >= told_by(whole, end - off) - told_by(whole, start_.time);
+    if (!same && !rests_on_a_stop(first.final_state) && events_are_told(end))
       violate("cut", fmt::format("{} and {} events instead of {}, cut at t = {:.17g}", first.events.size(),
                                  second.events.size(), run_.events.size(), end));
   }
 
-  /// A stop that is met, or left, in a place that the state cannot be told from.
-  [[nodiscard]] bool rests_where(const dynamics::Event& e, const dynamics::State& state) const {
-    if (e.kind != dynamics::EventKind::kSeparation && e.kind != dynamics::EventKind::kContact) return false;
-    const friction::Contact& contact = system_->contacts()[static_cast<std::size_t>(e.contact)];
-    return std::holds_alternative<friction::Clearance>(contact.law) &&
-           std::abs(contact.direction.dot(state.q) + contact.offset - e.displacement) <= kStopsTold * size_q_;
+  /// Whether a contact is at rest on one of its stops to what can be told: then rounding says whether it is left.
+  [[nodiscard]] bool rests_on_a_stop(const dynamics::State& state) const {
+    return std::ranges::any_of(system_->contacts(), [&](const friction::Contact& contact) {
+      const auto* stops = std::get_if<friction::Clearance>(&contact.law);
+      if (stops == nullptr) return false;
+      const double y = contact.direction.dot(state.q) + contact.offset;
+      const auto at = [&](const std::optional<friction::Stop>& stop, double side) {
+        return stop && std::abs(side * y - stop->gap) <= kStopsTold * size_q_;
+      };
+      return (at(stops->left, -1.0) || at(stops->right, 1.0)) &&
+             std::abs(contact.direction.dot(state.v)) <= kRests * size_q_ * kPhasePerSample / options_.sample;
+    });
   }
 
   /// Events but those that rounding may tell: of contacts that leave their mode for so short a time, or not at all, and
