@@ -142,8 +142,8 @@ class SceneChecker {
     start_ = scene::initial_state(scene, *system_);
     options_ = scene::simulate_options(scene);
     whole_ = options_.duration;
-    stops_ = std::ranges::any_of(system_->contacts(),
-                                 [](const auto& c) { return std::holds_alternative<friction::Clearance>(c.law); });
+    stops_ =
+        std::ranges::any_of(system_->contacts(), [](const auto& c) { return friction::clearance(c.law) != nullptr; });
     options_.sample = std::min(kPhasePerSample / fastest_rate(*system_, start_), options_.duration / kFewest);
     options_.duration = std::min(options_.duration, kMostSamples * options_.sample);
     options_.transient = 0.0;
@@ -236,7 +236,7 @@ class SceneChecker {
   /// Whether a contact is at rest on one of its stops to what can be told: then rounding says whether it is left.
   [[nodiscard]] bool rests_on_a_stop(const dynamics::State& state) const {
     return std::ranges::any_of(system_->contacts(), [&](const friction::Contact& contact) {
-      const auto* stops = std::get_if<friction::Clearance>(&contact.law);
+      const friction::Clearance* stops = friction::clearance(contact.law);
       if (stops == nullptr) return false;
       const double y = contact.direction.dot(state.q) + contact.offset;
       const auto at = [&](const std::optional<friction::Stop>& stop, double side) {

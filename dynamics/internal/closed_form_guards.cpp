@@ -222,12 +222,12 @@ double ClosedFormFlow::near_zero(const GuardStart& g) const {
   const double left = kTouching * g.size.told() - std::abs(g.value), slope = std::abs(g.rate);
   if (g.size.told() == 0.0 && g.value == 0.0 && slope == 0.0 && g.most_second == 0.0)  // of what nothing moves
     return lasts(std::numeric_limits<double>::infinity());
-  if (g.most <= kTouching * g.size.told()) return kUnlooked / slipping_rate_;
-  if (!(left > 0.0)) return 0.0;
+  const double unlooked = g.most <= kTouching * g.size.told() ? kUnlooked / slipping_rate_ : 0.0;
+  if (!(left > 0.0)) return unlooked;
   const double by_second = 2.0 * left / (slope + std::sqrt(slope * slope + 2.0 * g.most_second * left));
   const double by_third = std::min(
       {left / (3.0 * slope), std::sqrt(2.0 * left / (3.0 * std::abs(g.second))), std::cbrt(2.0 * left / g.most_third)});
-  return lasts(std::max(by_second, by_third));
+  return std::max(unlooked, lasts(std::max(by_second, by_third)));
 }
 
 void ClosedFormFlow::look_again() {
