@@ -143,8 +143,8 @@ double pushed(const HybridSystem& system, const ModalModel& m, std::size_t c) {
 }
 
 /// What the flow tells a stop that is met from rest to.
-double told_to(const HybridSystem& system, const FlowOptions& options) {
-  if (choose_method(system, options.method) == FlowMethod::kClosedForm) return kToldTo;
+double told_to(const FlowOptions& options) {
+  if (options.method == FlowMethod::kClosedForm) return kToldTo;
   return std::max(kToldTo, kToldToTolerances * options.tolerance);
 }
 
@@ -206,7 +206,7 @@ std::vector<ContactMode> start_modes(const HybridSystem& system, const ModalMode
   for (std::size_t c = 0; c < modes.size(); ++c) {
     const auto& contact = system.contacts()[c];
     if (const auto* clearance = friction::clearance(contact.law)) {
-      modes[c] = start_mode(*clearance, system, start, c, m, x, told_to(system, options));
+      modes[c] = start_mode(*clearance, system, start, c, m, x, told_to(options));
       continue;
     }
     if (!contact_forces(contact).sticks()) {
@@ -284,6 +284,11 @@ FlowMethod choose_method(const HybridSystem& system, FlowMethod asked) {
   const bool forced = system.drive().force() != nullptr;
   const bool small = system.size() <= kClosedFormSize;
   return nonlinear == 0 && (elaborate > 0 || forced || small) ? FlowMethod::kClosedForm : FlowMethod::kCollocation;
+}
+
+FlowOptions with_method(const HybridSystem& system, FlowOptions asked) {
+  asked.method = choose_method(system, asked.method);
+  return asked;
 }
 
 namespace {

@@ -12,6 +12,8 @@ namespace slipmode::dynamics {
 /// The flow that serves a system: as asked, or the cheaper one of those that can.
 /// @throws InvalidInput  when the one asked for cannot, or none can, naming the contact
 [[nodiscard]] FlowMethod choose_method(const HybridSystem& system, FlowMethod asked);
+/// The same options, of that method.
+[[nodiscard]] FlowOptions with_method(const HybridSystem& system, FlowOptions asked);
 
 /// The modal model a run needs, and its state there.
 struct Prepared {
@@ -20,7 +22,7 @@ struct Prepared {
   FlowOptions options;
 };
 
-/// @param rows_suffice  no mode shapes are asked for
+/// @param options  see with_method() @param rows_suffice  no mode shapes are asked for
 /// @throws InvalidInput  for sizes, values that are not finite, modes the state contradicts
 [[nodiscard]] Prepared prepare(const HybridSystem& system, const State& start, FlowOptions options, bool rows_suffice);
 

@@ -215,8 +215,9 @@ Trajectory simulate(const HybridSystem& system, const State& start, const Simula
   require(options.sample >= 0 && std::isfinite(options.sample), "sampling interval must be finite and not negative");
   const bool rows_suffice =
       options.output == SimulateOptions::Output::kContacts && !options.event_states && !options.on_event;
-  const FlowMethod method = choose_method(system, options.flow.method);
-  Prepared p = prepare(system, start, options.flow, rows_suffice && method == FlowMethod::kCollocation);
+  const FlowOptions flow_options = with_method(system, options.flow);
+  const FlowMethod method = flow_options.method;
+  Prepared p = prepare(system, start, flow_options, rows_suffice && method == FlowMethod::kCollocation);
   Trajectory out;
   if (method == FlowMethod::kClosedForm) {
     ClosedFormFlow flow(system, std::move(p.start), p.options);

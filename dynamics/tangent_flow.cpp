@@ -12,8 +12,7 @@ namespace slipmode::dynamics {
 
 struct TangentFlow::Implementation {
   HybridSystem system;
-  FlowOptions options;
-  FlowMethod method;
+  FlowOptions options;                               ///< of the method chosen
   std::unique_ptr<ClosedFormFlow> closed_form = {};  ///< from the first run on
   Eigen::MatrixXd enter = {}, leave = {};            ///< (q, q̇, internal) to its tangents' coordinates and back
 
@@ -39,7 +38,7 @@ Eigen::MatrixXd TangentFlow::Implementation::turned(Eigen::MatrixXd tangents, co
 
 void TangentFlow::Implementation::set_coordinates(const ModalModel& m) {
   // The closed-form flow's tangents are without padding.
-  const Eigen::Index n = m.n, np = m.np, pairs = method == FlowMethod::kClosedForm ? n : np;
+  const Eigen::Index n = m.n, np = m.np, pairs = options.method == FlowMethod::kClosedForm ? n : np;
   const Eigen::Index own = system.internal_size();
   enter = Eigen::MatrixXd::Zero(2 * pairs + own, 2 * n + own);
   leave = Eigen::MatrixXd::Zero(2 * n + own, 2 * pairs + own);
@@ -59,7 +58,7 @@ void TangentFlow::Implementation::check(const Tangents& tangents) const {
   if (rows == 0) return;
   if (system.drive().force() == nullptr || directions == 0)
     throw InvalidInput("tangents of forces need a force drive with directions");
-  if (method == FlowMethod::kCollocation)
+  if (options.method == FlowMethod::kCollocation)
     throw InvalidInput("tangents of forces need the closed-form flow, whose laws are piecewise linear");
   if (rows % directions != 0 || rows / directions % 2 == 0 || tangents.forces.cols() != tangents.start.cols())
     throw InvalidInput("tangents of forces are " + std::to_string(rows) + " x " +
@@ -89,8 +88,7 @@ TangentResult TangentFlow::Implementation::run(AnyFlow& flow, const ModalModel& 
 }
 
 TangentFlow::TangentFlow(const HybridSystem& system, const FlowOptions& options)
-    : implementation_(
-          std::make_unique<Implementation>(Implementation{system, options, choose_method(system, options.method)})) {}
+    : implementation_(std::make_unique<Implementation>(Implementation{system, with_method(system, options)})) {}
 TangentFlow::TangentFlow(TangentFlow&&) noexcept = default;
 TangentFlow& TangentFlow::operator=(TangentFlow&&) noexcept = default;
 TangentFlow::~TangentFlow() = default;
@@ -112,7 +110,7 @@ TangentResult TangentFlow::run(const State& start, double duration, const Tangen
   const ModalModel& m = p.tables.model;
   const double end = start.time + duration;
   if (own.enter.size() == 0) own.set_coordinates(m);
-  if (own.method == FlowMethod::kCollocation) {
+  if (own.options.method == FlowMethod::kCollocation) {
     CollocationFlow flow(own.system, p.tables.steps, std::move(p.start), p.options);
     flow.set_tangents(own.enter * own.turned(tangents.start, flow.turn_at_start(), m));
     return own.run(flow, m, end, times, sample);

@@ -27,9 +27,6 @@ constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
 /// Of what the flow's tolerance may leave a place off by, or guards are held to, what it tells a stop by.
 constexpr double kShows = 10.0;
 
-/// What the closed form tells a stop by, of what moves in its guard (docs/limits.md).
-constexpr double kTold = 1e-12;
-
 /// How far from its start a run may begin, of its sizes.
 constexpr double kGivenBack = 1e-9;
 

@@ -40,6 +40,9 @@ struct ScanLimits {
   double spurious = 1e-4;
 };
 
+/// What the closed form tells a stop by, of what moves in its guard (docs/limits.md).
+inline constexpr double kTold = 1e-12;
+
 /// What collocation may leave the impulse of each contact off by in a step: its tolerance, of the law's largest force,
 /// not of a small motion's [nc, N s]. Zero in closed form.
 /// @param longest  that steps are [s]; the flow's own largest is not exceeded

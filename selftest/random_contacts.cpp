@@ -60,8 +60,7 @@ void clearance(SceneDraft& d, int own, bool of_mass) {
     const bool closed = d.chance(0.1);
     d.closed = d.closed || closed;
     const double stiffness = d.contact_spring(100.0, 1e6), gap = closed ? 0.0 : d.size * d.uniform(0.05, 0.8);
-    d.line("{} = {{ stiffness = {}, damping = {}, gap = {} }}", name, SceneDraft::number(stiffness),
-           SceneDraft::number(damping), SceneDraft::number(gap));
+    d.stop(name, stiffness, damping, gap);
     return gap;
   };
   const auto meets = [&](double y) {

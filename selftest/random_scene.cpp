@@ -71,7 +71,10 @@ void resting_start(SceneDraft& d, const std::vector<double>& places) {
   std::vector<double> v(places.size(), 0.0);
   if (d.chance(0.4))
     for (double& value : v)
-      if (d.chance(0.3)) value = d.uniform(-1.0, 1.0) * d.scatter(1e-16, 1e-9);
+      if (d.chance(0.3)) {
+        value = d.uniform(-1.0, 1.0);
+        value *= d.scatter(1e-16, 1e-9);
+      }
   d.line("\n[initial]\ndisplacement = {}\nvelocity = {}", SceneDraft::numbers(places), SceneDraft::numbers(v));
 }
 

@@ -26,8 +26,7 @@ void stops_at(SceneDraft& d, int mass, double place) {
   d.line("\n[[contact]]\nat = {}\nlaw = \"clearance\"\nloss = \"{}\"", mass, d.chance(0.5) ? "gap" : "zero-force");
   const auto stop = [&](const char* side, double gap) {
     const double stiffness = d.contact_spring(100.0, 1e4), damping = d.chance(0.5) ? 0.0 : d.uniform(0.05, 1.0);
-    d.line("{} = {{ stiffness = {}, damping = {}, gap = {} }}", side, SceneDraft::number(stiffness),
-           SceneDraft::number(damping), SceneDraft::number(gap));
+    d.stop(side, stiffness, damping, gap);
   };
   stop(place > 0.0 ? "right" : "left", std::abs(place));
   if (d.chance(0.3)) stop(place > 0.0 ? "left" : "right", d.uniform(0.0, 1.0));

@@ -59,6 +59,11 @@ struct SceneDraft {
   }
   /// A spring constant between these, or far from them where stiff and slow are mixed.
   double spring(double low, double high) { return uniform(low, high) * (mixed ? scatter(1e-3, 1e3) : 1.0); }
+  /// One side of a clearance.
+  void stop(std::string_view side, double own_stiffness, double damping, double gap) {
+    line("{} = {{ stiffness = {}, damping = {}, gap = {} }}", side, number(own_stiffness), number(damping),
+         number(gap));
+  }
   /// A contact's own spring: of the structure's order to far beyond it.
   double contact_spring(double usual, double most) { return stiffness * scatter(1.0, chance(0.1) ? most : usual); }
 

@@ -46,8 +46,8 @@ constexpr double kOfTime = 1e-14, kOfTolerance = 100.0;
 constexpr double kSameTime = 1e-9, kApart = 1e-2;
 /// Two events of a contact that graze are no further apart; a bristle at rest pulls with no more than this share.
 constexpr double kGrazes = 1e-6, kAtRest = 1e-10;
-/// What a stop's place is told from zero to, of a motion's size; what is there rests on it at this share of its speeds.
-constexpr double kStopsTold = 1e-12, kRests = 1e-9;
+/// What is on a stop, as far as is told, rests on it at this share of the motion's speeds.
+constexpr double kRests = 1e-9;
 /// Powers of ten of its duration that a run is cut beside an event.
 constexpr double kNear = 5.0, kNearest = 12.0;
 
@@ -142,8 +142,6 @@ class SceneChecker {
     start_ = scene::initial_state(scene, *system_);
     options_ = scene::simulate_options(scene);
     whole_ = options_.duration;
-    stops_ =
-        std::ranges::any_of(system_->contacts(), [](const auto& c) { return friction::clearance(c.law) != nullptr; });
     options_.sample = std::min(kPhasePerSample / fastest_rate(*system_, start_), options_.duration / kFewest);
     options_.duration = std::min(options_.duration, kMostSamples * options_.sample);
     options_.transient = 0.0;
@@ -240,7 +238,7 @@ class SceneChecker {
       if (stops == nullptr) return false;
       const double y = contact.direction.dot(state.q) + contact.offset;
       const auto at = [&](const std::optional<friction::Stop>& stop, double side) {
-        return stop && std::abs(side * y - stop->gap) <= kStopsTold * size_q_;
+        return stop && std::abs(side * y - stop->gap) <= kTold * size_q_;
       };
       return (at(stops->left, -1.0) || at(stops->right, 1.0)) &&
              std::abs(contact.direction.dot(state.v)) <= kRests * size_q_ * kPhasePerSample / options_.sample;
@@ -291,9 +289,11 @@ class SceneChecker {
     // forces round by for as long as these push; by what a stop that is met from rest makes of the place it is told at;
     // and are off by what the flow's tolerance lets them.
     const double rate = kPhasePerSample / options_.sample;
-    const double told =
-        (64.0 + rate * options_.duration) * std::numeric_limits<double>::epsilon() + (stops_ ? kStopsTold : 0.0);
-    const double rounding = told * size_q_ * rate;
+    const bool stops =
+        std::ranges::any_of(system_->contacts(), [](const auto& c) { return friction::clearance(c.law) != nullptr; });
+    const double share =
+        (64.0 + rate * options_.duration) * std::numeric_limits<double>::epsilon() + (stops ? kTold : 0.0);
+    const double rounding = share * size_q_ * rate;
     const double size_v = size_v_ + (rounding + tolerated_) / kSameMotion;
     return std::max((a.q - b.q).cwiseAbs().maxCoeff() / size_q_, (a.v - b.v).cwiseAbs().maxCoeff() / size_v);
   }
@@ -384,7 +384,7 @@ class SceneChecker {
   dynamics::State start_;
   dynamics::SimulateOptions options_;
   dynamics::Trajectory run_;
-  bool simulated_ = false, stops_ = false;
+  bool simulated_ = false;
   std::vector<dynamics::State> events_;
   double whole_ = 0.0;  ///< the scene's own duration [s]
   double size_q_ = 1.0, size_v_ = 1.0, tolerated_ = 0.0;

@@ -342,6 +342,7 @@ ClosedFormFlow::Search ClosedFormFlow::search(int level) const {
   Search found;
   Eigen::Index computed = -1;
   alignas(64) std::array<double, kNodes> output{}, values;
+  const Eigen::Map<const Eigen::Array<double, kNodes, 1>> at_nodes(values.data());
   double remainder = 0.0;
   for (std::size_t g = 0; g < guards_.size(); ++g) {
     const Guard& guard = guards_[g];
@@ -372,20 +373,18 @@ ClosedFormFlow::Search ClosedFormFlow::search(int level) const {
       }
     }
     for (std::size_t j = 0; j < kNodes; ++j) values[j] = guard.constant + guard.sign * output[j];
-    const double least = Eigen::Map<const Eigen::Array<double, kNodes, 1>>(values.data()).minCoeff();
+    const double least = at_nodes.minCoeff();
     if (least > remainder || stays_above(values, remainder, kHalvings)) {
       found.spare = std::min(found.spare, std::max(least, 0.0) / std::max(remainder, 1e-300));
       continue;
     }
-    if (!std::isfinite(remainder) || !Eigen::Map<const Eigen::Array<double, kNodes, 1>>(values.data()).allFinite())
-      return unknown(static_cast<int>(g), level);
+    if (!std::isfinite(remainder) || !at_nodes.allFinite()) return unknown(static_cast<int>(g), level);
     BernsteinPolynomial polynomial;
     polynomial.degree = kNodes - 1;
     std::copy_n(values.begin(), kNodes, polynomial.coefficient.begin());
     // Of what grows from next to nothing on, a window has no more digits than its largest value leaves.
     const double tolerance = kTouching * size_of(guard).told();
-    const double rounding =
-        kPlaceRounding * Eigen::Map<const Eigen::Array<double, kNodes, 1>>(values.data()).abs().maxCoeff();
+    const double rounding = kPlaceRounding * at_nodes.abs().maxCoeff();
     judge(polynomial, rounding > tolerance ? std::max(remainder, rounding) : remainder, tolerance, static_cast<int>(g),
           found);
   }

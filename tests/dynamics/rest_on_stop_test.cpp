@@ -339,14 +339,15 @@ double resting_place(int n, int held, int i) {
 }
 
 /// A chain at rest between walls, friction holding one mass 0.6 m off, and a stop where another is then.
-HybridSystem held_chain(fem::ChainOptions options, int held, int stopped, double stiffness) {
+HybridSystem held_chain(fem::ChainOptions options, int held, int stopped, double stiffness,
+                        const friction::Belt& belt = friction::Belt::constant(0.0)) {
   options.right_fixed = true;
   const int n = options.masses;
   const auto unit = [n](int i) { return Eigen::VectorXd(Eigen::VectorXd::Unit(n, i)); };
   const Stop stop{stiffness, 0.0, resting_place(n, held, stopped)};
   return {fem::chain(options),
           {{unit(held), friction::Coulomb{1.0, 0.9}, 10.0}, {unit(stopped), Clearance{.left = {}, .right = stop}}},
-          friction::Belt::constant(0.0)};
+          belt};
 }
 
 State held_start(const HybridSystem& system, int held) {
@@ -418,14 +419,9 @@ TEST(RestOnAStop, IsTakenUpBeforeCollocationTellsIt) {
   // A belt pulls the last of sixteen masses, and the fifth passes its stop as t^26: by as much as friction on the last
   // one may be off by, which is the tolerance, before that is told.
   for (const double tolerance : {1e-11, 1e-9}) {
-    const int n = 16, held = n - 1, stopped = 4;
-    fem::ChainOptions options{.masses = n, .damping = 0.006};
-    options.right_fixed = true;
-    const Stop stop{.stiffness = 4.2, .damping = 0.64, .gap = resting_place(n, held, stopped)};
-    const HybridSystem system(fem::chain(options),
-                              {{Eigen::VectorXd::Unit(n, held), friction::Coulomb{0.6, 0.3}, 24.0},
-                               {Eigen::VectorXd::Unit(n, stopped), Clearance{.left = {}, .right = stop}}},
-                              friction::Belt{.speed = 0.0, .end_speed = 0.8, .ramp_begin = 0.0, .ramp_end = 5.0});
+    const int held = 15;
+    const HybridSystem system = held_chain({.masses = 16, .damping = 0.006}, held, 4, 4.2,
+                                           {.speed = 0.0, .end_speed = 0.8, .ramp_begin = 0.0, .ramp_end = 5.0});
     const auto run = [&](const State& from, double duration) {
       return simulate(system, from,
                       {.duration = duration, .flow = {.method = FlowMethod::kCollocation, .tolerance = tolerance}});
